@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import codecs
 import contextlib
 import os
 import signal
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
 _HAS_GROUPS = hasattr(os, "killpg")
 _LAST_WORDS_SECONDS = 0.2
 """How long to read on after a process has ended: another that it left behind may hold its streams open for ever."""
+_LONGEST_LINE = 100_000
+"""Characters that are kept until the line ends that they belong to."""
 _HURRIED_SECONDS = {"SIGTERM": 0.0, "SIGKILL": 0.5}
 """How long to wait for the end before these when the user does not want to wait."""
 
@@ -56,7 +59,7 @@ class RunningProcess:
         self._wants_output = wants_output
         self._guardian = guardian
         self._transport: asyncio.SubprocessTransport | None = None
-        self._rests = {1: b"", 2: b""}
+        self._lines = {1: _Lines(), 2: _Lines()}
         self._open_streams = {1, 2}
         self._streams_closed = asyncio.Event()
         self._ended = asyncio.Event()
@@ -246,8 +249,7 @@ class RunningProcess:
         event = kind(text=chunk, action=action, **self._details(self._transport))
         if self._wants_output(event):
             self._emit(event)
-        *lines, self._rests[number] = (self._rests[number] + chunk).split(b"\n")
-        for line in lines:
+        for line in self._lines[number].feed(chunk):
             self._show(number, line)
 
     def stream_closed(self, number: int) -> None:
@@ -262,13 +264,12 @@ class RunningProcess:
         self._news.set()
 
     def _flush(self) -> None:
-        for number, rest in self._rests.items():
-            if rest:
-                self._show(number, rest)
+        for number, lines in self._lines.items():
+            for line in lines.end():
+                self._show(number, line)
 
-    def _show(self, number: int, line: bytes) -> None:
-        text = line.decode(errors="replace").rstrip("\r")
-        shown = self.plan.output_format.format(line=text, this=self.plan.action)
+    def _show(self, number: int, line: str) -> None:
+        shown = self.plan.output_format.format(line=line, this=self.plan.action)
         self._log.process_line(self.name, number, shown, self.plan.destinations[number])
 
     def _report_end(self, pid: int, returncode: int) -> None:
@@ -277,6 +278,32 @@ class RunningProcess:
             return
         command = " ".join(self.plan.command)
         self._log.complain(self.name, f"process has died [pid {pid}, exit code {returncode}, cmd '{command}'].")
+
+
+class _Lines:
+    """Divides what a process writes into lines; a line that is very long, or never ends, is shown in pieces."""
+
+    def __init__(self) -> None:
+        self._decode = codecs.getincrementaldecoder("utf-8")("replace").decode
+        self._pieces: list[str] = []
+        self._length = 0
+
+    def feed(self, chunk: bytes) -> list[str]:
+        """The lines that are whole with a chunk of bytes."""
+        first, *others = self._decode(chunk).split("\n")
+        self._pieces.append(first)
+        self._length += len(first)
+        if not others and self._length < _LONGEST_LINE:
+            return []
+        whole = ["".join(self._pieces), *others]
+        rest = whole.pop() if others else ""
+        self._pieces, self._length = [rest], len(rest)
+        return [line.rstrip("\r") for line in whole]
+
+    def end(self) -> list[str]:
+        """The last line, if the process did not end it."""
+        rest = "".join(self._pieces) + self._decode(b"", final=True)
+        return [rest.rstrip("\r")] if rest else []
 
 
 class _Streams(asyncio.SubprocessProtocol):

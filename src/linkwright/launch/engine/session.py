@@ -16,7 +16,7 @@ from linkwright.launch.engine.process_table import ProcessTable
 from linkwright.launch.engine.reload import LiveReload
 from linkwright.launch.engine.supervisor import SessionOptions
 from linkwright.launch.errors.places import located
-from linkwright.launch.errors.user_code import explain
+from linkwright.launch.errors.user_code import DEEPEST, endless, explain
 from linkwright.launch.log.launch_log import LaunchLog
 from linkwright.launch.log.loggers import launch_config
 from linkwright.launch.model import events
@@ -240,7 +240,9 @@ class LaunchSession:
 
     # --- visits ---------------------------------------------------------------------------------------------
 
-    def _visit(self, entity: LaunchDescriptionEntity, context: LaunchContext) -> None:
+    def _visit(self, entity: LaunchDescriptionEntity, context: LaunchContext, depth: int = 1) -> None:
+        if depth > DEEPEST:
+            raise endless(entity.place)
         try:
             following = entity.visit(context)
         except DescriptionError as error:
@@ -249,7 +251,7 @@ class LaunchSession:
             elif not self._omissions.take(located(error, entity.place)):
                 raise
             return
-        except Exception as error:
+        except (Exception, SystemExit) as error:
             name = type(entity).__name__
             explained = explain(error, phrase("launch action {name}", name=name), entity.place)
             if self._omissions.take(explained):
@@ -260,9 +262,9 @@ class LaunchSession:
             self.hold(future)
         try:
             for each in following or ():
-                self._visit(each, context)
+                self._visit(each, context, depth + 1)
         except LinkwrightError as error:
-            raise entity.explain_inside(error) from error
+            raise located(entity.explain_inside(error), entity.place) from error
 
     def _await_repair(self, entity: LaunchDescriptionEntity, context: LaunchContext, error: DescriptionError) -> None:
         """Visit an entity again as soon as the model file that it needs can be expanded."""
@@ -311,7 +313,7 @@ class LaunchSession:
                 entities += event.action.exited(event, context)
             for entity in entities:
                 self.visit(entity, context)
-        except Exception as error:  # noqa: BLE001 - handlers are the launch file's code
+        except (Exception, SystemExit) as error:  # noqa: BLE001 - handlers are the launch file's code
             self.log.diagnostics(explain(error, phrase("an event handler")).diagnostics)
             self.fail(event)
             if not self.ending and not isinstance(event, events.Shutdown):

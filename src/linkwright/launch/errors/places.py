@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import os
 import sys
 from collections.abc import Iterator
@@ -20,7 +21,8 @@ T = TypeVar("T", bound="Placed")
 
 _OURS = str(Path(linkwright.__file__).parent) + os.sep
 _SHIPPED_PACKAGES = _OURS + "robots" + os.sep
-_COMMAND_LINE = _OURS + "cli" + os.sep
+_STARTERS = (_OURS + "cli" + os.sep, str(Path(asyncio.__file__).parent) + os.sep)
+"""Folders of the programs that our own code may have been started by: the command line, the event loop."""
 
 
 class Place:
@@ -36,14 +38,17 @@ class Place:
     def of_caller() -> Place | None:
         """The markup being read now, else the nearest frame on the stack that is not Linkwright's own; None without.
 
-        What our command line was started by (a script, Python itself) is no place of the user's.
+        What our command line or the event loop was started by (a script, Python itself) is no place of the user's.
         """
         if _being_read:
             return _being_read[-1]
         frame: FrameType | None = sys._getframe(1)
-        while frame is not None and is_ours(frame.f_code.co_filename):
-            if frame.f_code.co_filename.startswith(_COMMAND_LINE):
+        while frame is not None:
+            filename = frame.f_code.co_filename
+            if filename.startswith(_STARTERS):
                 return None
+            if not is_ours(filename):
+                break
             frame = frame.f_back
         return None if frame is None else CodePlace(frame.f_code, frame.f_lasti, frame.f_lineno)
 

@@ -19,13 +19,18 @@ from linkwright.diagnostics import (
     SourceText,
     Span,
     did_you_mean,
+    display_path,
     foreign,
     nearest,
     phrase,
     quoted_names,
 )
 from linkwright.launch.errors.exceptions import as_ros_error
-from linkwright.launch.errors.places import CodePlace, Place, is_ours, located, read_source
+from linkwright.launch.errors.places import CodePlace, Place, error_at, is_ours, located, read_source
+
+DEEPEST = 300
+"""So many launch actions may lead to one another: files that include files, groups in groups, functions that return
+actions. Python's own limit would be reached a little later, at a place that tells nothing."""
 
 _LIBRARY = tuple({sysconfig.get_path("stdlib"), sysconfig.get_path("purelib"), sysconfig.get_path("platlib")})
 _CANNOT_IMPORT = re.compile(r"cannot import name '([^']+)' from '([^']+)'")
@@ -34,11 +39,11 @@ _MISSING_ARGUMENT = re.compile(r"\(\) missing \d+ required .*arguments?: (.*)$")
 _UNEXPECTED_ARGUMENT = re.compile(r"([\w.]+)\(\) got an unexpected keyword argument '([^']+)'")
 
 
-def explain(error: Exception, where: str, fallback: Place | None = None) -> LinkwrightError:
+def explain(error: BaseException, where: str, fallback: Place | None = None) -> LinkwrightError:
     """An exception as an error with the user's own line.
 
     Args:
-        error: what was raised.
+        error: what was raised; ``sys.exit`` raises too.
         where: what was running, such as "launch file 'x.launch.py'".
         fallback: the place to name when no line of the user's was running.
 
@@ -59,9 +64,25 @@ def explain(error: Exception, where: str, fallback: Place | None = None) -> Link
     )
     source = place.source() if place else None
     span = place.span(source) if place else None
-    notes = tuple(Note(phrase("called from here"), each.span(read_source(each.file))) for each in reversed(trail[:-1]))
+    callers = dict.fromkeys(reversed(trail[:-1]))  # a function that calls itself is told of once
+    notes = tuple(Note(phrase("called from here"), each.span(read_source(each.file))) for each in callers)
     diagnostic = Diagnostic("LAUNCH104", message, span, notes=notes, hint=_hint(error, source, span), source=source)
-    return as_ros_error(error, diagnostic)
+    return as_ros_error(error if isinstance(error, Exception) else None, diagnostic)
+
+
+def endless(place: Place | None) -> LinkwrightError:
+    """The error about actions that lead to one another, as it seems, for ever."""
+    message = phrase("launch actions lead to one another without an end: more than {count} do", count=DEEPEST)
+    hint = phrase(
+        "a launch file must not include itself, nor a function return itself, without a condition that ends it"
+    )
+    return error_at(place, "LAUNCH156", message, hint)
+
+
+def too_deep(path: str) -> LinkwrightError:
+    """The error about a launch file that is nested deeper than Python's stack is."""
+    message = phrase("launch file '{path}' is nested too deeply to be read", path=display_path(path))
+    return error_at(None, "LAUNCH156", message)
 
 
 def _user_places(traceback: TracebackType | None) -> Iterable[Place]:
@@ -82,7 +103,7 @@ def is_users(filename: str) -> bool:
     return not filename.startswith(tuple(folder for folder in _LIBRARY if folder))
 
 
-def _hint(error: Exception, source: SourceText | None, span: Span | None) -> Phrase | None:
+def _hint(error: BaseException, source: SourceText | None, span: Span | None) -> Phrase | None:
     """What the user may have meant."""
     if isinstance(error, ImportError):
         return _import_hint(error)

@@ -136,7 +136,9 @@ class IncludeLaunchDescription(Action):
         """An error that happened in what is included, with a note about how it came to be included."""
         if self.place is not None and self._source.location_path is not None:
             note = Note(phrase("included from here"), self.place.span(self.place.source()))
-            error.diagnostics = tuple(replace(each, notes=(*each.notes, note)) for each in error.diagnostics)
+            error.diagnostics = tuple(
+                each if note in each.notes else replace(each, notes=(*each.notes, note)) for each in error.diagnostics
+            )
         return error
 
     def _file_values(self) -> dict[str, str]:

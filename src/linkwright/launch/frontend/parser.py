@@ -166,6 +166,8 @@ class Parser:
             again.name = name
             try:
                 return parser.load(again)
+            except RecursionError:  # the text is nested without measure, in whatever language
+                raise
             except Exception as error:  # noqa: BLE001 - parsers of packages may raise anything
                 errors.append(error)
         extension = os.path.splitext(name)[1][1:] if cls.is_filename_valid(name) else ""  # noqa: PTH122

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 from linkwright.diagnostics import (
     Diagnostic,
@@ -19,7 +21,7 @@ from linkwright.diagnostics import (
 )
 from linkwright.input_files import read_text
 from linkwright.launch.errors.exceptions import InvalidPythonLaunchFileError, as_ros_error
-from linkwright.launch.errors.places import error_at, not_reading
+from linkwright.launch.errors.places import MarkupPlace, Place, error_at, not_reading
 from linkwright.launch.errors.user_code import explain
 from linkwright.launch.model.description import LaunchDescription
 from linkwright.packages.launch_files import is_launch_file_name
@@ -49,19 +51,27 @@ def load_python_launch_file(path: Path) -> LaunchDescription:
             raise error_at(None, "LAUNCH105", message, hint, ros_error=InvalidPythonLaunchFileError(text))
         try:
             description = function()
-        except Exception as error:
-            raise explain(error, phrase("launch file '{path}'", path=display_path(source.name))) from error
+        except (Exception, SystemExit) as error:
+            if isinstance(error, SystemExit) and not error.code:
+                raise
+            where = phrase("launch file '{path}'", path=display_path(source.name))
+            raise explain(error, where, _definition(function, source)) from error
     if not isinstance(description, LaunchDescription):
-        line = function.__code__.co_firstlineno if hasattr(function, "__code__") else 1
-        start = source.offset(line, 1)
-        span = source.span(start, start + len(source.line(line)))
         message = phrase(
             "'{function}' returned {kind}, not a LaunchDescription", function=_FUNCTION, kind=_kind(description)
         )
         hint = phrase("end it with: return LaunchDescription([...])")
-        diagnostic = Diagnostic("LAUNCH106", message, span, hint=hint, source=source)
-        raise as_ros_error(InvalidPythonLaunchFileError(message), diagnostic)
+        ros_error = InvalidPythonLaunchFileError(message)
+        raise error_at(_definition(function, source), "LAUNCH106", message, hint, ros_error=ros_error)
     return description
+
+
+def _definition(function: Callable[..., Any], source: SourceText) -> Place:
+    """The line of a launch file that defines a function; the first one for a function from elsewhere."""
+    code = getattr(function, "__code__", None)
+    line = code.co_firstlineno if code is not None and code.co_filename == source.name else 1
+    start = source.offset(line, 1)
+    return MarkupPlace(source, start, start + len(source.line(line)))
 
 
 def load_python_module(path: Path) -> ModuleType:
@@ -89,7 +99,9 @@ def _run(source: SourceText, path: Path) -> ModuleType:
     module.__file__ = str(path)
     try:
         exec(code, module.__dict__)  # noqa: S102 - a launch file is a program that the user asks to run
-    except Exception as error:
+    except (Exception, SystemExit) as error:
+        if isinstance(error, SystemExit) and not error.code:
+            raise  # it is done, and all is well
         raise explain(error, phrase("launch file '{path}'", path=display_path(source.name))) from error
     return module
 

@@ -179,6 +179,23 @@ class _Loader(yaml.SafeLoader):
 
     launch_text: SourceText
 
+    def __init__(self, text: str) -> None:
+        super().__init__(text)
+        self._open_anchors: list[str | None] = []
+
+    def compose_node(self, parent: yaml.Node | None, index: Any) -> yaml.Node | None:
+        """A node of the file; an alias of a node that it is itself inside of would never end."""
+        event: Any = self.peek_event()  # type: ignore[no-untyped-call]  # of PyYAML
+        anchor = getattr(event, "anchor", None)
+        if isinstance(event, yaml.AliasEvent) and anchor in self._open_anchors:
+            mark: Any = event.start_mark
+            raise yaml.composer.ComposerError(None, None, f"alias '{anchor}' is inside of itself", mark)
+        self._open_anchors.append(anchor)
+        try:
+            return super().compose_node(parent, index)
+        finally:
+            self._open_anchors.pop()
+
     def place_of_node(self, node: yaml.Node) -> Place:
         return MarkupPlace(self.launch_text, node.start_mark.index, node.end_mark.index)
 

@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from contextlib import suppress
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.launch.model.actions.arguments import DeclareLaunchArgument
 from linkwright.launch.model.actions.configurations import ResetLaunchConfigurations
 from linkwright.launch.model.entity import LaunchDescriptionEntity
+
+_DEEPEST = 100
+"""Entities inside of each other that are looked into: a file that includes itself, if only under a condition, has no
+end before it runs."""
 
 
 def declared_arguments(
@@ -18,16 +23,17 @@ def declared_arguments(
     The first declaration of a name counts. Those behind a condition are marked by ``conditionally_included``.
     Declarations after a `ResetLaunchConfigurations` cannot be given from outside, and do not count.
     """
-    found = _Declared()
-    found.collect(entities, conditional_inclusion, ())
-    return list(found.arguments.values())
+    return list(_Declared.by(entities, conditional_inclusion).arguments.values())
 
 
 def undeclared_names(entities: Iterable[LaunchDescriptionEntity], names: Iterable[str]) -> list[str]:
     """Those of some names that nothing in a description declares; none where not all of it can be known yet."""
-    found = _Declared()
-    found.collect(entities, False, ())
+    found = _Declared.by(entities)
     return [] if found.incomplete else [name for name in names if name not in found.names]
+
+
+class _TooDeepError(Exception):
+    """Entities are nested deeper than they are looked into."""
 
 
 class _Declared:
@@ -44,8 +50,20 @@ class _Declared:
         self.names: set[str] = set()
         self.incomplete = False
 
+    @classmethod
+    def by(cls, entities: Iterable[LaunchDescriptionEntity], conditional: bool = False) -> _Declared:
+        """What some entities declare, and what is inside of them."""
+        found = cls()
+        with suppress(_TooDeepError):
+            found.collect(entities, conditional)
+        return found
+
     def collect(
-        self, entities: Iterable[LaunchDescriptionEntity], conditional: bool, set_outside: tuple[str, ...]
+        self,
+        entities: Iterable[LaunchDescriptionEntity],
+        conditional: bool = False,
+        set_outside: tuple[str, ...] = (),
+        depth: int = 1,
     ) -> None:
         """Take in what entities declare.
 
@@ -53,7 +71,14 @@ class _Declared:
             entities: where to look.
             conditional: whether a condition decides if they are visited.
             set_outside: the names that an including file gives.
+            depth: how many entities are around them, and one.
+
+        Raises:
+            _TooDeepError: they are too many.
         """
+        if depth > _DEEPEST:
+            self.incomplete = True
+            raise _TooDeepError
         for entity in entities:
             if isinstance(entity, ResetLaunchConfigurations):
                 return
@@ -71,6 +96,6 @@ class _Declared:
             except LinkwrightError:
                 self.incomplete = True
                 continue  # an included file that cannot be read is reported when it is visited
-            self.collect(below, conditional, inside)
+            self.collect(below, conditional, inside, depth + 1)
             for _, some in maybe:
-                self.collect(some, True, inside)
+                self.collect(some, True, inside, depth + 1)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
+from linkwright.launch.errors.user_code import DEEPEST, endless
 from linkwright.launch.model.actions import EmitEvent, Log, RegisterEventHandler
 from linkwright.launch.model.description import LaunchDescription
 from linkwright.launch.model.entity import LaunchDescriptionEntity
@@ -25,14 +26,16 @@ def format_launch_description(description: LaunchDescription) -> str:
     return "\n".join([description.describe(), *_tree(description.entities)])
 
 
-def _tree(entities: Iterable[Any]) -> list[str]:
+def _tree(entities: Iterable[Any], depth: int = 1) -> list[str]:
     listed = list(entities)
+    if depth > DEEPEST and listed:
+        raise endless(getattr(listed[0], "place", None))
     lines: list[str] = []
     for number, entity in enumerate(listed):
         last = number == len(listed) - 1
         text, inside = _described(entity)
         lines.append(("└── " if last else "├── ") + text)
-        lines += [(_INDENT if last else "│   ") + line for line in _tree(inside)]
+        lines += [(_INDENT if last else "│   ") + line for line in _tree(inside, depth + 1)]
     return lines
 
 

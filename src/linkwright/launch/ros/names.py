@@ -6,7 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterable
 from typing import Any
 
-from linkwright.diagnostics import LinkwrightError, foreign, phrase
+from linkwright.diagnostics import phrase
 from linkwright.launch.errors.places import Place, error_at
 from linkwright.launch.model.context import LaunchContext
 from linkwright.launch.model.substitution import (
@@ -88,18 +88,13 @@ def check_name(name: str) -> str:
     Raises:
         LinkwrightError: LAUNCH134, it is not valid.
     """
-    from linkwright.graph.names.rules import check_node_name
+    from linkwright.graph.names.rules import InvalidNameError, check_node_name
 
     try:
         check_node_name(name)
-    except LinkwrightError as error:
-        reason = error.diagnostics[0].message
-        raise error_at(
-            None,
-            "LAUNCH134",
-            phrase("the name '{name}' of a node is malformed: {reason}", name=name, reason=foreign(reason)),
-            ros_error=error,
-        ) from error
+    except InvalidNameError as error:
+        message = phrase("the name '{name}' of a node is malformed: {reason}", name=name, reason=error.error_msg)
+        raise error_at(None, "LAUNCH134", message, ros_error=error) from error
     return name
 
 
@@ -109,20 +104,14 @@ def check_namespace(namespace: str) -> str:
     Raises:
         LinkwrightError: LAUNCH134, it is not valid.
     """
-    from linkwright.graph.names.rules import absolute_namespace
+    from linkwright.graph.names.rules import InvalidNameError, absolute_namespace
 
     try:
         absolute_namespace(namespace)
-    except LinkwrightError as error:
-        reason = _reason(error)
-        message = phrase("namespace '{namespace}' is malformed: {reason}", namespace=namespace, reason=foreign(reason))
+    except InvalidNameError as error:
+        message = phrase("namespace '{namespace}' is malformed: {reason}", namespace=namespace, reason=error.error_msg)
         raise error_at(None, "LAUNCH134", message, ros_error=ValueError(message)) from error
     return namespace
-
-
-def _reason(error: LinkwrightError) -> str:
-    """What is wrong with a name, without the name."""
-    return error.diagnostics[0].message.rpartition(": ")[2]
 
 
 RemapRule = tuple[tuple[Substitution, ...], tuple[Substitution, ...]]

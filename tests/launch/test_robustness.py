@@ -1,0 +1,178 @@
+"""Launch files that never end, end themselves or are nested without measure: one clear error, at the user's line."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.launch import LaunchTarget, print_description, show_arguments
+from linkwright.launch.arguments import check_arguments
+from linkwright.launch.engine.processes import _LONGEST_LINE, _Lines
+from linkwright.launch.frontend.include import IncludeLaunchDescription
+from linkwright.launch.frontend.launch_file import load_launch_file
+from linkwright.launch.ros import Node, PushRosNamespace
+
+Write = Callable[[str, str], Path]
+
+HEAD = """import sys
+from launch import LaunchDescription
+from launch.actions import *
+from launch.conditions import IfCondition
+"""
+
+AGAIN_AND_AGAIN = {
+    "itself.launch.py": HEAD
+    + "def generate_launch_description():\n    return LaunchDescription([IncludeLaunchDescription(__file__)])\n",
+    "twice.launch.py": HEAD
+    + "def generate_launch_description():\n    return LaunchDescription([IncludeLaunchDescription(__file__)] * 2)\n",
+    "itself.launch.xml": '<launch>\n  <include file="$(dirname)/itself.launch.xml"/>\n</launch>\n',
+    "itself.launch.yaml": "launch:\n- include: $(dirname)/itself.launch.yaml\n",
+    "one.launch.xml": '<launch>\n  <include file="$(dirname)/other.launch.yaml"/>\n</launch>\n',
+    "other.launch.yaml": "launch:\n- include:\n    file: $(dirname)/one.launch.xml\n",
+    "function.launch.py": HEAD
+    + "def again(context):\n    return [OpaqueFunction(function=again)]\n"
+    + "def generate_launch_description():\n    return LaunchDescription([OpaqueFunction(function=again)])\n",
+}
+"""Launch files that lead to themselves; two of them to each other."""
+
+
+@pytest.mark.parametrize("name", AGAIN_AND_AGAIN)
+async def test_actions_that_lead_to_themselves_are_one_error(launch, write: Write, name: str) -> None:
+    for each, text in AGAIN_AND_AGAIN.items():
+        write(each, text)
+    path = write(name, AGAIN_AND_AGAIN[name])
+    done = await launch(IncludeLaunchDescription(str(path)))
+    assert not done.succeeded
+    assert done.err.count("error[") == 1
+    assert "error[LAUNCH156]" in done.err
+    assert f"{path.parent}" in done.err
+    assert "asyncio" not in done.err
+    assert done.err.count("included from here") <= 3  # each place once, however often it was passed
+
+
+def test_arguments_of_a_file_that_includes_itself_are_known(write: Write) -> None:
+    path = write(
+        "countdown.launch.py",
+        HEAD
+        + "def generate_launch_description():\n"
+        + "    again = IncludeLaunchDescription(__file__, condition=IfCondition('false'))\n"
+        + "    return LaunchDescription([DeclareLaunchArgument('rounds', default_value='3'), again])\n",
+    )
+    assert "'rounds':" in show_arguments(LaunchTarget(str(path)))
+    assert check_arguments(load_launch_file(path), {"rounds": "2", "other": "1"}) == []
+    with pytest.raises(LinkwrightError) as caught:
+        print_description(LaunchTarget(str(path)))
+    assert [each.code for each in caught.value.diagnostics] == ["LAUNCH156"]
+
+
+DEEP = {
+    "groups.launch.xml": "<launch>" + "<group>" * 900 + "</group>" * 900 + "</launch>",
+    "substitutions.launch.xml": '<launch><log_info message="' + "$(var " * 900 + "x" + ")" * 900 + '"/></launch>',
+    "groups.launch.yaml": "launch:\n- group: " + "[{group: " * 400 + "[]" + "}]" * 400,
+    "lists.launch.yaml": "launch: " + "[" * 700 + "]" * 700,
+}
+
+
+@pytest.mark.parametrize("name", DEEP)
+def test_a_file_that_is_nested_too_deeply_is_refused(write: Write, name: str) -> None:
+    with pytest.raises(LinkwrightError) as caught:
+        load_launch_file(write(name, DEEP[name]))
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.code == "LAUNCH156"
+    assert name in diagnostic.message
+
+
+@pytest.mark.parametrize("text", ["launch: &a\n- group: *a\n", "launch:\n- node: &n\n    pkg: a\n    more: {x: *n}\n"])
+def test_an_alias_inside_of_itself_is_no_yaml(write: Write, text: str) -> None:
+    with pytest.raises(LinkwrightError) as caught:
+        load_launch_file(write("a.launch.yaml", text))
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.code == "LAUNCH108"
+    assert "is inside of itself" in diagnostic.message
+    assert diagnostic.span is not None
+    assert diagnostic.span.line == len(text.splitlines())
+
+
+def test_an_anchor_may_be_used_again_where_it_is_whole(write: Write) -> None:
+    text = "launch:\n- group: &g\n  - log_info: {message: a}\n- group: *g\n"
+    assert len(load_launch_file(write("a.launch.yaml", text)).entities) == 2
+
+
+ENDED = HEAD + "def stop(context):\n    sys.exit({given})\n"
+TAIL = (
+    "def generate_launch_description():\n    {first}\n    return LaunchDescription([OpaqueFunction(function=stop)])\n"
+)
+
+
+@pytest.mark.parametrize(("given", "told"), [("'I give up'", "I give up"), ("3", "3"), ("", ""), ("0", "0")])
+async def test_sys_exit_in_a_running_launch_is_an_error(launch, write: Write, given: str, told: str) -> None:
+    path = write("a.launch.py", (ENDED + TAIL).format(given=given, first="pass"))
+    done = await launch(IncludeLaunchDescription(str(path)))
+    assert not done.succeeded
+    assert f"raised SystemExit{': ' * bool(told)}{told}\n" in done.err
+    assert "a.launch.py:6:5" in done.err
+
+
+@pytest.mark.parametrize("text", [HEAD + "sys.exit('no')\n", (ENDED + TAIL).format(given="'no'", first="stop(1)")])
+def test_sys_exit_while_a_launch_file_is_read_is_an_error(write: Write, text: str) -> None:
+    with pytest.raises(LinkwrightError) as caught:
+        load_launch_file(write("a.launch.py", text))
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.message.endswith("raised SystemExit: no")
+    assert diagnostic.span is not None
+
+
+@pytest.mark.parametrize("text", [HEAD + "sys.exit()\n", (ENDED + TAIL).format(given="0", first="stop(1)")])
+def test_a_launch_file_that_says_it_is_done_is_done(write: Write, text: str) -> None:
+    with pytest.raises(SystemExit) as caught:
+        load_launch_file(write("a.launch.py", text))
+    assert not caught.value.code
+
+
+async def test_a_function_that_calls_itself_is_told_of_once(launch, write: Write) -> None:
+    text = HEAD + "def stop(context):\n    return stop(context)\n" + TAIL.format(first="pass")
+    done = await launch(IncludeLaunchDescription(str(write("a.launch.py", text))))
+    assert "raised RecursionError" in done.err
+    assert done.err.count("called from here") == 1
+
+
+def test_a_function_that_wants_arguments_is_shown(write: Write) -> None:
+    with pytest.raises(LinkwrightError) as caught:
+        load_launch_file(write("a.launch.py", HEAD + "def generate_launch_description(x):\n    pass\n"))
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.span is not None
+    assert diagnostic.span.line == 5
+
+
+@pytest.mark.parametrize("name", ["机器人", "my node", "a-b", "1st", "x" * 300])
+async def test_a_name_that_no_node_can_have(launch, name: str) -> None:
+    done = await launch(Node(package="robot_state_publisher", executable="robot_state_publisher", name=name))
+    assert not done.succeeded
+    assert f"error[LAUNCH134]: the name '{name}' of a node is malformed: node name " in done.err
+
+
+@pytest.mark.parametrize("namespace", ["机器人", "a b", "a//b", "a/1"])
+async def test_a_namespace_that_no_node_can_be_in(launch, namespace: str) -> None:
+    done = await launch(PushRosNamespace(namespace))
+    assert not done.succeeded
+    assert f"error[LAUNCH134]: namespace '/{namespace}' is malformed: namespace " in done.err
+
+
+def test_what_a_process_writes_is_divided_into_lines() -> None:
+    lines = _Lines()
+    assert lines.feed(b"one\r\ntw") == ["one"]
+    assert lines.feed("o\n\n机".encode()[:-1]) == ["two", ""]
+    assert lines.feed("机".encode()[-1:]) == []
+    assert lines.feed(b"\xff\n") == ["机\N{REPLACEMENT CHARACTER}"]
+    assert lines.feed(b"end\xe6") == []
+    assert lines.end() == ["end\N{REPLACEMENT CHARACTER}"]
+
+
+def test_a_line_without_an_end_is_shown_in_pieces() -> None:
+    lines = _Lines()
+    shown = [piece for _ in range(300) for piece in lines.feed(b"x" * 1000)]
+    assert [len(piece) for piece in shown] == [_LONGEST_LINE] * 3
+    assert lines.end() == []
