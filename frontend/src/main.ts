@@ -11,6 +11,7 @@ import "./styles/description.css";
 import "./styles/monitor.css";
 import "./styles/plots.css";
 import { Connection, socketUrl } from "./connection/connection";
+import { Tokens, type AddressBar } from "./connection/tokens";
 import { h } from "./dom";
 import { publishInspection } from "./inspection";
 import { DiagnosticsPanel } from "./panels/diagnostics-panel";
@@ -40,6 +41,7 @@ import { Keyboard } from "./scene/keyboard";
 import type { PanelHost } from "./scene/displays/display-panel";
 import { Stage } from "./scene/stage";
 import { Toolbox } from "./scene/tools/toolbox";
+import { Door } from "./shell/door";
 import { FileCommands } from "./shell/file-commands";
 import { hasOwnDisplays, ownKey } from "./shell/own-displays";
 import { matches, SHORTCUTS } from "./shell/shortcuts";
@@ -52,7 +54,10 @@ import { language, strings } from "./strings";
 function start(app: HTMLElement): void {
   document.documentElement.lang = language === "zh" ? "zh-CN" : "en";
   const theme = new ThemeState(document.documentElement, browserStorage(), matchMedia("(prefers-color-scheme: light)"));
-  const connection = new Connection(socketUrl(location.href, hasOwnDisplays(location.href) ? ownKey(sessionStorage) : null));
+  const own = hasOwnDisplays(location.href) ? ownKey(browserStorage("sessionStorage")) : null;
+  const tokens = new Tokens(addressBar(), browserStorage());
+  const connection = new Connection(socketUrl(location.href, own), tokens);
+  const door = new Door(connection, tokens, app);
   // Before anything is drawn: the answer takes a moment.
   connection.open();
   const session = new Session(connection);
@@ -93,9 +98,10 @@ function start(app: HTMLElement): void {
   const stage = makeStage(scene.container, session, dock.displayPanels);
   const toolbox = stage && takeTools(stage, session);
   const files = new FileCommands(session.configuration);
-  app.prepend(new TitleBar(session, dock, files, theme, new ShareMenu(session, stage)).element);
+  app.prepend(new TitleBar(session, dock, files, theme, new ShareMenu(session, stage, tokens)).element);
   takeFileKeys(session, files);
   app.append(new StatusBar(session, stage).element);
+  document.body.append(door.element);
   fullScreenOnF11(scene.box);
   document.addEventListener("keydown", (event) => {
     const typing = event.target instanceof HTMLInputElement || event.target instanceof HTMLTextAreaElement;
@@ -106,6 +112,15 @@ function start(app: HTMLElement): void {
     diagram: () => diagram.inspect(),
     monitor: () => session.monitor.inspect(),
   });
+}
+
+function addressBar(): AddressBar {
+  return {
+    get href() {
+      return location.href;
+    },
+    moveTo: (href) => history.replaceState(history.state, "", href),
+  };
 }
 
 /** The panels that depend on what there is, whichever arrangement is shown. */

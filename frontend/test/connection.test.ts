@@ -1,6 +1,8 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection, socketUrl } from "../src/connection/connection";
+import { tokenOf, Tokens, type AddressBar } from "../src/connection/tokens";
 import { PROTOCOL_VERSION } from "../src/protocol";
+import type { BrowserStorage } from "../src/state/storage";
 import { packed } from "./messages";
 
 class FakeSocket {
@@ -51,6 +53,61 @@ function opened(): { connection: Connection; socket: FakeSocket } {
   connection.open();
   return { connection, socket: FakeSocket.made[0]! };
 }
+
+function page(href: string, stored?: string, lasts = true): { tokens: Tokens; storage: BrowserStorage; address: AddressBar } {
+  const address = {
+    href,
+    moveTo(next: string) {
+      address.href = next;
+    },
+  };
+  const texts = new Map(stored === undefined ? [] : [["linkwright.token", stored]]);
+  const storage = {
+    lasts,
+    getItem: (key: string) => texts.get(key) ?? null,
+    setItem: (key: string, text: string) => void texts.set(key, text),
+    removeItem: (key: string) => void texts.delete(key),
+  };
+  return { tokens: new Tokens(address, storage), storage, address };
+}
+
+describe("the token", () => {
+  it("goes from the address into the browser's storage when it was let in, not before", () => {
+    const { tokens, storage, address } = page("http://localhost:7447/?token=abc&displays=own#x");
+    expect(tokens.current).toBe("abc");
+    expect(storage.getItem("linkwright.token")).toBeNull();
+    tokens.accepted("abc");
+    expect(address.href).toBe("http://localhost:7447/?displays=own#x");
+    expect(new Tokens(address, storage).current).toBe("abc");
+    expect(tokens.link).toBe("http://localhost:7447/?displays=own&token=abc#x");
+  });
+
+  it("stays in the address where the browser keeps nothing", () => {
+    const { tokens, address } = page("http://localhost:7447/?token=abc", undefined, false);
+    tokens.accepted("abc");
+    expect(address.href).toBe("http://localhost:7447/?token=abc");
+  });
+
+  it("of the address comes first, and that of an old address takes nothing away", () => {
+    const { tokens, storage } = page("http://localhost:7447/?token=old", "good");
+    expect(tokens.current).toBe("old");
+    expect(tokens.refused()).toBe(true);
+    expect(tokens.current).toBe("good");
+    tokens.accepted("good");
+    expect(tokens.current).toBe("good");
+    expect(storage.getItem("linkwright.token")).toBe("good");
+    expect(tokens.refused()).toBe(false);
+  });
+
+  it("is found in an address, or is the text", () => {
+    expect(tokenOf(" http://127.0.0.1:7447/?token=a-b_c\n")).toBe("a-b_c");
+    expect(tokenOf("Viewer: http://127.0.0.1:7447/?token=abc")).toBe("abc");
+    expect(tokenOf("0123456789abcdef_-AB")).toBe("0123456789abcdef_-AB");
+    expect(tokenOf("http://127.0.0.1:7447/")).toBeNull();
+    expect(tokenOf("hello")).toBeNull();
+    expect(tokenOf("")).toBeNull();
+  });
+});
 
 describe("the connection", () => {
   it("is connected after the greeting and hands on both kinds of messages", () => {
@@ -107,8 +164,45 @@ describe("the connection", () => {
     await vi.advanceTimersByTimeAsync(250);
     Object.assign(FakeSocket.made[1]!, { readyState: 3 }).onclose?.({ code: 1006 });
     await vi.advanceTimersByTimeAsync(0);
-    expect(asked.mock.calls[0]?.[0].href).toBe("http://127.0.0.1/");
+    expect(asked.mock.calls[0]?.[0].href).toBe("http://127.0.0.1/ws");
     expect(connection.state).toBe("refused");
+  });
+
+  it("tries every token it knows before it says that it is refused, and goes on trying", async () => {
+    vi.stubGlobal("fetch", () => Promise.resolve({ status: 401 }));
+    const { tokens, storage } = page("http://127.0.0.1/?token=new", "old");
+    const connection = new Connection("ws://127.0.0.1/ws", tokens);
+    const isRefused = async (): Promise<void> => {
+      Object.assign(FakeSocket.made.at(-1)!, { readyState: 3 }).onclose?.({ code: 1006 });
+      await vi.advanceTimersByTimeAsync(0);
+    };
+    connection.open();
+    await isRefused();
+    expect(connection.state).toBe("connecting");
+    await vi.advanceTimersByTimeAsync(250);
+    await isRefused();
+    expect(connection.state).toBe("refused");
+    storage.setItem("linkwright.token", "of-another-tab");
+    for (let time = 0; time < 3; time += 1) {
+      await vi.advanceTimersByTimeAsync(4000);
+      await isRefused();
+    }
+    const shown = FakeSocket.made.map(({ url }) => new URL(url).searchParams.get("token"));
+    expect(shown.slice(0, 2)).toEqual(["new", "old"]);
+    expect(shown).toContain("of-another-tab");
+  });
+
+  it("asks nobody without a token, until another page of the browser has one", () => {
+    const { tokens, storage } = page("http://127.0.0.1/");
+    const connection = new Connection("ws://127.0.0.1/ws", tokens);
+    connection.open();
+    expect(connection.state).toBe("refused");
+    expect(FakeSocket.made).toEqual([]);
+    storage.setItem("linkwright.token", "abc");
+    vi.advanceTimersByTime(250);
+    expect(FakeSocket.made[0]?.url).toBe("ws://127.0.0.1/ws?token=abc");
+    FakeSocket.made[0]!.hello();
+    expect(connection.state).toBe("connected");
   });
 
   it("reloads the page once when the server speaks another version", () => {
@@ -124,8 +218,8 @@ describe("the connection", () => {
 });
 
 describe("the socket's address", () => {
-  it("stands beside the page and takes its token along", () => {
-    expect(socketUrl("http://127.0.0.1:7447/?token=abc")).toBe("ws://127.0.0.1:7447/ws?token=abc");
+  it("stands beside the page", () => {
+    expect(socketUrl("http://127.0.0.1:7447/?token=abc")).toBe("ws://127.0.0.1:7447/ws");
     expect(socketUrl("https://lab.example/robots/mbot/")).toBe("wss://lab.example/robots/mbot/ws");
   });
 });

@@ -25,7 +25,7 @@ describe("displays of a page's own", () => {
     expect(ownKey(tab)).toBe(key);
     expect(ownKey(storage())).not.toBe(key);
     expect(socketUrl("http://localhost:7447/?token=abc&displays=own", key)).toBe(
-      `ws://localhost:7447/ws?token=abc&own=${key}`,
+      `ws://localhost:7447/ws?own=${key}`,
     );
   });
 });

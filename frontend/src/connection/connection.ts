@@ -1,13 +1,15 @@
 import { PROTOCOL_VERSION, type PageMessage, type ServerMessage } from "../protocol";
 import { Signal } from "../state/signal";
+import { browserStorage } from "../state/storage";
 import { unpackData, type DisplayData } from "./data";
 import { isPiece, Pieces } from "./pieces";
+import type { Tokens } from "./tokens";
 import { unpackSamples, type SeriesSamples } from "./samples";
 import { unpackTransforms, type Transforms } from "./transforms";
 
 /**
- * `ended`: the program said goodbye; one with the same token may still come back. `refused`: there is a program, which
- * does not know this page's token. `outdated`: a reload did not help.
+ * `ended`: the program said goodbye; one with the same token may still come back. `refused`: the page has no token, or
+ * there is a program that does not know it. `outdated`: a reload did not help.
  */
 export type ConnectionState = "connecting" | "connected" | "reconnecting" | "ended" | "refused" | "outdated";
 
@@ -30,9 +32,15 @@ export class Connection {
   private socket: WebSocket | null = null;
   private retryMs = FIRST_RETRY_MS;
   private receivedCount = 0;
+  private shown: string | null = null;
+  private retryTimer: ReturnType<typeof setTimeout> | undefined;
   private current: ConnectionState = "connecting";
 
-  constructor(private readonly url: string) {}
+  /** `url` is where the server's WebSocket is, but for the token; null where there is none to show any. */
+  constructor(
+    private readonly url: string,
+    readonly tokens: Tokens | null = null,
+  ) {}
 
   /** Calls `listener` with every message of a type until the returned function is called. */
   on<T extends ServerMessage["type"]>(
@@ -54,12 +62,27 @@ export class Connection {
   }
 
   open(): void {
-    const socket = new WebSocket(this.url);
+    clearTimeout(this.retryTimer);
+    this.shown = this.tokens?.current ?? null;
+    if (this.tokens && this.shown === null) {
+      // Another page of this browser may be let in.
+      this.become("refused");
+      this.retryLater();
+      return;
+    }
+    const socket = new WebSocket(this.address.href);
     socket.binaryType = "arraybuffer";
     socket.onmessage = (event: MessageEvent<string | ArrayBuffer>) => this.receive(event.data);
     socket.onclose = (event) => this.lost(event.code);
     this.socket = socket;
     this.receivedCount = 0;
+  }
+
+  /** Shows the server another token, now. */
+  show(token: string): void {
+    this.tokens?.take(token);
+    this.become("connecting");
+    this.open();
   }
 
   /** Sends now or not at all: what the user did while there was no server is not replayed later. */
@@ -82,7 +105,8 @@ export class Connection {
         this.outdated();
         return;
       }
-      sessionStorage.removeItem(RELOADED_KEY);
+      browserStorage("sessionStorage").removeItem(RELOADED_KEY);
+      if (this.shown !== null) this.tokens?.accepted(this.shown);
       this.retryMs = FIRST_RETRY_MS;
       this.become("connected");
     }
@@ -108,19 +132,30 @@ export class Connection {
     if (this.current === "outdated") return;
     if (code === GOING_AWAY) this.become("ended");
     else if (this.current === "connected") this.become("reconnecting");
-    else if (this.current !== "connecting" && this.receivedCount === 0) void this.askWhy();
-    setTimeout(() => this.open(), this.retryMs);
+    else if (this.receivedCount === 0) void this.askWhy();
+    this.retryLater();
+  }
+
+  private retryLater(): void {
+    this.retryTimer = setTimeout(() => this.open(), this.retryMs);
     this.retryMs = Math.min(this.retryMs * 1.6, LONGEST_RETRY_MS);
   }
 
-  /** A socket that does not open does not tell why; a page that does not come does. */
+  /** Where the socket is, with the token. */
+  private get address(): URL {
+    const url = new URL(this.url);
+    if (this.shown !== null) url.searchParams.set("token", this.shown);
+    return url;
+  }
+
+  /** A socket that does not open does not tell why; an ordinary request for it does. */
   private async askWhy(): Promise<void> {
-    const page = new URL(".", this.url);
-    page.protocol = page.protocol === "wss:" ? "https:" : "http:";
-    page.search = new URL(this.url).search;
+    const url = this.address;
+    url.protocol = url.protocol === "wss:" ? "https:" : "http:";
     try {
-      const { status } = await fetch(page, { cache: "no-store" });
-      if (status === UNAUTHORIZED && this.socket?.readyState !== WebSocket.OPEN) this.become("refused");
+      const { status } = await fetch(url, { cache: "no-store" });
+      if (status !== UNAUTHORIZED || this.socket?.readyState === WebSocket.OPEN) return;
+      if (this.tokens?.refused() !== true) this.become("refused");
     } catch {
       // Nobody is there.
     }
@@ -131,8 +166,9 @@ export class Connection {
     const socket = this.socket;
     this.become("outdated");
     socket?.close();
-    if (sessionStorage.getItem(RELOADED_KEY)) return;
-    sessionStorage.setItem(RELOADED_KEY, "yes");
+    const tab = browserStorage("sessionStorage");
+    if (tab.getItem(RELOADED_KEY) !== null) return;
+    tab.setItem(RELOADED_KEY, "yes");
     location.reload();
   }
 
@@ -143,17 +179,10 @@ export class Connection {
   }
 }
 
-/**
- * Where the server's WebSocket is for a page at `page`; a token in the page's address goes along.
- *
- * `own` is by what the page names displays of its own.
- */
+/** Where the server's WebSocket is for a page at `page`; `own` is by what the page names displays of its own. */
 export function socketUrl(page: string, own: string | null = null): string {
-  const from = new URL(page);
   const url = new URL("ws", page);
-  url.protocol = from.protocol === "https:" ? "wss:" : "ws:";
-  const token = from.searchParams.get("token");
-  if (token) url.searchParams.set("token", token);
+  url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
   if (own !== null) url.searchParams.set("own", own);
   return url.href;
 }

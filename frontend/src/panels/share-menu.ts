@@ -1,9 +1,11 @@
+import type { Tokens } from "../connection/tokens";
 import { button, h } from "../dom";
 import type { Stage } from "../scene/stage";
 import { timeText, VideoRecorder } from "../scene/video";
 import { tell } from "../shell/dialog";
 import type { Session } from "../state/session";
 import { strings } from "../strings";
+import { copyText } from "./copy-text";
 import type { MenuEntry } from "./menu";
 import { saveBlob, saveFrom } from "./save-file";
 
@@ -19,6 +21,7 @@ export class ShareMenu {
   constructor(
     private readonly session: Session,
     private readonly stage: Stage | null,
+    private readonly tokens: Tokens,
   ) {
     const canvas = stage?.viewport.canvas;
     this.video = canvas && VideoRecorder.isPossible ? new VideoRecorder(canvas, (video) => this.keepVideo(video)) : null;
@@ -53,6 +56,7 @@ export class ShareMenu {
       },
       { label: words.exportHtml, icon: "download", separate: true, disabled: this.hasNoRobot, run: () => this.ask("html") },
       { label: words.exportGlb, icon: "download", disabled: this.hasNoRobot, run: () => this.ask("glb") },
+      { label: words.copyLink, hint: words.copyLinkHint, icon: "link", separate: true, run: () => void this.copyLink() },
     ];
   }
 
@@ -72,6 +76,13 @@ export class ShareMenu {
   private ask(format: "html" | "glb"): void {
     const { cls, name, values } = this.session.view.current;
     this.session.connection.send({ type: "ask_export", format, view: { cls, name, values: { ...values } } });
+  }
+
+  private async copyLink(): Promise<void> {
+    const words = strings.sharing;
+    const { link } = this.tokens;
+    if (await copyText(link)) tell(words.linkCopied, words.copyLinkHint);
+    else tell(words.linkHere, link);
   }
 
   private showTime(): void {

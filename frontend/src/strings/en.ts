@@ -103,6 +103,15 @@ export const en = {
     refusedHint: "Open the address that it printed.",
     outdated: "This page is of another version than the program. Close it and open the program's address anew.",
   },
+  door: {
+    title: "This page needs its token",
+    printed: "Linkwright prints the address of its page, token included, in the terminal where it was started:",
+    hint: "Open that address, or paste it here. A page that is open already gives it under Share, Copy link.",
+    label: "Address or token",
+    open: "Open",
+    unknown: "The program does not know this token: it has a new one each time it is started.",
+    noToken: "There is no token in this text.",
+  },
   status: {
     fps: (count: number): string => `${count} fps`,
     idle: "idle",

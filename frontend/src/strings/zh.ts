@@ -96,6 +96,15 @@ export const zh: Strings = {
     refusedHint: "请打开它给出的地址。",
     outdated: "本页与程序的版本不同。请关闭本页，重新打开程序给出的地址。",
   },
+  door: {
+    title: "打开本页需要 token",
+    printed: "Linkwright 启动时在终端里打印页面的地址，其中带有 token：",
+    hint: "请打开该地址，或粘贴在这里。已经打开的页面可以在“分享”中“复制链接”。",
+    label: "地址或 token",
+    open: "打开",
+    unknown: "程序不认识这个 token：每次启动都会换一个新的。",
+    noToken: "这段文字里没有 token。",
+  },
   status: {
     fps: (count) => `${count} 帧/秒`,
     idle: "空闲",

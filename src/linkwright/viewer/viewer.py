@@ -106,8 +106,7 @@ class Viewer:
         except Exception:
             self._node.destroy_node()
             raise
-        gate = Gate(self._host, listener.getsockname()[1])
-        self._server = WebServer(gate, self._audience, self.context.meshes, self.context.downloads)
+        self._server = WebServer(Gate(self._host), self._audience, self.context.meshes, self.context.downloads)
         self._url = await self._server.start(listener)
         if is_open_to_others(listener):
             self._node.get_logger().warning(

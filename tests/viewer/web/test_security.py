@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import asyncio
+import base64
 import logging
+import re
 from contextlib import suppress
 from pathlib import Path
 from urllib.parse import urlsplit
@@ -13,12 +15,13 @@ import psutil
 import pytest
 
 from linkwright.viewer.protocol.displays import DisplayStatus, StatusRow
+from linkwright.viewer.web import files
 from linkwright.viewer.web.access import MAXIMUM_CONNECTIONS
 from linkwright.viewer.web.audience import MAXIMUM_PAGES
 from linkwright.viewer.web.server import MAXIMUM_MESSAGE
 from tests.viewer.scene import page, world
 from tests.viewer.web.test_files import package, write
-from tests.waiting import eventually
+from tests.waiting import SECONDS, eventually
 
 MESHED = """\
 <robot name="meshed"><link name="base"><visual><geometry>
@@ -54,7 +57,7 @@ async def raw(viewer, target: str, *, host: str | None = None, method: str = "GE
     lines += [f"{name.replace('_', '-')}: {value}" for name, value in headers.items()]
     reader, writer = await asyncio.open_connection(address.hostname, address.port)
     writer.write(("\r\n".join(lines) + "\r\n\r\n").encode())
-    answer = await asyncio.wait_for(reader.read(), 3)
+    answer = await asyncio.wait_for(reader.read(), SECONDS)
     writer.close()
     await writer.wait_closed()
     head, _, body = answer.partition(b"\r\n\r\n")
@@ -138,28 +141,46 @@ async def test_no_path_leads_out_of_the_page(served, target):
     assert "import" not in body
 
 
-async def test_without_the_token_there_is_nothing(served):
-    for target in ("/", "/ws", "/assets/x.js", mesh_url(served.viewer), "/nothing"):
-        status, body, head = await raw(served.viewer, target, token=False)
+async def test_without_the_token_there_is_nothing_but_the_program_of_the_page(served):
+    """What every wheel has in it; not one byte of what is shown."""
+    for query in ("", "?token=", "?token=wrong"):
+        status, body, _ = await raw(served.viewer, f"/ws{query}", token=False)
         assert status == 401
         assert "open the address that linkwright printed" in body
-        assert "set-cookie" not in head
+    assert (await raw(served.viewer, "/", token=False))[0] in (200, 503)  # where the page is not built it says so
+    assert (await raw(served.viewer, "/assets/gone.js", token=False))[0] == 404
 
 
-async def test_the_cookie_lets_the_page_in(served):
-    token = urlsplit(served.viewer.url).query.partition("=")[2]
-    port = urlsplit(served.viewer.url).port
-    async with aiohttp.ClientSession() as session, session.get(served.viewer.url) as answer:
-        cookie = answer.cookies[f"linkwright_{port}"].value
-    async with aiohttp.ClientSession(headers={"X-Forwarded-Proto": "https"}) as session:
-        answer = await session.get(served.viewer.url)
-        assert answer.cookies[f"__Host-linkwright_{port}"]["secure"]
-    good, bad = f"linkwright_{port}={cookie}", f"linkwright_{port + 1}={cookie}"
-    assert (await raw(served.viewer, mesh_url(served.viewer), token=False, Cookie=f"linkwright_{port}={token}"))[
-        0
-    ] == 401
-    assert (await raw(served.viewer, mesh_url(served.viewer), token=False, Cookie=good))[0] == 200
-    assert (await raw(served.viewer, mesh_url(served.viewer), token=False, Cookie=bad))[0] == 401
+async def test_no_socket_opens_without_the_token(served):
+    base = served.viewer.url.partition("?")[0]
+    async with aiohttp.ClientSession() as session:
+        for query in ("", "?token=", "?token=wrong"):
+            for told in ({}, {"Cookie": f"linkwright={urlsplit(served.viewer.url).query}"}):
+                with pytest.raises(aiohttp.WSServerHandshakeError) as caught:
+                    await session.ws_connect(f"{base}ws{query}", headers=told)
+                assert caught.value.status == 401
+
+
+async def test_no_answer_sets_a_cookie(served):
+    """Browsers would send it to every port of this host."""
+    for target in ("/", "/ws", "/nothing", mesh_url(served.viewer)):
+        for proto in ("http", "https"):
+            assert "set-cookie" not in (await raw(served.viewer, target, X_Forwarded_Proto=proto))[2]
+
+
+async def test_the_address_of_a_mesh_cannot_be_guessed(served, robot, monkeypatch):
+    """Textures are fetched by image elements, which can show no token: their addresses are told to pages only."""
+    address = mesh_url(served.viewer)
+    assert (await raw(served.viewer, address, token=False))[:2] == (200, "solid arm")
+    label, _, secret = address.split("/")[2].partition("~")
+    assert re.fullmatch("[0-9a-f]{32}", secret)
+    for key in (label, f"{label}~", f"{label}~{'0' * 32}", f"{label}~{secret[:-1]}", "robot", ""):
+        assert (await raw(served.viewer, f"/mesh/{key}/meshes/arm.stl"))[0] == 404
+    # Nor does another run of the program tell it.
+    monkeypatch.setattr(files, "_SECRET", bytes(32))
+    other = files.ServedFolder(robot, "robot").key
+    assert other.startswith(f"{label}~")
+    assert other != f"{label}~{secret}"
 
 
 async def test_a_name_bent_to_this_machine_is_refused(served):
@@ -329,10 +350,55 @@ async def test_a_page_that_is_let_in_may_take_its_time(served, monkeypatch):
         await is_served(client)
 
 
+async def test_who_asks_for_the_page_and_reads_nothing_costs_little(served, tmp_path, monkeypatch):
+    """The page is for everybody: its files are in memory once, and its readers make room for who has the token."""
+    (tmp_path / "assets").mkdir()
+    (tmp_path / "assets" / "index-abc.js").write_bytes(b"a" * (4 << 20))
+    server = served.viewer._server
+    monkeypatch.setattr(server, "_page_folder", tmp_path)
+    address = urlsplit(served.viewer.url)
+    asking = f"GET /assets/index-abc.js HTTP/1.1\r\nHost: {address.netloc}\r\n\r\n".encode()
+    async with page(served.viewer) as client:
+        await client.opened()
+        readers = [await asyncio.open_connection(address.hostname, address.port) for _ in range(MAXIMUM_CONNECTIONS)]
+        for _, writer in readers:
+            writer.write(asking)
+        for reader, _ in readers[1:]:
+            await reader.readexactly(100)
+        await is_served(client)
+        assert len(server._page_contents) == 1
+        waiting = [each._transport.get_write_buffer_size() for each in server._admission._strangers.values()]
+        assert len(waiting) > MAXIMUM_CONNECTIONS - 5
+        assert max(waiting) < 256 << 10
+        status, body, _ = await raw(served.viewer, "/assets/index-abc.js", token=False)
+        assert (status, len(body)) == (200, 4 << 20)
+        for _, writer in readers:
+            writer.close()
+        await is_served(client)
+
+
+async def test_who_reads_the_page_slowly_is_waited_for(served, tmp_path, monkeypatch):
+    """Its files are fetched without the token: a slow line takes longer for them than a stranger has."""
+    monkeypatch.setattr("linkwright.viewer.web.access.PATIENCE", 0.1)
+    (tmp_path / "assets").mkdir()
+    (tmp_path / "assets" / "index-abc.js").write_bytes(b"a" * (16 << 20))
+    monkeypatch.setattr(served.viewer._server, "_page_folder", tmp_path)
+    address = urlsplit(served.viewer.url)
+    reader, writer = await asyncio.open_connection(address.hostname, address.port)
+    writer.write(f"GET /assets/index-abc.js HTTP/1.1\r\nHost: {address.netloc}\r\nConnection: close\r\n\r\n".encode())
+    await reader.readuntil(b"\r\n\r\n")
+    silent, other = await asyncio.open_connection(address.hostname, address.port)
+    with suppress(ConnectionError):
+        await silent.read()  # one that came later has waited too long
+    assert len(await reader.read()) == 16 << 20
+    writer.close()
+    other.close()
+
+
 async def test_a_refused_request_ends_its_connection(served):
     address = urlsplit(served.viewer.url)
     reader, writer = await asyncio.open_connection(address.hostname, address.port)
-    writer.write(f"GET / HTTP/1.1\r\nHost: {address.netloc}\r\n\r\n".encode())
+    writer.write(f"GET /ws HTTP/1.1\r\nHost: {address.netloc}\r\n\r\n".encode())
     answer = await reader.read()
     assert answer.startswith(b"HTTP/1.1 401")
     writer.close()
@@ -469,15 +535,17 @@ async def exported(client, kind: str = "glb") -> dict:
             return message
 
 
-async def test_an_export_is_fetched_once_and_only_with_the_token(served):
+async def test_an_export_is_fetched_once_from_an_address_that_nobody_guesses(served):
     served.describe('<robot name="../../evil name"><link name="base"/></robot>')
     await served.settle()
     async with page(served.viewer) as client:
         ready = await exported(client)
         assert ready["name"] == "evil_name.glb"
-        assert (await raw(served.viewer, ready["url"], token=False))[0] == 401
+        key = ready["url"].split("/")[2]
+        assert len(base64.urlsafe_b64decode(f"{key}==")) >= 16
+        assert (await raw(served.viewer, ready["url"].replace(key, key[:-1])))[0] == 404
         assert (await raw(served.viewer, ready["url"], host="evil.example"))[0] == 403
-        status, body, head = await raw(served.viewer, ready["url"])
+        status, body, head = await raw(served.viewer, ready["url"], token=False)
         assert (status, body[:4]) == (200, "glTF")
         assert "content-disposition: attachment" in head
         assert (await raw(served.viewer, ready["url"]))[0] == 404

@@ -14,6 +14,10 @@ export const sharing = {
   image: ({ columns, rows, width, height, quality }: ReducedImage): string =>
     `WebP ${columns} × ${rows} of ${width} × ${height}, quality ${quality}`,
   share: "Share",
+  copyLink: "Copy link",
+  copyLinkHint: "The address with the token: who opens it sees the robot and moves it",
+  linkCopied: "The link is on the clipboard",
+  linkHere: "Copy this link",
   screenshot: "Screenshot",
   screenshotScaled: (scale: number): string => `Screenshot, ${scale} times as large`,
   startVideo: "Record a video",

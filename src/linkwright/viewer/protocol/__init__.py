@@ -5,7 +5,7 @@ this package by ``tools/protocol_types.py``. Transforms travel as one binary fra
 does what displays draw of messages, packed by `pack_data`; a frame that is too large for its line comes in pieces,
 packed by `pack_piece`. Lengths are metres, angles radians, quaternions x, y, z, w, colours 0 to 1.
 
-The page opens one WebSocket at ``/ws`` (same origin; the cookie set with the page lets it in). `Hello` comes first,
+The page opens one WebSocket at ``/ws`` (same origin, with the token in the query). `Hello` comes first,
 then `Tree`, the `RobotScene` of every RobotModel, `ViewState`, `Joints`, `JointPositions`, `Diagnostics`, `FrameTable`
 and the last transforms; after that whatever changes, where only the newest of a kind waits for a slow page. A binary
 frame whose revision is not that of the last `FrameTable` is to be dropped.

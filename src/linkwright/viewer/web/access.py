@@ -1,6 +1,8 @@
 """Who may talk to the server: those who know the token, under a name that is this machine's, from its own pages.
 
-The token is in the address that the program prints; the page then has it as a cookie. Names are checked because a
+The token is in the address that the program prints; the page keeps it in the browser's storage, which belongs to this
+host and port alone, and shows it when it opens its WebSocket. There is no cookie: browsers send cookies to whatever
+else listens on this machine, whichever its port, and for pages that know nothing. Names are checked because a
 stranger's site can give its own name this machine's address (DNS rebinding) and would then be of one origin with us.
 Connections that have not shown the token are limited in number and time.
 """
@@ -26,35 +28,27 @@ class Gate:
 
     Args:
         host: what the server is bound to; that name is good too.
-        port: for the cookie's name, so that two servers on one machine do not take each other's place.
     """
 
-    def __init__(self, host: str, port: int) -> None:
+    def __init__(self, host: str) -> None:
         self.token = secrets.token_urlsafe(24)
-        self.cookie = f"linkwright_{port}"
-        self.cookie_value = secrets.token_urlsafe(24)
-        """Not the token: browsers send cookies to whatever else listens on this machine, whichever its port."""
         machine = socket.gethostname().lower()
         self._names = {"localhost", host.lower(), machine, f"{machine}.local"}
 
-    def refusal(
-        self, headers: Mapping[str, str], cookies: Mapping[str, str], query: Mapping[str, str]
-    ) -> tuple[int, str] | None:
-        """HTTP status and reason for which a request is refused; None when it may pass."""
+    def refusal(self, headers: Mapping[str, str]) -> str | None:
+        """Why a request is refused, whatever it asks for (403); None when it may pass."""
         host = headers.get("Host", "")
         if not self.knows(host):
-            return 403, (
-                f"this server does not answer to the name '{host[:200]}': open the address that linkwright printed"
-            )
+            return f"this server does not answer to the name '{host[:200]}': open the address that linkwright printed"
         origin = headers.get("Origin")
         if origin is not None and not _same(origin, host):
-            return 403, f"requests from pages of '{origin[:200]}' are refused"
-        known = _is_same(query.get(TOKEN_PARAMETER), self.token) or any(
-            _is_same(cookies.get(name), self.cookie_value) for name in (self.cookie, self.cookie_name(https=True))
-        )
-        if not known:
-            return 401, "the token is missing or wrong: open the address that linkwright printed, token included"
+            return f"requests from pages of '{origin[:200]}' are refused"
         return None
+
+    def is_shown_token(self, query: Mapping[str, str]) -> bool:
+        """Whether the query of a request has the token."""
+        given = query.get(TOKEN_PARAMETER)
+        return given is not None and hmac.compare_digest(given.encode(errors="replace"), self.token.encode())
 
     def knows(self, host_header: str) -> bool:
         """Whether a Host header names this machine: a bare address, localhost, or its own name."""
@@ -69,10 +63,6 @@ class Gate:
         except ValueError:
             return name.removesuffix(".") in self._names
         return True  # an IP address is not looked up, so it cannot have been rebound
-
-    def cookie_name(self, *, https: bool) -> str:
-        """The name of the cookie; over HTTPS one that browsers take and send by HTTPS and from this host only."""
-        return f"__Host-{self.cookie}" if https else self.cookie
 
 
 def _same(origin: str, host: str) -> bool:
@@ -114,23 +104,19 @@ def security_headers(host: str) -> dict[str, str]:
     }
 
 
-def _is_same(given: str | None, secret: str) -> bool:
-    return given is not None and hmac.compare_digest(given.encode(errors="replace"), secret.encode())
-
-
 MAXIMUM_CONNECTIONS = 256
 """Open at once. A browser opens some six for a page."""
 
 PATIENCE = 10.0
-"""Seconds until a new connection must have made a request that is let in."""
+"""Seconds until a new connection must have made a request."""
 
 
 class Admission:
     """Bounds the connections of a server.
 
-    When there are as many as may be, a new one takes the place of the oldest that has not shown the token yet; where
-    all have, it is refused. So neither connections left half open nor a thousand at once keep anybody out for long,
-    and those that are let in notice nothing.
+    When there are as many as may be, a new one takes the place of the oldest that has not shown the token yet, nor
+    named a file that only who has it knows; where all have, it is refused. So neither connections left half open nor
+    a thousand at once keep anybody out for long, and those that are let in notice nothing.
 
     Args:
         make: makes what serves a connection.
@@ -145,11 +131,17 @@ class Admission:
         """What serves the next connection."""
         return Entrance(self, self._make())
 
+    def asked(self, served: object) -> None:
+        """A request came on a connection; it may stay as long as its place is not needed, however slow its line is."""
+        entrance = self._strangers.get(served)  # type: ignore[call-overload]
+        if entrance is not None:
+            entrance.may_stay()
+
     def admit(self, served: object) -> None:
-        """A request on a connection was let in; it may stay."""
+        """A connection has shown the token; it may stay."""
         entrance = self._strangers.pop(served, None)  # type: ignore[call-overload]
         if entrance is not None:
-            entrance.admitted()
+            entrance.may_stay()
 
     def opened(self, entrance: Entrance) -> bool:
         """Whether a new connection may stay for now."""
@@ -178,15 +170,15 @@ class Entrance(asyncio.Protocol):
         self._counted = False
         self._deadline: asyncio.TimerHandle | None = None
 
-    def admitted(self) -> None:
-        """The connection may stay."""
+    def may_stay(self) -> None:
+        """The connection is no longer waited for."""
         if self._deadline is not None:
             self._deadline.cancel()
             self._deadline = None
 
     def end(self) -> None:
         """Cut the connection off, at once."""
-        self.admitted()
+        self.may_stay()
         if self._counted:
             self._counted = False
             self._admission.closed(self)
@@ -207,7 +199,7 @@ class Entrance(asyncio.Protocol):
 
     def connection_lost(self, exc: Exception | None) -> None:
         """It has ended."""
-        self.admitted()
+        self.may_stay()
         if self._counted:
             self._counted = False
             self._admission.closed(self)

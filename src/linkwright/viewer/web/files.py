@@ -8,6 +8,7 @@ was made for a page can be fetched once, and soon.
 from __future__ import annotations
 
 import hashlib
+import hmac
 import os
 import re
 import secrets
@@ -42,6 +43,9 @@ IMAGE_TYPES = {
 }
 CONTENT_TYPES = {**MESH_TYPES, **IMAGE_TYPES, ".mtl": "model/mtl", ".bin": "application/octet-stream"}
 
+_SECRET = secrets.token_bytes(32)
+_SECRET_OF_KEY = re.compile(r"(/mesh/[A-Za-z0-9_.-]+)~[0-9a-f]{32}(?=/)")
+
 _PACKAGE_URI = re.compile(r"package://([^/%]+)/")
 
 _LOOSE_DEPTH = 2
@@ -57,9 +61,13 @@ class ServedFolder:
 
     @property
     def key(self) -> str:
-        """What stands for it in addresses: telling, yet nothing of the path above it."""
+        """What stands for it in addresses: telling, yet nothing of the path above it, and nobody can guess it.
+
+        The image elements of textures can show no token, so an address that only pages were told must do.
+        """
         name = re.sub(r"[^A-Za-z0-9_.-]", "_", self.package or self.root.name)
-        return f"{name}-{hashlib.sha256(os.fsencode(self.root)).hexdigest()[:8]}"
+        root = os.fsencode(self.root)
+        return f"{name}-{hashlib.sha256(root).hexdigest()[:8]}~{hmac.digest(_SECRET, root, 'sha256').hex()[:32]}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,6 +141,11 @@ class MeshIndex:
             return ServedFolder(share, named[1])
         package = enclosing_package(path.parent)
         return ServedFolder(package[1], package[0]) if package else ServedFolder(path.parent, None)
+
+
+def without_secrets(text: str) -> str:
+    """A text with addresses of files that open nothing on the server, as others may have it."""
+    return _SECRET_OF_KEY.sub(r"\1", text)
 
 
 class MeshFolders:

@@ -10,6 +10,7 @@ import os
 import re
 import socket
 import stat
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 from urllib.parse import quote
@@ -22,7 +23,7 @@ from linkwright.viewer.web.access import TOKEN_PARAMETER, Admission, Gate, secur
 from linkwright.viewer.web.files import CONTENT_TYPES, Downloads, FileRefusedError, MeshFolders
 
 if TYPE_CHECKING:
-    from collections.abc import Awaitable, Callable
+    from collections.abc import Awaitable, Callable, Mapping
 
     from linkwright.viewer.web.audience import Audience
 
@@ -112,6 +113,8 @@ class WebServer:
         self._runner: web.AppRunner | None = None
         self._listening: asyncio.Server | None = None
         self._admission: Admission | None = None
+        self._page_contents: dict[Path, _FileRead] = {}
+        self._reading = asyncio.Lock()
 
     async def start(self, listener: socket.socket) -> str:
         """Serve on a listening socket; the address to open, token included."""
@@ -152,15 +155,18 @@ class WebServer:
     async def _guard(
         self, request: web.Request, handler: Callable[[web.Request], Awaitable[web.StreamResponse]]
     ) -> web.StreamResponse:
-        refusal = self._gate.refusal(request.headers, request.cookies, request.query)
-        if refusal is not None:
-            status, reason = refusal
-            response = web.Response(status=status, text=reason[0].upper() + reason[1:] + ".\n")
-            response.force_close()
-            return response
+        if self._admission is not None:
+            self._admission.asked(request.protocol)
+        reason = self._gate.refusal(request.headers)
+        if reason is not None:
+            return _refused(403, reason)
+        if self._gate.is_shown_token(request.query):
+            self._admit(request)
+        return await handler(request)
+
+    def _admit(self, request: web.Request) -> None:
         if self._admission is not None:
             self._admission.admit(request.protocol)
-        return await handler(request)
 
     async def _add_headers(self, request: web.Request, response: web.StreamResponse) -> None:
         host = request.host if self._gate.knows(request.host) else "localhost"
@@ -173,11 +179,7 @@ class WebServer:
         index = self._page_folder / "index.html"
         if not index.is_file():
             return web.Response(status=503, text=_NOT_BUILT)
-        response = await _file_response(request, index, _PAGE_TYPES[".html"], "no-cache")
-        https = request.secure or request.headers.get("X-Forwarded-Proto") == "https"
-        name, value = self._gate.cookie_name(https=https), self._gate.cookie_value
-        response.set_cookie(name, value, httponly=True, samesite="Strict", path="/", secure=https)
-        return response
+        return await self._page_response(request, index, _PAGE_TYPES[".html"], "no-cache")
 
     async def _page_file(self, request: web.Request) -> web.StreamResponse:
         path = request.match_info["path"]
@@ -190,10 +192,39 @@ class WebServer:
         file = self._page_folder / path
         packed = file.with_name(f"{file.name}.gz")
         if not (hashed and _takes_gzip(request) and packed.is_file()):
-            return await _file_response(request, file, content_type, cache)
+            return await self._page_response(request, file, content_type, cache)
         # A quarter of the bytes: over a slow line the page is there in seconds instead of tens of them.
-        response = await _file_response(request, packed, content_type, cache)
-        response.headers.update({"Content-Encoding": "gzip", "Vary": "Accept-Encoding"})
+        packing = {"Content-Encoding": "gzip", "Vary": "Accept-Encoding"}
+        return await self._page_response(request, packed, content_type, cache, packing)
+
+    async def _page_response(
+        self,
+        request: web.Request,
+        path: Path,
+        content_type: str,
+        cache: str,
+        packing: Mapping[str, str] | None = None,
+    ) -> web.StreamResponse:
+        """A file of the page. Whoever asks gets it, so it is in memory once, however many do not read it."""
+        async with self._reading:
+            kept = self._page_contents.get(path)
+            try:
+                read = await asyncio.to_thread(_read, path, kept.tag if kept else "")
+            except OSError:
+                raise _no_file() from None
+            if kept is None or read.body is not None:
+                kept = self._page_contents[path] = read
+        headers = {"Cache-Control": cache, "ETag": kept.tag, **(packing or {})}
+        if kept.body is None or kept.is_known_to(request):
+            return web.Response(status=304, headers=headers)
+        response = web.StreamResponse(headers={**headers, "Content-Type": content_type})
+        response.content_length = len(kept.body)
+        await response.prepare(request)
+        if request.method != "HEAD":
+            whole = memoryview(kept.body)
+            for start in range(0, len(whole), MOST_UNSENT):
+                await response.write(whole[start : start + MOST_UNSENT])
+        await response.write_eof()
         return response
 
     async def _mesh(self, request: web.Request) -> web.StreamResponse:
@@ -202,18 +233,24 @@ class WebServer:
             path = await asyncio.to_thread(self._meshes.file, key, relative)
         except FileRefusedError as error:
             return web.Response(status=error.status, text=f"Refused: {error}.\n")
+        self._admit(request)
         return await _file_response(request, path, CONTENT_TYPES[path.suffix.lower()], "private, no-cache")
 
     async def _export(self, request: web.Request) -> web.StreamResponse:
         file = self._downloads.take(request.match_info["key"])
         if file is None:
             raise web.HTTPNotFound(text="There is no such file; it can be fetched once.\n")
+        self._admit(request)
         attached = f"attachment; filename*=UTF-8''{quote(file.name)}"
         return web.Response(
             body=file.data, headers={"Content-Type": file.content_type, "Content-Disposition": attached}
         )
 
     async def _socket(self, request: web.Request) -> web.StreamResponse:
+        if not self._gate.is_shown_token(request.query):
+            return _refused(
+                401, "the token is missing or wrong: open the address that linkwright printed, token included"
+            )
         if self._audience.is_full:
             return web.Response(status=503, text="Too many pages are open.\n")
         socket = web.WebSocketResponse(
@@ -244,34 +281,60 @@ def _takes_gzip(request: web.Request) -> bool:
     return any(each.strip().lower() == "gzip" for each in offered)
 
 
+def _refused(status: int, reason: str) -> web.Response:
+    """An answer that ends its connection."""
+    response = web.Response(status=status, text=f"{reason[0].upper()}{reason[1:]}.\n")
+    response.force_close()
+    return response
+
+
 async def _file_response(request: web.Request, path: Path, content_type: str, cache: str) -> web.Response:
     """A whole file, with an ETag that an edit changes; 304 where the browser has it already.
 
     aiohttp's own FileResponse also looks for compressed files beside the one asked for, which nobody has checked.
     """
-    known = request.headers.get("If-None-Match", "")
     try:
-        tag, modified, body = await asyncio.to_thread(_read, path, known)
+        read = await asyncio.to_thread(_read, path, request.headers.get("If-None-Match", ""))
     except OSError:
-        raise web.HTTPNotFound(text="There is no such file.\n") from None
-    headers = {"Cache-Control": cache, "ETag": tag}
-    if body is None:
+        raise _no_file() from None
+    headers = {"Cache-Control": cache, "ETag": read.tag}
+    if read.body is None:
         return web.Response(status=304, headers=headers)
-    response = web.Response(body=body, headers={**headers, "Content-Type": content_type})
-    response.last_modified = modified
+    response = web.Response(body=read.body, headers={**headers, "Content-Type": content_type})
+    response.last_modified = read.modified
     return response
 
 
-def _read(path: Path, known: str) -> tuple[str, float, bytes | None]:
-    """ETag, time of change (seconds) and content of a regular file; no content when its ETag is known."""
+def _no_file() -> web.HTTPNotFound:
+    return web.HTTPNotFound(text="There is no such file.\n")
+
+
+@dataclass(frozen=True, slots=True)
+class _FileRead:
+    """What a file was: its ETag, when it was changed (seconds), and what is in it."""
+
+    tag: str
+    modified: float
+    body: bytes | None
+
+    def is_known_to(self, request: web.Request) -> bool:
+        """Whether a browser says that it has it."""
+        return _is_among(self.tag, request.headers.get("If-None-Match", ""))
+
+
+def _read(path: Path, known: str) -> _FileRead:
+    """A regular file; not its content when its ETag is among those known, of an If-None-Match header."""
     descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
     with open(descriptor, "rb") as file:  # noqa: PTH123 - a descriptor, not a path
         facts = os.fstat(descriptor)
         if not stat.S_ISREG(facts.st_mode):
             raise OSError("not a regular file")
         tag = f'"{facts.st_mtime_ns:x}-{facts.st_size:x}"'
-        tags = {each.strip().removeprefix("W/") for each in known.split(",")}
-        return tag, facts.st_mtime, None if tag in tags else file.read()
+        return _FileRead(tag, facts.st_mtime, None if _is_among(tag, known) else file.read())
+
+
+def _is_among(tag: str, known: str) -> bool:
+    return tag in {each.strip().removeprefix("W/") for each in known.split(",")}
 
 
 def listen(host: str, port: int | None) -> socket.socket:

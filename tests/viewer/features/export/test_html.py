@@ -106,6 +106,9 @@ def test_nothing_tells_of_the_machine_it_was_made_on(tmp_path):
     (tmp_path / "d.stl").write_bytes(stl_binary())
     text = page(robot_of(link("d", mesh(tmp_path / "d.stl", ""))))
     assert str(tmp_path) not in text
+    # Nor how its files are fetched from the program that made it.
+    assert re.search(r"/mesh/[^/~]+/d\.stl", text)
+    assert not re.search(r"~[0-9a-f]{32}", text)
     assert '"place":{' not in text
 
 

@@ -12,6 +12,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.viewer.features.export.snapshot import FileSet, Snapshot, addresses
 from linkwright.viewer.protocol.message import encode
 from linkwright.viewer.protocol.robot import RobotScene
+from linkwright.viewer.web.files import without_secrets
 from linkwright.viewer.web.server import PAGE_FOLDER
 
 _PAGE = """\
@@ -75,12 +76,12 @@ def _recorded(snapshot: Snapshot, program: str) -> str:
     """What a server would tell the page, as JSON that can stand in HTML."""
     robots = [message for message in snapshot.messages if isinstance(message, RobotScene)]
     files = FileSet(snapshot.meshes).collect([*addresses(robots), *snapshot.marker_meshes])
-    messages = ",".join(encode(message) for message in snapshot.messages)
+    messages = without_secrets(",".join(encode(message) for message in snapshot.messages))
     rest = {
         "program": program,
         "display": snapshot.scene.display,
         "frames": [base64.b64encode(frame).decode() for frame in snapshot.frames],
-        "files": {address: base64.b64encode(data).decode() for address, data in files.items()},
+        "files": {without_secrets(address): base64.b64encode(data).decode() for address, data in files.items()},
     }
     text = f'{{"messages":[{messages}],{json.dumps(rest)[1:]}'
     return text.replace("<", "\\u003c")

@@ -1,0 +1,80 @@
+import type { BrowserStorage } from "../state/storage";
+
+const PARAMETER = "token";
+const KEY = "linkwright.token";
+
+/** Where the page is; `moveTo` changes what the address bar shows and loads nothing. */
+export interface AddressBar {
+  readonly href: string;
+  moveTo(href: string): void;
+}
+
+/**
+ * The token that the page shows the server: the one in its address, and the one with which a page of this browser was
+ * let in last. The browser's storage belongs to this host and port alone, so that no other server is told it.
+ */
+export class Tokens {
+  private own: string | null;
+  private refusals = 0;
+
+  constructor(
+    private readonly address: AddressBar,
+    private readonly storage: BrowserStorage,
+  ) {
+    this.own = tokenIn(address.href);
+  }
+
+  /** The one to show now; they take turns where one was refused. */
+  get current(): string | null {
+    const { known } = this;
+    return known[this.refusals % Math.max(1, known.length)] ?? null;
+  }
+
+  /** This one was let in: it is kept, and goes from the address bar. */
+  accepted(token: string): void {
+    const { address, storage } = this;
+    this.take(token);
+    storage.setItem(KEY, token);
+    // Where the browser keeps nothing, the address has to.
+    const isKept = storage.lasts && storage.getItem(KEY) === token;
+    if (isKept && tokenIn(address.href) !== null) address.moveTo(withToken(address.href, null));
+  }
+
+  /** The current one was refused; whether there is one that was not yet. */
+  refused(): boolean {
+    this.refusals += 1;
+    return this.refusals < this.known.length;
+  }
+
+  /** Shows this one from now on. */
+  take(token: string): void {
+    this.own = token;
+    this.refusals = 0;
+  }
+
+  /** The address by which others see this page. */
+  get link(): string {
+    return withToken(this.address.href, this.current);
+  }
+
+  private get known(): string[] {
+    const known = [this.own, this.storage.getItem(KEY)].filter((token) => token !== null);
+    return [...new Set(known)];
+  }
+}
+
+/** The token of an address somewhere in a text, or the text itself where it may be one. */
+export function tokenOf(text: string): string | null {
+  return /[?&]token=([\w-]+)/.exec(text)?.[1] ?? /^\s*([\w-]{16,})\s*$/.exec(text)?.[1] ?? null;
+}
+
+function tokenIn(href: string): string | null {
+  return new URL(href).searchParams.get(PARAMETER);
+}
+
+function withToken(href: string, token: string | null): string {
+  const url = new URL(href);
+  if (token === null) url.searchParams.delete(PARAMETER);
+  else url.searchParams.set(PARAMETER, token);
+  return url.href;
+}

@@ -1,0 +1,75 @@
+import type { Connection } from "../connection/connection";
+import { tokenOf, type Tokens } from "../connection/tokens";
+import { button, h } from "../dom";
+import { Logo } from "../panels/logo";
+import { strings } from "../strings";
+
+/** Before everything else while the page has no token that the program knows: where it is to be had, and a field for it. */
+export class Door {
+  readonly element: HTMLElement;
+  private readonly field = h("input", { class: "field wide", aria: { label: strings.door.label } });
+  private readonly problem = h("p", { class: "problem", role: "alert" });
+  private wasOpen = false;
+
+  constructor(
+    private readonly connection: Connection,
+    private readonly tokens: Tokens,
+    private readonly page: HTMLElement,
+  ) {
+    const words = strings.door;
+    this.field.placeholder = `${location.origin}/?token=…`;
+    this.field.spellcheck = false;
+    this.field.autocomplete = "off";
+    const form = h("form", {}, this.field, button(words.open, () => this.enter(), "tool framed primary", words.open));
+    form.addEventListener("submit", (event) => {
+      event.preventDefault();
+      this.enter();
+    });
+    this.element = h(
+      "div",
+      { class: "door", role: "dialog", aria: { modal: "true", label: words.title } },
+      h(
+        "div",
+        { class: "door-box" },
+        h("header", {}, Logo(), h("h1", {}, words.title)),
+        h("p", {}, words.printed),
+        h("code", {}, `Viewer: ${location.origin}/?token=…`),
+        h("p", {}, words.hint),
+        form,
+        this.problem,
+      ),
+    );
+    this.element.hidden = true;
+    connection.stateChanged.on(() => this.update());
+    this.update();
+  }
+
+  private update(): void {
+    const { state } = this.connection;
+    if (state === "connected") {
+      this.wasOpen = true;
+      this.show(false);
+    }
+    // A page that was let in once keeps showing what it has, with a notice.
+    if (state !== "refused" || this.wasOpen) return;
+    if (this.tokens.current !== null) this.problem.textContent = strings.door.unknown;
+    this.show(true);
+  }
+
+  private show(shown: boolean): void {
+    this.page.inert = shown;
+    if (shown !== this.element.hidden) return;
+    this.element.hidden = !shown;
+    if (shown) this.field.focus();
+  }
+
+  private enter(): void {
+    const token = tokenOf(this.field.value);
+    this.problem.textContent = token === null ? strings.door.noToken : "";
+    if (token === null) {
+      this.field.focus();
+      return;
+    }
+    this.connection.show(token);
+  }
+}

@@ -1,0 +1,130 @@
+"""Where the token is: in the address that was printed, then in the browser's storage for this host and port."""
+
+from __future__ import annotations
+
+import http.server
+import threading
+from urllib.parse import urlsplit
+
+import pytest
+
+from tests.browser.conftest import SECONDS, becomes, until
+from tests.browser.live import configuration
+
+pytestmark = pytest.mark.browser
+
+GRID = configuration("- {Class: rviz_default_plugins/Grid, Name: Grid, Enabled: true}")
+
+
+@pytest.fixture
+def viewer(live):
+    return live(GRID)
+
+
+@pytest.fixture
+def context(browser):
+    """A browser that has seen nothing yet."""
+    made = browser.new_context(viewport={"width": 1280, "height": 800}, locale="en-US")
+    made.set_default_timeout(1000 * SECONDS)
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def other_server():
+    """A server of somebody else on this host, and what browsers tell it."""
+    heard = []
+
+    class Handler(http.server.BaseHTTPRequestHandler):
+        def do_GET(self):
+            heard.append(str(self.headers))
+            self.send_response(200)
+            self.end_headers()
+
+        def log_message(self, *_):
+            pass
+
+    server = http.server.HTTPServer(("127.0.0.1", 0), Handler)
+    thread = threading.Thread(target=server.serve_forever, daemon=True)
+    thread.start()
+    yield f"http://127.0.0.1:{server.server_address[1]}/", heard
+    server.shutdown()
+    server.server_close()
+    thread.join()
+
+
+def bare(viewer) -> str:
+    return viewer.url.partition("?")[0]
+
+
+def is_let_in(page) -> None:
+    until(page, "lw.displays.length === 1")
+    assert page.locator(".door").is_hidden()
+
+
+def test_the_token_leaves_the_address_bar_and_every_tab_of_the_browser_knows_it(viewer, context):
+    page = context.new_page()
+    page.goto(viewer.url)
+    is_let_in(page)
+    becomes(lambda: page.url, bare(viewer))
+    page.reload()
+    is_let_in(page)
+    second = context.new_page()
+    second.goto(page.url)
+    is_let_in(second)
+    # Displays of its own are asked for in the address: it keeps that, and nothing else.
+    second.get_by_role("group", name="Displays").get_by_text("Own").click()
+    becomes(lambda: second.url, f"{bare(viewer)}?displays=own")
+    is_let_in(second)
+    # An address of an earlier run takes nothing away.
+    second.goto(f"{bare(viewer)}?token=of-an-earlier-run")
+    is_let_in(second)
+    becomes(lambda: second.url, bare(viewer))
+
+
+def test_no_other_server_of_the_host_is_told_anything(viewer, context, other_server):
+    url, heard = other_server
+    page = context.new_page()
+    page.goto(viewer.url)
+    is_let_in(page)
+    page.goto(url)
+    token = urlsplit(viewer.url).query.partition("=")[2]
+    assert heard
+    assert not any("cookie" in each.lower() or "referer" in each.lower() or token in each for each in heard)
+    assert context.cookies() == []
+    assert page.evaluate("() => Object.keys(localStorage)") == []
+    page.go_back()
+    is_let_in(page)
+
+
+def test_a_browser_without_the_token_is_told_where_it_is_and_may_be_given_it(viewer, context):
+    page = context.new_page()
+    page.goto(bare(viewer))
+    door = page.locator(".door")
+    door.wait_for()
+    assert "prints the address" in door.inner_text()
+    assert f"{bare(viewer)}?token=" in door.inner_text()
+    field = page.get_by_label("Address or token")
+    field.fill("hello")
+    field.press("Enter")
+    becomes(door.locator(".problem").inner_text, "There is no token in this text.")
+    field.fill(f"{bare(viewer)}?token={'x' * 32}")
+    field.press("Enter")
+    door.get_by_text("does not know this token", exact=False).wait_for()
+    field.fill(viewer.url)
+    page.get_by_role("button", name="Open", exact=True).click()
+    door.wait_for(state="hidden")
+    is_let_in(page)
+    assert page.url == bare(viewer)
+    assert page.evaluate("() => document.getElementById('app').inert") is False
+
+
+def test_the_link_to_the_page_is_in_the_share_menu(viewer, context):
+    context.grant_permissions(["clipboard-read", "clipboard-write"])
+    page = context.new_page()
+    page.goto(viewer.url)
+    is_let_in(page)
+    page.get_by_role("button", name="Share", exact=True).click()
+    page.get_by_role("menuitem", name="Copy link").click()
+    page.get_by_text("The link is on the clipboard").wait_for()
+    assert page.evaluate("() => navigator.clipboard.readText()") == viewer.url
