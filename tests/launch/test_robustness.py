@@ -176,3 +176,22 @@ def test_a_line_without_an_end_is_shown_in_pieces() -> None:
     shown = [piece for _ in range(300) for piece in lines.feed(b"x" * 1000)]
     assert [len(piece) for piece in shown] == [_LONGEST_LINE] * 3
     assert lines.end() == []
+
+
+PARAM = '<launch>\n <arg name="n" default="x"/>\n <node pkg="robot_state_publisher" exec="robot_state_publisher">\n  {}'
+WRONG_VALUES = {
+    '<param name="p" value="x" type="int"/>': "is 'x', which is no 'int'",
+    '<param name="p" value="1;x" value-sep=";" type="list_of_float"/>': "is [1.0, 'x'], which is no 'list_of_float'",
+    '<param name="p" value="true;maybe" value-sep=";" type="list_of_bool"/>': "which is no 'list_of_bool'",
+    '<param name="p" value="1;x" value-sep=";"/>': "is [1, 'x'], whose items are of several types",
+    '<param name="p" value="$(var n)" type="int"/>': "is not the int that is asked for",
+}
+
+
+@pytest.mark.parametrize("tag", WRONG_VALUES)
+async def test_a_parameter_of_another_type_is_shown_with_its_name(launch, write: Write, tag: str) -> None:
+    path = write("a.launch.xml", PARAM.format(tag) + "\n </node>\n</launch>\n")
+    done = await launch(IncludeLaunchDescription(str(path)))
+    assert "error[LAUNCH132]: parameter 'p' " in done.err
+    assert WRONG_VALUES[tag] in done.err
+    assert f"{path}:4:3" in done.err

@@ -3,6 +3,7 @@ import pytest
 from linkwright.graph import LogLevel
 from linkwright.nodes import EXECUTABLES, NodeOptions
 from linkwright.nodes.options import create_node
+from linkwright.nodes.registry import default_name
 from tests.nodes.stage import joint, robot
 
 ARGUMENTS = {"static_transform_publisher": ["--frame-id", "a", "--child-frame-id", "b"], "tf2_echo": ["a", "b"]}
@@ -13,7 +14,7 @@ async def test_every_executable_starts_and_ends(stage, executable):
     options = NodeOptions(
         name="mine",
         namespace="/robot",
-        parameters={"robot_description": robot(joint("a"))},
+        parameters={"robot_description": robot(joint("a")), "port": 0},  # any, for the bridge
         arguments=ARGUMENTS.get(executable[1], []),
         library=stage.library,
     )
@@ -23,6 +24,19 @@ async def test_every_executable_starts_and_ends(stage, executable):
     running.close()
     await stage.clock.advance(1.0)
     assert stage.graph.node_names() == ["/audience"]
+
+
+@pytest.mark.parametrize("executable", EXECUTABLES, ids="/".join)
+async def test_the_name_of_a_node_that_is_given_none_is_known(stage, executable):
+    options = NodeOptions(
+        parameters={"robot_description": robot(joint("a")), "port": 0},  # any, for the bridge
+        arguments=ARGUMENTS.get(executable[1], []),
+        library=stage.library,
+    )
+    running = EXECUTABLES[executable](stage.graph, options)
+    name = default_name(*executable)
+    assert running.node.get_name() == name or (name is None and executable[1] == "static_transform_publisher")
+    running.close()
 
 
 async def test_the_log_level_reaches_the_node(graph):

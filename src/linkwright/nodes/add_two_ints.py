@@ -16,8 +16,10 @@ _WAIT_SECONDS = 1.0
 class AddTwoIntsServer(SingleNode):
     """The running server."""
 
+    DEFAULT_NAME = "add_two_ints_server"
+
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
-        self._node, _ = create_node(graph, options, "add_two_ints_server")
+        self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         self._node.create_service(get_service(_TYPE), "add_two_ints", self._add)
 
     def _add(self, request: Any, response: Any) -> Any:
@@ -29,8 +31,10 @@ class AddTwoIntsServer(SingleNode):
 class AddTwoIntsClient(SingleNode):
     """The running client: waits for the server, has 2 and 3 added, and ends."""
 
+    DEFAULT_NAME = "add_two_ints_client"
+
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
-        self._node, _ = create_node(graph, options, "add_two_ints_client")
+        self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         self.finished: asyncio.Future[int] = asyncio.get_running_loop().create_future()
         self._client = self._node.create_client(get_service(_TYPE), "add_two_ints")
         self._timer = self._node.create_timer(0.05, self._look)

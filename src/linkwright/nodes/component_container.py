@@ -14,8 +14,6 @@ from linkwright.nodes.registry import COMPONENTS
 
 OnLoaded = Callable[[RunningNode, NodeOptions], None]
 
-_DEFAULT_NAME = "ComponentManager"
-
 
 class ComponentContainer(SingleNode):
     """The running node.
@@ -28,10 +26,12 @@ class ComponentContainer(SingleNode):
         loading: what is entered while a node is made, for those who want to know whose words come then.
     """
 
+    DEFAULT_NAME = "ComponentManager"
+
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._graph = graph
         self._library = options.library
-        self._node, _ = create_node(graph, options, _DEFAULT_NAME)
+        self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         self._loaded: dict[int, RunningNode] = {}
         self._last_id = 0
         self.on_loaded: list[OnLoaded] = []

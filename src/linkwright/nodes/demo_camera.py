@@ -21,8 +21,10 @@ class DemoCamera(SingleNode):
         LinkwrightError: NODE421, a parameter is not right.
     """
 
+    DEFAULT_NAME = "cam2image"
+
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
-        self._node, _ = create_node(graph, options, "cam2image")
+        self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         with starting(self._node):
             self._start()
 

@@ -12,8 +12,10 @@ _DEPTH = 10
 class Listener(SingleNode):
     """The running node."""
 
+    DEFAULT_NAME = "listener"
+
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
-        self._node, _ = create_node(graph, options, "listener")
+        self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         with starting(self._node):
             self._node.create_subscription(String, "chatter", self._hear, QoSProfile.of(_DEPTH))
 

@@ -13,8 +13,10 @@ _DEPTH = 7
 class Talker(SingleNode):
     """The running node."""
 
+    DEFAULT_NAME = "talker"
+
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
-        self._node, _ = create_node(graph, options, "talker")
+        self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         self._count = 0
         with starting(self._node):
             self._publisher = self._node.create_publisher(String, "chatter", QoSProfile.of(_DEPTH))

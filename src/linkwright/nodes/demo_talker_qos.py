@@ -19,14 +19,12 @@ _ENDLESS = 1 << 31
 class _Counted(SingleNode):
     """What both have in common: their arguments, and an end after some messages."""
 
-    _name: str
-
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self.finished: asyncio.Future[int] = asyncio.get_running_loop().create_future()
-        self._node, words = create_node(graph, options, self._name)
+        self._node, words = create_node(graph, options, self.DEFAULT_NAME)
         self._count = 0
         with starting(self._node):
-            given = _read(self._name, words)
+            given = _read(self.DEFAULT_NAME, words)
             self._left = given.number_of_cycles
             self._begin(QoSProfile.of(_DEPTH) if given.reliable else SENSOR_DATA_QOS)
         self._node.get_logger().info(f"{'Reliable' if given.reliable else 'Best effort'} {self._what}")
@@ -45,7 +43,7 @@ class _Counted(SingleNode):
 class TalkerQos(_Counted):
     """The running talker."""
 
-    _name = "talker_qos"
+    DEFAULT_NAME = "talker_qos"
     _what = "talker"
 
     def _begin(self, qos: QoSProfile) -> None:
@@ -62,7 +60,7 @@ class TalkerQos(_Counted):
 class ListenerQos(_Counted):
     """The running listener."""
 
-    _name = "listener_qos"
+    DEFAULT_NAME = "listener_qos"
     _what = "listener"
 
     def _begin(self, qos: QoSProfile) -> None:

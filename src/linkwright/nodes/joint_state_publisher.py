@@ -61,9 +61,11 @@ class JointStatePublisher(SingleNode):
             (NODE204), a file that is SDF or COLLADA (NODE205).
     """
 
+    DEFAULT_NAME = "joint_state_publisher"
+
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._library = options.library
-        self._node, arguments = create_node(graph, options, "joint_state_publisher")
+        self._node, arguments = create_node(graph, options, self.DEFAULT_NAME)
         self._clock = self._node.get_clock()
         self._watchers: list[Watcher] = []
         self._robot: Robot | None = None

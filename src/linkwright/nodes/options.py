@@ -6,7 +6,7 @@ import asyncio
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, runtime_checkable
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import Graph, Node
@@ -81,7 +81,13 @@ class NodeWithSliders(RunningNode, Protocol):
 
 
 class SingleNode:
-    """What the nodes of this room derive from: each is one node of the graph, `_node`, which goes when it ends."""
+    """What the nodes of this room derive from: each is one node of the graph, `_node`, which goes when it ends.
+
+    Attributes:
+        DEFAULT_NAME: the name of a node that is given none; not there where each has another.
+    """
+
+    DEFAULT_NAME: ClassVar[str]
 
     _node: Node
 

@@ -8,6 +8,7 @@ declared in ``pyproject.toml``, those of others in their packages. A module is i
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -63,6 +64,14 @@ class NodeRegistry(Mapping[tuple[str, str], Factory]):
 
     def __len__(self) -> int:
         return len(self.entry_points)
+
+
+def default_name(package: str, executable: str) -> str | None:
+    """The name of a node that is given none; None where only the node itself knows it."""
+    with suppress(LinkwrightError, KeyError):
+        name: str | None = getattr(EXECUTABLES[package, executable], "DEFAULT_NAME", None)
+        return name
+    return None
 
 
 EXECUTABLES = NodeRegistry("linkwright.nodes")

@@ -66,10 +66,12 @@ class RobotStatePublisher(SingleNode):
             of a quality of service that is none (GRAPH208).
     """
 
+    DEFAULT_NAME = "robot_state_publisher"
+
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._library = options.library
         self._kdl_logger = graph.get_logger("kdl_parser")
-        self._node, arguments = create_node(graph, options, "robot_state_publisher")
+        self._node, arguments = create_node(graph, options, self.DEFAULT_NAME)
         self._clock = self._node.get_clock()
         self._held: dict[JointGroup, _Held] = {}
         self._last_callback_ns = 0

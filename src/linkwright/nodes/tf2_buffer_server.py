@@ -39,8 +39,10 @@ class Tf2BufferServer(SingleNode):
     so every goal that is not canceled succeeds, as in tf2_ros.
     """
 
+    DEFAULT_NAME = "tf_buffer"
+
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
-        self._node, _ = create_node(graph, options, "tf_buffer")
+        self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         seconds = float(self._node.declare_parameter("buffer_size", _BUFFER_SECONDS).value)
         self._buffer = BufferCore(Duration(seconds=seconds), logger=self._node.get_logger().get_child("tf2"))
         TransformListener(self._buffer, self._node)

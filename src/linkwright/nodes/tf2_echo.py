@@ -34,8 +34,10 @@ class Tf2Echo(SingleNode):
         LinkwrightError: NODE401, the rate is no number.
     """
 
+    DEFAULT_NAME = "tf2_echo"
+
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
-        self._node, arguments = create_node(graph, options, "tf2_echo")
+        self._node, arguments = create_node(graph, options, self.DEFAULT_NAME)
         self._output = options.output
         self.finished: asyncio.Future[int] = asyncio.get_running_loop().create_future()
         if len(arguments) not in (2, 3):

@@ -26,8 +26,10 @@ _SHORTEST_SPAN_S = 1e-8
 class Tf2Monitor(SingleNode):
     """The running node: reports about every ten seconds, on all frames or on the way between two."""
 
+    DEFAULT_NAME = "tf2_monitor_main"
+
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
-        self._node, arguments = create_node(graph, options, "tf2_monitor_main")
+        self._node, arguments = create_node(graph, options, self.DEFAULT_NAME)
         self._clock = self._node.get_clock()
         self._output = options.output
         self.finished: asyncio.Future[int] = asyncio.get_running_loop().create_future()

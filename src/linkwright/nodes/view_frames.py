@@ -24,8 +24,10 @@ class ViewFrames(SingleNode):
         LinkwrightError: NODE411, an argument is not right.
     """
 
+    DEFAULT_NAME = "view_frames"
+
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
-        self._node, arguments = create_node(graph, options, "view_frames")
+        self._node, arguments = create_node(graph, options, self.DEFAULT_NAME)
         self._logger = self._node.get_logger()
         self.finished: asyncio.Future[int] = asyncio.get_running_loop().create_future()
         with starting(self._node):

@@ -17,6 +17,8 @@ from launch_ros.actions import Node, PushRosNamespace, SetParameter, SetParamete
 from launch_ros.parameter_descriptions import Parameter, ParameterValue
 
 from launch import LaunchContext
+from linkwright.launch.engine.hosting import NodeHost
+from linkwright.launch.model.plans import HostedPlan
 from linkwright.packages import PackageFinder
 
 Write = Callable[[str, str], Path]
@@ -163,6 +165,28 @@ class TestProcessNodes:
         assert ("warning[LAUNCH149]: no section of" in done.err) is bool(told)
         assert told in done.err
         assert done.succeeded
+
+    @pytest.mark.parametrize(
+        ("package", "executable", "name"),
+        [
+            ("joint_state_publisher_gui", "joint_state_publisher_gui", "joint_state_publisher"),
+            ("tf2_ros", "buffer_server", "tf_buffer"),
+            ("tf2_ros", "tf2_monitor", "tf2_monitor_main"),
+            ("image_tools", "cam2image", "cam2image"),
+        ],
+    )
+    async def test_a_node_without_a_name_reads_the_section_of_its_own_name(
+        self, launch, write: Write, monkeypatch: pytest.MonkeyPatch, package: str, executable: str, name: str
+    ) -> None:
+        planned: list[HostedPlan] = []
+        monkeypatch.setattr(NodeHost, "plan", lambda _, plan: planned.append(plan))
+        right = write("right.yaml", f"{name}: {{ros__parameters: {{a: 1}}}}\nother: {{ros__parameters: {{a: 2}}}}\n")
+        wrong = write("wrong.yaml", f"{name}x: {{ros__parameters: {{b: 1}}}}\n")
+        files = [str(right), str(wrong)]
+        done = await launch(Node(package=package, executable=executable, parameters=files))
+        assert [plan.parameters for plan in planned] == [{"a": 1}]
+        assert done.err.count("warning[LAUNCH149]") == 1
+        assert f"no section of '{wrong}' is for node '/{name}'" in done.err
 
     async def test_temporary_files_go_with_the_launch(self, launch, ros: PackageFinder) -> None:
         done = await launch(Node(package="arm", executable="tell", output="screen", parameters=[{"a": 1}]), finder=ros)

@@ -320,6 +320,8 @@ class Node(ExecuteProcess):
         return not self.process_description.prefix_words(context, [executable])
 
     def _host(self, context: LaunchContext, package: str, executable: str, added: Sequence[Any]) -> str:
+        from linkwright.nodes.registry import default_name
+
         session = context.session
         namespace = self.__expanded_node_namespace
         namespace = "/" if namespace == self.UNSPECIFIED_NODE_NAMESPACE else namespace
@@ -329,7 +331,10 @@ class Node(ExecuteProcess):
             arguments += ["--ros-args", *(_text(context, each) for each in _listed(self.__ros_arguments))]
         arguments += [_text(context, each) for each in added]
         base_name = self.process_description.base_name(context, [executable])
-        full_name = f"{namespace.rstrip('/')}/{name or executable}"
+        own_name = name or default_name(package, executable)
+        full_name = f"{namespace.rstrip('/')}/{own_name or executable}"
+        if name is None and own_name is not None and package != _CONTAINERS:  # else it has been checked, or nobody can
+            self.__node_parameters.check(context, full_name, self.place)
         plan = HostedPlan(
             self,
             session.number_process(base_name),

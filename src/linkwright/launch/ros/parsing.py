@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from linkwright.diagnostics import Phrase, phrase
-from linkwright.launch.errors.places import error_at
+from linkwright.diagnostics import LinkwrightError, Phrase, phrase
+from linkwright.launch.errors.places import error_at, reading
 from linkwright.launch.model.markup.entity import Entity
 from linkwright.launch.model.markup.parser import parse_texts
 from linkwright.launch.ros.parameter_files import ParameterFile
@@ -95,12 +95,29 @@ def _nested(tags: list[Entity], parser: Parser) -> dict[Any, Any]:
         if data_type is not None and inside:
             raise _wrong(tag, phrase("nested parameters and type attributes are mutually exclusive"))
         if value is not None:
-            found[name] = ParameterValue(parser.parse_if_substitutions(value), value_type=data_type)
+            try:
+                with reading(tag.place):
+                    found[name] = ParameterValue(parser.parse_if_substitutions(value), value_type=data_type)
+            except (TypeError, ValueError) as error:
+                raise _not_of_type(tag, value, identifier, error) from error
         elif inside:
             found[name] = _nested(inside, parser)
         else:
             raise _wrong(tag, phrase("either a value attribute or nested params are needed"))
     return found
+
+
+def _not_of_type(tag: Entity, value: Any, identifier: str | None, error: Exception) -> Exception:
+    """The error about the value of a ``param`` tag; one that has its place already stays as it is."""
+    if isinstance(error, LinkwrightError) and error.diagnostics[0].code != "LAUNCH132":
+        return error
+    name, value = tag.get_attr("name"), repr(value)
+    message = (
+        phrase("parameter '{name}' is {value}, whose items are of several types", name=name, value=value)
+        if identifier is None
+        else phrase("parameter '{name}' is {value}, which is no '{type}'", name=name, value=value, type=identifier)
+    )
+    return error_at(tag.place, "LAUNCH132", message, ros_error=error)
 
 
 def _wrong(tag: Entity, text: Phrase, kind: type[Exception] = RuntimeError) -> Exception:

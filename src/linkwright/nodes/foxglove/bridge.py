@@ -41,8 +41,10 @@ class FoxgloveBridge(SingleNode):
     services and set parameters.
     """
 
+    DEFAULT_NAME = "foxglove_bridge"
+
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
-        self._node, _ = create_node(graph, options, "foxglove_bridge")
+        self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         with starting(self._node):
             declare = self._node.declare_parameter
             port, address = int(declare("port", 8765).value), str(declare("address", "127.0.0.1").value)
