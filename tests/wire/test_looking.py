@@ -76,6 +76,15 @@ def test_somebody_who_has_not_answered_is_waited_for(looking, monkeypatch):
     assert transport._knows_everybody()
 
 
+def test_of_several_participants_of_a_process_the_system_cannot_tell(looking, processes, monkeypatch):
+    _, transport = looking
+    monkeypatch.setattr(module, "other_processes", lambda _domain: 0)
+    assert transport._knows_everybody()
+    processes("beside")
+    wait_until(lambda: transport.remote_nodes())
+    assert not transport._knows_everybody()
+
+
 @pytest.mark.parametrize("range_name", ["SUBNET", "LOCALHOST"])
 def test_beyond_the_own_machine_the_system_cannot_tell(range_name, monkeypatch):
     monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", range_name)

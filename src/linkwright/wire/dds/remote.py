@@ -232,10 +232,9 @@ class RemoteGraph:
                     return False
         return self.all_told()
 
-    def our_processes(self) -> int:
-        """How many other processes of this machine are known to be Linkwright's, and alive."""
-        alive = (each for each in self.participants() if not each.has_died())
-        return len({each.process for each in alive} - {None, os.getpid()})
+    def our_processes(self) -> set[int]:
+        """The ids of Linkwright's processes on this machine, as far as they are known and alive."""
+        return {each.process for each in self.participants() if each.process is not None and not each.has_died()}
 
     def nodes(self) -> list[NodeIdentity]:
         """The nodes of other processes, one entry for each, in the order of their participants."""

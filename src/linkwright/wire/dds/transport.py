@@ -116,12 +116,13 @@ class DdsTransport:
     def _knows_everybody(self) -> bool:
         """Whether all processes that can take part are known, so that there is nothing to wait for.
 
-        That can be told of Linkwright's processes on this machine, and only where nobody else is looked for.
+        That can be told of Linkwright's processes on this machine, and only where nobody else is looked for. Of several
+        participants of this process it cannot be told.
         """
-        if not self._only_looks or self._settings.range is not Range.MACHINE:
+        if self._settings.range is not Range.MACHINE:
             return False
-        others = other_processes(self._settings.domain_id)
-        return others is not None and self._remote.our_processes() >= others
+        others, known = other_processes(self._settings.domain_id), self._remote.our_processes()
+        return others is not None and os.getpid() not in known and len(known) >= others
 
     # --- for the graph -----------------------------------------------------------------------------------------------
 
