@@ -13,8 +13,18 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from linkwright.messages import catalogue
-from linkwright.messages.definition import Action, Container, Definition, FieldType, Service, Structure
-from linkwright.messages.derived import event_of, feedback_message_of, get_result_of, send_goal_of
+from linkwright.messages.definition import (
+    Action,
+    Container,
+    Definition,
+    FieldType,
+    Service,
+    Structure,
+    event_of,
+    feedback_message_of,
+    get_result_of,
+    send_goal_of,
+)
 from linkwright.messages.library import LIBRARY
 
 SOURCES = Path(__file__).resolve().parent.parent / "src" / "linkwright"

@@ -11,8 +11,7 @@ import numpy as np
 from rosbags.typesys import Stores, get_typestore
 
 from linkwright.messages import get_message
-from linkwright.messages.definition import Container, FieldType
-from linkwright.messages.primitives import Primitive
+from linkwright.messages.definition import Container, FieldType, Primitive
 
 TEXTS = ("", "a", "base_link", "é漢", "two words", "x" * 300, "multi\nline\n", "yes", "1.5", "- a: b", "'", "\t")
 

@@ -81,7 +81,7 @@ def test_of_several_participants_of_a_process_the_system_cannot_tell(looking, pr
     monkeypatch.setattr(module, "other_processes", lambda _domain: 0)
     assert transport._knows_everybody()
     processes("beside")
-    wait_until(lambda: transport.remote_nodes())
+    wait_until(transport.remote_nodes)
     assert not transport._knows_everybody()
 
 

@@ -99,7 +99,7 @@ class RemoteParameters:
             raise LinkwrightError(*missing)
 
     async def _call(self, service: str, **fields: Any) -> Any:
-        from linkwright.graph.parameters.messages import service_type
+        from linkwright.graph.parameters.parameter import service_type
         from linkwright.messages import get_service
 
         name = service_type(service)

@@ -32,14 +32,14 @@ class LoggerServices:
             )
 
     def _get(self, request: Any, response: Any) -> Any:
-        from linkwright.graph.parameters.messages import interface
+        from linkwright.graph.parameters.parameter import interface
 
         level_class = interface("LoggerLevel")
         response.levels = [level_class(name=name, level=int(self._levels.own(name))) for name in request.names]
         return response
 
     def _set(self, request: Any, response: Any) -> Any:
-        from linkwright.graph.parameters.messages import interface
+        from linkwright.graph.parameters.parameter import interface
 
         result_class = interface("SetLoggerLevelsResult")
         results = [self._set_one(each.name, each.level) for each in request.levels]

@@ -9,9 +9,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from linkwright.messages.definition import Container, Field, Structure
+from linkwright.messages.definition import PRIMITIVES, Container, Field, Structure
 from linkwright.messages.library import LIBRARY
-from linkwright.messages.primitives import PRIMITIVES
 
 MOST_INLINE = 40
 """A nested structure of more leaves than these is written and read by a function of its own."""

@@ -16,9 +16,8 @@ from typing import Any, Literal
 
 from linkwright.messages import cdr_values
 from linkwright.messages.cdr_layout import ANYWHERE, DEEPEST_LOOP, MOST_INLINE, START, Place, facts
-from linkwright.messages.definition import Container, Field, FieldType, Structure
+from linkwright.messages.definition import Container, Field, FieldType, Primitive, Structure
 from linkwright.messages.library import LIBRARY
-from linkwright.messages.primitives import Primitive
 
 READ_FAULTS = (struct.error, IndexError, ValueError)
 """What a reader raises for bad data: UnicodeDecodeError and DataFaultError are ValueErrors."""

@@ -3,22 +3,25 @@
 The setters that `linkwright.messages.classes` compiles test for the usual case themselves and come here for all others.
 The functions return the value to be kept, or raise the AssertionError that rclpy's users know. Beyond rclpy, numpy
 arrays and buffers of bytes may be assigned to numeric sequences.
+
+numpy is imported for fixed arrays of numbers alone, whose fields hold its arrays: to import it takes longer than all
+else that a verb such as ``topic list`` needs. Whoever never imported it has none of its values.
 """
 
 from __future__ import annotations
 
 import math
+import sys
 from array import array
 from collections import UserList, UserString
 from collections.abc import Iterable, Sequence
 from collections.abc import Set as AbstractSet
-from typing import TYPE_CHECKING, Any, NoReturn, cast
+from typing import TYPE_CHECKING, Any, NoReturn, TypeGuard, cast
 
-from linkwright.messages.definition import Container, FieldType
-from linkwright.messages.numpy_values import is_array
-from linkwright.messages.primitives import Primitive
+from linkwright.messages.definition import Container, FieldType, Primitive
 
 if TYPE_CHECKING:
+    import numpy as np
     from numpy.typing import NDArray
 
 
@@ -150,6 +153,29 @@ def made_fixed_array(name: str, value: Any, kind: FieldType) -> NDArray[Any]:
     if made.size != kind.size:
         raise AssertionError(f"The '{name}' numpy.ndarray() must have a size of {kind.size}")
     return made
+
+
+# --- numpy's values, told apart without importing it ---------------------------------------------------------------
+
+
+def is_array(value: Any) -> TypeGuard[NDArray[Any]]:
+    """Whether a value is a ``numpy.ndarray``."""
+    array_class = ndarray_class()
+    return array_class is not None and isinstance(value, array_class)
+
+
+def is_scalar(value: Any) -> TypeGuard[np.generic]:
+    """Whether a value is one of numpy's own numbers, such as ``numpy.float64``."""
+    scalar_class = getattr(sys.modules.get("numpy"), "generic", None)
+    return scalar_class is not None and isinstance(value, scalar_class)
+
+
+def ndarray_class() -> type[NDArray[Any]] | None:
+    """``numpy.ndarray``; None as long as nobody has imported numpy."""
+    return getattr(sys.modules.get("numpy"), "ndarray", None)
+
+
+# --- what the checks are made of -----------------------------------------------------------------------------------
 
 
 def _is_collection(value: Any) -> bool:

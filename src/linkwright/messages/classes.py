@@ -7,8 +7,16 @@ from importlib import import_module
 from typing import Any, cast
 
 from linkwright.messages.class_code import build_class
-from linkwright.messages.definition import Action, Definition, Service, Structure
-from linkwright.messages.derived import event_of, feedback_message_of, get_result_of, send_goal_of
+from linkwright.messages.definition import (
+    Action,
+    Definition,
+    Service,
+    Structure,
+    event_of,
+    feedback_message_of,
+    get_result_of,
+    send_goal_of,
+)
 from linkwright.messages.errors import InterfaceNotFoundError
 from linkwright.messages.library import LIBRARY, not_of_kind
 from linkwright.messages.message import ActionImplementation, ActionType, Message, ServiceType

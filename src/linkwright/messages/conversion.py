@@ -6,10 +6,9 @@ from array import array
 from collections import OrderedDict
 from typing import Any
 
-from linkwright.messages.definition import Container, FieldType
+from linkwright.messages.checks import is_array, is_scalar
+from linkwright.messages.definition import PRIMITIVES, Container, FieldType
 from linkwright.messages.message import Message, definition_of
-from linkwright.messages.numpy_values import is_array, is_scalar
-from linkwright.messages.primitives import PRIMITIVES
 
 _CUT = "..."
 

@@ -1,4 +1,4 @@
-"""What an interface file says, as data: fields, constants, and how services and actions are put together."""
+"""Interfaces as data: primitive types, fields, constants, messages, services, actions, and what rosidl adds to them."""
 
 from __future__ import annotations
 
@@ -6,7 +6,65 @@ from collections.abc import Iterator, Sequence
 from enum import Enum
 from typing import NamedTuple
 
-from linkwright.messages.primitives import PRIMITIVES, Primitive
+
+class Primitive(NamedTuple):
+    """One primitive type.
+
+    Attributes:
+        idl_name: what rosidl calls it, as `get_fields_and_field_types` shows.
+        python: the type that a value must have.
+        code: of `struct` for one value; None for text.
+        size: bytes on the wire, which is the alignment too; of text, those of its length.
+        type_id: in the type descriptions of REP 2016, whose hash is sent with endpoints.
+        array_code: of `array.array`; None where rclpy holds several values in a list.
+        low: the least value of an integer type.
+        high: the greatest value of an integer type; the greatest finite one of a floating point type.
+    """
+
+    idl_name: str
+    python: type
+    code: str | None
+    size: int
+    type_id: int
+    array_code: str | None = None
+    low: int = 0
+    high: int | float = 0
+
+    @property
+    def is_integer(self) -> bool:
+        """Whether values are whole numbers; bytes and bools are not counted as such."""
+        return self.python is int
+
+    @property
+    def dtype(self) -> str:
+        """The name of numpy's type, for those with an array code."""
+        return {"float": "float32", "double": "float64"}.get(self.idl_name, self.idl_name)
+
+
+def _integer(name: str, code: str, bits: int, type_id: int, *, signed: bool) -> Primitive:
+    low, high = (-(1 << (bits - 1)), (1 << (bits - 1)) - 1) if signed else (0, (1 << bits) - 1)
+    return Primitive(name, int, code, bits // 8, type_id, code, low, high)
+
+
+PRIMITIVES: dict[str, Primitive] = {
+    "int8": _integer("int8", "b", 8, 2, signed=True),
+    "uint8": _integer("uint8", "B", 8, 3, signed=False),
+    # In .msg files char has meant an unsigned byte since ROS 1, and rosidl turns it into one.
+    "char": _integer("uint8", "B", 8, 3, signed=False),
+    "int16": _integer("int16", "h", 16, 4, signed=True),
+    "uint16": _integer("uint16", "H", 16, 5, signed=False),
+    "int32": _integer("int32", "i", 32, 6, signed=True),
+    "uint32": _integer("uint32", "I", 32, 7, signed=False),
+    "int64": _integer("int64", "q", 64, 8, signed=True),
+    "uint64": _integer("uint64", "Q", 64, 9, signed=False),
+    "float32": Primitive("float", float, "f", 4, 10, "f", 0, 3.402823466e38),
+    "float64": Primitive("double", float, "d", 8, 11, "d", 0, 1.7976931348623157e308),
+    "bool": Primitive("boolean", bool, "B", 1, 15),
+    "byte": Primitive("octet", bytes, "c", 1, 16),
+    "string": Primitive("string", str, None, 4, 17),
+    "wstring": Primitive("wstring", str, None, 4, 18),
+}
+"""By the name in ``.msg`` files."""
 
 EMPTY_MEMBER = "structure_needs_at_least_one_member"
 """What rosidl puts into a structure without fields: one byte on the wire, part of the hash, invisible to users."""
@@ -158,3 +216,67 @@ def structures_of(definition: Definition) -> tuple[Structure, ...]:
     if isinstance(definition, Service):
         return (definition.request, definition.response)
     return (definition.goal, definition.result, definition.feedback)
+
+
+# --- what rosidl makes of services and actions beside what the file names ---------------------------------------
+
+_GOAL_ID = Field("goal_id", FieldType("unique_identifier_msgs/msg/UUID"))
+
+
+def event_of(service: Service) -> Structure:
+    """What a service's introspection topic carries (REP 2012)."""
+    return Structure(
+        service.type_name + "_Event",
+        (
+            Field("info", FieldType("service_msgs/msg/ServiceEventInfo")),
+            Field("request", FieldType(service.request.type_name, container=Container.SEQUENCE, size=1)),
+            Field("response", FieldType(service.response.type_name, container=Container.SEQUENCE, size=1)),
+        ),
+    )
+
+
+def send_goal_of(action: Action) -> Service:
+    """The service that asks an action server to take a goal."""
+    name = action.type_name + "_SendGoal"
+    return Service(
+        name,
+        Structure(name + "_Request", (_GOAL_ID, Field("goal", FieldType(action.goal.type_name)))),
+        Structure(
+            name + "_Response",
+            (Field("accepted", FieldType("bool")), Field("stamp", FieldType("builtin_interfaces/msg/Time"))),
+        ),
+    )
+
+
+def get_result_of(action: Action) -> Service:
+    """The service that answers with a goal's status and result once it has come to its end."""
+    name = action.type_name + "_GetResult"
+    return Service(
+        name,
+        Structure(name + "_Request", (_GOAL_ID,)),
+        Structure(
+            name + "_Response",
+            (Field("status", FieldType("int8")), Field("result", FieldType(action.result.type_name))),
+        ),
+    )
+
+
+def feedback_message_of(action: Action) -> Structure:
+    """What the feedback topic carries: the feedback, and which goal it is of."""
+    return Structure(
+        action.type_name + "_FeedbackMessage", (_GOAL_ID, Field("feedback", FieldType(action.feedback.type_name)))
+    )
+
+
+def parts_of(definition: Definition) -> dict[str, Definition]:
+    """Everything rosidl makes of an interface file: type name -> definition, itself included."""
+    parts: dict[str, Definition] = {definition.type_name: definition}
+    if isinstance(definition, Service):
+        for structure in (definition.request, definition.response, event_of(definition)):
+            parts[structure.type_name] = structure
+    elif isinstance(definition, Action):
+        for structure in (definition.goal, definition.result, definition.feedback, feedback_message_of(definition)):
+            parts[structure.type_name] = structure
+        for service in (send_goal_of(definition), get_result_of(definition)):
+            parts |= parts_of(service)
+    return parts

@@ -8,12 +8,11 @@ from functools import partial
 from typing import Any
 
 from linkwright.diagnostics import Diagnostic, Phrase, did_you_mean, foreign, joined, phrase, quoted
+from linkwright.messages.checks import is_array, is_scalar
 from linkwright.messages.classes import get_message
-from linkwright.messages.definition import Container, FieldType
+from linkwright.messages.definition import Container, FieldType, Primitive
 from linkwright.messages.errors import UnknownFieldError, WrongValueError
 from linkwright.messages.message import Message, definition_of
-from linkwright.messages.numpy_values import is_array, is_scalar
-from linkwright.messages.primitives import Primitive
 
 _HEADER = "std_msgs/msg/Header"
 _TIME = "builtin_interfaces/msg/Time"

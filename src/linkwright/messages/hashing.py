@@ -10,8 +10,19 @@ from __future__ import annotations
 from functools import cache
 from typing import Any
 
-from linkwright.messages.definition import Action, Container, Definition, Field, FieldType, Service, Structure
-from linkwright.messages.derived import event_of, feedback_message_of, get_result_of, send_goal_of
+from linkwright.messages.definition import (
+    Action,
+    Container,
+    Definition,
+    Field,
+    FieldType,
+    Service,
+    Structure,
+    event_of,
+    feedback_message_of,
+    get_result_of,
+    send_goal_of,
+)
 from linkwright.messages.library import LIBRARY
 
 _NESTED = 1

@@ -27,8 +27,7 @@ from linkwright.diagnostics import (
     term,
 )
 from linkwright.messages import catalogue
-from linkwright.messages.definition import Action, Definition, Service, Structure, structures_of
-from linkwright.messages.derived import parts_of
+from linkwright.messages.definition import Action, Definition, Service, Structure, parts_of, structures_of
 from linkwright.messages.errors import DefinitionError, InterfaceNotFoundError
 from linkwright.messages.names import KINDS, InterfaceName, split_name
 from linkwright.messages.parser import KnownMessages, parse_interface

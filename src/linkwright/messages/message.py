@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, ClassVar
 
+from linkwright.messages.checks import ndarray_class
 from linkwright.messages.definition import Structure
-from linkwright.messages.numpy_values import ndarray_class
 
 
 def definition_of(message_class: type[Any]) -> Structure:

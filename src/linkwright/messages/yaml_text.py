@@ -14,10 +14,10 @@ from functools import lru_cache
 from math import isfinite
 from typing import Any, NamedTuple
 
+from linkwright.messages.checks import is_array
 from linkwright.messages.conversion import abbreviated, abbreviated_text, to_dict
 from linkwright.messages.definition import Container, Field, FieldType
 from linkwright.messages.message import Message, definition_of
-from linkwright.messages.numpy_values import is_array
 
 _LONGEST_REMEMBERED = 200
 

@@ -183,7 +183,7 @@ class NodeParameters:
         Raises:
             ParameterNotDeclaredException: one is not declared; none is set.
         """
-        from linkwright.graph.parameters.messages import result_message
+        from linkwright.graph.parameters.parameter import result_message
 
         return result_message(self.__parameters.set_together(parameter_list))
 
@@ -206,7 +206,7 @@ class NodeParameters:
             raise TypeError("The depth must be instance of type int")
         if depth < 0:
             raise ValueError("The depth must be greater than or equal to zero")
-        from linkwright.graph.parameters.messages import interface
+        from linkwright.graph.parameters.parameter import interface
 
         names = [name for name in self.__parameters.names() if _is_listed(name, prefixes, depth)]
         found = [name.rpartition(PARAMETER_SEPARATOR_STRING)[0] for name in names]
@@ -221,7 +221,7 @@ class NodeParameters:
         Raises:
             ParameterNotDeclaredException: it is not declared.
         """
-        from linkwright.graph.parameters.messages import descriptor_message
+        from linkwright.graph.parameters.parameter import descriptor_message
 
         descriptor = self.__parameters.descriptor(name)
         message = descriptor_message(descriptor)

@@ -11,9 +11,8 @@ from linkwright.graph.parameters.errors import (
     ParameterNotDeclaredException,
     ParameterUninitializedException,
 )
-from linkwright.graph.parameters.messages import interface, service_type
 from linkwright.graph.parameters.node_parameters import NodeParameters
-from linkwright.graph.parameters.parameter import Parameter
+from linkwright.graph.parameters.parameter import Parameter, interface, service_type
 from linkwright.graph.parameters.store import ParameterChange
 from linkwright.graph.qos.profile import PARAMETERS_QOS
 from linkwright.graph.time.clock import Clock

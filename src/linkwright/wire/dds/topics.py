@@ -8,8 +8,8 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, cast
 
+from linkwright.graph.endpoints.bus import tell_publisher, tell_subscription, what_sides_say
 from linkwright.graph.endpoints.info import MessageInfo
-from linkwright.graph.endpoints.matching import tell_publisher, tell_subscription, what_sides_say
 from linkwright.graph.qos.compatibility import incompatible_policies
 from linkwright.graph.qos.profile import DurabilityPolicy, HistoryPolicy
 from linkwright.messages import InterfaceNotFoundError, serialize, type_hash
