@@ -354,7 +354,7 @@ class _Executions(Entity):
 
     @property
     def what(self) -> str:
-        """What it is called in messages."""
+        """How log messages name it."""
         return "execute callback of an action"
 
     def add(self, call: Callable[[], object]) -> None:

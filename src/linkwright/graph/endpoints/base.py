@@ -24,7 +24,11 @@ SrvTypeResponse = TypeVar("SrvTypeResponse")
 
 
 def check_for_type_support(interface: Any) -> None:
-    """Raise AttributeError unless something is the class of a message, service or action of ours."""
+    """Check that something is an interface class made by Linkwright (rclpy ``check_for_type_support``).
+
+    Raises:
+        AttributeError: it is not.
+    """
     if isinstance(getattr(interface, "TYPE_NAME", None), str):
         return
     module = sys.modules.get(getattr(interface, "__module__", ""))
@@ -37,7 +41,7 @@ def check_for_type_support(interface: Any) -> None:
 
 
 def check_is_valid_msg_type(msg_type: Any) -> None:
-    """Raise unless something is the class of a message.
+    """Check that something is the class of a message.
 
     Raises:
         AttributeError: it is no class of an interface.
@@ -49,7 +53,7 @@ def check_is_valid_msg_type(msg_type: Any) -> None:
 
 
 def check_is_valid_srv_type(srv_type: Any) -> None:
-    """Raise unless something is the class of a service.
+    """Check that something is the class of a service.
 
     Raises:
         AttributeError: it is no class of an interface.
@@ -72,12 +76,12 @@ class Endpoint(Part):
     Attributes:
         name: the absolute name of the topic or service.
         type_name: such as ``sensor_msgs/msg/JointState``.
-        qos_profile: what is offered or asked for.
+        qos_profile: the QoS that it offers or requests.
     """
 
     kind: EndpointKind
     _check_interface: Callable[[Any], None]
-    """Raises unless a class is that of an interface which the endpoint can carry."""
+    """Raises an error for the class of an interface that the endpoint cannot carry."""
 
     def _describe(self, node: NodeHandle, interface: Any, name: str, qos_profile: QoSProfile) -> None:
         self.node = node
@@ -100,7 +104,7 @@ class Endpoint(Part):
 
     @property
     def gid(self) -> bytes:
-        """The endpoint's identity, 16 bytes; a transport may set it before it is asked for."""
+        """The endpoint's GID (globally unique identifier), 16 bytes; a transport sets that of its reader or writer."""
         if not self._gid:
             self._gid = _GID_START + next(_gid_numbers).to_bytes(6, "big")
         return self._gid
@@ -120,24 +124,24 @@ class Endpoint(Part):
         return self.node.logger.name
 
     def info(self) -> EndpointInfo:
-        """What tools report of it."""
+        """Its description, as graph queries return it."""
         return EndpointInfo(
             self.kind, self.node.identity, self.name, self.type_name, resolved(self.qos_profile), self.gid, local=True
         )
 
     def begin(self) -> None:
-        """Join the topic or service."""
+        """Add it to the graph, which connects it with the endpoints that match."""
         super().begin()
         self.node.graph.add(self)
 
     def retire(self) -> None:
-        """Leave the topic or service."""
+        """Remove it from the graph."""
         self.node.graph.remove(self)
         super().retire()
 
 
 class MatchListener(Protocol):
-    """Is called when endpoints match."""
+    """Is notified when endpoints match, and when they no longer do."""
 
     def matched(self, change: int) -> None:
         """The number of matching endpoints changed; negative when some left."""
@@ -147,8 +151,8 @@ class TopicEndpoint(Endpoint, Generic[M]):
     """A publisher or a subscription.
 
     Attributes:
-        callback_group: which entities may run beside its callbacks.
-        events: what is told of quality of service; None when its user wants to hear nothing.
+        callback_group: the group that decides which callbacks may run at the same time as its own.
+        events: its QoS events; None where there are no callbacks for them.
     """
 
     callback_group: CallbackGroup
@@ -172,7 +176,7 @@ class TopicEndpoint(Endpoint, Generic[M]):
         return self.interface  # type: ignore[no-any-return]  # made from the name of a type
 
     def set_outside_count(self, count: int) -> None:
-        """For the transport: how many endpoints of the other side match outside of the process."""
+        """Set by the transport: how many endpoints in other processes match."""
         before, self._outside_count = self._outside_count, count
         if self.events is not None and count != before:
             self.events.matched(count - before)

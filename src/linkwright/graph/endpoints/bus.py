@@ -46,7 +46,7 @@ class _Directory(Generic[E]):
 
 
 class Bus:
-    """Knows every endpoint of the process and brings those that match together. It may be used from any thread."""
+    """Holds all endpoints of the process and connects those that match. It may be used from any thread."""
 
     def __init__(self) -> None:
         self._lock = threading.RLock()
@@ -74,7 +74,7 @@ class Bus:
                 self._find_servers(endpoint.name)
 
     def remove(self, endpoint: Endpoint) -> None:
-        """Take an endpoint away; what a publisher sent is still delivered, what waits for a subscription is dropped."""
+        """Remove an endpoint. What a publisher sent is still delivered; the queue of a subscription is dropped."""
         with self._lock:
             if isinstance(endpoint, Publisher):
                 self._publishers.remove(endpoint)
@@ -123,18 +123,18 @@ def match(publisher: Publisher[Any], subscription: Subscription[Any]) -> None:
     if not policies:
         publisher.connect(subscription)
         return
-    sides = what_sides_say(publisher.node_name, offered, subscription.node_name, requested, policies)
-    tell_subscription(subscription, policies[-1].name, sides)
-    tell_publisher(publisher, policies[-1].name, sides)
+    sides = describe_mismatch(publisher.node_name, offered, subscription.node_name, requested, policies)
+    report_to_subscription(subscription, policies[-1].name, sides)
+    report_to_publisher(publisher, policies[-1].name, sides)
 
 
-def tell_subscription(subscription: Subscription[Any], policy: str, sides: str) -> None:
-    """Tell a subscription of a publisher that offers less than it asks for.
+def report_to_subscription(subscription: Subscription[Any], policy: str, sides: str) -> None:
+    """Report to a subscription a publisher that offers less than it requests: by its callback, or in the log.
 
     Args:
         subscription: the subscription.
         policy: the name of the policy.
-        sides: what the two sides say of it.
+        sides: what each of the two offers or requests; see `describe_mismatch`.
     """
     if subscription.events is not None and subscription.events.incompatible(policy):
         return
@@ -144,8 +144,8 @@ def tell_subscription(subscription: Subscription[Any], policy: str, sides: str) 
     )
 
 
-def tell_publisher(publisher: Publisher[Any], policy: str, sides: str) -> None:
-    """Tell a publisher of a subscription that asks for more than it offers; see `tell_subscription`."""
+def report_to_publisher(publisher: Publisher[Any], policy: str, sides: str) -> None:
+    """Report to a publisher a subscription that requests more than it offers; see `report_to_subscription`."""
     if publisher.events is not None and publisher.events.incompatible(policy):
         return
     publisher.node.logger.warning(
@@ -154,7 +154,7 @@ def tell_publisher(publisher: Publisher[Any], policy: str, sides: str) -> None:
     )
 
 
-def what_sides_say(
+def describe_mismatch(
     publisher: str, offered: QoSProfile, subscription: str, requested: QoSProfile, policies: list[QoSPolicyKind]
 ) -> str:
     """What the two nodes offer and request in the policies that are incompatible."""

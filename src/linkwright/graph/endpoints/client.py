@@ -1,4 +1,4 @@
-"""Service clients."""
+"""Service clients: requests go to a service of this process or, over the transport, to one of another."""
 
 from __future__ import annotations
 
@@ -23,26 +23,26 @@ Response = TypeVar("Response")
 
 
 class OutsideService(Protocol):
-    """A server outside of the process, as a client of it sees it."""
+    """A server in another process, as a client sees it."""
 
     def send(self, request: Any, answer: Callable[[Any], None], number: int) -> Callable[[], None]:
-        """Ask it.
+        """Send a request.
 
         Args:
             request: the request.
             answer: called with the response, from any thread, at most once.
-            number: of the request, another one for each of a client's.
+            number: the request's sequence number, unique for the client.
 
         Returns:
-            What forgets the request.
+            A function that gives the request up.
         """
 
 
 class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
-    """Asks a service; made by ``Node.create_client``.
+    """Calls a service (rclpy ``Client``); made by ``Node.create_client``.
 
-    A request that is made while no server is there waits for one, up to the depth of the quality of service. Where
-    several servers have the name, the one of this process that is there longest is asked, else one outside.
+    Requests that are made before there is a server wait for one, as many as the QoS depth says. Of several servers of
+    the name the oldest of this process is called, else one of another process.
     """
 
     kind = EndpointKind.CLIENT
@@ -59,9 +59,9 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         Entity.__init__(self, node, callback_group)
         self._describe(node, srv_type, srv_name, qos_profile)
         self.outside: OutsideService | None = None
-        """What takes requests out of the process, while a server there matches; see `set_outside`."""
+        """The server in another process; None while there is none. See `set_outside`."""
         self.unreachable = ""
-        """Why no server can be asked though there are some outside; empty otherwise. See `set_unreachable`."""
+        """Why the servers in other processes cannot be called; empty otherwise. See `set_unreachable`."""
         self._has_told_unreachable = False
         self._server: Service[Request, Response] | None = None
         self._numbers = itertools.count(1)
@@ -72,11 +72,11 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
 
     @property
     def what(self) -> str:
-        """What it is called in messages."""
+        """How log messages name it."""
         return f"client of service '{self.name}'"
 
     def service_is_ready(self) -> bool:
-        """Whether a server is there.
+        """Whether a server is available.
 
         Raises:
             InvalidHandleError: the client was destroyed.
@@ -85,13 +85,13 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         return self._server is not None or self.outside is not None
 
     def wait_for_service(self, timeout_sec: float | None = None) -> bool:
-        """Block the calling thread until a server is there.
+        """Block the calling thread until a server is available.
 
         Args:
             timeout_sec: seconds to wait at most; None for any time.
 
         Returns:
-            Whether one is there. False also when the graph is closed meanwhile.
+            Whether one is available. False also when the graph is closed meanwhile.
         """
         is_there = self.node.graph.wait_until(self.service_is_ready, timeout_sec)
         if not is_there:
@@ -99,7 +99,7 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         return is_there
 
     def call_async(self, request: Request) -> Future[Response]:
-        """Ask; the future gets the response.
+        """Send a request; the future gets the response.
 
         Raises:
             TypeError: the request is not of the service's type.
@@ -120,7 +120,7 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         return future
 
     def call(self, request: Request, timeout_sec: float | None = None) -> Response | None:
-        """Ask, and block the calling thread until the response is there. Another thread must run the node's callbacks.
+        """Send a request, and block until the response is there. Another thread must run the node's callbacks.
 
         Args:
             request: the request.
@@ -146,7 +146,7 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         return future.result()
 
     def remove_pending_request(self, future: Future[Any]) -> None:
-        """Give a request up: its future gets no response any more."""
+        """Give a request up: its future will get no response."""
         with self._lock:
             forget = self._pending.pop(future, None)
             self._unsent = deque((each for each in self._unsent if each[0] is not future), maxlen=self._unsent.maxlen)
@@ -160,12 +160,12 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         return bool(self._answers)
 
     def take(self) -> Callable[[], object] | None:
-        """The handing over of the response that waits longest."""
+        """The call that completes the future of the oldest response."""
         answer = self._next_of(self._answers)
         return None if answer is None else partial(self._hand_over, *answer)
 
     def retire(self) -> None:
-        """Ask no more, and take no more answers."""
+        """Remove it from the graph, and give up all requests."""
         with self._lock:
             pending, self._pending = self._pending, {}
             self._unsent.clear()
@@ -180,20 +180,20 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
     # --- for the bus and the transport ---------------------------------------------------------------------------
 
     def set_server(self, server: Service[Request, Response] | None) -> None:
-        """Ask a service of this process from now on, or none."""
+        """Call a service of this process from now on; None for none."""
         self._server = server
         self._send_waiting()
 
     def set_outside(self, outside: OutsideService | None) -> None:
-        """For the transport: ask a server outside, where this process has none, or none."""
+        """Called by the transport: the server in another process to call where this one has none; None for none."""
         self.outside = outside
         self._send_waiting()
         self.node.graph.notify_change()
 
     def set_unreachable(self, reason: str) -> None:
-        """For the transport: say why the servers outside cannot be asked; empty when there are none, or they can.
+        """Called by the transport: why the servers in other processes cannot be called; empty when they can.
 
-        It is logged, once, when a request waits or somebody has waited for a server in vain.
+        It is logged once, when a request waits or `wait_for_service` has waited in vain.
         """
         self.unreachable = reason
         if self._unsent:
@@ -244,4 +244,4 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
 
 
 def _nothing() -> None:
-    """What forgets a request of this process."""
+    """Gives up a request to a service of this process, for which there is nothing to do."""

@@ -1,7 +1,7 @@
-"""Which messages of a topic are wanted, by a condition on their fields: the SQL subset of DDS (OMG DDS 1.4, annex B).
+"""Content filters: conditions on the fields of messages, in the SQL subset of DDS (OMG DDS 1.4, annex B).
 
-``temperature > 20 AND frame_id LIKE 'base%'``, with ``%0``, ``%1``, ... for parameters. Fields of fields have dots
-between (``header.frame_id``), elements of arrays a number in brackets (``position[0]``).
+An example: ``temperature > 20 AND header.frame_id LIKE 'base%'``. Parameters are written ``%0``, ``%1``, ...; nested
+fields with dots (``header.frame_id``), elements of arrays with an index in brackets (``position[0]``).
 """
 
 from __future__ import annotations
@@ -41,15 +41,15 @@ _PART = re.compile(r"(\w+)|\[(\d+)\]")
 
 
 class ContentFilterError(ValueError):
-    """A condition that cannot be understood, or that names fields that a message has not."""
+    """A condition that cannot be parsed, or that names fields that the message does not have."""
 
 
 class ContentFilterOptions(NamedTuple):
-    """Which messages of a topic are wanted (rclpy ``ContentFilterOptions``).
+    """The content filter of a subscription (rclpy ``ContentFilterOptions``).
 
     Attributes:
         filter_expression: the condition; empty for none.
-        expression_parameters: what stands for ``%0``, ``%1``, ... in it; texts in single quotes or without.
+        expression_parameters: the values of ``%0``, ``%1``, ... in it; strings with or without single quotes.
     """
 
     filter_expression: str
@@ -64,7 +64,7 @@ class ContentFilter:
         message_class: of the messages.
 
     Raises:
-        ContentFilterError: it cannot be understood, or a field or parameter is not there.
+        ContentFilterError: it cannot be parsed, or a field or parameter does not exist.
     """
 
     def __init__(self, options: ContentFilterOptions, message_class: Any) -> None:
@@ -74,7 +74,7 @@ class ContentFilter:
         self._condition = _Parser(options, message_class).parse()
 
     def accepts(self, message: Any) -> bool:
-        """Whether a message is wanted."""
+        """Whether a message meets the condition."""
         return self._condition(message)
 
 
@@ -93,7 +93,7 @@ _END = _Token("end", "")
 
 
 class _Parser:
-    """Makes a condition out of an expression, by recursive descent."""
+    """Parses an expression into a condition, by recursive descent."""
 
     def __init__(self, options: ContentFilterOptions, message_class: Any) -> None:
         self._text = options.filter_expression

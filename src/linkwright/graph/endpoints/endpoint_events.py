@@ -1,4 +1,4 @@
-"""The events of an endpoint: counted, timed, and queued for the callbacks of its user."""
+"""QoS events of an endpoint: counted, timed, and queued for the user's callbacks."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from linkwright.graph.time.timebase import Alarm
 
 
 class _Watch:
-    """Calls something whenever a span of time passes without a sign."""
+    """Calls a function whenever a limit of time passes without a sign of life."""
 
     def __init__(self, owner: EndpointEvents, limit: int, missed: Callable[[], None]) -> None:
         self._owner = owner
@@ -40,13 +40,13 @@ class _Watch:
         self._alarm: Alarm | None = None
 
     def sign(self) -> None:
-        """There is one: the time counts from now."""
+        """A sign of life: the limit counts from now."""
         self._last_ns = self._owner.node.timebase.steady_ns()
         if self._alarm is None:
             self._arm()
 
     def stop(self) -> None:
-        """Watch no longer; the next sign begins anew."""
+        """Stop watching, until the next sign of life."""
         if self._alarm is not None:
             self._alarm.cancel()
             self._alarm = None
@@ -66,7 +66,7 @@ class _Watch:
 
 
 class EndpointEvents(Entity):
-    """The events of one endpoint, which wait for their callbacks as messages do."""
+    """The QoS events of one endpoint, which wait in a queue for their callbacks as messages do."""
 
     _deadline_info: type[EventCount]
 
@@ -85,20 +85,20 @@ class EndpointEvents(Entity):
 
     @property
     def what(self) -> str:
-        """What it is called in messages."""
+        """How log messages name it."""
         return f"event callback of topic '{self._name}'"
 
     def matched(self, change: int) -> None:
-        """Endpoints of the other side came or went."""
+        """The number of endpoints that match changed."""
         self._current += change
         total = self._count("matched", max(change, 0))
         self._tell(self._callbacks.matched, QoSMatchedInfo(total, max(change, 0), self._current, change))
 
     def incompatible(self, policy: str) -> bool:
-        """An endpoint of the other side is incompatible with this one.
+        """An endpoint of the other side has incompatible QoS.
 
         Returns:
-            Whether nothing else has to be said about it.
+            Whether the warning in the log is left out: a callback is called instead, or the user wants no default.
         """
         total = self._count("incompatible", 1)
         if self._callbacks.incompatible_qos is None:
@@ -112,7 +112,7 @@ class EndpointEvents(Entity):
         return bool(self._waiting)
 
     def take(self) -> Callable[[], object] | None:
-        """The callback of the event that waits longest."""
+        """The call of the callback of the oldest event."""
         return self._next_of(self._waiting)
 
     def retire(self) -> None:
@@ -123,7 +123,7 @@ class EndpointEvents(Entity):
         self._waiting.clear()
 
     def set_dispatcher(self, dispatcher: Dispatcher | None) -> None:
-        """Have the callbacks run, and time watched, by a dispatcher."""
+        """Have a dispatcher run the callbacks and watch the time limits from now on."""
         for watch in self._watches:
             watch.stop()
         super().set_dispatcher(dispatcher)
@@ -171,12 +171,12 @@ class SubscriptionEvents(EndpointEvents):
         self._tell(self._message_lost, QoSMessageLostInfo(self._count("lost", count), count))
 
     def matched(self, change: int) -> None:
-        """Publishers came or went; those that are there live until they are said not to."""
+        """The number of publishers that match changed; they count as alive until their liveliness is lost."""
         super().matched(change)
         self.liveliness(change, 0)
 
     def liveliness(self, alive_change: int, not_alive_change: int) -> None:
-        """Publishers began or ceased to show that they live."""
+        """Publishers became alive, or lost their liveliness."""
         self._alive += alive_change
         self._not_alive += not_alive_change
         info = QoSLivelinessChangedInfo(self._alive, self._not_alive, alive_change, not_alive_change)
@@ -189,7 +189,7 @@ class PublisherEvents(EndpointEvents):
     Args:
         publisher: the publisher.
         callbacks: the user's.
-        liveliness_changed: called with 1 when the publisher shows again that it lives, with -1 when it did not in time.
+        liveliness_changed: called with -1 when the publisher loses its liveliness, with 1 when it is alive again.
     """
 
     _deadline_info = QoSOfferedDeadlineMissedInfo
@@ -211,7 +211,7 @@ class PublisherEvents(EndpointEvents):
 
     @property
     def wants_messages(self) -> bool:
-        """Whether it has to be told of every message."""
+        """Whether `published` has to be called for every message."""
         return bool(self._watches)
 
     def published(self) -> None:
@@ -221,7 +221,7 @@ class PublisherEvents(EndpointEvents):
         self.assert_liveliness()
 
     def assert_liveliness(self) -> None:
-        """The publisher showed that it lives."""
+        """The publisher asserted that it is alive."""
         if self._lease is not None:
             self._lease.sign()
             if not self._is_alive:

@@ -1,6 +1,6 @@
-"""Events of endpoints, as their callbacks receive them: mismatches, missed deadlines, lost messages, matches.
+"""QoS events as callbacks receive them: incompatible QoS, missed deadlines, liveliness, lost messages, matches.
 
-The containers of callbacks and what the callbacks are given have rclpy's names (``rclpy.event_handler``).
+The classes have the names of rclpy's (``rclpy.event_handler``).
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ class EventCount:
 
     Attributes:
         total_count: since the beginning.
-        total_count_change: since it was told last.
+        total_count_change: since the last callback.
     """
 
     total_count: int
@@ -29,19 +29,19 @@ class EventCount:
 
 
 class QoSRequestedDeadlineMissedInfo(EventCount):
-    """How often no message came in time."""
+    """How often no message was received within the deadline."""
 
     __slots__ = ()
 
 
 class QoSOfferedDeadlineMissedInfo(EventCount):
-    """How often no message was published in time."""
+    """How often no message was published within the deadline."""
 
     __slots__ = ()
 
 
 class QoSLivelinessLostInfo(EventCount):
-    """How often a publisher did not show in time that it lives."""
+    """How often a publisher did not assert its liveliness within the lease."""
 
     __slots__ = ()
 
@@ -54,7 +54,7 @@ class QoSMessageLostInfo(EventCount):
 
 @dataclass(frozen=True, slots=True)
 class QoSRequestedIncompatibleQoSInfo(EventCount):
-    """How many endpoints of the other side are incompatible with this one, and the policy of the last."""
+    """How many endpoints had incompatible QoS, and the policy that was incompatible last."""
 
     last_policy_kind: QoSPolicyKind
 
@@ -64,7 +64,7 @@ QoSOfferedIncompatibleQoSInfo = QoSRequestedIncompatibleQoSInfo
 
 @dataclass(frozen=True, slots=True)
 class QoSLivelinessChangedInfo:
-    """How many of the publishers live, and how many do not."""
+    """How many of the publishers are alive, and how many are not."""
 
     alive_count: int
     not_alive_count: int
@@ -74,7 +74,7 @@ class QoSLivelinessChangedInfo:
 
 @dataclass(frozen=True, slots=True)
 class QoSMatchedInfo(EventCount):
-    """How many endpoints of the other side there were and are."""
+    """How many endpoints have matched in all, and how many match now."""
 
     current_count: int
     current_count_change: int
@@ -85,7 +85,7 @@ QoSSubscriptionMatchedInfo = QoSMatchedInfo
 
 
 class QoSPublisherEventType(IntEnum):
-    """What a publisher can tell of; numbers and names are rcl's."""
+    """The kinds of events of a publisher; numbers and names are rcl's."""
 
     RCL_PUBLISHER_OFFERED_DEADLINE_MISSED = 0
     RCL_PUBLISHER_LIVELINESS_LOST = 1
@@ -95,7 +95,7 @@ class QoSPublisherEventType(IntEnum):
 
 
 class QoSSubscriptionEventType(IntEnum):
-    """What a subscription can tell of; numbers and names are rcl's."""
+    """The kinds of events of a subscription; numbers and names are rcl's."""
 
     RCL_SUBSCRIPTION_REQUESTED_DEADLINE_MISSED = 0
     RCL_SUBSCRIPTION_LIVELINESS_CHANGED = 1
@@ -119,15 +119,15 @@ class EventHandler(NamedTuple):
 
 @dataclass(kw_only=True)
 class EndpointEventCallbacks:
-    """A user's callbacks for the events of a publisher or a subscription; each gets the information of its name.
+    """A user's callbacks for the events of a publisher or a subscription; each gets the class of its event.
 
     Attributes:
-        deadline: nothing came, or nothing was published, in time.
-        incompatible_qos: an endpoint of the other side asks for more than is offered, or offers less.
-        liveliness: publishers began or ceased to show that they live; for a publisher, that it did not in time.
-        incompatible_type: accepted as rclpy does; topics of different types are told of in the log.
-        matched: endpoints of the other side came or went.
-        use_default_callbacks: whether the log tells of an incompatible quality of service that has no callback.
+        deadline: no message was received, or published, within the deadline.
+        incompatible_qos: a subscription requests more than is offered, or a publisher offers less than is requested.
+        liveliness: publishers became alive or lost their liveliness; for a publisher, that it lost its own.
+        incompatible_type: accepted as by rclpy, never called; topics of several types are reported in the log.
+        matched: the number of endpoints that match changed.
+        use_default_callbacks: whether incompatible QoS is logged where there is no callback for it.
     """
 
     deadline: EventCallback | None = None
@@ -158,7 +158,7 @@ class SubscriptionEventCallbacks(EndpointEventCallbacks):
     """A user's callbacks for the events of a subscription.
 
     Attributes:
-        message_lost: messages were lost on their way, or made room for later ones.
+        message_lost: messages were lost on the network, or dropped from the full queue.
     """
 
     message_lost: EventCallback | None = None

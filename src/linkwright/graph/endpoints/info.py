@@ -1,4 +1,4 @@
-"""What is known about endpoints and messages, of this process and of others."""
+"""Descriptions of endpoints, and metadata of messages, of this process and of others."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from linkwright.graph.qos.profile import QoSProfile
 
 
 class EndpointKind(Enum):
-    """What an endpoint of the graph is."""
+    """The kinds of endpoints."""
 
     PUBLISHER = "publisher"
     SUBSCRIPTION = "subscription"
@@ -25,12 +25,12 @@ class EndpointInfo:
     """One publisher, subscription, service or client, of this process or of another.
 
     Attributes:
-        kind: which of the four.
-        node: whose it is; None while discovery has not told yet.
+        kind: publisher, subscription, service or client.
+        node: the node it belongs to; None until discovery has found out.
         name: the topic's or service's absolute ROS name.
         type_name: such as ``sensor_msgs/msg/JointState``.
-        qos: what is offered or asked for.
-        gid: the endpoint's identity, 16 bytes.
+        qos: the QoS that it offers or requests.
+        gid: its globally unique identifier, 16 bytes.
         type_hash: ``RIHS01_...``; empty where it is not known (Humble does not send it).
         local: whether it belongs to this process.
     """
@@ -47,15 +47,15 @@ class EndpointInfo:
 
 @dataclass(slots=True)
 class MessageInfo(Mapping[str, Any]):
-    """What is known of a message beside its content; its values are found as attributes and, as in rclpy, by name.
+    """The metadata of a message (rmw ``rmw_message_info_t``); values are attributes and, as in rclpy, items.
 
     Attributes:
         source_timestamp: when it was published, nanoseconds since the epoch.
         received_timestamp: when it was received, nanoseconds since the epoch.
-        publisher_gid: who sent it, 16 bytes.
+        publisher_gid: the GID of the publisher, 16 bytes.
         from_outside: whether it came from another process.
-        publication_sequence_number: its number among the publisher's, where the sender tells.
-        reception_sequence_number: its number among those received, where it is counted.
+        publication_sequence_number: counted by the publisher; None where it does not send it.
+        reception_sequence_number: counted by the subscription; None where it does not count.
     """
 
     source_timestamp: int

@@ -1,4 +1,4 @@
-"""Publishers."""
+"""Publishers: they hand messages to subscriptions of this process, and to the transport for those of others."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ M = TypeVar("M")
 
 
 class Publisher(TopicEndpoint[M]):
-    """Sends messages to a topic; made by ``Node.create_publisher``. It may publish from any thread.
+    """Publishes messages on a topic, from any thread (rclpy ``Publisher``); made by ``Node.create_publisher``.
 
-    In the process a message is handed over as it is: who publishes one does not change it afterwards, nor does who
-    receives it. Nodes whose handle says `copies_messages` may: what they publish is written at once, and read by each
-    receiver.
+    Inside the process a message is not copied: once it is published, neither publisher nor receivers may change it.
+    For nodes that may change theirs (`NodeHandle.copies_messages`) a message is serialized when it is published, and
+    deserialized for each subscription.
     """
 
     kind = EndpointKind.PUBLISHER
@@ -48,9 +48,9 @@ class Publisher(TopicEndpoint[M]):
         self.event_callbacks = event_callbacks
         self.events: PublisherEvents | None = None
         self.outside: Callable[[Any], None] | None = None
-        """What takes messages out of the process, while somebody there matches; see `set_outside`."""
+        """Sends messages to other processes; None while no subscription there matches. See `set_outside`."""
         self.assert_outside: Callable[[], None] | None = None
-        """For the transport: shows outside of the process that the publisher lives."""
+        """Asserts the publisher's liveliness in other processes; set by the transport."""
         self.lifespan_ns = limit_ns(qos_profile.lifespan)
         self._acknowledged: Callable[[float | None], bool] | None = None
         self._accepted: Any = None
@@ -68,7 +68,7 @@ class Publisher(TopicEndpoint[M]):
             self._is_plain = self._is_plain and not self.events.wants_messages
 
     def publish(self, msg: M | bytes) -> None:
-        """Send a message to every matching subscription, in their order of creation; callbacks run later.
+        """Send a message to all matching subscriptions, in the order in which they were made; callbacks run later.
 
         Args:
             msg: the message, or its CDR bytes with their header.
@@ -98,7 +98,7 @@ class Publisher(TopicEndpoint[M]):
         return len(self._matched) + self._outside_count
 
     def assert_liveliness(self) -> None:
-        """Show that the publisher lives, where liveliness is MANUAL_BY_TOPIC.
+        """Assert that the publisher is alive, as the liveliness policy MANUAL_BY_TOPIC asks for.
 
         Raises:
             InvalidHandleError: the publisher was destroyed.
@@ -110,13 +110,15 @@ class Publisher(TopicEndpoint[M]):
             self.assert_outside()
 
     def wait_for_all_acked(self, timeout: Duration | None = None) -> bool:
-        """Block until everybody outside has what was sent reliably; in the process that is at once.
+        """Block until all reliable subscriptions have acknowledged what was published.
+
+        Those of this process have it at once.
 
         Args:
             timeout: how long at most; negative or None for as long as it takes.
 
         Returns:
-            Whether they have.
+            Whether all have acknowledged; False when the time is over.
         """
         seconds = None if timeout is None or timeout.nanoseconds < 0 else timeout.nanoseconds / 1e9
         if self._held and not self._sent(seconds):
@@ -126,7 +128,7 @@ class Publisher(TopicEndpoint[M]):
     # --- for the bus and the transport ----------------------------------------------------------------------------
 
     def connect(self, subscription: Subscription[Any]) -> None:
-        """Send to a subscription from now on, and what was kept for late joiners, if it wants that, first."""
+        """Connect a subscription of this process; a transient local one first gets what was kept for late joiners."""
         receive = subscription.receiver(self, self.lifespan_ns)
         with self._lock:
             if self._kept and subscription.qos_profile.durability is DurabilityPolicy.TRANSIENT_LOCAL:
@@ -139,7 +141,7 @@ class Publisher(TopicEndpoint[M]):
             self.events.matched(1)
 
     def disconnect(self, subscription: Subscription[Any]) -> None:
-        """Send to a subscription no longer."""
+        """Disconnect a subscription of this process."""
         with self._lock:
             if self._matched.pop(subscription, None) is None:
                 return
@@ -149,13 +151,13 @@ class Publisher(TopicEndpoint[M]):
             self.events.matched(-1)
 
     def begin(self) -> None:
-        """Join the topic."""
+        """Add it to the graph, after its events."""
         if self.events is not None:
             self.node.add(self.events)
         super().begin()
 
     def retire(self) -> None:
-        """Send to nobody any longer."""
+        """Remove it from the graph, and disconnect its subscriptions."""
         if self.events is not None:
             self.node.remove(self.events)
         super().retire()
@@ -169,13 +171,14 @@ class Publisher(TopicEndpoint[M]):
         return tuple(self._matched)
 
     def hold_for_outside(self, sent: Callable[[float | None], bool]) -> None:
-        """For the transport, which will call `set_outside` soon: keep what is published until then.
+        """Called by the transport, which calls `set_outside` soon: hold messages until then.
 
-        A writer takes a moment to be made. Who listens outside may be known already, and gets under ROS what is
-        published as soon as there is a publisher.
+        Under ROS 2 a subscription that has been discovered gets every message from the publisher's first on. Here the
+        transport makes the writer in a thread of its own, a moment after the publisher.
 
         Args:
-            sent: waits, for so many seconds at most (None for any time), until that was called; whether it was.
+            sent: waits until `set_outside` was called, at most the seconds given (None for any time); returns whether
+                it was.
         """
         with self._lock:
             if self._kept is None and self.outside is None:
@@ -188,15 +191,15 @@ class Publisher(TopicEndpoint[M]):
         send: Callable[[Any], None] | None,
         acknowledged: Callable[[float | None], bool] | None = None,
     ) -> None:
-        """For the transport: have messages taken out of the process, or no longer.
+        """Called by the transport: send messages to other processes from now on, or no longer.
 
-        What is held, or kept for late joiners, is sent first, so that nothing is lost and nothing comes twice.
+        Messages that are held, or kept for late joiners, are sent first: none is lost, none is sent twice.
 
         Args:
-            send: called with each message, or with its CDR bytes where it was published so, in the thread that
-                publishes.
-            acknowledged: waits, for so many seconds at most (None for any time), until everybody has what was sent,
-                and says whether they have.
+            send: called in the publishing thread with each message, or its CDR bytes where those were published; None
+                to send nothing.
+            acknowledged: waits until all readers have acknowledged, at most the seconds given (None for any time);
+                returns whether they have.
         """
         with self._lock:
             held, self._held = self._held, None
@@ -227,7 +230,7 @@ class Publisher(TopicEndpoint[M]):
                 subscription.events.liveliness(change, -change)
 
     def _still_valid(self) -> list[Any]:
-        """What is kept for late joiners, without what has outlived its lifespan."""
+        """The messages kept for late joiners whose lifespan is not over."""
         if not self._kept:
             return []
         if self.lifespan_ns is not None:

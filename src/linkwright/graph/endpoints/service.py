@@ -1,4 +1,4 @@
-"""Service servers."""
+"""Services: requests wait in a queue until a dispatcher runs the callback, which gives the response."""
 
 from __future__ import annotations
 
@@ -20,25 +20,25 @@ Request = TypeVar("Request")
 Response = TypeVar("Response")
 
 Reply = Callable[[Any], None]
-"""Sends a response to whoever asked; from any thread, once."""
+"""Sends the response to the client; called once, from any thread."""
 
 _NO_REQUESTS: deque[Any] = deque(maxlen=0)
 
 
 class Service(IntrospectedEndpoint, Entity, Generic[Request, Response]):
-    """Answers the requests to a service; made by ``Node.create_service``.
+    """Answers the requests to a service (rclpy ``Service``); made by ``Node.create_service``.
 
     Args:
-        callback: called with a request and an empty response, and gives the response; it may be a coroutine function.
-        replying: whether the callback is given, in place of the empty response, what sends the response, whenever
-            that may be.
+        callback: called with the request and an empty response, returns the response; it may be a coroutine function.
+        replying: whether the callback gets, in place of the empty response, a function that sends the response, which
+            it may call later.
     """
 
     kind = EndpointKind.SERVICE
 
     _waiting: deque[tuple[Request, Reply, RequestId]] = _NO_REQUESTS
-    """The requests that wait. An empty queue takes 700 bytes, and a node has six services that few ask: so a service
-    has one of its own from its first request on."""
+    """The queue of requests. A service gets its own with its first request: an empty one takes 700 bytes, and each node
+    has six parameter services, which are rarely called."""
 
     def __init__(
         self,
@@ -58,16 +58,16 @@ class Service(IntrospectedEndpoint, Entity, Generic[Request, Response]):
 
     @property
     def what(self) -> str:
-        """What it is called in messages."""
+        """How log messages name it."""
         return f"callback of service '{self.name}'"
 
     def receive(self, request: Request, reply: Reply, request_id: RequestId = NO_REQUEST_ID) -> None:
-        """Have a request answered, from any thread.
+        """Queue a request for the callback, from any thread.
 
         Args:
             request: the request.
             reply: called with the response, from any thread, or never.
-            request_id: whose request it is, for who watches.
+            request_id: the client and the request's number, for service introspection.
         """
         if self._waiting is _NO_REQUESTS:
             vars(self).setdefault("_waiting", deque(maxlen=self.qos_profile.queue_length))  # safe in any thread
@@ -79,7 +79,7 @@ class Service(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         return bool(self._waiting)
 
     def take(self) -> Callable[[], object] | None:
-        """The answering of the request that waits longest."""
+        """The call that answers the oldest request."""
         waiting = self._next_of(self._waiting)
         return None if waiting is None else partial(self._answer, *waiting)
 
@@ -88,7 +88,7 @@ class Service(IntrospectedEndpoint, Entity, Generic[Request, Response]):
 
         Args:
             response: the response.
-            header: what came with the request.
+            header: what came with the request, in the place of rclpy's request header.
 
         Raises:
             TypeError: the response is not of the service's type.
@@ -98,7 +98,7 @@ class Service(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         header(copy_of(response) if self.node.copies_messages else response)
 
     def retire(self) -> None:
-        """Answer no more."""
+        """Remove it from the graph; requests in the queue get no response."""
         super().retire()
         self._waiting.clear()
         self.end_introspection()
@@ -130,10 +130,10 @@ M = TypeVar("M")
 
 
 def copy_of(message: M) -> M:
-    """An equal message that shares nothing with a message.
+    """A deep copy of a message, made by serializing it.
 
     Raises:
-        MessageDataError: what is in the message is not what its type says.
+        MessageDataError: MSG202, the value of a field does not fit the type.
     """
     copied: Any = message
     return deserialize(serialize(copied), type(copied))  # type: ignore[no-any-return]  # the same type

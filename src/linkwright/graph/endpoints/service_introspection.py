@@ -13,11 +13,11 @@ from linkwright.graph.time.clock import Clock
 from linkwright.messages import get_message
 
 EVENT_TOPIC_SUFFIX = "/_service_event"
-"""Behind the name of a service, the topic that its events are told on."""
+"""What the name of a service is followed by in the name of its event topic."""
 
 
 class ServiceIntrospectionState(IntEnum):
-    """How much is published; numbers and names are rclpy's."""
+    """Which part of a request is published; numbers and names are rclpy's."""
 
     OFF = 0
     METADATA = 1
@@ -37,7 +37,7 @@ class RequestId(NamedTuple):
     """Which request of which client.
 
     Attributes:
-        client_gid: the client's identity, 16 bytes.
+        client_gid: the GID of the client, 16 bytes.
         number: counted by the client, from 1.
     """
 
@@ -55,7 +55,7 @@ class ServiceEvents:
         endpoint: the client or service; the publisher becomes its node's.
         clock: what the events are stamped with.
         qos_profile: how they are published.
-        contents: whether requests and responses are told too.
+        contents: whether requests and responses are published too.
     """
 
     def __init__(self, endpoint: ServiceEndpoint, clock: Clock, qos_profile: QoSProfile, *, contents: bool) -> None:
@@ -83,12 +83,12 @@ class ServiceEvents:
         self._publisher.publish(event)
 
     def close(self) -> None:
-        """Take the topic back."""
+        """Destroy the publisher."""
         self._publisher.destroy()
 
 
 class IntrospectedEndpoint(ServiceEndpoint):
-    """A client or service whose requests can be watched.
+    """A client or service whose requests can be introspected.
 
     Attributes:
         service_events: publishes them; None while that is off, which is the default.
@@ -99,7 +99,7 @@ class IntrospectedEndpoint(ServiceEndpoint):
     def configure_introspection(
         self, clock: Clock, service_event_qos_profile: QoSProfile, introspection_state: ServiceIntrospectionState
     ) -> None:
-        """Tell on the topic ``SERVICE/_service_event`` what happens to requests, or no longer.
+        """Publish what happens to requests on ``SERVICE/_service_event``, or stop that.
 
         Args:
             clock: what the events are stamped with.
@@ -122,7 +122,7 @@ class IntrospectedEndpoint(ServiceEndpoint):
             events.contents = state is ServiceIntrospectionState.CONTENTS
 
     def end_introspection(self) -> None:
-        """Tell nothing any longer."""
+        """Publish events no longer."""
         events, self.service_events = self.service_events, None
         if events is not None:
             events.close()

@@ -1,4 +1,4 @@
-"""Subscriptions."""
+"""Subscriptions: messages wait in a queue until a dispatcher runs the callback."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Detailed:
     Attributes:
         message: the message, or its CDR bytes.
         info: where and when it came from.
-        expires_ns: when its lifespan ends, by the graph's steady count; None for never.
+        expires_ns: the steady time at which its lifespan ends, nanoseconds; None for no lifespan.
     """
 
     message: Any
@@ -41,17 +41,16 @@ class Detailed:
 
 
 class CallbackType(Enum):
-    """What a callback takes (rclpy ``Subscription.CallbackType``)."""
+    """The arguments that a callback takes (rclpy ``Subscription.CallbackType``)."""
 
     MessageOnly = 0
     WithMessageInfo = 1
 
 
 class Subscription(TopicEndpoint[M], Entity):
-    """Receives the messages of a topic; made by ``Node.create_subscription``.
+    """Receives the messages of a topic (rclpy ``Subscription``); made by ``Node.create_subscription``.
 
-    Messages wait in a queue as long as the quality of service says; when one comes that is too many, the oldest is
-    dropped.
+    Messages wait in a queue, whose length QoS history and depth give; when it is full, the oldest is dropped.
     """
 
     kind = EndpointKind.SUBSCRIPTION
@@ -73,7 +72,7 @@ class Subscription(TopicEndpoint[M], Entity):
         self._describe(node, msg_type, topic_name, qos_profile)
         self.raw = raw
         self.malformed = 0
-        """How many messages from outside could not be read."""
+        """How many messages could not be deserialized."""
         self._waiting: deque[Any] = deque(maxlen=qos_profile.queue_length)
         self._as_it_is: type | None = None
         self._wants_info = False
@@ -87,7 +86,7 @@ class Subscription(TopicEndpoint[M], Entity):
 
     @property
     def what(self) -> str:
-        """What it is called in messages."""
+        """How log messages name it."""
         return f"callback of topic '{self.name}'"
 
     @property
@@ -136,29 +135,29 @@ class Subscription(TopicEndpoint[M], Entity):
         return ContentFilterOptions("") if self._filter is None else self._filter.options
 
     def set_content_filter(self, filter_expression: str, expression_parameters: Sequence[str] = ()) -> None:
-        """Take only messages for which a condition holds, from now on.
+        """Receive only messages that meet a condition, from now on (rclpy ``set_content_filter``).
 
         Args:
-            filter_expression: the condition, see `ContentFilter`; an empty one lets every message in again.
-            expression_parameters: what stands for ``%0``, ``%1``, ... in it.
+            filter_expression: the condition, see `ContentFilter`; an empty one removes the filter.
+            expression_parameters: the values of ``%0``, ``%1``, ... in it.
 
         Raises:
-            ContentFilterError: it cannot be understood, or a field or parameter is not there.
+            ContentFilterError: the condition cannot be parsed, or a field or parameter is not there.
         """
         options = ContentFilterOptions(filter_expression, list(expression_parameters))
         self._filter = ContentFilter(options, self.msg_type) if filter_expression.strip() else None
 
     def lost_outside(self, count: int) -> None:
-        """For the transport: messages from outside were lost."""
+        """Called by the transport: messages from other processes were lost."""
         if self.events is not None:
             self.events.lost(count)
 
     def receive(self, message: M | bytes | Detailed, info: MessageInfo | None = None) -> None:
-        """Have the callback called with a message, from any thread.
+        """Queue a message for the callback, from any thread.
 
         Args:
-            message: the message, or its CDR bytes, which are read when the callback's turn comes.
-            info: where it comes from; needed where that is another process.
+            message: the message, or its CDR bytes, which are deserialized when the callback's turn comes.
+            info: its metadata; needed for messages of other processes.
         """
         if self._filter is not None and not self._is_wanted(message, self._filter):
             return
@@ -170,11 +169,11 @@ class Subscription(TopicEndpoint[M], Entity):
                 dispatcher.ready(self)
 
     def receiver(self, publisher: TopicEndpoint[Any], lifespan_ns: int | None) -> Callable[[Any], None]:
-        """What a publisher of this process calls with each message.
+        """The function that a publisher of this process calls with each message.
 
         Args:
             publisher: the publisher.
-            lifespan_ns: the lifespan of its messages, nanoseconds; None for ever.
+            lifespan_ns: the lifespan of its messages, nanoseconds; None for no limit.
         """
         if not self._wants_info and lifespan_ns is None and self.events is None:
             return self.receive
@@ -192,13 +191,13 @@ class Subscription(TopicEndpoint[M], Entity):
         return receive
 
     def connected(self, publisher: TopicEndpoint[Any]) -> None:
-        """Take note of a publisher of this process that sends here."""
+        """Called by a publisher of this process that was connected."""
         self._publishers[publisher] = None
         if self.events is not None:
             self.events.matched(1)
 
     def disconnected(self, publisher: TopicEndpoint[Any]) -> None:
-        """Take note that a publisher sends here no longer."""
+        """Called by a publisher of this process that was disconnected."""
         if self._publishers.pop(publisher, self) is None and self.events is not None:
             self.events.matched(-1)
 
@@ -207,7 +206,7 @@ class Subscription(TopicEndpoint[M], Entity):
         return bool(self._waiting)
 
     def take(self) -> Callable[[], object] | None:
-        """The callback with the message that waits longest."""
+        """The call of the callback with the oldest message."""
         self._announced = False
         waiting = self._waiting
         try:
@@ -221,13 +220,13 @@ class Subscription(TopicEndpoint[M], Entity):
         return self._prepared(message)
 
     def set_dispatcher(self, dispatcher: Dispatcher | None) -> None:
-        """Have the calls run by a dispatcher from now on."""
+        """Have a dispatcher run the callbacks from now on."""
         super().set_dispatcher(dispatcher)
         if self.events is not None:
             self.events.set_dispatcher(dispatcher)
 
     def discard(self) -> None:
-        """Drop what waits."""
+        """Drop the messages in the queue."""
         self._waiting.clear()
 
     def retire(self) -> None:
@@ -238,7 +237,7 @@ class Subscription(TopicEndpoint[M], Entity):
             self.events.retire()
 
     def _prepared(self, item: Any) -> Callable[[], object] | None:
-        """The call for something that is not simply a message of the type."""
+        """The call for CDR bytes, or for a message with metadata."""
         if type(item) is bytes and not self._wants_info and not self.raw:
             message = self._read(item)
             return None if message is None else partial(self._callback, message)

@@ -28,34 +28,34 @@ class Transport(Protocol):
     """
 
     def open_node(self, node: NodeIdentity) -> None:
-        """Make a node known."""
+        """Announce a node."""
 
     def close_node(self, node: NodeIdentity) -> None:
-        """Take a node back."""
+        """Withdraw a node."""
 
     def open_publisher(self, publisher: Publisher[Any]) -> None:
         """Mirror a publisher."""
 
     def close_publisher(self, publisher: Publisher[Any]) -> None:
-        """Take a publisher back once what it sent reliably has been acknowledged, or nobody is there to do so."""
+        """Stop mirroring a publisher once what it sent reliably is acknowledged, or no reader is there to do so."""
 
     def open_subscription(self, subscription: Subscription[Any]) -> None:
         """Mirror a subscription."""
 
     def close_subscription(self, subscription: Subscription[Any]) -> None:
-        """Take a subscription back."""
+        """Stop mirroring a subscription."""
 
     def open_service(self, service: Service[Any, Any]) -> None:
         """Mirror a service."""
 
     def close_service(self, service: Service[Any, Any]) -> None:
-        """Take a service back."""
+        """Stop mirroring a service."""
 
     def open_client(self, client: Client[Any, Any]) -> None:
         """Mirror a client."""
 
     def close_client(self, client: Client[Any, Any]) -> None:
-        """Take a client back."""
+        """Stop mirroring a client."""
 
     def remote_nodes(self) -> Sequence[NodeIdentity]:
         """The nodes of other processes, as far as discovery has come."""

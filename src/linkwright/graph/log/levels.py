@@ -1,4 +1,4 @@
-"""Severities, and which of them each logger lets through: a tree of names with inherited levels (rcutils)."""
+"""Severities, and the levels of loggers: a tree of names in which levels are inherited (rcutils)."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class LogLevel(IntEnum):
 
 
 def level_named(name: str) -> LogLevel | None:
-    """The severity of a name, in small or capital letters; None when there is no such severity."""
+    """The severity of a name, in upper or lower case; None when there is no such severity."""
     return LogLevel.__members__.get(name.upper())
 
 
@@ -37,7 +37,7 @@ class LogLevels:
         self.revision = 0
 
     def set(self, name: str, level: LogLevel) -> None:
-        """Give a logger a level of its own; UNSET takes it away. The empty name stands for the default level."""
+        """Set the level of a logger; UNSET removes it. The empty name stands for the default level."""
         if not name:
             self._default = level or LogLevel.INFO
         else:
@@ -51,11 +51,11 @@ class LogLevels:
         self.revision += 1
 
     def own(self, name: str) -> LogLevel:
-        """The level that a logger has itself; UNSET where it has none."""
+        """The level that was set for a logger itself; UNSET where none was."""
         return self._own.get(name, LogLevel.UNSET) if name else self._default
 
     def effective(self, name: str) -> LogLevel:
-        """The level that holds for a logger."""
+        """The level in force for a logger: its own, or that of the nearest logger above it, or the default."""
         while name:
             level = self._own.get(name)
             if level:

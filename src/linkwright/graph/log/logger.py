@@ -1,4 +1,4 @@
-"""Loggers, with the methods of rclpy's, and which of their calls write: once, not the first time, not too often."""
+"""Loggers with the methods of rclpy's, and their filters: once, skip the first, throttle."""
 
 from __future__ import annotations
 
@@ -15,22 +15,22 @@ from linkwright.graph.log.record import LogRecord, LogSink
 
 
 class Logger:
-    """Writes the records of one name. The methods are those of rclpy's loggers.
+    """Logs under one name, with the methods of rclpy's loggers.
 
     The methods ``debug`` to ``fatal`` and `log` take the filters ``once=True``, ``skip_first=True`` and
-    ``throttle_duration_sec=SECONDS``, each for the place in the code that calls, and with the last one
-    ``throttle_time_source_type=CLOCK``. They give whether the record was written.
+    ``throttle_duration_sec=SECONDS``, with the last one also ``throttle_time_source_type=CLOCK``. A filter holds for
+    the place in the code that logs. The methods return whether the record was logged.
 
     Args:
-        name: the name that records carry.
-        sink: what takes the records.
-        now_ns: the clock that stamps them.
-        levels: the levels of this logger and those it belongs with; its own when left out.
-        steady_ns: the steady count that throttles go by.
+        name: the name in its records.
+        sink: receives the records.
+        now_ns: the clock that stamps them, nanoseconds since the epoch.
+        levels: the tree of levels that it belongs to; one of its own when left out.
+        steady_ns: the steady time that throttles use, nanoseconds.
 
     Attributes:
-        name: the name that records carry.
-        rosout: what takes the records as well, for ``/rosout``; None for nothing. Children inherit it.
+        name: the name in its records.
+        rosout: receives the records too, for ``/rosout``; None for nobody. Children inherit it.
     """
 
     __slots__ = ("_calls", "_effective", "_levels", "_now_ns", "_revision", "_sink", "_steady_ns", "name", "rosout")
@@ -63,18 +63,18 @@ class Logger:
         self.set_level(level)
 
     def set_level(self, level: int) -> None:
-        """Give the logger a level of its own, which its children inherit; UNSET has it inherit again."""
+        """Set its level, which its children inherit; with UNSET it inherits one again."""
         self._levels.set(self.name, LogLevel(level))
 
     def get_effective_level(self) -> LogLevel:
-        """The level that holds: its own, or that of the nearest logger above it, or the default level."""
+        """The level in force: its own, or that of the nearest logger above it, or the default level."""
         if self._revision != self._levels.revision:
             self._effective = self._levels.effective(self.name)
             self._revision = self._levels.revision
         return self._effective
 
     def is_enabled_for(self, severity: int) -> bool:
-        """Whether records of a severity are written."""
+        """Whether records of a severity are logged."""
         return severity >= self.get_effective_level()
 
     def get_child(self, name: str) -> Logger:
@@ -91,7 +91,7 @@ class Logger:
         return child
 
     def log(self, message: object, severity: int, **filters: Any) -> bool:
-        """Write a record, unless the level or a filter is against it; gives whether it was written.
+        """Log a record unless its severity is below the level or a filter holds it back; returns whether it was logged.
 
         Raises:
             TypeError: a filter is not known or incomplete.
@@ -120,15 +120,15 @@ class Logger:
         return True
 
     def debug(self, message: object, **filters: Any) -> bool:
-        """Write what helps to find a fault."""
+        """Log with severity DEBUG."""
         return self.log(message, LogLevel.DEBUG, **filters)
 
     def info(self, message: object, **filters: Any) -> bool:
-        """Write what a user may want to know."""
+        """Log with severity INFO."""
         return self.log(message, LogLevel.INFO, **filters)
 
     def warning(self, message: object, **filters: Any) -> bool:
-        """Write what may be wrong."""
+        """Log with severity WARN."""
         return self.log(message, LogLevel.WARN, **filters)
 
     def warn(self, message: object, **filters: Any) -> bool:
@@ -136,11 +136,11 @@ class Logger:
         return self.log(message, LogLevel.WARN, **filters)
 
     def error(self, message: object, **filters: Any) -> bool:
-        """Write what is wrong."""
+        """Log with severity ERROR."""
         return self.log(message, LogLevel.ERROR, **filters)
 
     def fatal(self, message: object, **filters: Any) -> bool:
-        """Write why the node cannot go on."""
+        """Log with severity FATAL."""
         return self.log(message, LogLevel.FATAL, **filters)
 
 
@@ -174,13 +174,13 @@ _OPTIONS = ("throttle_duration_sec", "throttle_time_source_type", "skip_first", 
 
 
 class CallFilter:
-    """The filters of one place in the code that logs, with what they remember.
+    """The filters of one place in the code that logs, and their state.
 
     Args:
         severity: that of the place's records.
         name: the name of their logger.
         options: ``throttle_duration_sec``, ``throttle_time_source_type``, ``skip_first``, ``once``.
-        steady_ns: the steady count that is meant where no time source is given.
+        steady_ns: the steady time that is used where no time source is given, nanoseconds.
 
     Raises:
         TypeError: an option is not known, or goes only with another.
@@ -214,7 +214,7 @@ class CallFilter:
         self._logged = False
 
     def check_unchanged(self, severity: int, name: str, options: dict[str, Any]) -> None:
-        """Raise ValueError unless a call at the place asks for the same as the first one did."""
+        """Raise ValueError if a call has another severity, name or other filters than the first one at the place."""
         if severity != self._severity_and_name[0]:
             raise ValueError("Logger severity cannot be changed between calls.")
         if name != self._severity_and_name[1]:
@@ -225,7 +225,7 @@ class CallFilter:
             raise ValueError("Logging filter parameters cannot be changed between calls.")
 
     def lets_through(self) -> bool:
-        """Whether the record of one more call is written; takes note of the call."""
+        """Whether this call is logged; counts it."""
         if self._duration_s:
             now_s = self._now_s()
             # A clock that jumped back begins anew.

@@ -14,10 +14,10 @@ class LogRecord:
 
     Attributes:
         node: the logger's name: the node's name with its namespace before it, joined by dots.
-        level: how bad it is.
-        stamp_ns: when, nanoseconds since the epoch by the graph's clock.
-        text: what was said; it may have several lines.
-        file: path of the source file that said it; empty where that is not known.
+        level: its severity.
+        stamp_ns: the time, nanoseconds since the epoch by the graph's clock.
+        text: the message; it may have several lines.
+        file: path of the source file that logged it; empty where that is not known.
         function: the function in it.
         line: the line in it.
     """

@@ -116,7 +116,7 @@ class GuardCondition(Entity):
 
     @property
     def what(self) -> str:
-        """What it is called in messages."""
+        """How log messages name it."""
         return "guard condition callback"
 
     def trigger(self) -> None:

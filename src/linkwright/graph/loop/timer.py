@@ -108,7 +108,7 @@ class Timer(Entity):
 
     @property
     def what(self) -> str:
-        """What it is called in messages."""
+        """How log messages name it."""
         return "timer callback"
 
     def is_canceled(self) -> bool:

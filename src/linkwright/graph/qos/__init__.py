@@ -1,1 +1,1 @@
-"""Quality of service: profiles, which of them go together, and which to subscribe with."""
+"""Quality of service (QoS): profiles, whether they are compatible, and one that fits the publishers of a topic."""

@@ -28,7 +28,7 @@ V = TypeVar("V", bound=QoSPolicyEnum)
 
 
 class QoSCompatibility(IntEnum):
-    """Whether two profiles go together (rmw ``rmw_qos_compatibility_type_t``)."""
+    """Whether two profiles are compatible (rmw ``rmw_qos_compatibility_type_t``)."""
 
     OK = 0
     WARNING = 1
@@ -42,7 +42,7 @@ def limit_ns(duration: Duration) -> int | None:
 
 
 def resolved(qos: QoSProfile) -> QoSProfile:
-    """The profile with what the middleware chooses for values left to it (Cyclone DDS' choices), no limits infinite."""
+    """The profile with values for what is left to the middleware, as Cyclone DDS chooses them; no limit is infinite."""
     return QoSProfile(
         depth=max(qos.depth, 1),
         history=_known(qos.history, HistoryPolicy.KEEP_LAST),
@@ -65,7 +65,7 @@ def _or_infinite(duration: Duration) -> Duration:
 
 
 def incompatible_policies(offered: QoSProfile, requested: QoSProfile) -> list[QoSPolicyKind]:
-    """The policies in which a subscription asks for more than a publisher offers; none when they match.
+    """The policies in which a subscription requests more than a publisher offers; empty when they are compatible.
 
     A reliable subscription needs a reliable publisher, a transient local one a transient local publisher, one with
     a deadline a publisher that promises one as short, and so on.
@@ -94,7 +94,7 @@ def _is_stricter(requested: Duration, offered: Duration) -> bool:
 
 
 def best_available(qos: QoSProfile, others: Iterable[QoSProfile], *, publisher: bool) -> QoSProfile:
-    """A profile whose BEST_AVAILABLE values are chosen to go together with the endpoints that are there.
+    """A profile with its BEST_AVAILABLE values chosen so that it matches the endpoints known now (rmw_dds_common).
 
     Args:
         qos: the profile; returned as it is when nothing in it is BEST_AVAILABLE.
@@ -149,7 +149,7 @@ def _leaves_a_choice(qos: QoSProfile) -> bool:
 
 
 def qos_check_compatible(publisher_qos: QoSProfile, subscription_qos: QoSProfile) -> tuple[QoSCompatibility, str]:
-    """Whether a publisher and a subscription with these profiles go together, and the reasons why not.
+    """Whether a publisher and a subscription with these profiles are compatible, and the reasons why not.
 
     Where a profile leaves a policy to the middleware the answer may be a warning (rmw
     ``rmw_qos_profile_check_compatible``, whose reasons these are).
@@ -234,7 +234,7 @@ class Fitting:
 
 
 def fit(wanted: QoSProfile, offers: Sequence[QoSProfile]) -> Fitting:
-    """The strongest reliability and durability that all of the publishers offer, for everything to come that can.
+    """The strongest reliability and durability that all publishers offer, so that each of them matches.
 
     Args:
         wanted: the rest of the profile, and all of it where there are no publishers.

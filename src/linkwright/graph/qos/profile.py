@@ -1,4 +1,4 @@
-"""Quality of service: what publishers offer and what subscriptions ask for. Names and values are rclpy's."""
+"""QoS policies and profiles: what publishers offer and subscriptions request. Names and values are rclpy's."""
 
 from __future__ import annotations
 
@@ -32,14 +32,14 @@ def qos_policy_name_from_kind(policy_kind: QoSPolicyKind | int) -> str:
 
 
 class InvalidQoSProfileError(Exception):
-    """A profile is made without what it needs (rclpy ``InvalidQoSProfileException``)."""
+    """A profile lacks history or depth (rclpy ``InvalidQoSProfileException``)."""
 
     def __init__(self, *reasons: object) -> None:
         super().__init__("Invalid QoSProfile", *reasons)
 
 
 class QoSPolicyEnum(IntEnum):
-    """What the values of a policy have in common."""
+    """Base class of the values of a policy (rclpy ``QoSPolicyEnum``)."""
 
     @classmethod
     def short_keys(cls) -> list[str]:
@@ -65,7 +65,7 @@ class QoSPolicyEnum(IntEnum):
 
 
 class HistoryPolicy(QoSPolicyEnum):
-    """Whether only the last `depth` messages wait, or all."""
+    """Whether only the last `depth` messages are kept, or all of them."""
 
     SYSTEM_DEFAULT = 0
     KEEP_LAST = 1
@@ -94,7 +94,7 @@ class DurabilityPolicy(QoSPolicyEnum):
 
 
 class LivelinessPolicy(QoSPolicyEnum):
-    """How a publisher shows that it lives."""
+    """How a publisher asserts that it is alive."""
 
     SYSTEM_DEFAULT = 0
     AUTOMATIC = 1
@@ -121,11 +121,11 @@ class QoSProfile:
         reliability: RELIABLE or BEST_EFFORT.
         durability: TRANSIENT_LOCAL or VOLATILE.
         history: KEEP_LAST or KEEP_ALL.
-        lifespan: how long a message is worth delivering.
+        lifespan: how long after publication a message is still delivered.
         deadline: the longest time that may pass between two messages.
-        liveliness: how the publisher shows that it lives.
-        liveliness_lease_duration: how long it counts as alive after it last showed that.
-        avoid_ros_namespace_conventions: use the topic's name on the wire as it is.
+        liveliness: how the publisher asserts that it is alive.
+        liveliness_lease_duration: how long it counts as alive after it last did so.
+        avoid_ros_namespace_conventions: whether the topic has its name on the wire without ROS's prefix.
 
     Raises:
         InvalidQoSProfileError: neither history nor depth is given, or KEEP_LAST without depth.
@@ -188,12 +188,12 @@ class QoSProfile:
 
     @property
     def queue_length(self) -> int | None:
-        """How many messages may wait; None for any number. A depth of nothing counts as one, as Cyclone does."""
+        """How many messages a queue holds; None for any number. A depth of 0 counts as 1, as in Cyclone DDS."""
         return None if self._history is HistoryPolicy.KEEP_ALL else max(self._depth, 1)
 
     @property
     def history(self) -> HistoryPolicy:
-        """Whether only the last messages wait, or all."""
+        """Whether only the last messages are kept, or all of them."""
         return self._history
 
     @history.setter
@@ -202,7 +202,7 @@ class QoSProfile:
 
     @property
     def depth(self) -> int:
-        """How many messages wait with KEEP_LAST."""
+        """How many messages are kept with KEEP_LAST."""
         return self._depth
 
     @depth.setter
@@ -238,7 +238,7 @@ class QoSProfile:
 
     @property
     def lifespan(self) -> Duration:
-        """How long a message is worth delivering."""
+        """How long after publication a message is still delivered."""
         return self._lifespan
 
     @lifespan.setter
@@ -258,7 +258,7 @@ class QoSProfile:
 
     @property
     def liveliness(self) -> LivelinessPolicy:
-        """How the publisher shows that it lives."""
+        """How the publisher asserts that it is alive."""
         return self._liveliness
 
     @liveliness.setter
@@ -267,7 +267,7 @@ class QoSProfile:
 
     @property
     def liveliness_lease_duration(self) -> Duration:
-        """How long the publisher counts as alive after it last showed that."""
+        """How long the publisher counts as alive after it last asserted that it is."""
         return self._liveliness_lease_duration
 
     @liveliness_lease_duration.setter
@@ -277,7 +277,7 @@ class QoSProfile:
 
     @property
     def avoid_ros_namespace_conventions(self) -> bool:
-        """Whether the topic's name is used on the wire as it is."""
+        """Whether the topic has its name on the wire without ROS's prefix."""
         return self._avoid_ros_namespace_conventions
 
     @avoid_ros_namespace_conventions.setter
@@ -324,7 +324,7 @@ DEFAULT_QOS = QoSProfile(depth=10)
 SYSTEM_DEFAULT_QOS = QoSProfile(
     0, ReliabilityPolicy.SYSTEM_DEFAULT, DurabilityPolicy.SYSTEM_DEFAULT, HistoryPolicy.SYSTEM_DEFAULT
 )
-"""Whatever the middleware does by itself."""
+"""Everything is left to the middleware (rmw ``rmw_qos_profile_system_default``)."""
 
 UNKNOWN_QOS = QoSProfile(
     0,
@@ -333,7 +333,7 @@ UNKNOWN_QOS = QoSProfile(
     HistoryPolicy.UNKNOWN,
     liveliness=LivelinessPolicy.UNKNOWN,
 )
-"""Not known."""
+"""Of endpoints whose QoS is not known (rmw ``rmw_qos_profile_unknown``)."""
 
 BEST_AVAILABLE_QOS = QoSProfile(
     10,
@@ -343,7 +343,7 @@ BEST_AVAILABLE_QOS = QoSProfile(
     liveliness=LivelinessPolicy.BEST_AVAILABLE,
     liveliness_lease_duration=BEST_AVAILABLE_DURATION,
 )
-"""As much as the endpoints that are there when this one is made go together with."""
+"""The strictest policies that match the endpoints known when one is made (rmw ``rmw_qos_profile_best_available``)."""
 
 SENSOR_DATA_QOS = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
 """Best effort, the last 5; robot_state_publisher subscribes to joint states with it."""

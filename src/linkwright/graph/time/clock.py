@@ -25,7 +25,7 @@ _LONGEST_WAIT_S = 0.1
 
 
 class ClockChange(IntEnum):
-    """What a jump of a clock came from; numbers as in rcl."""
+    """The cause of a time jump; numbers as in rcl."""
 
     ROS_TIME_NO_CHANGE = 1
     ROS_TIME_ACTIVATED = 2
@@ -34,12 +34,12 @@ class ClockChange(IntEnum):
 
 
 class JumpThreshold:
-    """Which jumps of a clock a callback wants to hear of (rclpy ``JumpThreshold``).
+    """Which time jumps of a clock a callback is called for (rclpy ``JumpThreshold``).
 
     Args:
         min_forward: the least jump forward, more than zero; None for no jump forward.
         min_backward: the least jump backward, less than zero; None for no jump backward.
-        on_clock_change: whether to hear of ROS time becoming simulated or not.
+        on_clock_change: whether it is called when ROS time switches to simulated time, or back.
 
     Raises:
         ValueError: a threshold has the wrong sign, or there is none.
@@ -59,7 +59,7 @@ class JumpThreshold:
         self.on_clock_change = on_clock_change
 
     def is_exceeded(self, jump: TimeJump) -> bool:
-        """Whether a jump is to be told."""
+        """Whether callbacks are called for a jump."""
         if jump.clock_change in (ClockChange.ROS_TIME_ACTIVATED, ClockChange.ROS_TIME_DEACTIVATED):
             return self.on_clock_change
         forward, backward = self.min_forward, self.min_backward
@@ -68,14 +68,14 @@ class JumpThreshold:
 
 @dataclass(frozen=True, slots=True)
 class TimeJump:
-    """A jump of a clock: what changed, and by how much its time went forward (or, negative, back)."""
+    """A time jump of a clock: its cause, and how far time went forward, or back where `delta` is negative."""
 
     clock_change: ClockChange
     delta: Duration
 
 
 class JumpHandle:
-    """A pair of callbacks that hear of the jumps of a clock; made by `Clock.create_jump_callback`."""
+    """Callbacks for the time jumps of a clock; made by `Clock.create_jump_callback`."""
 
     def __init__(
         self,
@@ -97,7 +97,7 @@ class JumpHandle:
         self._clock: Clock | None = clock
 
     def unregister(self) -> None:
-        """Hear of no more jumps."""
+        """Call the callbacks no more."""
         if self._clock is not None:
             self._clock.forget_jump_callback(self)
             self._clock = None
@@ -113,8 +113,8 @@ class Clock:
     """A clock (rclpy ``Clock``). One of type ROS_TIME is a `ROSClock`.
 
     Args:
-        clock_type: what it goes by.
-        timebase: what that is made of; the computer's when left out.
+        clock_type: system, steady or ROS time.
+        timebase: where the time comes from; the computer's clocks when left out.
 
     Raises:
         TypeError: `clock_type` is not a ClockType.
@@ -128,7 +128,7 @@ class Clock:
         return object.__new__(wanted)  # type: ignore[no-any-return]  # a ROSClock is a Clock
 
     context: Any = None
-    """What ends a sleep that is given no context of its own; None for nothing."""
+    """The context whose shutdown ends a sleep that is given none; None for no context."""
 
     def __init__(self, *, clock_type: ClockType = ClockType.SYSTEM_TIME, timebase: Timebase | None = None) -> None:
         self.clock_type = clock_type
@@ -154,10 +154,10 @@ class Clock:
         pre_callback: Callable[[], object] | None = None,
         post_callback: Callable[[TimeJump], object] | None = None,
     ) -> JumpHandle:
-        """Hear of the jumps of this clock, before and after them. Only simulated time jumps, and what switches to it.
+        """Have callbacks called before and after the time jumps of this clock; only ROS time jumps.
 
         Raises:
-            ValueError: no callback, or something that is none.
+            ValueError: neither callback is given, or one cannot be called.
         """
         handle = JumpHandle(clock=self, threshold=threshold, pre_callback=pre_callback, post_callback=post_callback)
         with self._changed:
@@ -165,7 +165,7 @@ class Clock:
         return handle
 
     def forget_jump_callback(self, handle: JumpHandle) -> None:
-        """Take a handle away; see `JumpHandle.unregister`."""
+        """Remove a handle; see `JumpHandle.unregister`."""
         with self._changed:
             if handle in self._jump_handles:
                 self._jump_handles.remove(handle)
@@ -173,18 +173,18 @@ class Clock:
     # --- timers ------------------------------------------------------------------------------------------------
 
     def timer_ns(self) -> int:
-        """The count that timers on this clock go by, in nanoseconds: it never goes back but with simulated time."""
+        """The time that timers on this clock use, nanoseconds: steady time, or simulated time where that is active."""
         return self.timebase.steady_ns()
 
     def call_at(self, dispatcher: AlarmSetter, timer_ns: int, callback: Callable[[], None]) -> Alarm:
-        """Call something once when `timer_ns` has come to a value; quick things only."""
+        """Schedule a call for a value of `timer_ns`; what is called is short."""
         return dispatcher.call_at(timer_ns, callback)
 
     def add_timer(self, timer: FollowsClock) -> None:
-        """Tell a timer when the count it goes by changes otherwise than by the passing of time."""
+        """Notify a timer when its time switches to simulated time or back, or jumps back."""
 
     def remove_timer(self, timer: FollowsClock) -> None:
-        """Tell it no longer."""
+        """Notify it no more."""
 
     # --- sleeping ----------------------------------------------------------------------------------------------
 
@@ -244,13 +244,13 @@ class FollowsClock(Protocol):
     """A timer, as its clock knows it."""
 
     def before_switch(self) -> None:
-        """The clock's count is about to become another one."""
+        """The clock is about to switch to simulated time, or back."""
 
     def after_switch(self) -> None:
-        """The count is another one now."""
+        """The clock has switched."""
 
     def after_jump_back(self) -> None:
-        """The count went back."""
+        """Simulated time has jumped back."""
 
 
 @dataclass(slots=True, order=True)
@@ -267,9 +267,9 @@ class _SimulatedAlarm:
 class ROSClock(Clock):
     """ROS time: the system's until a simulation takes over (rclpy ``ROSClock``).
 
-    While it is simulated (`ros_time_is_active`), time stands still but when `set_ros_time_override` moves it, forward
-    or back. Timers on it keep the rest of their period when it becomes simulated or ceases to be, and start their
-    period anew when it jumps back (rcl ``rcl_timer``).
+    While it is simulated (`ros_time_is_active`), only `set_ros_time_override` moves it, forward or back. Timers on it
+    keep the rest of their period when it becomes simulated or ceases to be, and start their period anew when it jumps
+    back (rcl ``rcl_timer``).
     """
 
     def __init__(self, *, clock_type: ClockType = ClockType.ROS_TIME, timebase: Timebase | None = None) -> None:
@@ -291,11 +291,11 @@ class ROSClock(Clock):
         return self._override_ns if self._active else self.timebase.now_ns()
 
     def timer_ns(self) -> int:
-        """Simulated time, or the steady count."""
+        """Simulated time, or steady time."""
         return self._override_ns if self._active else self.timebase.steady_ns()
 
     def call_at(self, dispatcher: AlarmSetter, timer_ns: int, callback: Callable[[], None]) -> Alarm:
-        """Call something once when `timer_ns` has come to a value."""
+        """Schedule a call for a value of `timer_ns`."""
         with self._changed:
             if not self._active:
                 return dispatcher.call_at(timer_ns, callback)
@@ -306,11 +306,11 @@ class ROSClock(Clock):
         return dispatcher.call_at(self.timebase.steady_ns(), callback)
 
     def add_timer(self, timer: FollowsClock) -> None:
-        """Tell a timer of switches and of jumps back."""
+        """Notify a timer of switches, and of jumps back."""
         self._timers[timer] = None
 
     def remove_timer(self, timer: FollowsClock) -> None:
-        """Tell it no longer."""
+        """Notify it no more."""
         self._timers.pop(timer, None)
 
     def set_ros_time_is_active(self, enabled: bool) -> None:

@@ -1,4 +1,4 @@
-"""The source of a graph's time: the clocks of the computer, or one that a test advances; alarms that are set by it."""
+"""Where a graph gets its time from: the computer's clocks, or one that a test advances; and alarms set by it."""
 
 from __future__ import annotations
 
@@ -15,34 +15,31 @@ from linkwright.graph.time.values import NANOSECONDS_PER_SECOND, ClockType, Time
 
 
 class Alarm(Protocol):
-    """A callback that will be called at a time."""
+    """A call that is scheduled for a time."""
 
     def cancel(self) -> None:
-        """Do not call it."""
+        """Cancel the call."""
 
 
 class AlarmSetter(Protocol):
-    """What calls back at a time."""
+    """Schedules calls."""
 
     def call_at(self, steady_ns: int, callback: Callable[[], None]) -> Alarm:
-        """Call something once at a count of the graph's timebase; never in the caller's frame, from any thread.
+        """Schedule a call for a steady time of the graph, in nanoseconds; from any thread.
 
-        What is called only makes entities ready: it is quick, and none of the user's code.
+        It is never made before this returns. What is called marks entities as ready: it is short, and no user's code.
         """
 
 
 class Settling(Protocol):
-    """What runs the callbacks of a graph and can be waited for."""
+    """Runs the callbacks of a graph, and can be waited for."""
 
     async def settle(self) -> None:
         """Wait until nothing is ready any more, including the calls that other calls make ready."""
 
 
 class Timebase(ABC):
-    """What stamps messages and wakes timers.
-
-    Stamps are points in time (they may jump, as system clocks do); timers go by a steady count that never goes back.
-    """
+    """The two times of a graph: system time, which stamps messages and may jump, and steady time, which timers use."""
 
     @abstractmethod
     def now_ns(self) -> int:
@@ -50,22 +47,22 @@ class Timebase(ABC):
 
     @abstractmethod
     def steady_ns(self) -> int:
-        """Nanoseconds of a steady count with an arbitrary start."""
+        """Steady time, nanoseconds from an arbitrary start."""
 
     @abstractmethod
     def call_at(self, loop: AbstractEventLoop, steady_ns: int, callback: Callable[[], None]) -> Alarm:
-        """Call something once on an event loop, from whose thread this is asked, at a value of the steady count."""
+        """Schedule a call on an event loop for a steady time, in nanoseconds; called in the loop's thread."""
 
     def now(self) -> Time:
         """The present as a point in time."""
         return Time(nanoseconds=self.now_ns(), clock_type=ClockType.SYSTEM_TIME)
 
     def attach(self, dispatcher: Settling) -> None:  # noqa: B027  # most need not know
-        """Learn of the dispatcher of a graph that goes by this time."""
+        """Take note of the dispatcher of a graph that uses this timebase."""
 
 
 class SystemClock(Timebase):
-    """The computer's clocks: the one it shows, and its monotonic one, by which event loops go too."""
+    """The computer's clocks: system time, and monotonic time, which event loops use too."""
 
     def now_ns(self) -> int:
         """Nanoseconds since the epoch."""

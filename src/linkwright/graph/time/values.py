@@ -15,7 +15,7 @@ _LIMIT = 2**63
 
 
 class ClockType(IntEnum):
-    """What a clock goes by; numbers as in rcl."""
+    """The types of clocks; numbers as in rcl."""
 
     UNINITIALIZED = 0
     ROS_TIME = 1
@@ -24,7 +24,7 @@ class ClockType(IntEnum):
 
 
 class Duration:
-    """A span of time (rclpy ``Duration``), of nanoseconds.
+    """A span of time in whole nanoseconds, of 64 bits (rclpy ``Duration``).
 
     Args:
         seconds: seconds, a fraction counts.
@@ -107,7 +107,7 @@ class Duration:
 
 
 INFINITE = Duration(nanoseconds=_LIMIT - 1)
-"""As long as can be; in a QoS profile, a policy without a limit."""
+"""The longest duration; in a QoS profile, no limit."""
 
 
 class Time:

@@ -36,8 +36,8 @@ DISCOVERY_TYPE_HASH = "RIHS01_91a0593bacdcc50ea9bdcf849a938b128412cc1ea821245c66
 """Of ``rmw_dds_common/msg/ParticipantEntitiesInfo``, Iron and later."""
 
 _AT_ONCE = 256
-_SPEAKER_QOS = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-_LISTENER_QOS = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL, history=HistoryPolicy.KEEP_ALL)
+_WRITER_QOS = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+_READER_QOS = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL, history=HistoryPolicy.KEEP_ALL)
 
 
 class Discovery:
@@ -70,34 +70,34 @@ class Discovery:
         self._participants = self._builtin(BUILTIN_PARTICIPANTS)
         self._publications = self._builtin(BUILTIN_PUBLICATIONS)
         self._subscriptions = self._builtin(BUILTIN_SUBSCRIPTIONS)
-        self._listener = self._new_listener()
+        self._reader = self._new_reader()
         self._thread = thread
         self._requests = DiscoveryRequests(self._listen_again)
-        self._speaker = self._new_speaker()
+        self._writer = self._new_writer()
         for reader, handler in (
             (self._participants, self._take_participants),
             (self._publications, lambda: self._take_endpoints(self._publications, is_writer=True)),
             (self._subscriptions, lambda: self._take_endpoints(self._subscriptions, is_writer=False)),
-            (self._listener[1], lambda: self._take_entities(self._listener[1])),
+            (self._reader[1], lambda: self._take_entities(self._reader[1])),
         ):
             self._dds.dds_set_status_mask(reader, DATA_AVAILABLE)
             thread.attach(reader, handler)
             handler()
 
     def publish(self, nodes: Sequence[NodeEntities]) -> None:
-        """Tell everybody which nodes there are and which endpoints each has."""
+        """Announce our nodes, and which endpoints each has."""
         self._nodes = nodes
         info = ParticipantEntities(self._participant.guid, nodes)
-        write(self._speaker[1], encode(info, self.gid_size))
+        write(self._writer[1], encode(info, self.gid_size))
 
-    # --- hearing ---------------------------------------------------------------------------------------------------
+    # --- receiving --------------------------------------------------------------------------------------------------
 
     def _builtin(self, topic: int) -> int:
         return self._participant.create_reader(topic, None)
 
-    def _new_listener(self) -> tuple[int, int]:
+    def _new_reader(self) -> tuple[int, int]:
         topic = self._participant.create_topic(DISCOVERY_TOPIC, self._types.discovery())
-        with endpoint_qos(_LISTENER_QOS) as qos:
+        with endpoint_qos(_READER_QOS) as qos:
             return topic, self._participant.create_reader(topic, qos)
 
     def _take_participants(self) -> bool:
@@ -148,16 +148,16 @@ class Discovery:
         for data, info in samples:
             entities = decode(data) if info.valid_data else None
             if entities is not None:
-                self._remote.entities_told(entities)
+                self._remote.entities_announced(entities)
                 self.changed = True
         return len(samples) == _AT_ONCE
 
     def ask_silent(self) -> float | None:
-        """Have those tell their nodes who have not; seconds after which to call this again, or None."""
-        return self._requests.review(is_complete=self._remote.all_told())
+        """Ask those for their nodes who have not announced them; seconds after which to call this again, or None."""
+        return self._requests.review(is_complete=self._remote.all_announced())
 
     def _listen_again(self) -> Callable[[], None]:
-        topic, reader = self._new_listener()
+        topic, reader = self._new_reader()
 
         def stop() -> None:
             self._thread.detach(reader)
@@ -167,7 +167,7 @@ class Discovery:
         self._thread.attach(reader, lambda: self._take_entities(reader))
         return stop
 
-    # --- telling -----------------------------------------------------------------------------------------------------
+    # --- announcing --------------------------------------------------------------------------------------------------
 
     def review_gid_size(self) -> None:
         """Use the gid size that the other participants understand."""
@@ -176,18 +176,18 @@ class Discovery:
         size = max(sizes, default=self.gid_size)
         if size != self.gid_size:
             self.gid_size = size
-            self._participant.delete(self._speaker[1], self._speaker[0])
-            self._speaker = self._new_speaker()
+            self._participant.delete(self._writer[1], self._writer[0])
+            self._writer = self._new_writer()
             self.publish(self._nodes)
 
-    def _new_speaker(self) -> tuple[int, int]:
+    def _new_writer(self) -> tuple[int, int]:
         topic = self._participant.create_topic(DISCOVERY_TOPIC, self._types.discovery())
         facts = f"typehash={DISCOVERY_TYPE_HASH};".encode() if self.gid_size == GID_SIZE else b""
-        with endpoint_qos(_SPEAKER_QOS, facts) as qos:
+        with endpoint_qos(_WRITER_QOS, facts) as qos:
             return topic, self._participant.create_writer(topic, qos)
 
-    def _note_evidence(self, speaker: RemoteEndpoint) -> None:
-        self._evidence[speaker.participant] = GID_SIZE if "typehash" in speaker.facts else OLD_GID_SIZE
+    def _note_evidence(self, writer: RemoteEndpoint) -> None:
+        self._evidence[writer.participant] = GID_SIZE if "typehash" in writer.facts else OLD_GID_SIZE
 
     def _forget_evidence(self, participant: bytes) -> None:
         self._evidence.pop(participant, None)

@@ -99,7 +99,7 @@ class Engine:
         self._participant.close()
 
     def abandon(self) -> None:
-        """Send nothing any more, without calling Cyclone."""
+        """Send nothing more, without calling Cyclone."""
         for topic in self._outgoing.values():
             topic.abandon()
         for client in self._clients.values():
@@ -108,12 +108,12 @@ class Engine:
     # --- work, in the thread that makes and deletes ------------------------------------------------------------------
 
     def add_node(self, node: NodeIdentity) -> None:
-        """Make a node known."""
+        """Announce a node."""
         self._nodes[node] = self._nodes.get(node, 0) + 1
         self._is_told = False
 
     def remove_node(self, node: NodeIdentity) -> None:
-        """Take a node back."""
+        """Withdraw a node."""
         count = self._nodes.pop(node, 0) - 1
         if count > 0:
             self._nodes[node] = count
@@ -131,7 +131,7 @@ class Engine:
         self._is_told = False
 
     def close_publisher(self, publisher: Any) -> None:
-        """Take a publisher back when everybody has what it sent."""
+        """Delete a publisher's writer when all readers have acknowledged what it sent, or after a second."""
         topic = self._outgoing.pop(publisher, None)
         if topic is not None:
             self._control.detach(topic.entity)
@@ -162,7 +162,7 @@ class Engine:
         self._is_told = False
 
     def close_endpoint(self, endpoint: Any) -> None:
-        """Take a subscription, a service or a client back."""
+        """Delete what mirrors a subscription, a service or a client."""
         self._is_told = False
         topic = self._incoming.pop(endpoint, None)
         if topic is not None:
@@ -178,7 +178,7 @@ class Engine:
     # --- between the work --------------------------------------------------------------------------------------------
 
     def _idle(self) -> float | None:
-        """Do what there is to do; seconds after which to look again, or None."""
+        """Work off what was asked for, and handle what discovery found; seconds after which to look again, or None."""
         self._work_for(_WORK_SPAN)
         self._look_outside()
         self._end_leaving()
@@ -202,7 +202,7 @@ class Engine:
             self._report(error)
 
     def _report(self, error: Exception) -> None:
-        """Say that something was left out: in words for what Cyclone refuses, with the traceback of a fault of ours."""
+        """Log that something is not mirrored: why Cyclone refuses it, or the traceback of an error of ours."""
         lines = [str(error)] if isinstance(error, CycloneError) else traceback.format_exception(error)
         self._logger.error("A part of the graph is not seen outside of this process: " + "".join(lines).rstrip())
 
@@ -226,7 +226,7 @@ class Engine:
         self._control.wake()
 
     def _tell_mismatches(self) -> None:
-        """Name the nodes that do not go together: that is known a moment after the mismatch itself."""
+        """Report incompatible QoS with the names of the nodes, which are known a moment after the mismatch."""
         for topic, due in tuple(self._mismatched.items()):
             is_due = time.monotonic() >= due
             topic.tell_mismatches(finally_=is_due)
@@ -247,7 +247,7 @@ class Engine:
                 topic.close()
 
     def _tell(self) -> None:
-        """Tell others of our nodes, when something changed; not at each of many changes."""
+        """Announce our nodes when something changed; many changes in a row are announced together."""
         if not self._is_told and (not self._work or time.monotonic() - self._told_at > _TELL_SPAN):
             self._discovery.publish(self._described_nodes())
             self._is_told = True

@@ -134,7 +134,7 @@ class RemoteGraph:
     # --- from discovery -----------------------------------------------------------------------------------------
 
     def participant_came(self, participant: RemoteParticipant) -> None:
-        """Take note of a participant."""
+        """Record a participant."""
         with self._lock:
             known = self._participants.get(participant.guid)
             said = self._early.pop(participant.guid, None)
@@ -143,7 +143,7 @@ class RemoteGraph:
             self._participants[participant.guid] = participant
 
     def participant_went(self, guid: bytes) -> None:
-        """Forget a participant and all it has."""
+        """Remove a participant and its endpoints."""
         with self._lock:
             self._participants.pop(guid, None)
             self._early.pop(guid, None)
@@ -151,20 +151,20 @@ class RemoteGraph:
                 self._forget(endpoint)
 
     def endpoint_came(self, endpoint: RemoteEndpoint) -> None:
-        """Take note of a reader or writer."""
+        """Record a reader or writer."""
         with self._lock:
             self._endpoints[endpoint.guid] = endpoint
             self._by_handle[endpoint.handle] = endpoint
 
     def endpoint_went(self, guid: bytes) -> None:
-        """Forget a reader or writer."""
+        """Remove a reader or writer."""
         with self._lock:
             endpoint = self._endpoints.get(guid)
             if endpoint is not None:
                 self._forget(endpoint)
 
-    def entities_told(self, entities: ParticipantEntities) -> None:
-        """Take note of what a participant says of its nodes; it may be told before the participant is."""
+    def entities_announced(self, entities: ParticipantEntities) -> None:
+        """Record which nodes a participant announces; that may come before the participant itself is known."""
         with self._lock:
             participant = self._participants.get(entities.participant)
             if participant is None:
@@ -173,7 +173,7 @@ class RemoteGraph:
                 participant.entities = entities
 
     def announce(self) -> None:
-        """Tell those who watch that something has changed."""
+        """Notify the watchers that something has changed."""
         self.changed_at = time.monotonic()
         for watcher in tuple(self._watchers):
             watcher()
@@ -202,8 +202,8 @@ class RemoteGraph:
         with self._lock:
             return list(self._participants.values())
 
-    def all_told(self) -> bool:
-        """Whether each participant with a writer of ``ros_discovery_info`` has said which nodes it has."""
+    def all_announced(self) -> bool:
+        """Whether each participant with a writer of ``ros_discovery_info`` has announced its nodes."""
         with self._lock:
             speakers = {
                 each.participant
@@ -230,7 +230,7 @@ class RemoteGraph:
                     return False
                 if age < _ALL_WITHIN and not self._endpoints.keys() >= participant.endpoints():
                     return False
-        return self.all_told()
+        return self.all_announced()
 
     def our_processes(self) -> set[int]:
         """The ids of Linkwright's processes on this machine, as far as they are known and alive."""

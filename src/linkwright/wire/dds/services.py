@@ -1,8 +1,8 @@
 """Services and clients over DDS.
 
-A service is two topics. rmw_cyclonedds_cpp writes before each request who asks (64 bits) and the number of the request,
-and the server writes the same before its reply; all replies reach all clients of a service, and each picks its own. The
-USER_DATA of both endpoints of a client or a server name them as belonging together.
+A service is two topics. rmw_cyclonedds_cpp writes a header before each request: the id of the client (64 bits) and the
+sequence number of the request. The server writes the same before its reply; all replies reach all clients of a service,
+and each picks its own. The USER_DATA of both endpoints of a client or a server name them as belonging together.
 
 rmw_fastrtps_cpp has the same beside the samples (inline QoS), which Cyclone neither hands on nor writes.
 Nothing goes between its clients and servers and ours, because each would take the other's header for content.
@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from linkwright.graph.endpoints.service import Service
 
 HEADER = struct.Struct("<Qq")
-"""Who asks, and the number of the request."""
+"""The id of the client, and the sequence number of the request."""
 
 _ENCAPSULATION = 4
 _BODY = _ENCAPSULATION + HEADER.size
@@ -57,7 +57,7 @@ _ASKED_IN_VAIN = (
     "start that node with RMW_IMPLEMENTATION=rmw_cyclonedds_cpp"
 )
 _REPLY_WAITS = 1.0
-"""Seconds for which a reply waits for the asker's reader to be known, before it is written all the same."""
+"""Seconds for which a reply waits until the client's reader is known; then it is written all the same."""
 
 
 class _Pair:
@@ -97,24 +97,24 @@ class _Pair:
         return bool(status.value)
 
     def samples(self) -> Iterator[tuple[int, int, bytes, Any]]:
-        """What has come: who asks, the number, the body as CDR, and Cyclone's information on the sample."""
+        """The samples that have come: client id, sequence number, body as CDR, and Cyclone's information on each."""
         taken = self._dds.take_bytes(self.reader, ANY_STATE, _AT_ONCE)
         for data, info in taken if isinstance(taken, list) else ():
             if info.valid_data and len(data) >= _BODY:
-                asker, number = HEADER.unpack_from(data, _ENCAPSULATION)
-                yield asker, number, data[:_ENCAPSULATION] + data[_BODY:], info
+                client_id, number = HEADER.unpack_from(data, _ENCAPSULATION)
+                yield client_id, number, data[:_ENCAPSULATION] + data[_BODY:], info
 
-    def write(self, asker: int, number: int, message: Any) -> None:
+    def write(self, client_id: int, number: int, message: Any) -> None:
         """Write a request or a reply."""
-        write(self.writer, _LITTLE_ENDIAN + HEADER.pack(asker, number) + serialize(message)[_ENCAPSULATION:])
+        write(self.writer, _LITTLE_ENDIAN + HEADER.pack(client_id, number) + serialize(message)[_ENCAPSULATION:])
 
     def close(self) -> None:
-        """Take both back."""
+        """Delete both."""
         self._participant.delete(self.reader, self.writer, *self._topics)
 
 
 class OutsideServer:
-    """Servers outside, as a client of this process asks them (`transport.OutsideService`).
+    """The servers of other processes, as a client of this one calls them (`graph.endpoints.client.OutsideService`).
 
     Args:
         client: the client.
@@ -128,15 +128,15 @@ class OutsideServer:
         self._remote = domain.remote
         self._dds = load()
         self.pair = _Pair(client, domain, is_server=False)
-        self._asker = int.from_bytes(os.urandom(8), "little")
+        self._client_id = int.from_bytes(os.urandom(8), "little")
         self._answers: dict[int, Callable[[Any], None]] = {}
         self._is_ready = False
         self._is_out_of_reach = False
 
     def send(self, request: Any, answer: Callable[[Any], None], number: int) -> Callable[[], None]:
-        """Ask; what it returns forgets the request."""
+        """Write a request; returns a function that gives it up."""
         self._answers[number] = answer
-        self.pair.write(self._asker, number, request)
+        self.pair.write(self._client_id, number, request)
         return partial(self._forget, number)
 
     def on_data(self) -> bool:
@@ -144,9 +144,9 @@ class OutsideServer:
         if self.pair.has_matched(self.pair.reader):
             self._matched()
         count = 0
-        for asker, number, body, _ in self.pair.samples():
+        for client_id, number, body, _ in self.pair.samples():
             count += 1
-            answer = self._answers.pop(number, None) if asker == self._asker else None
+            answer = self._answers.pop(number, None) if client_id == self._client_id else None
             if answer is not None:
                 response = _read(body, self._client.srv_type.Response, self._client)
                 if response is not None:
@@ -160,7 +160,7 @@ class OutsideServer:
         return False
 
     def review(self) -> None:
-        """See whether a server is there with both of its ends, and connected with both of ours."""
+        """Find out whether a server is there whose reader and writer both are connected with ours."""
         is_ready = self._server_is_there()
         if is_ready != self._is_ready:
             self._is_ready = is_ready
@@ -177,7 +177,7 @@ class OutsideServer:
         self.pair.close()
 
     def abandon(self) -> None:
-        """Ask nobody any more, without calling Cyclone."""
+        """Send no more requests, without calling Cyclone."""
         self._client.outside = None
 
     def _forget(self, number: int) -> None:
@@ -190,18 +190,18 @@ class OutsideServer:
         return any(_belong_together(a, b, "serviceid") for a in ours for b in replying)
 
     def _server_is_fast(self) -> bool:
-        """Whether a server is there that cannot be asked; to be known, it need not be connected."""
+        """Whether a server is there that cannot be called; to be known, it need not be connected."""
         readers = self._remote.endpoints_of(self.pair.request_topic, writers=False)
         return any(each.is_fast for each in readers)
 
 
 class IncomingService:
-    """A service of this process, as clients outside ask it.
+    """A service of this process, as clients of other processes call it.
 
     Args:
         service: the service.
         domain: where the others are.
-        waits: called when a reply has to wait for its asker.
+        waits: called when a reply has to wait for its client.
     """
 
     def __init__(self, service: Service[Any, Any], domain: Domain, waits: Callable[[], None]) -> None:
@@ -219,7 +219,7 @@ class IncomingService:
         if self.pair.has_matched(self.pair.reader):
             self._tell_of_fast_clients()
         count = 0
-        for asker, number, body, info in self.pair.samples():
+        for client_id, number, body, info in self.pair.samples():
             count += 1
             sender = self._remote.endpoint(info.publication_handle)
             if sender is not None and sender.is_fast:
@@ -228,26 +228,26 @@ class IncomingService:
             if request is None:
                 continue
             gid = bytes(16) if sender is None else sender.guid
-            self._service.receive(request, partial(self._reply, sender, asker, number), RequestId(gid, number))
+            self._service.receive(request, partial(self._reply, sender, client_id, number), RequestId(gid, number))
         return count == _AT_ONCE
 
     def review(self) -> None:
-        """Send the replies whose asker can be reached by now, or could not for too long."""
+        """Write the replies whose client can be reached by now, or could not for too long."""
         with self._lock:
             for _ in range(len(self._late)):
-                due, sender, asker, number, response = self._late.popleft()
+                due, sender, client_id, number, response = self._late.popleft()
                 if time.monotonic() >= due or self._can_reach(sender):
-                    self.pair.write(asker, number, response)
+                    self.pair.write(client_id, number, response)
                 else:
-                    self._late.append((due, sender, asker, number, response))
+                    self._late.append((due, sender, client_id, number, response))
 
     @property
     def has_late_replies(self) -> bool:
-        """Whether replies wait for their askers."""
+        """Whether replies wait for their clients."""
         return bool(self._late)
 
     def close(self) -> None:
-        """Answer nobody outside any more."""
+        """Answer other processes no more."""
         self.pair.close()
 
     def _tell_of_fast_clients(self) -> None:
@@ -259,17 +259,17 @@ class IncomingService:
             self._said.add(_ASKED_IN_VAIN)
             self._service.node.logger.warning(_ASKED_IN_VAIN.format(self._service.name))
 
-    def _reply(self, sender: RemoteEndpoint | None, asker: int, number: int, response: Any) -> None:
+    def _reply(self, sender: RemoteEndpoint | None, client_id: int, number: int, response: Any) -> None:
         if not self._service.destroyed:
             if self._can_reach(sender):
-                self.pair.write(asker, number, response)
+                self.pair.write(client_id, number, response)
             else:
                 with self._lock:
-                    self._late.append((time.monotonic() + _REPLY_WAITS, sender, asker, number, response))
+                    self._late.append((time.monotonic() + _REPLY_WAITS, sender, client_id, number, response))
                 self._waits()
 
     def _can_reach(self, sender: RemoteEndpoint | None) -> bool:
-        """Whether the asker's reader of replies is connected with our writer: before that it would miss the reply."""
+        """Whether the client's reader is connected with our writer: before that it would miss the reply."""
         readers = (self._remote.endpoint(each) for each in self._dds.matched(self.pair.writer, writer=True))
         return any(_belong_together(sender, reader, "clientid") for reader in readers)
 

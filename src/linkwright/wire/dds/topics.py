@@ -1,4 +1,4 @@
-"""Publishers and subscriptions over DDS."""
+"""Publishers and subscriptions over DDS: a writer for each publisher, a reader for each subscription."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, cast
 
-from linkwright.graph.endpoints.bus import tell_publisher, tell_subscription, what_sides_say
+from linkwright.graph.endpoints.bus import describe_mismatch, report_to_publisher, report_to_subscription
 from linkwright.graph.endpoints.info import MessageInfo
 from linkwright.graph.qos.compatibility import incompatible_policies
 from linkwright.graph.qos.profile import DurabilityPolicy, HistoryPolicy
@@ -60,7 +60,7 @@ class _MirroredTopic(ABC):
     Args:
         endpoint: the subscription or publisher.
         domain: where the others are.
-        mismatch: called when somebody outside asks for more than is offered, or offers less than is asked for.
+        mismatch: called when an endpoint of another process has incompatible QoS.
     """
 
     _STATUS: int
@@ -105,7 +105,7 @@ class OutgoingTopic(_MirroredTopic):
         self.on_status()
 
     def on_status(self) -> bool:
-        """See who matches, and what else has happened."""
+        """Handle changes of status: which readers match, and incompatible QoS."""
         status = c.c_uint32()
         self._dds.dds_take_status(self.entity, c.byref(status), self._STATUS)
         matched = MatchedStatus()
@@ -118,12 +118,12 @@ class OutgoingTopic(_MirroredTopic):
         return False
 
     def acknowledged(self, nanoseconds: int) -> bool:
-        """Wait until everybody has what was written reliably; whether they have."""
+        """Wait until all reliable readers have acknowledged what was written; whether they have."""
         code: int = self._dds.dds_wait_for_acks(self.entity, nanoseconds)
         return code >= 0
 
     def close(self) -> None:
-        """Take the writer back."""
+        """Delete the writer."""
         self._publisher.set_outside(None)
         self._participant.delete(self.entity, self._topic)
 
@@ -157,7 +157,7 @@ class OutgoingTopic(_MirroredTopic):
         return send
 
     def _insist(self, sample: Sample) -> int:
-        """Write on, where everything is to be kept, until slow readers have caught up and dead ones are gone."""
+        """Retry, for history KEEP_ALL, until slow readers have caught up or the lease of dead ones is over."""
         until = time.monotonic() + _PATIENCE
         code = TIMEOUT
         while code == TIMEOUT and time.monotonic() < until and not self._participant.closed:
@@ -165,7 +165,7 @@ class OutgoingTopic(_MirroredTopic):
         return code
 
     def _failed(self, code: int) -> None:
-        """Say once, and again after some time, that messages do not get through."""
+        """Log that messages are not sent: once, and again after some time."""
         if code >= 0 or self._participant.closed or self._publisher.destroyed or not self._told.is_due("failed"):
             return
         reason = "who listens outside does not keep up" if code == TIMEOUT else describe(code)
@@ -174,18 +174,18 @@ class OutgoingTopic(_MirroredTopic):
         )
 
     def tell_mismatches(self, *, finally_: bool) -> None:
-        """Report the subscriptions outside that ask for more than this offers.
+        """Report the subscriptions of other processes that request more than this publisher offers.
 
         Args:
-            finally_: whether to tell even of those whose node is not known by name yet.
+            finally_: whether to report even those whose node is not known by name yet.
         """
         offered = self._publisher.qos_profile
         for reader in self._remote.endpoints_of(self.topic_name, writers=False):
             policies = incompatible_policies(offered, reader.qos)
             name = self._remote.node_name(reader)
             if policies and (name or finally_) and self._told.is_new(reader.guid):
-                sides = what_sides_say(self._publisher.node_name, offered, name or _NAMELESS, reader.qos, policies)
-                tell_publisher(self._publisher, policies[-1].name, sides)
+                sides = describe_mismatch(self._publisher.node_name, offered, name or _NAMELESS, reader.qos, policies)
+                report_to_publisher(self._publisher, policies[-1].name, sides)
 
 
 class IncomingTopic(_MirroredTopic):
@@ -198,7 +198,7 @@ class IncomingTopic(_MirroredTopic):
         self._subscription = subscription
 
     def on_status(self) -> bool:
-        """Hand on what has come, and tell what else has happened; whether there is more."""
+        """Hand on the samples that have come, and handle changes of status; whether there is more."""
         status = c.c_uint32()
         self._dds.dds_take_status(self.entity, c.byref(status), self._STATUS & ~DATA_AVAILABLE)
         if status.value:
@@ -206,7 +206,7 @@ class IncomingTopic(_MirroredTopic):
         return self._take()
 
     def close(self) -> None:
-        """Take the reader back."""
+        """Delete the reader."""
         self._participant.delete(self.entity, self._topic)
 
     def _describe_type(self, endpoint: TopicEndpoint[Any], domain: Domain) -> tuple[Any, bytes]:
@@ -259,18 +259,20 @@ class IncomingTopic(_MirroredTopic):
             self._mismatch(self)
 
     def tell_mismatches(self, *, finally_: bool) -> None:
-        """Report the publishers outside that offer less than this asks for; see `OutgoingTopic.tell_mismatches`."""
+        """Report the publishers of other processes that offer less than this subscription requests."""
         requested = self._subscription.qos_profile
         for writer in self._remote.endpoints_of(self.topic_name, writers=True):
             policies = incompatible_policies(writer.qos, requested)
             name = self._remote.node_name(writer)
             if policies and (name or finally_) and self._told.is_new(writer.guid):
-                sides = what_sides_say(name or _NAMELESS, writer.qos, self._subscription.node_name, requested, policies)
-                tell_subscription(self._subscription, policies[-1].name, sides)
+                sides = describe_mismatch(
+                    name or _NAMELESS, writer.qos, self._subscription.node_name, requested, policies
+                )
+                report_to_subscription(self._subscription, policies[-1].name, sides)
 
 
 class _Told:
-    """What has been said already."""
+    """What has been logged already."""
 
     _AGAIN_AFTER = 30.0
 
@@ -279,13 +281,13 @@ class _Told:
         self._said: dict[str, float] = {}
 
     def is_new(self, guid: bytes) -> bool:
-        """Whether nothing was said of an endpoint; from now on something was."""
+        """Whether nothing was logged about an endpoint so far."""
         is_new = guid not in self._guids
         self._guids.add(guid)
         return is_new
 
     def is_due(self, what: str) -> bool:
-        """Whether it is time to say something, the first time or again."""
+        """Whether it is time to log something, for the first time or again."""
         now = time.monotonic()
         is_due = now - self._said.get(what, -self._AGAIN_AFTER) >= self._AGAIN_AFTER
         if is_due:

@@ -127,11 +127,11 @@ class DdsTransport:
     # --- for the graph -----------------------------------------------------------------------------------------------
 
     def open_node(self, node: NodeIdentity) -> None:
-        """Make a node known."""
+        """Announce a node."""
         self._mirror(lambda engine: engine.add_node(node))
 
     def close_node(self, node: NodeIdentity) -> None:
-        """Take a node back."""
+        """Withdraw a node."""
         self._mirror(lambda engine: engine.remove_node(node))
 
     def open_publisher(self, publisher: Publisher[Any]) -> None:
@@ -141,7 +141,7 @@ class DdsTransport:
         self._mirror(lambda engine: engine.open_publisher(publisher))
 
     def close_publisher(self, publisher: Publisher[Any]) -> None:
-        """Take a publisher back once what it sent reliably has been acknowledged, or nobody is there to do so."""
+        """Stop mirroring a publisher once what it sent reliably is acknowledged, or no reader is there to do so."""
         self._mirror(lambda engine: engine.close_publisher(publisher))
 
     def open_subscription(self, subscription: Subscription[Any]) -> None:
@@ -149,7 +149,7 @@ class DdsTransport:
         self._mirror(lambda engine: engine.open_subscription(subscription))
 
     def close_subscription(self, subscription: Subscription[Any]) -> None:
-        """Take a subscription back."""
+        """Stop mirroring a subscription."""
         self._mirror(lambda engine: engine.close_endpoint(subscription))
 
     def open_service(self, service: Service[Any, Any]) -> None:
@@ -157,7 +157,7 @@ class DdsTransport:
         self._mirror(lambda engine: engine.open_service(service))
 
     def close_service(self, service: Service[Any, Any]) -> None:
-        """Take a service back."""
+        """Stop mirroring a service."""
         self._mirror(lambda engine: engine.close_endpoint(service))
 
     def open_client(self, client: Client[Any, Any]) -> None:
@@ -165,7 +165,7 @@ class DdsTransport:
         self._mirror(lambda engine: engine.open_client(client))
 
     def close_client(self, client: Client[Any, Any]) -> None:
-        """Take a client back."""
+        """Stop mirroring a client."""
         self._mirror(lambda engine: engine.close_endpoint(client))
 
     def remote_nodes(self) -> Sequence[NodeIdentity]:
