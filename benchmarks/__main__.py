@@ -10,10 +10,11 @@ import ast
 import importlib
 import platform
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 from benchmarks import report
-from benchmarks.measure import show
+from benchmarks.measure import Measured, show
 from benchmarks.robots import has_corpus
 
 
@@ -32,20 +33,17 @@ def main() -> int:
             print(f"{name:12} {said.partition(chr(10))[0]}")
         return 0
     print(f"Python {platform.python_version()}, {platform.system()} {platform.machine()}")
+    found: dict[str, Sequence[Measured]] = {}
     for name in names:
         print(f"\n== {name}")
-        _run(name, keep="--write" in sys.argv)
+        found[name] = importlib.import_module(f"benchmarks.bench_{name}").rows()
+        show(found[name])
     if "--write" in sys.argv:
-        for path in report.write():
+        for path in report.write(
+            {name: rows for name, rows in found.items() if name in report.TITLES}, corpus=has_corpus()
+        ):
             print(f"Written: {path}")
     return 0
-
-
-def _run(name: str, *, keep: bool) -> None:
-    rows = importlib.import_module(f"benchmarks.bench_{name}").rows()
-    show(rows)
-    if keep:
-        report.keep(name, rows, corpus=has_corpus())
 
 
 if __name__ == "__main__":

@@ -1,14 +1,13 @@
 """The pages with the figures: ``docs/benchmarks.md`` and its Chinese sister.
 
-Each run with ``--write`` keeps its rows below ``.build``, so that measurements made one at a time make one page.
+A run with ``--write`` of some measurements leaves the others on the page as they are.
 """
 
 from __future__ import annotations
 
-import json
 import os
 import platform
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from datetime import datetime, timezone
 from importlib import metadata
 from pathlib import Path
@@ -17,7 +16,6 @@ from benchmarks import peers
 from benchmarks.measure import ROOT, Measured
 from linkwright import __version__
 
-KEPT = ROOT / ".build" / "benchmarks.json"
 TITLES = {
     "xacro": ("xacro", "xacro"),
     "urdf": ("URDF", "URDF"),
@@ -57,13 +55,15 @@ _HEADS_OF_SIZES = (
 )
 _ABOUT_SIZES = (
     """Time of the processor and the most memory at once, of a process for each figure. What a bound of the program
-refuses is `refused`; `-` is what would take more than a minute. The last column compares the two largest that were
-measured, their times without what the command takes for a single thing.
+refuses is `refused`; `-` is what would take more than four minutes. The last column compares the two largest that were
+measured, their times without what the command takes for a single thing. All rows are of one run of
+`python -m benchmarks --write sizes`, which measures as many of them at once as there are processors.
 
 """,
     """每个数值来自一个单独的进程：处理器时间，以及同一时刻占用的最大内存。
-`refused` 表示超出程序设定的上限而被拒绝，`-` 表示需要一分钟以上。
+`refused` 表示超出程序设定的上限而被拒绝，`-` 表示需要四分钟以上。
 最后一列比较测到的最大两个规模，时间已减去命令处理单个对象所需的部分。
+所有行都出自 `python -m benchmarks --write sizes` 的同一次运行，有几个处理器就同时测几行。
 
 """,
 )
@@ -76,40 +76,35 @@ _INPUTS = {
 }
 
 
-def keep(name: str, rows: Sequence[Measured], *, corpus: bool) -> None:
-    """Remember what one measurement gave."""
-    known = json.loads(KEPT.read_text(encoding="utf-8")) if KEPT.is_file() else {}
-    known[name] = {
-        "date": datetime.now(timezone.utc).date().isoformat(),
-        "rows": [row.cells() for row in rows],
-        "corpus": corpus,
-    }
-    KEPT.parent.mkdir(exist_ok=True)
-    KEPT.write_text(json.dumps(known), encoding="utf-8")
+def write(found: Mapping[str, Sequence[Measured]], *, corpus: bool) -> list[Path]:
+    """Write the pages.
 
+    Args:
+        found: the rows of each measurement, by name; the page keeps what it has of the others.
+        corpus: whether real robots were at hand.
 
-def write() -> list[Path]:
-    """Write the pages from what is remembered; the files written."""
-    known = json.loads(KEPT.read_text(encoding="utf-8"))
-    corpus = any(section["corpus"] for section in known.values())
+    Returns:
+        The files written.
+    """
     written = []
     for place, (text, path) in enumerate(((_ENGLISH, "docs/benchmarks.md"), (_CHINESE, "docs/zh/benchmarks.md"))):
-        parts = [text.format(machine=_machine(), inputs=_INPUTS[corpus][place]), _versions()]
-        for name, titles in TITLES.items():
-            if name in known:
-                heads, about = (_HEADS_OF_SIZES, _ABOUT_SIZES[place]) if name == "sizes" else (_HEADS, "")
-                parts.append(f"## {titles[place]}\n\n{about}{_section(known[name], heads[place])}")
         target = ROOT / path
-        target.write_text("\n".join(parts), encoding="utf-8")
+        head, *sections = target.read_text(encoding="utf-8").split("\n## ")
+        old = {section.partition("\n")[0]: section for section in sections}
+        if found.keys() == TITLES.keys():
+            head = f"{text.format(machine=_machine(), inputs=_INPUTS[corpus][place])}\n{_versions()}"
+        for name, rows in found.items():
+            heads, about = (_HEADS_OF_SIZES, _ABOUT_SIZES[place]) if name == "sizes" else (_HEADS, "")
+            old[TITLES[name][place]] = f"{TITLES[name][place]}\n\n{about}{_section(rows, heads[place])}"
+        ordered = [old[titles[place]] for titles in TITLES.values() if titles[place] in old]
+        target.write_text("\n## ".join([head, *ordered]), encoding="utf-8")
         written.append(target)
     return written
 
 
-def _section(section: dict[str, object], head: str) -> str:
-    date = f"{section['date']}\n\n"
-    rows = section["rows"]
-    assert isinstance(rows, list)
-    return date + head + "".join("| " + " | ".join(cells) + " |\n" for cells in rows)
+def _section(rows: Sequence[Measured], head: str) -> str:
+    date = datetime.now(timezone.utc).date().isoformat()
+    return f"{date}\n\n{head}" + "".join("| " + " | ".join(row.cells()) + " |\n" for row in rows)
 
 
 def _machine() -> str:

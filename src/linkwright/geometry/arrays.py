@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from linkwright.geometry.single import Pose
+from linkwright.geometry.single import Pose, quaternion_of
 
 Array = NDArray[np.float64]
 
@@ -199,8 +199,7 @@ def invert(b_in_a: ArrayLike) -> Array:
 
 def row_from_pose(pose: Pose) -> Array:
     """A pose of a description as a row; shape (7,)."""
-    quaternion = quaternion_from_rpy(pose.rpy) if pose.quaternion is None else np.array(pose.quaternion)
-    return np.concatenate((pose.xyz, quaternion))
+    return np.array((*pose.xyz, *quaternion_of(pose)))
 
 
 def matrix_from_pose(pose: ArrayLike) -> Array:

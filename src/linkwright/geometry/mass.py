@@ -8,7 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike
 
-from linkwright.geometry.arrays import Array, rotation_matrix, row_from_pose
+from linkwright.geometry.arrays import Array
+from linkwright.geometry.placement import rotation as rotation_of
 from linkwright.geometry.single import Pose
 
 LEAST_MASS = 1e-30
@@ -59,7 +60,7 @@ class MassProperties:
 
     def moved(self, pose: Pose) -> MassProperties:
         """The same body seen from a parent frame, in which its own frame has this pose."""
-        rotation = rotation_matrix(row_from_pose(pose)[3:])
+        rotation = np.array(rotation_of(pose))
         center = rotation @ self.center + np.asarray(pose.xyz)
         return MassProperties(self.mass, center, rotation @ self.inertia @ rotation.T)
 
