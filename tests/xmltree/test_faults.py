@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.xmltree import parse, parse_file, reader
+from linkwright.xmltree import Overlay, parse, parse_file, reader
 
 
 def told(text: str | bytes) -> tuple[str, str, int, int, str | None]:
@@ -140,3 +140,7 @@ def test_a_pointer_of_git_lfs_is_named_as_such(name: str, tmp_path: Path) -> Non
     assert found.code == "XML106"
     assert "pointer of Git LFS" in found.message
     assert "git lfs pull" in (found.hint or "")
+    text = path.read_text()
+    for read in (lambda: parse(text, "<stdin>"), lambda: Overlay({path: text}).read(str(path))):
+        with pytest.raises(LinkwrightError, match="pointer of Git LFS"):
+            read()

@@ -104,6 +104,9 @@ def set_attribute(expander: Expander, site: Site) -> None:
     name = expander.text_value(node, "name", site.scope)
     _check_name(expander, node, "name", "attribute", name)
     value = expander.value(node, "value", site.scope)
+    before = expander.unwritable.pop((id(site.parent), name), None)
+    if before is not None:  # its value is not written
+        expander.session.take_back(before[1])
     if isinstance(site.parent, Container) and not name.startswith("xmlns:"):
         message = phrase(
             "ros/xacro drops the attribute '{name}': it stands in <{tag}> and not directly in the element it is for",
@@ -116,11 +119,13 @@ def set_attribute(expander: Expander, site: Site) -> None:
         )
         expander.session.warn("XAC901", message, node.span(), hint)
     elif not isinstance(value, str):
-        _warn_of_value(expander, node, name, value)
+        _warn_of_value(expander, site, name, value)
     site.parent.attributes[name] = expander.written(node, "value", value)
 
 
-def _warn_of_value(expander: Expander, node: Element, name: str, value: object) -> None:
+def _warn_of_value(expander: Expander, site: Site, name: str, value: object) -> None:
+    """Warn of a value that is no text, until another one takes its place."""
+    node = site.node
     kind = type(value).__name__
     message = (
         phrase(
@@ -137,7 +142,9 @@ def _warn_of_value(expander: Expander, node: Element, name: str, value: object) 
     )
     written = node.attributes["value"].strip()
     hint = phrase("make it a text: {written}", written="${str(" + written[2:-1].strip() + ")}")
-    expander.session.warn("XAC903", message, node.attribute_span("value"), hint)
+    found = expander.session.warn("XAC903", message, node.attribute_span("value"), hint)
+    if found is not None:
+        expander.unwritable[id(site.parent), name] = (site.parent, found)
 
 
 def _check_name(expander: Expander, node: Element, attribute: str, what: str, name: str) -> None:

@@ -70,6 +70,8 @@ class Expander:
         self._directives = directives
         self._call = call
         self.sweeper = CommentSweeper()
+        self.unwritable: dict[tuple[int, str], tuple[Element, Diagnostic]] = {}
+        """Identity of an element and name of an attribute -> the element, and the warning that its value is no text."""
         self._errors: list[Diagnostic] = []
         self._nesting = 0
         self._deepest = session.limits.nesting

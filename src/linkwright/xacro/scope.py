@@ -47,7 +47,7 @@ class Context(Protocol):
         """The value of a text in a scope; raises a `Fault` when it has none."""
         ...
 
-    def warn(self, code: str, message: Phrase, span: Span | None = None, hint: Phrase | None = None) -> None:
+    def warn(self, code: str, message: Phrase, span: Span | None = None, hint: Phrase | None = None) -> object:
         """Note a finding that does not stop the expansion; without a span, at what is being evaluated."""
         ...
 

@@ -308,7 +308,7 @@ class Session:
         hint: Phrase | None = None,
         severity: Severity = Severity.WARNING,
         called: str | None = None,
-    ) -> None:
+    ) -> Diagnostic | None:
         """Note a finding that does not stop the expansion; the same one at the same place only once.
 
         Args:
@@ -318,15 +318,25 @@ class Session:
             hint: how to mend it.
             severity: how bad it is.
             called: the function whose call in the text being evaluated the finding is about.
+
+        Returns:
+            The finding; None where it was noted before.
         """
         place = self.place
         if span is None and place is not None:
             span = self._place_of_call(place, called)
         if (code, message, span) in self._told:
-            return
+            return None
         self._told.add((code, message, span))
         source = place.source if place is not None and span is not None else None
-        self.diagnostics.append(Diagnostic(code, message, span, severity, trail(self.frame), hint, source))
+        found = Diagnostic(code, message, span, severity, trail(self.frame), hint, source)
+        self.diagnostics.append(found)
+        return found
+
+    def take_back(self, found: Diagnostic) -> None:
+        """Forget a finding that what came later made untrue."""
+        self.diagnostics.remove(found)
+        self._told.discard((found.code, found.message, found.span))
 
     def _place_of_call(self, place: Element | Text, function: str | None) -> Span | None:
         attribute = self.attribute

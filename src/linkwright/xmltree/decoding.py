@@ -14,6 +14,8 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, SourceTe
 from linkwright.diagnostics.pointers import FETCH, IS_POINTER, is_pointer
 
 UTF_8 = "utf-8"
+_LONGEST_BEGINNING = 100
+"""More characters than a pointer is known by."""
 _DECLARED = re.compile(rb"""^\s*<\?xml[^>]*?\bencoding\s*=\s*["']([A-Za-z][A-Za-z0-9._-]*)["']""")
 _BYTE_ORDER_MARKS = (
     (codecs.BOM_UTF8, UTF_8),
@@ -46,9 +48,7 @@ def decoded(data: bytes, name: str) -> Decoded:
     Raises:
         LinkwrightError: XML104, or XML106 where the file itself was never fetched.
     """
-    if is_pointer(data):
-        message = phrase("cannot read '{path}': {reason}", path=name, reason=IS_POINTER)
-        raise LinkwrightError(Diagnostic("XML106", message, hint=FETCH))
+    _refuse_pointer(data, name)
     for mark, encoding in _BYTE_ORDER_MARKS:
         if data.startswith(mark):
             return _decode(data[len(mark) :], encoding, name, phrase("its byte order mark says so"))
@@ -60,6 +60,22 @@ def decoded(data: bytes, name: str) -> Decoded:
             return _decode(data, UTF_8, name, phrase("it declares no other encoding"))
         encoding = declared[1].decode("ascii")
         return _decode(data, encoding, name, phrase("its XML declaration says so"))
+
+
+def unsaved(text: str, name: str) -> Decoded:
+    """A text that is in no file, such as one that an editor has not saved yet.
+
+    Raises:
+        LinkwrightError: XML106, as for a file.
+    """
+    _refuse_pointer(text[:_LONGEST_BEGINNING].encode("utf-8", "replace"), name)
+    return Decoded(text)
+
+
+def _refuse_pointer(data: bytes, name: str) -> None:
+    if is_pointer(data):
+        message = phrase("cannot read '{path}': {reason}", path=name, reason=IS_POINTER)
+        raise LinkwrightError(Diagnostic("XML106", message, hint=FETCH))
 
 
 def _decode(data: bytes, encoding: str, name: str, reason: Phrase) -> Decoded:

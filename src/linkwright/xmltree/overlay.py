@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 
-from linkwright.xmltree.decoding import Decoded, decoded
+from linkwright.xmltree.decoding import Decoded, decoded, unsaved
 from linkwright.xmltree.nodes import Document
 from linkwright.xmltree.reader import parse, read_bytes
 
@@ -42,10 +42,10 @@ class Overlay:
         """The text of a file, and the encoding that it is in.
 
         Raises:
-            LinkwrightError: XML101 to XML104, there is none to be had.
+            LinkwrightError: XML101 to XML104 and XML106, there is none to be had.
         """
         text = self.text(path)
-        return decoded(read_bytes(path), path) if text is None else Decoded(text)
+        return decoded(read_bytes(path), path) if text is None else unsaved(text, path)
 
 
 def _key(path: str | os.PathLike[str]) -> str:

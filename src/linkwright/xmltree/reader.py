@@ -11,7 +11,7 @@ from xml.parsers.expat import ExpatError, ParserCreate
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, SourceText, foreign, missing_file_hint, phrase
 from linkwright.input_files import LARGEST_TEXT, NoWriterError, read_file
-from linkwright.xmltree.decoding import Decoded, decoded
+from linkwright.xmltree.decoding import decoded, unsaved
 from linkwright.xmltree.entities import GROWTH_LIMIT, EntityGuard
 from linkwright.xmltree.nodes import Comment, Document, Element, Node, ProcessingInstruction, Text
 
@@ -33,9 +33,10 @@ def parse(text: str | bytes, name: str, *, blanks: bool = True) -> Document:
         blanks: whether to keep texts of nothing but blanks, which only matter to who writes the document again.
 
     Raises:
-        LinkwrightError: XML104 (not text), XML105 (empty), XML2xx (not well-formed XML), with the place.
+        LinkwrightError: XML104 (not text), XML105 (empty), XML106 (a pointer of Git LFS), XML2xx (not well-formed
+            XML), with the place.
     """
-    text, encoding = decoded(text, name) if isinstance(text, bytes) else Decoded(text)
+    text, encoding = decoded(text, name) if isinstance(text, bytes) else unsaved(text, name)
     document = _Reader(SourceText(name, text), blanks=blanks).read()
     document.encoding = encoding
     return document
