@@ -86,6 +86,24 @@ describe("RobotDrawing", () => {
     expect(row.drawing.bounds().max.toArray()).toEqual([0, 3, 0]);
   });
 
+  it("is in place with a link that has visuals, or with any where none has or none is to be seen", () => {
+    const bare = robot([link("base"), link("tip")]);
+    expect(bare.drawing.isInPlace).toBe(false);
+    draw(bare);
+    expect(bare.drawing.isInPlace).toBe(true);
+
+    const hidden = robot(ROW);
+    draw(hidden, new PropertyRows([new PropertyNode(property({ id: "v", name: "Visual Enabled", value: false }))]));
+    expect(hidden.drawing.isInPlace).toBe(true);
+
+    const { drawing, frames } = robot([link("footprint"), ...ROW]);
+    frames.setTable({ type: "frame_table", revision: 2, names: ["footprint"], parents: [-1] });
+    frames.setTransforms({ revision: 2, stamp: 0, poses: new Float32Array([0, 0, 0, 0, 0, 0, 1]), ages: new Float32Array(1) });
+    draw({ drawing, frames });
+    expect(drawing.linksPosed).toBe(1);
+    expect(drawing.isInPlace).toBe(false);
+  });
+
   it("lets rays meet what is drawn together, and cameras see it once", () => {
     const row = robot(ROW);
     draw(row);

@@ -208,7 +208,7 @@ export class Stage {
       if (pacing.due(now, 1000 * display.rows.number(0, "Update Interval"))) drawing.update();
       settled &&= drawing.settled?.() ?? true;
     }
-    this.robotSettled ||= settled && this.visualsDrawn > 0;
+    this.robotSettled ||= settled && this.robots().some((robot) => robot.isInPlace);
     if (settled) this.fitFirst();
     this.marks.update();
     this.outline.set(this.selectedObjects());

@@ -33,6 +33,11 @@ export class RobotModelDrawing implements Drawing {
     return this.root.visible ? (this.shown?.visualsDrawn ?? 0) : 0;
   }
 
+  /** Whether something of it has a place: a link with visuals, or any where none is to be seen. */
+  get isInPlace(): boolean {
+    return this.shown?.isInPlace ?? false;
+  }
+
   /** Links that have a place. */
   get linksPosed(): number {
     return this.shown?.linksPosed ?? 0;

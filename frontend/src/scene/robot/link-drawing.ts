@@ -56,6 +56,11 @@ export class LinkDrawing {
     this.root.add(this.visualGroup, this.collisionGroup);
   }
 
+  /** Whether it has visuals that are to be drawn. */
+  get showsVisuals(): boolean {
+    return this.visuals.length > 0 && this.visualGroup.visible;
+  }
+
   /** Shapes drawn now. */
   get visualsDrawn(): number {
     if (!this.root.visible || !this.visualGroup.visible) return 0;

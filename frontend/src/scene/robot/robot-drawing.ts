@@ -52,6 +52,12 @@ export class RobotDrawing {
     return count;
   }
 
+  get isInPlace(): boolean {
+    const links = [...this.links.values()];
+    const seen = links.filter((link) => link.showsVisuals);
+    return (seen.length > 0 ? seen : links).some((link) => link.pose !== null);
+  }
+
   get linkCount(): number {
     return this.links.size;
   }
