@@ -193,6 +193,23 @@ def test_a_glb_that_is_shown_again_is_the_same_robot(live, open_page, tmp_path):
     assert len(told["materials"]) == 4
 
 
+def test_files_from_outside_are_named_when_they_go_into_an_export(start, open_page, tmp_path):
+    share, elsewhere = tmp_path / "robot", tmp_path / "elsewhere"
+    share.mkdir()
+    elsewhere.mkdir()
+    (share / "package.xml").write_text("<package><name>robot</name></package>")
+    (elsewhere / "part.urdf").write_text('<robot><link name="base"/></robot>')
+    (share / "robot.xacro").write_text(
+        f"""<robot name="robot" xmlns:xacro="http://www.ros.org/wiki/xacro">
+        <xacro:include filename="{elsewhere}/part.urdf"/></robot>"""
+    )
+    page = open_page(start("view", str(share / "robot.xacro")))
+    assert saved(page, "Export glb…", tmp_path).name == "robot.glb"
+    dialog = page.get_by_role("dialog", name="Files outside the packages are in it")
+    dialog.wait_for()
+    becomes(dialog.get_by_role("listitem").all_inner_texts, ["elsewhere/part.urdf"])
+
+
 def test_pictures_and_videos(live, open_page, tmp_path):
     from PIL import Image
 

@@ -31,7 +31,7 @@ export class ShareMenu {
     this.showTime();
     session.connection.on("export_ready", ({ url, name, outside }) => {
       saveFrom(name, new URL(url, document.baseURI).href);
-      if (outside.length > 0) tell(strings.sharing.exportOutside, outside.join(", "));
+      if (outside.length > 0) tell(strings.sharing.exportOutside, strings.sharing.exportOutsideHint, outside);
     });
     session.connection.on("export_failed", ({ message }) => tell(strings.sharing.exportFailed, message));
   }

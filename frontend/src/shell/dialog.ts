@@ -81,9 +81,11 @@ export class Dialog {
 
 let opened = 0;
 
-/** Says something that the user must know. */
-export function tell(title: string, text: string): void {
-  new Dialog(title, [h("p", {}, text)], [{ label: strings.shell.ok, main: true }]).open();
+/** Says something that the user must know; `lines` are what it is about, one below the other. */
+export function tell(title: string, text: string, lines: readonly string[] = []): void {
+  const list = h("ul", { class: "dialog-lines" }, ...lines.map((line) => h("li", {}, line)));
+  const content = lines.length > 0 ? [h("p", {}, text), list] : [h("p", {}, text)];
+  new Dialog(title, content, [{ label: strings.shell.ok, main: true }]).open();
 }
 
 /** Asks for a name. */

@@ -26,7 +26,8 @@ export const sharing = {
   exportHtml: "Export HTML…",
   exportGlb: "Export glb…",
   exportFailed: "The robot could not be exported",
-  exportOutside: "The file has in it what these files outside the packages say",
+  exportOutside: "Files outside the packages are in it",
+  exportOutsideHint: "The exported file has in it what these files say. Look whether everybody may see that before you give it away.",
   exported: {
     made: (program: string): string => `Made with ${program}`,
     joints: "Joints",

@@ -19,7 +19,8 @@ export const sharing: typeof english = {
   exportHtml: "导出 HTML…",
   exportGlb: "导出 glb…",
   exportFailed: "无法导出机器人",
-  exportOutside: "导出的文件包含下列软件包之外的文件的内容",
+  exportOutside: "导出的文件包含软件包之外的内容",
+  exportOutsideHint: "导出的文件里有下列文件的内容。交给别人之前，请确认这些内容可以公开。",
   exported: {
     made: (program) => `由 ${program} 生成`,
     joints: "关节",
