@@ -1,8 +1,13 @@
 from __future__ import annotations
 
+import threading
+from typing import Any
+
 from linkwright.graph.names.identity import NodeIdentity
 from linkwright.messages import String
-from tests.waiting import SECONDS
+from linkwright.wire.dds import engine, join
+from linkwright.wire.dds.discovery_info import ParticipantEntities
+from tests.waiting import SECONDS, wait_until
 
 
 def names(process):
@@ -54,6 +59,34 @@ def test_waiting_for_discovery_ends_when_everybody_is_known(processes, programs)
     us = processes("ours")
     assert us.transport.wait_for_discovery(SECONDS)
     assert {node.name for node in us.transport.remote_nodes()} == {"one", "two"}
+
+
+def test_a_process_announces_its_nodes_when_all_it_has_is_made(processes, monkeypatch):
+    may_join = threading.Event()
+
+    class Late(engine.Engine):
+        def __init__(self, *arguments: Any) -> None:
+            assert may_join.wait(SECONDS)
+            super().__init__(*arguments)
+
+    announced = []
+    other = processes("other")
+    entities_announced = other.transport._remote.entities_announced
+
+    def listen(entities: ParticipantEntities) -> None:
+        announced.append(entities)
+        entities_announced(entities)
+
+    monkeypatch.setattr(other.transport._remote, "entities_announced", listen)
+    monkeypatch.setattr(engine, "Engine", Late)
+    monkeypatch.setattr(engine, "_FIRST_TELL_SPAN", float("inf"))
+    us = processes("ours", join_now=False)
+    publishers = [us.node.create_publisher(String, f"topic_{number}", 10) for number in range(50)]
+    transport = join(us.graph)  # everything to be made is asked for now
+    may_join.set()
+    assert transport.wait_until_ready(SECONDS)
+    wait_until(lambda: announced)
+    assert {publisher.gid for publisher in publishers} <= set(announced[0].nodes[0].writers)
 
 
 def test_alone_it_ends_soon(processes):

@@ -38,6 +38,9 @@ _NAMED_WITHIN = 1.0
 _TELL_SPAN = 0.1
 """Seconds after which new nodes are announced though more of them are being made."""
 
+_FIRST_TELL_SPAN = 1.0
+"""The same for the first announcement, from which others conclude that they know all of a process."""
+
 
 class Engine:
     """One participant with its readers and writers.
@@ -72,7 +75,8 @@ class Engine:
         self._clients: dict[Any, OutsideServer] = {}
         self._leaving: dict[OutgoingTopic, float] = {}
         self._is_told = False
-        self._told_at = 0.0
+        self._told_at = time.monotonic()
+        self._tell_span = _FIRST_TELL_SPAN
         self._matches_changed = False
         self._mismatched: dict[OutgoingTopic | IncomingTopic, float] = {}
 
@@ -248,9 +252,10 @@ class Engine:
 
     def _tell(self) -> None:
         """Announce our nodes when something changed; many changes in a row are announced together."""
-        if not self._is_told and (not self._work or time.monotonic() - self._told_at > _TELL_SPAN):
+        if not self._is_told and (not self._work or time.monotonic() - self._told_at > self._tell_span):
             self._discovery.publish(self._described_nodes())
             self._is_told = True
+            self._tell_span = _TELL_SPAN
             self._told_at = time.monotonic()
 
     def _described_nodes(self) -> list[NodeEntities]:

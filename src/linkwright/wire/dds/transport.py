@@ -29,6 +29,9 @@ if TYPE_CHECKING:
 SETTLED_AFTER = 0.3
 """Seconds without news after which discovery counts as complete."""
 
+_SETTLED_AMONG_KNOWN = 0.05
+"""The same where all processes are known: one may have further participants, or be making endpoints just now."""
+
 _JOINED_WITHIN = 10.0
 """Seconds after which the thread that joins is given up: an import that Ctrl-C ended may keep its lock for ever."""
 
@@ -108,7 +111,9 @@ class DdsTransport:
             return False
         while time.monotonic() < deadline and not self._closed:
             quiet = time.monotonic() - max(self._remote.changed_at, self._joined_at)
-            if self._remote.is_complete() and (quiet >= SETTLED_AFTER or self._knows_everybody()):
+            if self._remote.is_complete() and (
+                quiet >= SETTLED_AFTER or (quiet >= _SETTLED_AMONG_KNOWN and self._knows_everybody())
+            ):
                 return True
             time.sleep(_LOOK_AGAIN)
         return False
