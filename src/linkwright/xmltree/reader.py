@@ -22,7 +22,9 @@ _BEYOND_ASCII = re.compile(rb"[\x80-\xff]+")
 _CDATA_START = len("<![CDATA[")
 
 
-def parse(text: str | bytes, name: str, *, blanks: bool = True) -> Document:
+def parse(
+    text: str | bytes, name: str, *, blanks: bool = True, read_as: str | None = None, any_prefix: bool = False
+) -> Document:
     """Read a document.
 
     Names stay as written. Entities that the document itself declares are expanded; external ones are refused.
@@ -31,13 +33,16 @@ def parse(text: str | bytes, name: str, *, blanks: bool = True) -> Document:
         text: the document; bytes are decoded as a file is.
         name: what a reader knows the text by: a path, or a name in angle brackets such as ``<stdin>``.
         blanks: whether to keep texts of nothing but blanks, which only matter to who writes the document again.
+        read_as: what to read in place of the text, with everything in the same place; for languages whose own parsers
+            take what XML forbids.
+        any_prefix: whether names may have prefixes that are declared nowhere.
 
     Raises:
         LinkwrightError: XML104 (not text), XML105 (empty), XML106 (a pointer of Git LFS), XML2xx (not well-formed
             XML), with the place.
     """
     text, encoding = decoded(text, name) if isinstance(text, bytes) else unsaved(text, name)
-    document = _Reader(SourceText(name, text), blanks=blanks).read()
+    document = _Reader(SourceText(name, text), blanks=blanks, read_as=read_as, any_prefix=any_prefix).read()
     document.encoding = encoding
     return document
 
@@ -97,9 +102,10 @@ class _Reader:
     therefore closures over what they need.
     """
 
-    def __init__(self, source: SourceText, *, blanks: bool) -> None:
+    def __init__(self, source: SourceText, *, blanks: bool, read_as: str | None, any_prefix: bool) -> None:
         self._source = source
-        self._data = source.text.encode("utf-8", "surrogatepass")
+        self._any_prefix = any_prefix
+        self._data = (source.text if read_as is None else read_as).encode("utf-8", "surrogatepass")
         self._is_ascii = source.text.isascii()
         self._keep_blanks = blanks
         self._parser = parser = ParserCreate("utf-8")
@@ -198,6 +204,8 @@ class _Reader:
 
     def _check_prefixes(self) -> None:
         """Refuse names whose prefix is declared nowhere around them."""
+        if self._any_prefix:
+            return
         used = {name.partition(":")[0] for name in self._parser.intern if name and ":" in name}
         for root in self._top.elements():
             declared = {"xml", "xmlns", *_declared_prefixes(root)}
