@@ -208,6 +208,11 @@ def test_descriptions():
     )
     assert describe_element(PLACE).splitlines()[-1] == "- contains one of `<hook>`, `<bed>`"
     hook, bed = PLACE.children
+    assert describe_element(ElementRule("wall", "a wall", children=(hook, bed))).splitlines()[1:] == [
+        "",
+        "- `<hook>`: a hook (number, required)",
+        "- contains `<bed>`",
+    ]
     assert describe_element(hook).splitlines()[-1] == "- the text inside: how high (number, required)"
     assert describe_element(bed).startswith("`<bed>`, since version 1.1: a bed")
     assert describe_attribute(SHED.attributes[0]) == "`name`: its name (text, required)"

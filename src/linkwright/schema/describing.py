@@ -14,7 +14,10 @@ def describe_element(rule: ElementRule) -> Phrase:
     if rule.text is not None:
         meaning, facts = term(rule.text.meaning), joined(_facts(rule.text))
         lines.append(phrase("- the text inside: {meaning} ({facts})", meaning=meaning, facts=facts))
-    inner = [_with_count(child.tag, many=child.many, required=child.required) for child in rule.children]
+    listed = [] if rule.choice else [child for child in rule.children if child.is_value]
+    lines += [phrase("- {line}", line=_describe_value(child)) for child in listed]
+    parts = (child for child in rule.children if child not in listed)
+    inner = [_with_count(child.tag, many=child.many, required=child.required) for child in parts]
     inner += [_with_count(rule.tag, many=True, required=False)] if rule.nests else []
     if inner:
         several = joined(inner)
@@ -34,6 +37,16 @@ def describe_attribute(attribute: AttributeRule) -> Phrase:
         meaning=term(attribute.meaning),
         facts=joined(_facts(attribute)),
     )
+
+
+def _describe_value(rule: ElementRule) -> Phrase:
+    """An element that says one value, in one line of Markdown as an attribute."""
+    assert rule.text is not None
+    facts = _facts(rule.text)
+    if rule.many:
+        facts.append(phrase("any number"))
+    name = f"`<{rule.tag}>`"
+    return phrase("{name}: {meaning} ({facts})", name=name, meaning=term(rule.meaning), facts=joined(facts))
 
 
 def _facts(attribute: AttributeRule) -> list[Phrase]:

@@ -46,7 +46,7 @@ def reader_of(rule: ElementRule, version: Version) -> ElementReader:
     """The reader for elements of a rule in files of a version."""
     if rule.choice:
         return _choice_reader(rule, version)
-    if rule.children or rule.nests:
+    if rule.children or rule.nests or rule.located:
         return _nested_reader(rule, version)
     return _flat_reader(rule, version)
 
@@ -95,7 +95,7 @@ def _choice_reader(rule: ElementRule, version: Version) -> ElementReader:
 
 
 def _nested_reader(rule: ElementRule, version: Version) -> ElementReader:
-    """For elements that have children."""
+    """For elements that have children, or whose object knows its element."""
     scope = _scope(rule, version)
     for index, child in enumerate(rule.children):
         if child.since <= version:

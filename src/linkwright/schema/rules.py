@@ -144,6 +144,11 @@ class ElementRule:
         """Whether its values are fields of the object around it."""
         return self.make is None and not self.choice
 
+    @property
+    def is_value(self) -> bool:
+        """Whether it is there for one value alone, the text inside, as ``<mass>2.5</mass>`` of SDF."""
+        return self.text is not None and not (self.attributes or self.children)
+
     def value_in(self, instance: Any) -> Any:
         """The object, or objects, that the object around it has for this element."""
         return getattr(instance, self.target) if self.get is None else self.get(instance)
