@@ -1,0 +1,97 @@
+"""The one way from a file to a world or model in SDF, with what it includes and its findings."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from linkwright.diagnostics import Diagnostic
+from linkwright.packages import PackageFinder
+from linkwright.xmltree import Document, Overlay
+from linkwright.xmltree.reader import read_bytes
+
+if TYPE_CHECKING:
+    from linkwright.sdf.worlds import Sdf
+
+_ENDINGS = (".world", ".sdf", ".world.xacro", ".sdf.xacro")
+
+
+@dataclass(frozen=True, eq=False)
+class WorldDescription:
+    """A world or model in SDF, read.
+
+    Attributes:
+        path: the file.
+        sdf: what it says, with the included models in the places of their includes; None where it is no SDF.
+        diagnostics: everything that is wrong with it and with what it includes.
+        files: the files that were read, the main file first.
+    """
+
+    path: Path
+    sdf: Sdf | None
+    diagnostics: tuple[Diagnostic, ...]
+    files: tuple[Path, ...]
+
+
+def is_world(name: str) -> bool:
+    """Whether a file is to be read as SDF: its name says so."""
+    return name.endswith(_ENDINGS)
+
+
+def examine_world(
+    path: str | Path,
+    *,
+    arguments: Mapping[str, str] | None = None,
+    packages: Mapping[str, str | Path] | PackageFinder | None = None,
+    environment: Mapping[str, str] | None = None,
+    overlay: Overlay | None = None,
+) -> WorldDescription:
+    """A world or model in SDF, or in SDF that xacro makes, with all findings about it.
+
+    Args:
+        path: the file; one whose name ends in ``.xacro`` is expanded first.
+        arguments: values for the file's ``<xacro:arg>``.
+        packages: package name -> share folder, or a finder.
+        environment: the variables with search paths (`linkwright.sdf.resources`); those of the process by default.
+        overlay: texts that stand for those of files.
+
+    Raises:
+        LinkwrightError: it is not XML, or it cannot be expanded.
+    """
+    from linkwright.sdf.includes import resolve_includes
+    from linkwright.sdf.reader import read
+    from linkwright.sdf.references import check_references
+    from linkwright.sdf.resources import ResourceFinder
+
+    path = Path(path)
+    finder = (
+        packages
+        if isinstance(packages, PackageFinder)
+        else PackageFinder(start=[path.absolute().parent, Path.cwd()], extra=packages)
+    )
+    document, remarks, files = _document(path, arguments, finder, overlay)
+    reading = read(document)
+    found = [*remarks, *reading.diagnostics]
+    if reading.sdf is None:
+        return WorldDescription(path, None, tuple(found), files)
+    included = resolve_includes(reading.sdf, path, ResourceFinder(finder, environment))
+    found += [*included.diagnostics, *check_references(included.sdf)]
+    return WorldDescription(path, included.sdf, tuple(found), (*files, *included.files))
+
+
+def _document(
+    path: Path, arguments: Mapping[str, str] | None, finder: PackageFinder, overlay: Overlay | None
+) -> tuple[Document, tuple[Diagnostic, ...], tuple[Path, ...]]:
+    """The document, what was remarked on the way, and the files it was made of."""
+    text = None if overlay is None else overlay.text(str(path))
+    if path.suffix == ".xacro":
+        from linkwright.xacro import expand
+
+        expansion = expand(str(path), arguments, packages=finder, text=text, overlay=overlay)
+        return expansion.document, expansion.diagnostics, expansion.dependencies
+    from linkwright.sdf.text import parse_as_gazebo
+
+    document, warnings = parse_as_gazebo(read_bytes(path) if text is None else text, str(path))
+    return document, warnings, (path,)

@@ -1,0 +1,147 @@
+"""``<actor>``: a figure that walks along a path.
+
+Source of the elements and defaults: the SDFormat specification 1.12, ``actor.sdf``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from linkwright.schema import AttributeRule, ElementRule
+from linkwright.sdf.joints import JOINT, Joint
+from linkwright.sdf.links import LINK, Link
+from linkwright.sdf.plugins import PLUGIN, Plugin
+from linkwright.sdf.poses import AT_ORIGIN, POSE, RawPose
+from linkwright.sdf.values import INTEGER, NUMBER, TEXT, TIME, TRUTH, made, name_of, value
+from linkwright.xmltree import Element
+
+
+@dataclass(frozen=True, slots=True)
+class Skin:
+    """The mesh of a figure, by its URI, and a factor on its size."""
+
+    filename: str = "__default__"
+    scale: float = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Animation:
+    """A movement of the limbs, from a file; with `interpolate_x` it goes as fast as the figure walks."""
+
+    name: str
+    filename: str = "__default__"
+    scale: float = 1.0
+    interpolate_x: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Waypoint:
+    """Where the figure is at a time in seconds."""
+
+    time: float = 0.0
+    pose: RawPose = AT_ORIGIN
+
+
+@dataclass(frozen=True, slots=True)
+class Trajectory:
+    """A path through points, walked in the animation `type`; tension 0 makes it round, 1 straight."""
+
+    id: int = 0
+    type: str = ""
+    tension: float = 0.0
+    waypoints: tuple[Waypoint, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Script:
+    """When the figure walks: from `delay_start` seconds on, by itself or when told, once or again and again."""
+
+    loop: bool = True
+    delay_start: float = 0.0
+    auto_start: bool = True
+    trajectories: tuple[Trajectory, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Actor:
+    """A figure that walks along a path; nothing stops it."""
+
+    name: str
+    pose: RawPose = AT_ORIGIN
+    skin: Skin | None = None
+    animations: tuple[Animation, ...] = ()
+    script: Script = Script()
+    links: tuple[Link, ...] = ()
+    joints: tuple[Joint, ...] = ()
+    plugins: tuple[Plugin, ...] = ()
+    element: Element | None = field(default=None, compare=False, repr=False)
+
+
+_FILE = value("filename", TEXT, "the file, as a URI or path", default="__default__")
+_SCALE = value("scale", NUMBER, "a factor on its size", default="1")
+
+ACTOR = ElementRule(
+    "actor",
+    "a figure that walks along a path",
+    (name_of(),),
+    (
+        POSE,
+        made(Skin, "skin", "the mesh of the figure", _FILE, _SCALE),
+        ElementRule(
+            "animation",
+            "a movement of its limbs",
+            (name_of("the name that paths refer to it by"),),
+            (
+                _FILE,
+                _SCALE,
+                value("interpolate_x", TRUTH, "whether it goes as fast as the figure walks", default="false"),
+            ),
+            many=True,
+            make=Animation,
+            keeps=True,
+            field="animations",
+        ),
+        made(
+            Script,
+            "script",
+            "when and where it walks",
+            value("loop", TRUTH, "whether it begins again at the end", default="true"),
+            value("delay_start", NUMBER, "when it begins", "s", default="0"),
+            value("auto_start", TRUTH, "whether it begins by itself", default="true"),
+            ElementRule(
+                "trajectory",
+                "a path",
+                (
+                    AttributeRule("id", INTEGER, "its number", default="0"),
+                    AttributeRule("type", TEXT, "the animation to walk it in", default=""),
+                    AttributeRule("tension", NUMBER, "from 0, round, to 1, straight", default="0"),
+                ),
+                (
+                    made(
+                        Waypoint,
+                        "waypoint",
+                        "a point of the path",
+                        value("time", TIME, "when it is there", "s", default="0"),
+                        POSE,
+                        many=True,
+                        field="waypoints",
+                    ),
+                ),
+                many=True,
+                make=Trajectory,
+                keeps=True,
+                field="trajectories",
+            ),
+            default=Script(),
+        ),
+        LINK,
+        JOINT,
+        PLUGIN,
+    ),
+    many=True,
+    make=Actor,
+    keeps=True,
+    located=True,
+    owns=True,
+    field="actors",
+)

@@ -1,0 +1,257 @@
+"""``<joint>`` and its axes.
+
+Source of the elements and defaults: the SDFormat specification 1.12, ``joint.sdf``; for the words of older versions
+libsdformat's conversions.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from math import inf
+from typing import Any
+
+from linkwright.geometry.vectors import Vector3
+from linkwright.schema import AttributeRule, ElementRule
+from linkwright.sdf.poses import AT_ORIGIN, POSE, RawPose
+from linkwright.sdf.sensors import SENSOR, Sensor
+from linkwright.sdf.values import NUMBER, TEXT, TRUTH, VECTOR3, choice, made, name_of, value
+from linkwright.xmltree import Element
+
+JOINT_TYPES = (
+    "revolute",
+    "hinge",
+    "gearbox",
+    "revolute2",
+    "prismatic",
+    "ball",
+    "screw",
+    "universal",
+    "fixed",
+    "continuous",
+    "piston",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class AxisLimit:
+    """Bounds of an axis: positions in rad or m, effort in N m or N, velocity in rad/s or m/s; infinite for none."""
+
+    lower: float = -inf
+    upper: float = inf
+    effort: float = inf
+    velocity: float = inf
+    stiffness: float = 1e8
+    dissipation: float = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class AxisDynamics:
+    """Damping in N m s/rad or N s/m, friction in N m or N, and a spring about a position in rad or m."""
+
+    damping: float = 0.0
+    friction: float = 0.0
+    spring_reference: float = 0.0
+    spring_stiffness: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class AxisMimic:
+    """Position = multiplier (position of `joint` - reference) + offset, all in rad or m (SDF 1.11)."""
+
+    joint: str
+    axis: str = "axis"
+    multiplier: float = 1.0
+    offset: float = 0.0
+    reference: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Axis:
+    """One axis of a joint.
+
+    Attributes:
+        xyz: its direction in the frame `expressed_in`.
+        expressed_in: a frame; empty for that of the joint.
+        use_parent_model_frame: whether `xyz` is in the frame of the model instead (up to SDF 1.6).
+        initial_position: in rad or m, before SDF 1.9.
+    """
+
+    xyz: Vector3 = (0.0, 0.0, 1.0)
+    expressed_in: str = ""
+    use_parent_model_frame: bool = False
+    limit: AxisLimit = AxisLimit()
+    dynamics: AxisDynamics = AxisDynamics()
+    mimic: AxisMimic | None = None
+    initial_position: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Joint:
+    """A joint.
+
+    Attributes:
+        type: one of `JOINT_TYPES`.
+        parent: a link or frame; ``world`` for the world.
+        child: a link or frame.
+        pose: where the joint stands; in the frame of its child where nothing else is said.
+        axis: its first axis; None for a joint that has none.
+        axis2: its second, of joints of two.
+        thread_pitch: of a screw, in metres for each revolution (``screw_thread_pitch``); None where not given.
+        gearbox_ratio: of a gearbox, how often the parent turns while the child turns once.
+        gearbox_reference_body: of a gearbox, the link that both turn against.
+        sensors: force-torque sensors.
+    """
+
+    name: str
+    type: str
+    parent: str
+    child: str
+    pose: RawPose = AT_ORIGIN
+    axis: Axis | None = None
+    axis2: Axis | None = None
+    thread_pitch: float | None = None
+    gearbox_ratio: float = 1.0
+    gearbox_reference_body: str = ""
+    provide_feedback: bool = False
+    sensors: tuple[Sensor, ...] = ()
+    element: Element | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class _Physics:
+    provide_feedback: bool
+    ode: _Physics | None = None
+
+
+def _axis(xyz: tuple[Vector3, str] | None, **parts: Any) -> Axis:
+    direction, expressed_in = xyz or ((0.0, 0.0, 1.0), "")
+    return Axis(direction, expressed_in, **parts)
+
+
+def _direction(said: Vector3, expressed_in: str) -> tuple[Vector3, str]:
+    return said, expressed_in
+
+
+def _limit(lower: float, upper: float, effort: float, velocity: float, **rest: float) -> AxisLimit:
+    """Bounds with infinities where the file has what stands for them: 1e16 and more, or a negative effort or speed."""
+    return AxisLimit(
+        -inf if lower <= -1e16 else lower,
+        inf if upper >= 1e16 else upper,
+        inf if effort < 0 else effort,
+        inf if velocity < 0 else velocity,
+        **rest,
+    )
+
+
+def _joint(
+    screw_thread_pitch: float | None, thread_pitch: float | None, physics: _Physics | None, **parts: Any
+) -> Joint:
+    if screw_thread_pitch is None and thread_pitch is not None:
+        # The older word is in revolutions a metre, with the other sign.
+        screw_thread_pitch = -6.283185307179586 / thread_pitch if thread_pitch else None
+    measured = physics is not None and (physics.provide_feedback or bool(physics.ode and physics.ode.provide_feedback))
+    return Joint(thread_pitch=screw_thread_pitch, provide_feedback=measured, **parts)
+
+
+def _axis_rule(tag: str, meaning: str) -> ElementRule:
+    return made(
+        _axis,
+        tag,
+        meaning,
+        ElementRule(
+            "xyz",
+            "its direction",
+            (
+                AttributeRule(
+                    "expressed_in", TEXT, "the frame of the direction; that of the joint when absent", default=""
+                ),
+            ),
+            text=AttributeRule("text", VECTOR3, "the direction, a vector of length 1", default="0 0 1", field="said"),
+            make=_direction,
+        ),
+        value(
+            "use_parent_model_frame",
+            TRUTH,
+            "whether the direction is in the frame of the model, up to SDF 1.6",
+            default="false",
+        ),
+        value("initial_position", NUMBER, "where the joint begins", "rad or m", default="0"),
+        made(
+            _limit,
+            "limit",
+            "the bounds of motion",
+            value("lower", NUMBER, "lowest position", "rad or m", default="-inf"),
+            value("upper", NUMBER, "highest position", "rad or m", default="inf"),
+            value("effort", NUMBER, "greatest torque or force; none when negative", "N m or N", default="inf"),
+            value("velocity", NUMBER, "greatest speed; none when negative", "rad/s or m/s", default="inf"),
+            value("stiffness", NUMBER, "stiffness of the stop", default="1e8"),
+            value("dissipation", NUMBER, "damping of the stop", default="1"),
+            default=AxisLimit(),
+        ),
+        made(
+            AxisDynamics,
+            "dynamics",
+            "damping, friction and a spring",
+            value("damping", NUMBER, "viscous damping", "N m s/rad or N s/m", default="0"),
+            value("friction", NUMBER, "static friction", "N m or N", default="0"),
+            value("spring_reference", NUMBER, "where the spring is at rest", "rad or m", default="0"),
+            value("spring_stiffness", NUMBER, "stiffness of the spring", "N m/rad or N/m", default="0"),
+            default=AxisDynamics(),
+        ),
+        ElementRule(
+            "mimic",
+            "follow another joint",
+            (
+                AttributeRule("joint", TEXT, "the joint to follow", required=True),
+                AttributeRule("axis", TEXT, "which of its axes", default="axis"),
+            ),
+            (
+                value("multiplier", NUMBER, "factor on its position", default="1"),
+                value("offset", NUMBER, "added to it", "rad or m", default="0"),
+                value("reference", NUMBER, "taken from it first", "rad or m", default="0"),
+            ),
+            make=AxisMimic,
+        ),
+    )
+
+
+JOINT = ElementRule(
+    "joint",
+    "a connection of two links",
+    (
+        name_of(),
+        AttributeRule("type", choice(*JOINT_TYPES), "how it moves", required=True, default="fixed"),
+    ),
+    (
+        POSE,
+        value("parent", TEXT, "the link or frame it hangs from, or world", default="", required=True),
+        value("child", TEXT, "the link or frame it moves", default="", required=True),
+        _axis_rule("axis", "its axis"),
+        _axis_rule("axis2", "its second axis"),
+        value("screw_thread_pitch", NUMBER, "metres for each revolution of a screw", "m"),
+        value("thread_pitch", NUMBER, "the older word for the pitch of a screw, with the other sign", "rad/m"),
+        value(
+            "gearbox_ratio", NUMBER, "how often the parent of a gearbox turns for one turn of the child", default="1"
+        ),
+        value("gearbox_reference_body", TEXT, "the link that both sides of a gearbox turn against", default=""),
+        made(
+            _Physics,
+            "physics",
+            "what physics engines want to know",
+            value("provide_feedback", TRUTH, "whether the forces in it are measured", default="false"),
+            made(
+                _Physics,
+                "ode",
+                "the same for ODE",
+                value("provide_feedback", TRUTH, "whether the forces in it are measured", default="false"),
+            ),
+        ),
+        SENSOR,
+    ),
+    many=True,
+    make=_joint,
+    keeps=True,
+    located=True,
+    owns=True,
+    field="joints",
+)

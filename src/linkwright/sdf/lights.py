@@ -1,0 +1,107 @@
+"""``<light>``: directional, point and spot lights.
+
+Source of the elements and defaults: the SDFormat specification 1.12, ``light.sdf``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from linkwright.geometry.vectors import Vector3
+from linkwright.schema import AttributeRule, ElementRule
+from linkwright.sdf.poses import AT_ORIGIN, POSE, RawPose
+from linkwright.sdf.values import COLOR, NUMBER, TRUTH, VECTOR3, Color, choice, made, name_of, value
+from linkwright.xmltree import Element
+
+
+@dataclass(frozen=True, slots=True)
+class Attenuation:
+    """How light fades: 1 / (constant + linear d + quadratic d^2) at d metres, and nothing beyond the range."""
+
+    range: float = 10.0
+    constant: float = 1.0
+    linear: float = 1.0
+    quadratic: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Spot:
+    """The cone of a spot light: full within the inner angle, nothing outside the outer one, in radians."""
+
+    inner_angle: float = 0.0
+    outer_angle: float = 0.0
+    falloff: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Light:
+    """A light.
+
+    Attributes:
+        type: ``point``, ``directional`` or ``spot``.
+        pose: where it stands.
+        diffuse: its colour.
+        specular: the colour of what shines.
+        direction: where it shines, in its own frame; of spot and directional lights.
+        attenuation: how it fades with distance.
+        spot: its cone; None where it has none.
+        cast_shadows: whether there are shadows of what it shines on.
+        intensity: a factor on its colour.
+        light_on: whether it is lit.
+    """
+
+    name: str
+    type: str = "point"
+    pose: RawPose = AT_ORIGIN
+    diffuse: Color = (1.0, 1.0, 1.0, 1.0)
+    specular: Color = (0.1, 0.1, 0.1, 1.0)
+    direction: Vector3 = (0.0, 0.0, -1.0)
+    attenuation: Attenuation = Attenuation()
+    spot: Spot | None = None
+    cast_shadows: bool = False
+    intensity: float = 1.0
+    light_on: bool = True
+    element: Element | None = field(default=None, compare=False, repr=False)
+
+
+LIGHT = ElementRule(
+    "light",
+    "a light",
+    (
+        name_of(),
+        AttributeRule("type", choice("point", "directional", "spot"), "what kind of light", default="point"),
+    ),
+    (
+        POSE,
+        value("diffuse", COLOR, "its colour", default="1 1 1 1"),
+        value("specular", COLOR, "the colour of what shines", default="0.1 0.1 0.1 1"),
+        value("direction", VECTOR3, "where it shines, in its own frame", default="0 0 -1"),
+        made(
+            Attenuation,
+            "attenuation",
+            "how it fades with distance",
+            value("range", NUMBER, "how far it reaches", "m", default="10"),
+            value("constant", NUMBER, "the part that does not depend on the distance", default="1"),
+            value("linear", NUMBER, "the part that grows with the distance", default="1"),
+            value("quadratic", NUMBER, "the part that grows with its square", default="0"),
+            default=Attenuation(),
+        ),
+        made(
+            Spot,
+            "spot",
+            "the cone of a spot light",
+            value("inner_angle", NUMBER, "the angle up to which it is full", "rad", default="0"),
+            value("outer_angle", NUMBER, "the angle from which there is nothing", "rad", default="0"),
+            value("falloff", NUMBER, "how it fades between the two", default="0"),
+        ),
+        value("cast_shadows", TRUTH, "whether what it shines on casts shadows", default="false"),
+        value("intensity", NUMBER, "a factor on its colour", default="1"),
+        value("light_on", TRUTH, "whether it is lit", default="true"),
+    ),
+    many=True,
+    make=Light,
+    keeps=True,
+    located=True,
+    owns=True,
+    field="lights",
+)

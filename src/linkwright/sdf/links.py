@@ -1,0 +1,234 @@
+"""``<link>``: mass, shapes and what is mounted on it.
+
+Source of the elements and defaults: the SDFormat specification 1.12, ``link.sdf`` and the files of its parts.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from linkwright.schema import AttributeRule, ElementRule
+from linkwright.sdf.lights import LIGHT, Light
+from linkwright.sdf.materials import MATERIAL, Material
+from linkwright.sdf.plugins import PLUGIN, Plugin
+from linkwright.sdf.poses import AT_ORIGIN, POSE, RawPose
+from linkwright.sdf.sensors import SENSOR, Sensor
+from linkwright.sdf.shapes import GEOMETRY, NO_SHAPE, Shape
+from linkwright.sdf.surfaces import SURFACE, USUAL_SURFACE, Surface
+from linkwright.sdf.values import INTEGER, NUMBER, TRUTH, made, name_of, value
+from linkwright.xmltree import Element
+
+
+@dataclass(frozen=True, slots=True)
+class Inertia:
+    """The inertia tensor about the centre of mass in the axes of the inertial frame, in kg m2."""
+
+    ixx: float = 1.0
+    iyy: float = 1.0
+    izz: float = 1.0
+    ixy: float = 0.0
+    ixz: float = 0.0
+    iyz: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Inertial:
+    """Mass properties.
+
+    Attributes:
+        mass: in kg.
+        pose: the centre of mass and the axes of the tensor, in the frame of the link.
+        inertia: the tensor.
+        auto: whether all this is to be worked out from the collisions, by their densities (SDF 1.11).
+        density: in kg/m3, for `auto`; None for that of each collision.
+    """
+
+    mass: float = 1.0
+    pose: RawPose = AT_ORIGIN
+    inertia: Inertia = Inertia()
+    auto: bool = False
+    density: float | None = None
+    element: Element | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Visual:
+    """A shape to draw.
+
+    Attributes:
+        transparency: from 0, solid, to 1, not there.
+        laser_retro: how much of a laser's light comes back; None where nothing is said.
+        visibility_flags: the bits that cameras see of it.
+    """
+
+    name: str
+    geometry: Shape = NO_SHAPE
+    pose: RawPose = AT_ORIGIN
+    material: Material | None = None
+    transparency: float = 0.0
+    cast_shadows: bool = True
+    laser_retro: float | None = None
+    visibility_flags: int = 0xFFFFFFFF
+    plugins: tuple[Plugin, ...] = ()
+    element: Element | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Collision:
+    """A shape for contacts.
+
+    Attributes:
+        density: in kg/m3, for links whose mass is worked out; None for that of water.
+        laser_retro: how much of a laser's light comes back; None where nothing is said.
+        max_contacts: how many points of contact with another shape count at most.
+    """
+
+    name: str
+    geometry: Shape = NO_SHAPE
+    pose: RawPose = AT_ORIGIN
+    surface: Surface = USUAL_SURFACE
+    density: float | None = None
+    laser_retro: float | None = None
+    max_contacts: int = 10
+    element: Element | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Decay:
+    """The share of linear and angular velocity that is lost in a step."""
+
+    linear: float = 0.0
+    angular: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Link:
+    """A rigid body.
+
+    Attributes:
+        pose: where it stands, in the frame of its model.
+        inertial: mass properties; None where nothing is said, which stands for 1 kg and 1 kg m2.
+        gravity: whether it falls.
+        enable_wind: whether wind moves it.
+        self_collide: whether it touches the other links of its model; None for what the model says.
+        kinematic: whether it moves and nothing moves it.
+    """
+
+    name: str
+    pose: RawPose = AT_ORIGIN
+    inertial: Inertial | None = None
+    visuals: tuple[Visual, ...] = ()
+    collisions: tuple[Collision, ...] = ()
+    sensors: tuple[Sensor, ...] = ()
+    lights: tuple[Light, ...] = ()
+    gravity: bool = True
+    enable_wind: bool = False
+    self_collide: bool | None = None
+    kinematic: bool = False
+    velocity_decay: Decay = Decay()
+    element: Element | None = field(default=None, compare=False, repr=False)
+
+
+_TENSOR = (
+    value("ixx", NUMBER, "the xx component", "kg m2", default="1"),
+    value("iyy", NUMBER, "the yy component", "kg m2", default="1"),
+    value("izz", NUMBER, "the zz component", "kg m2", default="1"),
+    value("ixy", NUMBER, "the xy component", "kg m2", default="0"),
+    value("ixz", NUMBER, "the xz component", "kg m2", default="0"),
+    value("iyz", NUMBER, "the yz component", "kg m2", default="0"),
+)
+
+INERTIAL = ElementRule(
+    "inertial",
+    "mass properties",
+    (AttributeRule("auto", TRUTH, "whether they are worked out from the collisions", default="false"),),
+    (
+        value("mass", NUMBER, "the mass", "kg", default="1"),
+        POSE,
+        made(
+            Inertia,
+            "inertia",
+            "the inertia tensor about the centre of mass, in the axes of the inertial frame",
+            *_TENSOR,
+            default=Inertia(),
+        ),
+        value("density", NUMBER, "the density, where they are worked out", "kg/m3"),
+    ),
+    make=Inertial,
+    keeps=True,
+    located=True,
+)
+
+VISUAL = ElementRule(
+    "visual",
+    "a shape to draw",
+    (name_of(),),
+    (
+        POSE,
+        GEOMETRY,
+        MATERIAL,
+        value("transparency", NUMBER, "from 0, solid, to 1, not there", default="0"),
+        value("cast_shadows", TRUTH, "whether it casts a shadow", default="true"),
+        value("laser_retro", NUMBER, "how much of a laser's light comes back"),
+        value("visibility_flags", INTEGER, "the bits that cameras see of it", default="4294967295"),
+        PLUGIN,
+    ),
+    many=True,
+    make=Visual,
+    keeps=True,
+    located=True,
+    owns=True,
+    field="visuals",
+)
+
+COLLISION = ElementRule(
+    "collision",
+    "a shape for contacts",
+    (name_of(),),
+    (
+        POSE,
+        GEOMETRY,
+        SURFACE,
+        value("density", NUMBER, "the density, where the mass of the link is worked out", "kg/m3"),
+        value("laser_retro", NUMBER, "how much of a laser's light comes back"),
+        value("max_contacts", INTEGER, "how many points of contact with another shape count at most", default="10"),
+    ),
+    many=True,
+    make=Collision,
+    keeps=True,
+    located=True,
+    owns=True,
+    field="collisions",
+)
+
+LINK = ElementRule(
+    "link",
+    "a rigid body",
+    (name_of(),),
+    (
+        POSE,
+        INERTIAL,
+        VISUAL,
+        COLLISION,
+        SENSOR,
+        LIGHT,
+        value("gravity", TRUTH, "whether it falls", default="true"),
+        value("enable_wind", TRUTH, "whether wind moves it", default="false"),
+        value("self_collide", TRUTH, "whether it touches the other links of its model"),
+        value("kinematic", TRUTH, "whether it moves and nothing moves it", default="false"),
+        made(
+            Decay,
+            "velocity_decay",
+            "the velocity that is lost in a step",
+            value("linear", NUMBER, "the share of the linear velocity", default="0"),
+            value("angular", NUMBER, "the share of the angular velocity", default="0"),
+            default=Decay(),
+        ),
+    ),
+    many=True,
+    make=Link,
+    keeps=True,
+    located=True,
+    owns=True,
+    field="links",
+)

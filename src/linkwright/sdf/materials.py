@@ -1,0 +1,155 @@
+"""``<material>``: how a shape looks.
+
+Source of the elements and defaults: the SDFormat specification 1.12, ``material.sdf``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from linkwright.schema import AttributeRule, ElementRule
+from linkwright.sdf.values import COLOR, NUMBER, TEXT, TRUTH, Color, made, value, values
+
+
+@dataclass(frozen=True, slots=True)
+class MaterialScript:
+    """A material that stands in a script of the renderer, such as ``Gazebo/Grey``, and where scripts are looked for."""
+
+    uris: tuple[str, ...] = ()
+    name: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Workflow:
+    """A physically based surface: images by their URIs, roughness and metalness from 0 to 1.
+
+    Attributes:
+        metalness: None where the other workflow (specular and glossiness) is given.
+    """
+
+    albedo_map: str = ""
+    normal_map: str = ""
+    roughness_map: str = ""
+    metalness_map: str = ""
+    emissive_map: str = ""
+    ambient_occlusion_map: str = ""
+    environment_map: str = ""
+    light_map: str = ""
+    specular_map: str = ""
+    glossiness_map: str = ""
+    roughness: float = 0.5
+    metalness: float = 0.5
+    glossiness: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Pbr:
+    """The workflows that a material gives, of which renderers take the one that they know."""
+
+    metal: Workflow | None = None
+    specular: Workflow | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Shader:
+    """How a material is shaded in Gazebo classic: ``vertex``, ``pixel`` or by a map of normals."""
+
+    type: str = "pixel"
+    normal_map: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Material:
+    """How a shape looks; of colours and images that are not given nothing is said.
+
+    Attributes:
+        ambient: the colour in the shade.
+        diffuse: the colour in the light.
+        specular: the colour of what shines on it.
+        emissive: the colour that it gives off by itself.
+        shininess: how narrow the shine is.
+        lighting: whether lights change it.
+        double_sided: whether it is seen from within too.
+        render_order: which of two surfaces in one place is drawn over the other.
+        script: a material of a script, which comes before the colours in Gazebo classic.
+        pbr: a physically based surface, which comes before all else in gz-sim.
+    """
+
+    ambient: Color | None = None
+    diffuse: Color | None = None
+    specular: Color | None = None
+    emissive: Color | None = None
+    shininess: float = 0.0
+    lighting: bool = True
+    double_sided: bool = False
+    render_order: float = 0.0
+    script: MaterialScript | None = None
+    shader: Shader | None = None
+    pbr: Pbr | None = None
+
+
+def _map(tag: str, meaning: str) -> ElementRule:
+    return value(tag, TEXT, meaning, default="")
+
+
+_MAPS = (
+    _map("albedo_map", "the image of the colour"),
+    _map("normal_map", "the image of the normals"),
+    _map("emissive_map", "the image of what it gives off"),
+    _map("ambient_occlusion_map", "the image of where light does not reach"),
+    _map("environment_map", "the image of what it mirrors"),
+    _map("light_map", "the image of the light on it"),
+)
+
+MATERIAL = made(
+    Material,
+    "material",
+    "how it looks",
+    value("ambient", COLOR, "the colour in the shade"),
+    value("diffuse", COLOR, "the colour in the light"),
+    value("specular", COLOR, "the colour of what shines on it"),
+    value("emissive", COLOR, "the colour that it gives off by itself"),
+    value("shininess", NUMBER, "how narrow the shine is", default="0"),
+    value("lighting", TRUTH, "whether lights change it", default="true"),
+    value("double_sided", TRUTH, "whether it is seen from within too", default="false"),
+    value("render_order", NUMBER, "which of two surfaces in one place is drawn over the other", default="0"),
+    made(
+        MaterialScript,
+        "script",
+        "a material of Gazebo classic by its name",
+        values("uri", TEXT, "a folder or file of material scripts, or one of its textures"),
+        value("name", TEXT, "the name of the material, such as Gazebo/Grey", default=""),
+    ),
+    ElementRule(
+        "shader",
+        "how it is shaded in Gazebo classic",
+        (AttributeRule("type", TEXT, "vertex, pixel or a map of normals", default="pixel"),),
+        (value("normal_map", TEXT, "the image of the normals", default=""),),
+        make=Shader,
+        keeps=True,
+    ),
+    made(
+        Pbr,
+        "pbr",
+        "a physically based surface",
+        made(
+            Workflow,
+            "metal",
+            "a surface by roughness and metalness",
+            *_MAPS,
+            _map("roughness_map", "the image of the roughness"),
+            _map("metalness_map", "the image of the metalness"),
+            value("roughness", NUMBER, "from 0, a mirror, to 1, dull", default="0.5"),
+            value("metalness", NUMBER, "from 0, none, to 1, metal", default="0.5"),
+        ),
+        made(
+            Workflow,
+            "specular",
+            "a surface by shine and glossiness",
+            *_MAPS,
+            _map("specular_map", "the image of the colour that shines"),
+            _map("glossiness_map", "the image of the glossiness"),
+            value("glossiness", NUMBER, "from 0, dull, to 1, a mirror", default="0"),
+        ),
+    ),
+)

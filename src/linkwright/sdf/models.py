@@ -1,0 +1,157 @@
+"""``<model>``: links, joints and models in it, and ``<include>``: a model that stands in another file.
+
+Source of the elements and defaults: the SDFormat specification 1.12, ``model.sdf``, ``frame.sdf``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+from linkwright.geometry.vectors import Vector3
+from linkwright.schema import AttributeRule, ElementRule
+from linkwright.sdf.joints import JOINT, Joint
+from linkwright.sdf.links import LINK, Link
+from linkwright.sdf.plugins import PLUGIN, Plugin
+from linkwright.sdf.poses import AT_ORIGIN, POSE, RawPose
+from linkwright.sdf.values import TEXT, TRUTH, VECTOR3, name_of, value
+from linkwright.xmltree import Element
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """A frame of its own.
+
+    Attributes:
+        attached_to: the link, joint, frame or model that it moves with; empty for the model or world it is in.
+        pose: where it stands; relative to `attached_to` where nothing else is said.
+    """
+
+    name: str
+    attached_to: str = ""
+    pose: RawPose = AT_ORIGIN
+    element: Element | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Include:
+    """A model, light or actor of another file, and what is different about it here.
+
+    Attributes:
+        uri: ``model://NAME``, a path or the address of a model.
+        name: its name here; empty for that in the file.
+        pose: where it stands here; None for where the file says.
+        static: whether it moves; None for what the file says.
+        placement_frame: the frame in it that `pose` places; empty for that of the model.
+        merge: whether its parts become parts of the model around it (SDF 1.9).
+        plugins: added to those in the file.
+    """
+
+    uri: str
+    name: str = ""
+    pose: RawPose | None = None
+    static: bool | None = None
+    placement_frame: str = ""
+    merge: bool = False
+    plugins: tuple[Plugin, ...] = ()
+    element: Element | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Model:
+    """A model.
+
+    Attributes:
+        pose: where it stands, in the frame of the model or world around it.
+        static: whether it never moves.
+        self_collide: whether its links touch each other.
+        allow_auto_disable: whether it may rest when nothing moves it.
+        enable_wind: whether wind moves its links.
+        canonical_link: the link that its frame is attached to; empty for the first.
+        placement_frame: the frame in it that `pose` places; empty for its own.
+        scale: of Gazebo classic's saved worlds, which few readers follow.
+        models: the models in it.
+        includes: the models that come from other files.
+    """
+
+    name: str
+    pose: RawPose = AT_ORIGIN
+    static: bool = False
+    self_collide: bool = False
+    allow_auto_disable: bool = True
+    enable_wind: bool = False
+    canonical_link: str = ""
+    placement_frame: str = ""
+    scale: Vector3 = (1.0, 1.0, 1.0)
+    links: tuple[Link, ...] = ()
+    joints: tuple[Joint, ...] = ()
+    frames: tuple[Frame, ...] = ()
+    models: tuple[Model, ...] = ()
+    includes: tuple[Include, ...] = ()
+    plugins: tuple[Plugin, ...] = ()
+    element: Element | None = field(default=None, compare=False, repr=False)
+
+
+FRAME = ElementRule(
+    "frame",
+    "a frame of its own",
+    (
+        name_of(),
+        AttributeRule("attached_to", TEXT, "the link, joint, frame or model that it moves with", default=""),
+    ),
+    (POSE,),
+    many=True,
+    make=Frame,
+    keeps=True,
+    located=True,
+    owns=True,
+    field="frames",
+)
+
+INCLUDE = ElementRule(
+    "include",
+    "a model of another file",
+    (AttributeRule("merge", TRUTH, "whether its parts become parts of the model around it", default="false"),),
+    (
+        value("uri", TEXT, "model://NAME, a path or the address of a model", default="", required=True),
+        value("name", TEXT, "its name here", default=""),
+        replace(POSE, default=None),
+        value("static", TRUTH, "whether it never moves"),
+        value("placement_frame", TEXT, "the frame in it that the pose places", default=""),
+        PLUGIN,
+    ),
+    many=True,
+    make=Include,
+    keeps=True,
+    located=True,
+    field="includes",
+)
+
+MODEL = ElementRule(
+    "model",
+    "links, joints and models that belong together",
+    (
+        name_of(),
+        AttributeRule("canonical_link", TEXT, "the link that its frame is attached to", default=""),
+        AttributeRule("placement_frame", TEXT, "the frame in it that its pose places", default=""),
+    ),
+    (
+        POSE,
+        value("static", TRUTH, "whether it never moves", default="false"),
+        value("self_collide", TRUTH, "whether its links touch each other", default="false"),
+        value("allow_auto_disable", TRUTH, "whether it may rest when nothing moves it", default="true"),
+        value("enable_wind", TRUTH, "whether wind moves its links", default="false"),
+        value("scale", VECTOR3, "factors of a world that Gazebo classic saved", default="1 1 1"),
+        LINK,
+        JOINT,
+        FRAME,
+        INCLUDE,
+        PLUGIN,
+    ),
+    many=True,
+    make=Model,
+    keeps=True,
+    located=True,
+    owns=True,
+    nests=True,
+    field="models",
+)

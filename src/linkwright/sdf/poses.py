@@ -1,0 +1,69 @@
+"""``<pose>``: where something stands, as it is written, in the frame that it is written in."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from linkwright.geometry.single import IDENTITY_POSE, Pose
+from linkwright.schema import UNREADABLE, AttributeRule, ElementRule, Report
+from linkwright.sdf.values import POSE as POSE_NUMBERS
+from linkwright.sdf.values import TEXT, TRUTH, choice, pose_of
+from linkwright.xmltree import Element
+
+
+@dataclass(frozen=True, slots=True)
+class RawPose:
+    """A pose as written; `linkwright.sdf.frames` works out where that is.
+
+    Attributes:
+        pose: the frame of what is posed, in the frame named by `relative_to`.
+        relative_to: a frame, link, joint or model; empty for the one that goes without saying: that of the element
+            around it, or of a joint its child link.
+    """
+
+    pose: Pose = IDENTITY_POSE
+    relative_to: str = ""
+
+
+AT_ORIGIN = RawPose()
+
+
+def _written(**said: Any) -> dict[str, Any]:
+    return said
+
+
+def _read(said: dict[str, Any], element: Element, owner: Element, report: Report) -> Any:
+    try:
+        pose = pose_of(said["numbers"], said["degrees"], said["rotation_format"])
+    except ValueError:
+        assert POSE.text is not None
+        report.malformed(element, POSE, POSE.text, owner)
+        return UNREADABLE
+    return RawPose(pose, said["relative_to"] or said["frame"])
+
+
+POSE = ElementRule(
+    "pose",
+    "where it stands: x y z in metres, roll pitch yaw about the fixed axes in radians",
+    (
+        AttributeRule(
+            "relative_to",
+            TEXT,
+            "the frame, link, joint or model in which the pose is given",
+            default="",
+        ),
+        AttributeRule("frame", TEXT, "the name of relative_to before SDF 1.7", default=""),
+        AttributeRule("degrees", TRUTH, "whether the angles are in degrees", default="false"),
+        AttributeRule(
+            "rotation_format",
+            choice("euler_rpy", "quat_xyzw"),
+            "quat_xyzw where a quaternion x y z w stands for the angles",
+            default="euler_rpy",
+        ),
+    ),
+    text=AttributeRule("text", POSE_NUMBERS, "the pose", default="0 0 0 0 0 0", field="numbers"),
+    make=_written,
+    check=_read,
+    default=AT_ORIGIN,
+)

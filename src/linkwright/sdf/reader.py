@@ -1,0 +1,181 @@
+"""Reading an SDF document into worlds and models, with everything that is wrong with it told at once.
+
+As libsdformat does, it goes on where it can: what is missing has its default, and what cannot be read counts as
+missing. Where libsdformat then refuses the file, the finding is an error.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from linkwright.diagnostics import Diagnostic, did_you_mean, phrase
+from linkwright.schema import ElementRule, reader_of
+from linkwright.sdf.report import NEWEST, SdfReport
+from linkwright.sdf.worlds import SDF, Sdf
+from linkwright.xmltree import Document, Element
+
+_VERSION = re.compile(r"1\.([0-9]{1,2})").fullmatch
+_OLDEST_MINOR = 3
+_NAMED = frozenset({"world", "model", "link", "joint", "frame", "light", "actor"})
+_SIBLINGS = ("visual", "collision", "sensor", "light")
+_OTHER_FORMATS = {
+    "robot": phrase("a URDF file"),
+    "mujoco": phrase("a MuJoCo model"),
+    "gazebo": phrase("SDF of a version before 1.3, whose root was <gazebo>"),
+    "COLLADA": phrase("a COLLADA mesh"),
+    "launch": phrase("a launch file"),
+}
+
+_WITHOUT_EFFECT = {
+    "world": {"audio", "gui", "population"},
+    "physics": {"bullet", "dart", "ode", "profile", "simbody"},
+    "scene": {"fog", "sky", "cloud"},
+    "model": {"gripper", "battery"},
+    "link": {
+        "acceleration",
+        "audio_sink",
+        "audio_source",
+        "battery",
+        "must_be_base_link",
+        "particle_emitter",
+        "projector",
+        "velocity",
+        "wrench",
+    },
+    "inertial": {"fluid_added_mass"},
+    "visual": {"meta"},
+    "mesh": {"optimization", "convex_decomposition"},
+    "heightmap": {"use_terrain_paging"},
+    "camera": {"projection_type", "save", "view_controller"},
+    "depth_camera": {"output"},
+    "image": {"anti_aliasing"},
+    "lens": {"custom_function", "cutoff_angle", "env_texture_size", "projection", "scale_to_hfov", "type"},
+    "sensor": {
+        "air_flow",
+        "air_speed",
+        "dvl",
+        "projector",
+        "rfid",
+        "rfidtag",
+        "transceiver",
+        "wireless_receiver",
+        "wireless_transmitter",
+    },
+    "imu": {"topic", "noise"},
+    "noise": {"rate", "accel"},
+    "light": {"visualize"},
+    "limit": {"cfm", "erp"},
+    "surface": {"soft_contact"},
+    "contact": {"bullet", "collide_without_contact_bitmask", "elastic_modulus", "poissons_ratio"},
+    "bullet": {"fdir1", "kd", "kp", "soft_cfm", "soft_erp", "split_impulse", "split_impulse_penetration_threshold"},
+    "ode": {
+        "bounce",
+        "cfm",
+        "cfm_damping",
+        "erp",
+        "fudge_factor",
+        "implicit_spring_damper",
+        "limit",
+        "max_force",
+        "suspension",
+        "velocity",
+    },
+    "torsional": {"ode"},
+    "spherical_coordinates": {"surface_axis_equatorial", "surface_axis_polar"},
+    "state": {"joint", "plugin", "real_time", "wall_time"},
+    "road": {"material"},
+    "metal": {"subsurface"},
+}
+"""Words of SDF that have no effect here, by the elements that they stand in."""
+_OPEN = frozenset({"plugin", "gui"})
+"""Elements that hold what others than SDF decide."""
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """What came of reading a document.
+
+    Attributes:
+        sdf: what it says; None where it is not SDF.
+        diagnostics: all errors and warnings, in the order of the text.
+    """
+
+    sdf: Sdf | None
+    diagnostics: tuple[Diagnostic, ...]
+
+
+def read(document: Document) -> Reading:
+    """Read an SDF document; it never raises for what the document says."""
+    report = SdfReport()
+    root = document.root
+    if root.tag != "sdf":
+        _explain_root(root, report)
+        return Reading(None, report.in_order())
+    _check_version(root, report)
+    sdf: Sdf = reader_of(SDF, NEWEST).read(root, root, report)
+    for element, rule in _known(root):
+        _check_names(element, rule, report)
+        for child in element.elements():
+            if child.tag not in rule.child_rules and not _is_let_be(child, rule):
+                report.unknown_element(child, rule)
+    if not (sdf.worlds or sdf.models or sdf.lights or sdf.actors):
+        hint = phrase("put a <world> or a <model> in it")
+        report.error("SDF131", phrase("<sdf> has neither a world nor a model in it"), root, hint=hint)
+    return Reading(sdf, report.in_order())
+
+
+def _explain_root(root: Element, report: SdfReport) -> None:
+    if root.tag in _OTHER_FORMATS:
+        hint = phrase("this is {format}, not a world or model", format=_OTHER_FORMATS[root.tag])
+    elif root.tag in ("world", "model"):
+        hint = phrase('put <sdf version="1.6"> around it')
+    else:
+        hint = did_you_mean(root.tag, ["sdf"]) or phrase("an SDF file has <sdf> as its root")
+    report.reject("SDF101", phrase("the root element is <{tag}>, not <sdf>", tag=root.tag), root, hint=hint)
+
+
+def _check_version(root: Element, report: SdfReport) -> None:
+    written = root.attributes.get("version")
+    if written is None:
+        return  # which the reader tells
+    found = _VERSION(written.strip())
+    if found and _OLDEST_MINOR <= int(found[1]) <= NEWEST[1]:
+        return
+    message = phrase("there is no SDF version '{written}' that is known", written=written)
+    hint = phrase("the versions are 1.3 to 1.12; the file is read as 1.12")
+    report.warning("SDF102", message, root, "version", hint=hint)
+
+
+def _known(root: Element) -> Iterator[tuple[Element, ElementRule]]:
+    """Every element that SDF has a place for, with its rule, in document order."""
+    waiting = [(root, SDF)]
+    while waiting:
+        element, rule = waiting.pop()
+        if rule.tag in _OPEN:
+            continue
+        yield element, rule
+        rules = rule.child_rules
+        inner = [(child, rules[child.tag]) for child in element.elements() if child.tag in rules]
+        waiting.extend(reversed(inner))
+
+
+def _is_let_be(element: Element, rule: ElementRule) -> bool:
+    """Whether an element that is not read is no mistake: one with a prefix, or a word of SDF without effect here."""
+    return ":" in element.tag or element.tag in _WITHOUT_EFFECT.get(rule.tag, ())
+
+
+def _check_names(element: Element, rule: ElementRule, report: SdfReport) -> None:
+    """Tell of names that come twice: among all that poses may refer to, and among shapes and sensors of one kind."""
+    if rule.tag == "state":
+        return
+    first: dict[tuple[str, str], Element] = {}
+    for child in element.elements():
+        name = child.attributes.get("name")
+        if name is None or not (child.tag in _NAMED or child.tag in _SIBLINGS):
+            continue
+        space = child.tag if child.tag in _SIBLINGS else ""
+        before = first.setdefault((space, name), child)
+        if before is not child:
+            report.twice(child, before)

@@ -1,0 +1,155 @@
+"""Words for what is wrong with an element of SDF, from its rule and what is written in its place."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from linkwright.diagnostics import Note, Phrase, counted, did_you_mean, joined, nearest, phrase, term
+from linkwright.schema import UNREADABLE, AttributeRule, ElementRule
+from linkwright.sdf.values import COUNTS, INTEGER, NUMBER, TIME, TRUTH, numbers
+from linkwright.urdf.findings import Findings
+from linkwright.urdf.values import number_hint, vector_hint
+from linkwright.xmltree import Element
+
+NEWEST = (1, 12)
+"""The newest version of SDF that is known; older files are read by its words, as libsdformat converts them."""
+
+
+def described(element: Element) -> Phrase:
+    """An element as messages name it: ``link 'chassis'``, ``<pose>``."""
+    name = element.attributes.get("name")
+    if name is None:
+        return phrase("<{tag}>", tag=element.tag)
+    return phrase("{tag} '{name}'", tag=term(element.tag), name=name)
+
+
+class SdfReport(Findings):
+    """The findings of one reading, and the words for what the reader of elements meets (`linkwright.schema.report`)."""
+
+    __slots__ = ("_misspelt",)
+
+    def __init__(self) -> None:
+        super().__init__(NEWEST)
+        self._misspelt: list[Element] = []
+
+    def missing_attribute(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> None:
+        """A required attribute, or text inside, is not there."""
+        if attribute is rule.text:
+            message = phrase("<{tag}> of {owner} is empty", tag=rule.tag, owner=described(owner))
+            self.error("SDF120", message, element, hint=phrase("write <{tag}>...</{tag}>", tag=rule.tag))
+            return
+        told = {"tag": rule.tag, "name": attribute.name}
+        unknown = [name for name in element.attributes if name not in rule.attribute_rules]
+        like = nearest(attribute.name, unknown, limit=1)
+        hint = phrase('add {name}="..."', name=attribute.name)
+        if like:
+            hint = phrase("did you mean '{name}' where it says '{like}'?", name=attribute.name, like=like[0])
+        if owner is element or owner.attributes.get("name") is None:
+            message = phrase("<{tag}> has no '{name}'", **told)
+        else:
+            message = phrase("<{tag}> of {owner} has no '{name}'", **told, owner=described(owner))
+        self.error("SDF120", message, element, hint=hint)
+
+    def malformed(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> Any:
+        """A value does not say what it must; what stands for an absent one is taken in its place."""
+        inside = attribute is rule.text
+        text = element.text().strip() if inside else element.attributes[attribute.name]
+        message, hint = _explained(_place(element, rule, attribute, owner), text, attribute, element)
+        self.error("SDF121", message, element, None if inside else attribute.name, hint=hint)
+        return UNREADABLE
+
+    def too_new(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> None:  # noqa: ARG002 - as the protocol has it
+        """Files of all versions are read by the words of the newest, so that nothing is too new."""
+        raise AssertionError(f"{rule.tag} {attribute.name} is for some versions only")
+
+    def missing_child(self, element: Element, rule: ElementRule, child: ElementRule, owner: Element) -> None:  # noqa: ARG002 - as the protocol has it
+        """A required child is not there."""
+        candidates = [each for each in element.elements() if each.tag not in rule.child_rules]
+        like = nearest(child.tag, [each.tag for each in candidates], limit=1)
+        misspelt = next((each for each in candidates if each.tag in like), None)
+        hint = phrase("add <{tag}>...</{tag}>", tag=child.tag)
+        if misspelt is not None:
+            hint = phrase(
+                "did you mean '{tag}' where it says '{misspelt_tag}'?", tag=child.tag, misspelt_tag=misspelt.tag
+            )
+            self._misspelt.append(misspelt)
+        self.error(
+            "SDF130",
+            phrase("{whose} has no <{tag}>", whose=described(element), tag=child.tag),
+            misspelt or element,
+            hint=hint,
+        )
+
+    def empty_choice(self, element: Element, rule: ElementRule, owner: Element) -> None:  # noqa: ARG002 - as the protocol has it
+        """SDF has no element whose first child decides."""
+        raise AssertionError(rule.tag)
+
+    def unknown_choice(self, child: Element, rule: ElementRule, owner: Element) -> None:  # noqa: ARG002 - as the protocol has it
+        """SDF has no element whose first child decides."""
+        raise AssertionError(rule.tag)
+
+    def unknown_element(self, element: Element, rule: ElementRule) -> None:
+        """An element that SDF has no place for where it stands."""
+        if any(element is each for each in self._misspelt):
+            return
+        hint = did_you_mean(element.tag, [child.tag for child in rule.children])
+        self.warning(
+            "SDF150", phrase("<{tag}> in <{parent}> is not read", tag=element.tag, parent=rule.tag), element, hint=hint
+        )
+
+    def twice(self, element: Element, first: Element) -> None:
+        """Two elements side by side have one name."""
+        notes: Sequence[Note] = (Note(phrase("first defined here"), first.span()),)
+        message = phrase("there are two elements named '{name}' in one place", name=element.attributes.get("name", ""))
+        if element.tag == first.tag:
+            kind = element.tag
+            message = phrase(
+                "{kind} '{name}' is defined twice", kind=term(kind), name=element.attributes.get("name", "")
+            )
+        self.error("SDF110", message, element, "name", notes=notes, hint=phrase("give each a name of its own"))
+
+
+def _place(element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> Phrase:
+    """Where a value stands: ``<mass> of link 'arm'``, ``'type' of joint 'elbow'``."""
+    if "name" in element.attributes:
+        return phrase("'{name}' of {owner}", name=attribute.name, owner=described(element))
+    place = phrase("<{tag}>", tag=rule.tag)
+    if attribute is not rule.text:
+        place = phrase("'{name}' in <{tag}>", name=attribute.name, tag=rule.tag)
+    return place if owner is element else phrase("{place} of {owner}", place=place, owner=described(owner))
+
+
+def _explained(place: Phrase, text: str, attribute: AttributeRule, element: Element) -> tuple[Phrase, Phrase | None]:
+    """What to say of a text that is not a value of the attribute's type, and how to mend it."""
+    told = {"place": place, "value": text}
+    if attribute.type in COUNTS:
+        return _miscounted(told, text, COUNTS[attribute.type], element)
+    if attribute.type is TRUTH:
+        return phrase("{place} is neither true nor false: '{value}'", **told), phrase("write true or false")
+    if attribute.type in (NUMBER, TIME):
+        return phrase("{place} is not a number: '{value}'", **told), number_hint(text)
+    if attribute.type is INTEGER:
+        return phrase("{place} is not a whole number: '{value}'", **told), None
+    words = attribute.type.name.split(" | ")
+    hint = did_you_mean(text, words) or phrase("it is one of {names}", names=joined(words))
+    return phrase("{place} is not known: '{value}'", **told), hint
+
+
+def _miscounted(told: dict[str, Any], text: str, count: int, element: Element) -> tuple[Phrase, Phrase | None]:
+    is_quaternion = element.attributes.get("rotation_format") == "quat_xyzw"
+    count += is_quaternion
+    try:
+        found = len(numbers(text))
+    except ValueError:
+        return phrase("{place} is not {count} numbers: '{value}'", **told, count=count), vector_hint(text, count)
+    if found == count:
+        return phrase("the quaternion in {place} has no length: '{value}'", **told), phrase("no rotation is 0 0 0 1")
+    message = counted(
+        "{place} has 1 number where {wanted} are expected: '{value}'",
+        "{place} has {count} numbers where {wanted} are expected: '{value}'",
+        found,
+        **told,
+        wanted=count,
+    )
+    return message, phrase('add rotation_format="quat_xyzw"') if found == 7 else None

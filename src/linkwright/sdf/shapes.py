@@ -1,0 +1,235 @@
+"""``<geometry>``: the shapes of SDF; lengths in metres.
+
+Source of the elements and defaults: the SDFormat specification 1.12, ``geometry.sdf`` and the files of each shape.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere
+from linkwright.geometry.vectors import Vector3
+from linkwright.sdf.values import INTEGER, NUMBER, TEXT, TRUTH, VECTOR2, VECTOR3, made, value, values
+
+
+@dataclass(frozen=True, slots=True)
+class Plane:
+    """A plane through the origin, without end for contacts; `size` is how much of it is drawn."""
+
+    normal: Vector3 = (0.0, 0.0, 1.0)
+    size: tuple[float, float] = (1.0, 1.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Ellipsoid:
+    """Semi-axes along x, y, z in metres, centred at the origin."""
+
+    radii: Vector3 = (1.0, 1.0, 1.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Cone:
+    """Along z with its tip above, centred at half its height; metres."""
+
+    radius: float = 0.5
+    length: float = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Submesh:
+    """One part of a mesh file, by its name there; `center` moves it to the origin."""
+
+    name: str
+    center: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Mesh:
+    """A mesh file by its URI, scaled along x, y, z, whole or one part of it."""
+
+    uri: str
+    scale: Vector3 = (1.0, 1.0, 1.0)
+    submesh: Submesh | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class TerrainTexture:
+    """A texture of a heightmap: its images by their URIs and the edge length in metres that one of them covers."""
+
+    diffuse: str = ""
+    normal: str = ""
+    size: float = 10.0
+
+
+@dataclass(frozen=True, slots=True)
+class Blend:
+    """Where one texture of a heightmap goes over into the next: from a height in metres, over a distance."""
+
+    min_height: float = 0.0
+    fade_dist: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Heightmap:
+    """A ground whose heights are the grey values of an image, or those of an elevation model.
+
+    Attributes:
+        uri: the image, with 2^n + 1 pixels along each side.
+        size: the extent along x, y and from the lowest to the highest value.
+        position: the offset of its middle.
+        textures: from the lowest up.
+        blends: between the textures.
+        sampling: how many heights are made of one pixel.
+    """
+
+    uri: str
+    size: Vector3 = (1.0, 1.0, 1.0)
+    position: Vector3 = (0.0, 0.0, 0.0)
+    textures: tuple[TerrainTexture, ...] = ()
+    blends: tuple[Blend, ...] = ()
+    sampling: int = 2
+
+
+@dataclass(frozen=True, slots=True)
+class Image:
+    """A relief: each pixel of an image that is brighter than a threshold becomes a box of a height."""
+
+    uri: str
+    scale: float = 1.0
+    threshold: int = 200
+    height: float = 1.0
+    granularity: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Polyline:
+    """A polygon in the plane z = 0, raised to a height."""
+
+    points: tuple[tuple[float, float], ...]
+    height: float = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Empty:
+    """No shape."""
+
+
+NO_SHAPE = Empty()
+
+Shape = (
+    Box
+    | Capsule
+    | Cone
+    | Cylinder
+    | Ellipsoid
+    | Sphere
+    | Plane
+    | Mesh
+    | Heightmap
+    | Image
+    | Polyline
+    | tuple[Polyline, ...]
+    | Empty
+)
+
+
+def _shape(**shapes: Shape | tuple[Polyline, ...] | None) -> Shape:
+    """The shape that counts: the first in libsdformat's order, which is that of the table, not that of the file."""
+    return next((shape for shape in shapes.values() if shape), NO_SHAPE)
+
+
+_RADIUS = value("radius", NUMBER, "radius", "m", default="1")
+_LENGTH = value("length", NUMBER, "length along z", "m", default="1")
+_HALF = value("radius", NUMBER, "radius", "m", default="0.5")
+_URI = value("uri", TEXT, "model://MODEL/PATH, package://PACKAGE/PATH, file://PATH or a path from the file", default="")
+
+GEOMETRY = made(
+    _shape,
+    "geometry",
+    "the shape",
+    made(
+        Box,
+        "box",
+        "a box centred at the origin",
+        value("size", VECTOR3, "edge lengths along x, y, z", "m", default="1 1 1"),
+    ),
+    made(Capsule, "capsule", "a cylinder along z with a half sphere at each end", _HALF, _LENGTH),
+    made(Cone, "cone", "a cone along z, its tip above", _HALF, _LENGTH),
+    made(Cylinder, "cylinder", "a cylinder along z, centred at the origin", _RADIUS, _LENGTH),
+    made(
+        Ellipsoid,
+        "ellipsoid",
+        "an ellipsoid centred at the origin",
+        value("radii", VECTOR3, "semi-axes along x, y, z", "m", default="1 1 1"),
+    ),
+    made(Sphere, "sphere", "a sphere centred at the origin", _RADIUS),
+    made(
+        Plane,
+        "plane",
+        "a plane without end",
+        value("normal", VECTOR3, "the direction that it faces", default="0 0 1"),
+        value("size", VECTOR2, "how much of it is drawn", "m", default="1 1"),
+    ),
+    made(
+        Mesh,
+        "mesh",
+        "a mesh file",
+        _URI,
+        value("scale", VECTOR3, "factors along x, y, z", default="1 1 1"),
+        made(
+            Submesh,
+            "submesh",
+            "one part of the mesh file",
+            value("name", TEXT, "the name of the part in the file", default=""),
+            value("center", TRUTH, "whether the part is moved to the origin", default="false"),
+        ),
+    ),
+    made(
+        Heightmap,
+        "heightmap",
+        "a ground whose heights are in an image",
+        _URI,
+        value("size", VECTOR3, "its extent along x, y and z", "m", default="1 1 1"),
+        value("pos", VECTOR3, "the offset of its middle", "m", default="0 0 0", field="position"),
+        made(
+            TerrainTexture,
+            "texture",
+            "what it is painted with, from the lowest up",
+            value("diffuse", TEXT, "the colours, as the URI of an image", default=""),
+            value("normal", TEXT, "the normals, as the URI of an image", default=""),
+            value("size", NUMBER, "the edge length that one image covers", "m", default="10"),
+            many=True,
+            field="textures",
+        ),
+        made(
+            Blend,
+            "blend",
+            "where one texture goes over into the next",
+            value("min_height", NUMBER, "where it begins", "m", default="0"),
+            value("fade_dist", NUMBER, "how far it goes", "m", default="0"),
+            many=True,
+            field="blends",
+        ),
+        value("sampling", INTEGER, "how many heights are made of one pixel", default="2"),
+    ),
+    made(
+        Image,
+        "image",
+        "boxes where an image is bright",
+        _URI,
+        value("scale", NUMBER, "metres a pixel", "m", default="1"),
+        value("threshold", INTEGER, "the brightness from 0 to 255 from which there is a box", default="200"),
+        value("height", NUMBER, "height of the boxes", "m", default="1"),
+        value("granularity", INTEGER, "how many pixels make one box along each side", default="1"),
+    ),
+    made(
+        Polyline,
+        "polyline",
+        "a polygon raised to a height; several of them cut holes into each other",
+        values("point", VECTOR2, "a corner: x and y in metres"),
+        value("height", NUMBER, "its height along z", "m", default="1"),
+        many=True,
+    ),
+    made(Empty, "empty", "no shape"),
+    default=NO_SHAPE,
+)

@@ -1,0 +1,236 @@
+"""``<surface>``: friction, bounce and stiffness of what touches.
+
+Source of the elements and defaults: the SDFormat specification 1.12, ``surface.sdf``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from linkwright.geometry.vectors import Vector3
+from linkwright.schema import AttributeRule, ElementRule
+from linkwright.sdf.values import INTEGER, NUMBER, TEXT, TRUTH, VECTOR3, made, value
+
+
+@dataclass(frozen=True, slots=True)
+class Friction:
+    """Friction of ODE's pyramid.
+
+    Attributes:
+        mu: Coulomb's coefficient along `direction`.
+        mu2: the coefficient across it.
+        direction: the first direction in the frame of the collision (or of `expressed_in`); zero for any.
+        slip1: how far it slides for each newton along `direction`, in m/s/N.
+        slip2: the same across it.
+        expressed_in: the frame of `direction`.
+    """
+
+    mu: float = 1.0
+    mu2: float = 1.0
+    direction: Vector3 = (0.0, 0.0, 0.0)
+    slip1: float = 0.0
+    slip2: float = 0.0
+    expressed_in: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class BulletFriction:
+    """Friction for the engine Bullet."""
+
+    friction: float = 1.0
+    friction2: float = 1.0
+    rolling_friction: float = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class TorsionalFriction:
+    """Friction against turning on the spot; radii in metres."""
+
+    coefficient: float = 1.0
+    use_patch_radius: bool = True
+    patch_radius: float = 0.0
+    surface_radius: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Contact:
+    """Stiffness of a contact.
+
+    Attributes:
+        soft_cfm: how much force mixes into the constraint.
+        soft_erp: how much of the error is mended in a step.
+        kp: stiffness in N/m.
+        kd: damping in N s/m.
+        max_vel: the greatest speed by which an overlap is mended, in m/s.
+        min_depth: the overlap that is let be, in metres.
+    """
+
+    soft_cfm: float = 0.0
+    soft_erp: float = 0.2
+    kp: float = 1e12
+    kd: float = 1.0
+    max_vel: float = 0.01
+    min_depth: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Surface:
+    """What happens where a shape touches another.
+
+    Attributes:
+        friction: friction, or None where nothing is said.
+        bullet_friction: the same for the engine Bullet.
+        torsional: friction against turning on the spot.
+        contact: stiffness, or None where nothing is said.
+        restitution: the share of the speed that it bounces back with.
+        bounce_threshold: the speed in m/s above which it bounces.
+        collide_without_contact: whether touching is told and has no effect.
+        collide_bitmask: which shapes it touches: those with a bit in common.
+        category_bitmask: the bits that others see of it.
+    """
+
+    friction: Friction | None = None
+    bullet_friction: BulletFriction | None = None
+    torsional: TorsionalFriction | None = None
+    contact: Contact | None = None
+    restitution: float = 0.0
+    bounce_threshold: float = 100000.0
+    collide_without_contact: bool = False
+    collide_bitmask: int = 0xFFFF
+    category_bitmask: int = 0xFFFF
+
+
+USUAL_SURFACE = Surface()
+
+
+@dataclass(frozen=True, slots=True)
+class _FrictionGroup:
+    ode: Friction | None
+    bullet: BulletFriction | None
+    torsional: TorsionalFriction | None
+
+
+@dataclass(frozen=True, slots=True)
+class _ContactGroup:
+    ode: Contact | None = None
+    collide_without_contact: bool = False
+    collide_bitmask: int = 0xFFFF
+    category_bitmask: int = 0xFFFF
+
+
+@dataclass(frozen=True, slots=True)
+class _Bounce:
+    restitution: float = 0.0
+    bounce_threshold: float = 100000.0
+
+
+def _friction(mu: float, mu2: float, fdir1: tuple[Vector3, str] | None, slip1: float, slip2: float) -> Friction:
+    direction, expressed_in = fdir1 or ((0.0, 0.0, 0.0), "")
+    return Friction(mu, mu2, direction, slip1, slip2, expressed_in)
+
+
+def _direction(said: Vector3, old: str, new: str) -> tuple[Vector3, str]:
+    return said, new or old
+
+
+def _surface(friction: _FrictionGroup | None, contact: _ContactGroup | None, bounce: _Bounce | None) -> Surface:
+    group = contact or _ContactGroup(
+        None, collide_without_contact=False, collide_bitmask=0xFFFF, category_bitmask=0xFFFF
+    )
+    hop = bounce or _Bounce(0.0, 100000.0)
+    return Surface(
+        friction.ode if friction else None,
+        friction.bullet if friction else None,
+        friction.torsional if friction else None,
+        group.ode,
+        hop.restitution,
+        hop.bounce_threshold,
+        group.collide_without_contact,
+        group.collide_bitmask,
+        group.category_bitmask,
+    )
+
+
+_ODE_FRICTION = made(
+    _friction,
+    "ode",
+    "friction as ODE has it",
+    value("mu", NUMBER, "Coulomb's coefficient", default="1"),
+    value("mu2", NUMBER, "the coefficient across the first direction", default="1"),
+    ElementRule(
+        "fdir1",
+        "the first direction of friction",
+        (
+            AttributeRule("gz:expressed_in", TEXT, "the frame of the direction", default="", field="new"),
+            AttributeRule("ignition:expressed_in", TEXT, "the frame of the direction", default="", field="old"),
+        ),
+        text=AttributeRule("text", VECTOR3, "the direction", default="0 0 0", field="said"),
+        make=_direction,
+    ),
+    value("slip1", NUMBER, "sliding for each newton along the first direction", "m/s/N", default="0"),
+    value("slip2", NUMBER, "sliding for each newton across it", "m/s/N", default="0"),
+)
+
+SURFACE = made(
+    _surface,
+    "surface",
+    "friction, bounce and stiffness",
+    made(
+        _FrictionGroup,
+        "friction",
+        "friction",
+        _ODE_FRICTION,
+        made(
+            BulletFriction,
+            "bullet",
+            "friction as Bullet has it",
+            value("friction", NUMBER, "Coulomb's coefficient", default="1"),
+            value("friction2", NUMBER, "the coefficient across the first direction", default="1"),
+            value("rolling_friction", NUMBER, "the coefficient against rolling", default="1"),
+        ),
+        made(
+            TorsionalFriction,
+            "torsional",
+            "friction against turning on the spot",
+            value("coefficient", NUMBER, "its coefficient", default="1"),
+            value("use_patch_radius", TRUTH, "whether patch_radius counts, not surface_radius", default="true"),
+            value("patch_radius", NUMBER, "radius of the patch that touches", "m", default="0"),
+            value("surface_radius", NUMBER, "radius of the surface where it touches", "m", default="0"),
+        ),
+    ),
+    made(
+        _ContactGroup,
+        "contact",
+        "stiffness, and what it touches",
+        made(
+            Contact,
+            "ode",
+            "stiffness as ODE has it",
+            value("soft_cfm", NUMBER, "how much force mixes into the constraint", default="0"),
+            value("soft_erp", NUMBER, "how much of the error is mended in a step", default="0.2"),
+            value("kp", NUMBER, "stiffness", "N/m", default="1e12"),
+            value("kd", NUMBER, "damping", "N s/m", default="1"),
+            value("max_vel", NUMBER, "the greatest speed by which an overlap is mended", "m/s", default="0.01"),
+            value("min_depth", NUMBER, "the overlap that is let be", "m", default="0"),
+        ),
+        value("collide_without_contact", TRUTH, "whether touching is told and has no effect", default="false"),
+        value("collide_bitmask", INTEGER, "which shapes it touches: those with a bit in common", default="65535"),
+        value("category_bitmask", INTEGER, "the bits that others see of it", default="65535"),
+    ),
+    made(
+        _Bounce,
+        "bounce",
+        "how it bounces",
+        value(
+            "restitution_coefficient",
+            NUMBER,
+            "the share of the speed that it bounces back with",
+            default="0",
+            field="restitution",
+        ),
+        value(
+            "threshold", NUMBER, "the speed above which it bounces", "m/s", default="100000", field="bounce_threshold"
+        ),
+    ),
+    default=USUAL_SURFACE,
+)

@@ -1,0 +1,176 @@
+"""The types of values in SDF, and the short forms by which the tables of the language are written.
+
+SDF writes a value as the text of an element: ``<mass>2.5</mass>``. Numbers are separated by blanks of any kind. What a
+text may be goes by libsdformat's parser (``Param.cc``): ``inf`` and ``nan`` are numbers there, and a truth value is
+``true``, ``false``, ``1`` or ``0`` in letters of either case.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable
+from math import radians
+from typing import Any
+
+from linkwright.geometry.single import Pose, Quaternion, rpy_from_quaternion
+from linkwright.geometry.vectors import Vector3
+from linkwright.schema import AttributeRule, ElementRule, ValueType
+
+_NUMBER = re.compile(r"[+-]?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|inf(?:inity)?|nan)", re.IGNORECASE)
+_TRUTH = {"true": True, "1": True, "false": False, "0": False}
+
+Color = tuple[float, float, float, float]
+"""Red, green, blue, alpha, each from 0 to 1."""
+
+
+def number(text: str) -> float:
+    """One number.
+
+    Raises:
+        ValueError: it is none.
+    """
+    if not _NUMBER.fullmatch(text.strip()):
+        raise ValueError(text)
+    return float(text)
+
+
+def numbers(text: str) -> tuple[float, ...]:
+    """Any count of numbers.
+
+    Raises:
+        ValueError: one of them is none.
+    """
+    return tuple(map(number, text.split()))
+
+
+def plain(value: float) -> str:
+    """A number as short as it can be written without loss."""
+    return repr(float(value)).removesuffix(".0")
+
+
+def _joined(values: Iterable[float]) -> str:
+    return " ".join(map(plain, values))
+
+
+def _integer(text: str) -> int:
+    value = number(text)
+    if value != int(value):
+        raise ValueError(text)
+    return int(value)
+
+
+def _truth(text: str) -> bool:
+    try:
+        return _TRUTH[text.strip().casefold()]
+    except KeyError:
+        raise ValueError(text) from None
+
+
+def _vector3(text: str) -> Vector3:
+    x, y, z = numbers(text)
+    return x, y, z
+
+
+def _vector2(text: str) -> tuple[float, float]:
+    x, y = numbers(text)
+    return x, y
+
+
+def _color(text: str) -> Color:
+    red, green, blue, alpha = (*numbers(text), 1.0)[:4] if len(text.split()) == 3 else numbers(text)
+    return red, green, blue, alpha
+
+
+def _time(text: str) -> float:
+    """Seconds and nanoseconds, or seconds alone."""
+    found = numbers(text)
+    if len(found) == 1:
+        return found[0]
+    seconds, nanoseconds = found
+    return seconds + nanoseconds * 1e-9
+
+
+def _pose_numbers(text: str) -> tuple[float, ...]:
+    found = numbers(text)
+    if len(found) not in (6, 7):
+        raise ValueError(text)
+    return found
+
+
+TEXT = ValueType("text")
+NUMBER = ValueType("number", number, plain)
+INTEGER = ValueType("whole number", _integer)
+TRUTH = ValueType("true or false", _truth, lambda value: "true" if value else "false")
+VECTOR2 = ValueType("2 numbers", _vector2, _joined)
+VECTOR3 = ValueType("3 numbers", _vector3, _joined)
+COLOR = ValueType("3 or 4 numbers from 0 to 1", _color, _joined)
+TIME = ValueType("seconds, or seconds and nanoseconds", _time, plain)
+POSE = ValueType("6 numbers", _pose_numbers, _joined)
+
+COUNTS = {VECTOR2: 2, VECTOR3: 3, COLOR: 4, POSE: 6}
+"""How many numbers a value of a type has."""
+
+
+def choice(*names: str) -> ValueType:
+    """A type of which the values are some words."""
+
+    def read(text: str) -> str:
+        if text.strip() not in names:
+            raise ValueError(text)
+        return text.strip()
+
+    return ValueType(" | ".join(names), read)
+
+
+def value(
+    tag: str,
+    kind: ValueType,
+    meaning: str,
+    unit: str = "",
+    *,
+    default: str | None = None,
+    field: str = "",
+    required: bool = False,
+) -> ElementRule:
+    """An element that says one value, as ``<mass>2.5</mass>`` does."""
+    rule = AttributeRule("text", kind, meaning, unit, required=required, default=default, field=field or tag)
+    absent = None if default is None else kind.read(default)
+    return ElementRule(tag, meaning, text=rule, required=required, default=(absent,))
+
+
+def values(tag: str, kind: ValueType, meaning: str, *, field: str = "") -> ElementRule:
+    """An element that may come any number of times, each with one value."""
+    rule = AttributeRule("text", kind, meaning, field="said")
+    return ElementRule(tag, meaning, text=rule, many=True, make=_only, field=field or f"{tag}s")
+
+
+def _only(said: Any) -> Any:
+    return said
+
+
+def name_of(meaning: str = "its name, unique among its kind in the model or world") -> AttributeRule:
+    """The attribute ``name``."""
+    return AttributeRule("name", TEXT, meaning, required=True, default="")
+
+
+def made(kind: Callable[..., Any], tag: str, meaning: str, *children: ElementRule, **details: Any) -> ElementRule:
+    """An element with parts, of which an object is made; what is wrong in one part leaves the others."""
+    return ElementRule(tag, meaning, children=children, make=kind, keeps=True, **details)
+
+
+def pose_of(found: tuple[float, ...], degrees: bool, rotation_format: str) -> Pose:
+    """The pose that six or seven numbers say.
+
+    Raises:
+        ValueError: as many numbers do not go with the format.
+    """
+    if rotation_format == "quat_xyzw":
+        x, y, z, *rest = found
+        qx, qy, qz, qw = rest
+        length = (qx * qx + qy * qy + qz * qz + qw * qw) ** 0.5
+        if length == 0.0:
+            raise ValueError(found)
+        quaternion: Quaternion = (qx / length, qy / length, qz / length, qw / length)
+        return Pose((x, y, z), rpy_from_quaternion(quaternion), quaternion)
+    x, y, z, roll, pitch, yaw = found
+    return Pose((x, y, z), (radians(roll), radians(pitch), radians(yaw)) if degrees else (roll, pitch, yaw))

@@ -1,0 +1,402 @@
+"""``<world>`` and ``<sdf>``: what a whole file says.
+
+Source of the elements and defaults: the SDFormat specification 1.12, ``world.sdf``, ``physics.sdf``, ``scene.sdf``,
+``state.sdf``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from linkwright.geometry.vectors import Vector3
+from linkwright.schema import AttributeRule, ElementRule
+from linkwright.sdf.actors import ACTOR, Actor
+from linkwright.sdf.joints import JOINT, Joint
+from linkwright.sdf.lights import LIGHT, Light
+from linkwright.sdf.models import FRAME, INCLUDE, MODEL, Frame, Include, Model
+from linkwright.sdf.plugins import PLUGIN, Plugin
+from linkwright.sdf.poses import POSE, RawPose
+from linkwright.sdf.values import (
+    COLOR,
+    INTEGER,
+    NUMBER,
+    TEXT,
+    TIME,
+    TRUTH,
+    VECTOR3,
+    Color,
+    made,
+    name_of,
+    value,
+    values,
+)
+from linkwright.xmltree import Element
+
+
+@dataclass(frozen=True, slots=True)
+class Physics:
+    """How time goes.
+
+    Attributes:
+        type: the engine that the author had in mind.
+        default: whether this is the one to take among several.
+        max_step_size: the step in seconds.
+        real_time_factor: how many times faster than real time it shall go at most.
+        real_time_update_rate: steps a real second in Gazebo classic; 0 for as many as there can be.
+        max_contacts: how many points of contact of two shapes count at most.
+        gravity: up to SDF 1.5, in m/s2; None where nothing is said.
+    """
+
+    name: str = "default_physics"
+    type: str = "ode"
+    default: bool = False
+    max_step_size: float = 0.001
+    real_time_factor: float = 1.0
+    real_time_update_rate: float = 1000.0
+    max_contacts: int = 20
+    gravity: Vector3 | None = None
+    element: Element | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """How the world looks; colours are as in `Material`."""
+
+    ambient: Color = (0.4, 0.4, 0.4, 1.0)
+    background: Color = (0.7, 0.7, 0.7, 1.0)
+    shadows: bool = True
+    grid: bool = True
+    origin_visual: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class SphericalCoordinates:
+    """Where on earth the origin is: degrees north and east, metres above the ellipsoid, degrees that x is turned."""
+
+    surface_model: str = "EARTH_WGS84"
+    world_frame_orientation: str = "ENU"
+    latitude_deg: float = 0.0
+    longitude_deg: float = 0.0
+    elevation: float = 0.0
+    heading_deg: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Atmosphere:
+    """Temperature in kelvin, how it falls in K/m, and pressure in pascals, at the origin."""
+
+    type: str = "adiabatic"
+    temperature: float = 288.15
+    temperature_gradient: float = -0.0065
+    pressure: float = 101325.0
+
+
+@dataclass(frozen=True, slots=True)
+class Road:
+    """A road through points, with a width in metres."""
+
+    name: str = ""
+    width: float = 1.0
+    points: tuple[Vector3, ...] = ()
+    element: Element | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class LinkState:
+    """Where a link was when the world was saved, in the frame of the world."""
+
+    name: str
+    pose: RawPose | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ModelState:
+    """Where a model, its links and the models in it were when the world was saved, in the frame of the world."""
+
+    name: str
+    pose: RawPose | None = None
+    scale: Vector3 = (1.0, 1.0, 1.0)
+    links: tuple[LinkState, ...] = ()
+    models: tuple[ModelState, ...] = ()
+    element: Element | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class LightState:
+    """Where a light was when the world was saved."""
+
+    name: str
+    pose: RawPose | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Insertions:
+    """Models and lights that were put in after the start."""
+
+    models: tuple[Model, ...] = ()
+    lights: tuple[Light, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Deletions:
+    """Names of what was taken out after the start."""
+
+    names: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """How a world was when Gazebo classic saved it, which comes before what the rest of the file says.
+
+    Attributes:
+        world_name: the world.
+        sim_time: simulated time in seconds.
+        iterations: how many steps were made.
+    """
+
+    world_name: str = ""
+    sim_time: float = 0.0
+    iterations: int = 0
+    models: tuple[ModelState, ...] = ()
+    lights: tuple[LightState, ...] = ()
+    insertions: Insertions = Insertions()
+    deletions: Deletions = Deletions()
+    element: Element | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class World:
+    """A world; lengths in metres, gravity in m/s2, the magnetic field in tesla, the wind in m/s.
+
+    Attributes:
+        gravity: None where the world says nothing; `linkwright.sdf.worlds.gravity_of` tells what then counts.
+        states: how it was when it was saved; Gazebo classic takes the last.
+    """
+
+    name: str = ""
+    gravity: Vector3 | None = None
+    magnetic_field: Vector3 = (5.5645e-6, 22.8758e-6, -42.3884e-6)
+    wind: Vector3 = (0.0, 0.0, 0.0)
+    physics: tuple[Physics, ...] = ()
+    scene: Scene = Scene()
+    spherical_coordinates: SphericalCoordinates | None = None
+    atmosphere: Atmosphere = Atmosphere()
+    models: tuple[Model, ...] = ()
+    includes: tuple[Include, ...] = ()
+    actors: tuple[Actor, ...] = ()
+    lights: tuple[Light, ...] = ()
+    joints: tuple[Joint, ...] = ()
+    frames: tuple[Frame, ...] = ()
+    plugins: tuple[Plugin, ...] = ()
+    roads: tuple[Road, ...] = ()
+    states: tuple[State, ...] = ()
+    element: Element | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Sdf:
+    """What a file says: worlds, or a model, light or actor by itself."""
+
+    version: str
+    worlds: tuple[World, ...] = ()
+    models: tuple[Model, ...] = ()
+    lights: tuple[Light, ...] = ()
+    actors: tuple[Actor, ...] = ()
+    element: Element | None = field(default=None, compare=False, repr=False)
+
+
+def gravity_of(world: World) -> Vector3:
+    """The gravity that counts, in m/s2: the world's, that of its physics in old files, or the usual."""
+    if world.gravity is not None:
+        return world.gravity
+    physics = physics_of(world)
+    return physics.gravity or (0.0, 0.0, -9.8)
+
+
+def physics_of(world: World) -> Physics:
+    """The physics that counts: the one marked as default, or the first."""
+    return next((each for each in world.physics if each.default), world.physics[0] if world.physics else Physics())
+
+
+@dataclass(frozen=True, slots=True)
+class _Wind:
+    linear_velocity: Vector3
+
+
+def _world(wind: _Wind | None, **parts: Any) -> World:
+    return World(wind=wind.linear_velocity if wind else (0.0, 0.0, 0.0), **parts)
+
+
+PHYSICS = ElementRule(
+    "physics",
+    "how time goes",
+    (
+        AttributeRule("name", TEXT, "its name", default="default_physics"),
+        AttributeRule("type", TEXT, "the engine that the author had in mind", default="ode"),
+        AttributeRule("default", TRUTH, "whether this is the one to take among several", default="false"),
+    ),
+    (
+        value("max_step_size", NUMBER, "the step", "s", default="0.001"),
+        value("real_time_factor", NUMBER, "how many times faster than real time it goes at most", default="1"),
+        value(
+            "real_time_update_rate", NUMBER, "steps a real second; 0 for as many as there can be", "Hz", default="1000"
+        ),
+        value("max_contacts", INTEGER, "how many points of contact of two shapes count at most", default="20"),
+        value("gravity", VECTOR3, "gravity, up to SDF 1.5", "m/s2"),
+    ),
+    many=True,
+    make=Physics,
+    keeps=True,
+    located=True,
+)
+
+_STATE_POSE = replace(POSE, default=None)
+
+_LINK_STATE = ElementRule(
+    "link",
+    "where a link was",
+    (name_of("its name"),),
+    (_STATE_POSE,),
+    many=True,
+    make=LinkState,
+    keeps=True,
+    field="links",
+)
+
+_MODEL_STATE = ElementRule(
+    "model",
+    "where a model was",
+    (name_of("its name"),),
+    (_STATE_POSE, value("scale", VECTOR3, "its scale", default="1 1 1"), _LINK_STATE),
+    many=True,
+    make=ModelState,
+    keeps=True,
+    located=True,
+    nests=True,
+    field="models",
+)
+
+STATE = ElementRule(
+    "state",
+    "how the world was when it was saved",
+    (AttributeRule("world_name", TEXT, "the world", default=""),),
+    (
+        value("sim_time", TIME, "simulated time", "s", default="0"),
+        value("iterations", INTEGER, "how many steps were made", default="0"),
+        _MODEL_STATE,
+        ElementRule(
+            "light",
+            "where a light was",
+            (name_of("its name"),),
+            (_STATE_POSE,),
+            many=True,
+            make=LightState,
+            keeps=True,
+            field="lights",
+        ),
+        made(Insertions, "insertions", "what was put in after the start", MODEL, LIGHT, default=Insertions()),
+        made(
+            Deletions,
+            "deletions",
+            "what was taken out after the start",
+            values("name", TEXT, "its name"),
+            default=Deletions(),
+        ),
+    ),
+    many=True,
+    make=State,
+    keeps=True,
+    located=True,
+    field="states",
+)
+
+WORLD = ElementRule(
+    "world",
+    "a world",
+    (AttributeRule("name", TEXT, "its name", required=True, default="default"),),
+    (
+        value("gravity", VECTOR3, "gravity", "m/s2"),
+        value("magnetic_field", VECTOR3, "the magnetic field", "T", default="5.5645e-6 22.8758e-6 -42.3884e-6"),
+        made(
+            _Wind,
+            "wind",
+            "the wind",
+            value("linear_velocity", VECTOR3, "its velocity", "m/s", default="0 0 0"),
+        ),
+        PHYSICS,
+        made(
+            Scene,
+            "scene",
+            "how the world looks",
+            value("ambient", COLOR, "the colour of the shade", default="0.4 0.4 0.4 1"),
+            value("background", COLOR, "the colour behind everything", default="0.7 0.7 0.7 1"),
+            value("shadows", TRUTH, "whether there are shadows", default="true"),
+            value("grid", TRUTH, "whether a grid is drawn", default="true"),
+            value("origin_visual", TRUTH, "whether the origin is drawn", default="true"),
+            default=Scene(),
+        ),
+        made(
+            SphericalCoordinates,
+            "spherical_coordinates",
+            "where on earth the origin is",
+            value("surface_model", TEXT, "the ellipsoid", default="EARTH_WGS84"),
+            value("world_frame_orientation", TEXT, "the axes: ENU, NED or NWU", default="ENU"),
+            value("latitude_deg", NUMBER, "degrees north", "deg", default="0"),
+            value("longitude_deg", NUMBER, "degrees east", "deg", default="0"),
+            value("elevation", NUMBER, "height above the ellipsoid", "m", default="0"),
+            value("heading_deg", NUMBER, "how the x axis is turned", "deg", default="0"),
+        ),
+        ElementRule(
+            "atmosphere",
+            "the air",
+            (AttributeRule("type", TEXT, "how it is modelled", default="adiabatic"),),
+            (
+                value("temperature", NUMBER, "its temperature at the origin", "K", default="288.15"),
+                value("temperature_gradient", NUMBER, "how it changes with the height", "K/m", default="-0.0065"),
+                value("pressure", NUMBER, "its pressure at the origin", "Pa", default="101325"),
+            ),
+            make=Atmosphere,
+            keeps=True,
+            default=Atmosphere(),
+        ),
+        MODEL,
+        INCLUDE,
+        ACTOR,
+        LIGHT,
+        JOINT,
+        FRAME,
+        PLUGIN,
+        ElementRule(
+            "road",
+            "a road",
+            (AttributeRule("name", TEXT, "its name", default=""),),
+            (
+                value("width", NUMBER, "its width", "m", default="1"),
+                values("point", VECTOR3, "a point that it goes through"),
+            ),
+            many=True,
+            make=Road,
+            keeps=True,
+            located=True,
+            field="roads",
+        ),
+        STATE,
+    ),
+    many=True,
+    make=_world,
+    keeps=True,
+    located=True,
+    owns=True,
+    field="worlds",
+)
+
+SDF = ElementRule(
+    "sdf",
+    "worlds, or a model, light or actor by itself",
+    (AttributeRule("version", TEXT, "the version of SDF, 1.3 to 1.12", required=True, default="1.6"),),
+    (WORLD, MODEL, LIGHT, ACTOR),
+    make=Sdf,
+    keeps=True,
+    located=True,
+)

@@ -1,0 +1,367 @@
+"""What the reader makes of each part of SDF."""
+
+from __future__ import annotations
+
+from dataclasses import MISSING, fields, is_dataclass
+from math import inf, isclose, pi, radians
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere
+from linkwright.geometry.single import Pose
+from linkwright.schema import ElementRule, reader_of
+from linkwright.sdf import shapes
+from linkwright.sdf.joints import AxisDynamics, AxisLimit, AxisMimic
+from linkwright.sdf.lights import Attenuation, Spot
+from linkwright.sdf.links import Inertia
+from linkwright.sdf.materials import MaterialScript
+from linkwright.sdf.poses import RawPose
+from linkwright.sdf.reader import read
+from linkwright.sdf.report import NEWEST, SdfReport
+from linkwright.sdf.sensors import Noise, NoiseXyz, Reach, Sweep
+from linkwright.sdf.surfaces import Contact, Friction, Surface, TorsionalFriction
+from linkwright.sdf.text import parse_as_gazebo
+from linkwright.sdf.worlds import SDF, World, gravity_of, physics_of
+from linkwright.xmltree import Comment, Element
+from tests.sdf.worlds import model, world
+
+
+def rules(rule: ElementRule, seen: dict[int, ElementRule]) -> dict[int, ElementRule]:
+    """All rules below one, each once."""
+    if id(rule) not in seen:
+        seen[id(rule)] = rule
+        for child in rule.children:
+            rules(child, seen)
+    return seen
+
+
+MADE = [each for each in rules(SDF, {}).values() if is_dataclass(each.make)]
+
+
+@pytest.mark.parametrize("rule", MADE, ids=[f"{each.tag}{number}" for number, each in enumerate(MADE)])
+def test_an_empty_element_is_read_as_its_class_is_by_default(rule: ElementRule):
+    """The defaults of the table, which are SDF's, and those of the classes are the same ones."""
+    element = Element(rule.tag, {each.name: "n" for each in rule.attributes if each.required})
+    found = reader_of(rule, NEWEST).read(element, element, SdfReport())
+    own = {each.name: each.default for each in fields(rule.make) if each.default is not MISSING}
+    if isinstance(rule.default, rule.make):
+        own = {name: getattr(rule.default, name) for name in own}
+    own.pop("element", None)
+    written = {each.target for each in rule.attributes if each.required}
+    assert {name: getattr(found, name) for name in own if name not in written} == {
+        name: value for name, value in own.items() if name not in written
+    }
+
+
+def test_a_pose_is_in_metres_and_radians_and_may_be_in_degrees_or_a_quaternion():
+    assert model("<pose>1 2 3 0.1 0.2 0.3</pose>").pose == RawPose(Pose((1, 2, 3), (0.1, 0.2, 0.3)))
+    turned = model('<pose degrees="true">0 0 0 90 0 -45</pose>').pose.pose
+    assert turned.rpy == (radians(90), 0, radians(-45))
+    half = model('<pose rotation_format="quat_xyzw">0 0 1  0 0 2 0</pose>').pose.pose
+    assert half.quaternion == (0, 0, 1, 0)
+    assert isclose(abs(half.rpy[2]), pi)
+
+
+def test_a_pose_names_its_frame_by_the_old_word_too():
+    assert model('<link name="a"/><link name="b"><pose frame="a"/></link>').links[1].pose.relative_to == "a"
+    assert model('<link name="a"/><link name="b"><pose relative_to="a"/></link>').links[1].pose.relative_to == "a"
+
+
+@pytest.mark.parametrize(
+    ("text", "shape"),
+    [
+        ("<box><size>1 2 3</size></box>", Box((1, 2, 3))),
+        ("<box/>", Box((1, 1, 1))),
+        ("<sphere><radius>2</radius></sphere>", Sphere(2)),
+        ("<cylinder><radius>2</radius><length>3</length></cylinder>", Cylinder(2, 3)),
+        ("<capsule><radius>2</radius></capsule>", Capsule(2, 1)),
+        ("<cone><length>2</length></cone>", shapes.Cone(0.5, 2)),
+        ("<ellipsoid><radii>1 2 3</radii></ellipsoid>", shapes.Ellipsoid((1, 2, 3))),
+        ("<plane><normal>0 1 0</normal><size>2 3</size></plane>", shapes.Plane((0, 1, 0), (2, 3))),
+        (
+            "<mesh><uri>a.dae</uri><scale>2 2 2</scale><submesh><name>s</name><center>1</center></submesh></mesh>",
+            shapes.Mesh("a.dae", (2, 2, 2), shapes.Submesh("s", center=True)),
+        ),
+        ("<image><uri>a.png</uri><threshold>100</threshold></image>", shapes.Image("a.png", threshold=100)),
+        (
+            "<heightmap><uri>h.png</uri><size>8 8 1</size><texture><size>4</size></texture><blend/></heightmap>",
+            shapes.Heightmap("h.png", (8, 8, 1), textures=(shapes.TerrainTexture(size=4),), blends=(shapes.Blend(),)),
+        ),
+        (
+            "<polyline><point>0 0</point><point>1 0</point><point>0 1</point><height>2</height></polyline>",
+            (shapes.Polyline(((0, 0), (1, 0), (0, 1)), 2),),
+        ),
+        ("<empty/>", shapes.Empty()),
+        ("", shapes.Empty()),
+    ],
+)
+def test_shapes(text, shape):
+    part = model(f'<link name="a"><collision name="c"><geometry>{text}</geometry></collision></link>')
+    assert part.links[0].collisions[0].geometry == shape
+
+
+def test_a_link():
+    link = model(
+        """<link name="a"><pose>0 0 1 0 0 0</pose><gravity>0</gravity><kinematic>true</kinematic>
+        <inertial auto="TRUE"><mass>2</mass><pose>0 0 .5 0 0 0</pose><inertia><ixx>3</ixx><ixy>.1</ixy></inertia>
+        <density>700</density></inertial>
+        <velocity_decay><linear>.1</linear></velocity_decay></link>"""
+    ).links[0]
+    assert (link.gravity, link.kinematic, link.self_collide) == (False, True, None)
+    assert (link.velocity_decay.linear, link.velocity_decay.angular) == (0.1, 0)
+    inertial = link.inertial
+    assert inertial is not None
+    assert (inertial.mass, inertial.auto, inertial.density) == (2, True, 700)
+    assert inertial.inertia == Inertia(3, 1, 1, 0.1)
+    assert inertial.pose.pose.xyz == (0, 0, 0.5)
+
+
+def test_a_material():
+    material = (
+        model(
+            """<link name="a"><visual name="v"><transparency>.5</transparency><material>
+        <ambient>1 0 0</ambient><diffuse>1 0 0 .5</diffuse><lighting>0</lighting>
+        <script><uri>file://a</uri><uri>file://b</uri><name>Gazebo/Grey</name></script>
+        <shader type="normal_map_object_space"><normal_map>n.png</normal_map></shader>
+        <pbr><metal><albedo_map>a.png</albedo_map><roughness>.2</roughness></metal></pbr></material></visual></link>"""
+        )
+        .links[0]
+        .visuals[0]
+        .material
+    )
+    assert material is not None
+    assert (material.ambient, material.diffuse, material.specular) == ((1, 0, 0, 1), (1, 0, 0, 0.5), None)
+    assert material.lighting is False
+    assert material.script == MaterialScript(("file://a", "file://b"), "Gazebo/Grey")
+    assert material.shader is not None
+    assert material.shader.type == "normal_map_object_space"
+    assert material.pbr is not None
+    assert material.pbr.specular is None
+    assert material.pbr.metal is not None
+    assert (material.pbr.metal.albedo_map, material.pbr.metal.roughness) == ("a.png", 0.2)
+
+
+def test_a_surface():
+    surface = (
+        model(
+            """<link name="a"><collision name="c"><laser_retro>9</laser_retro><surface>
+        <friction><ode><mu>.5</mu><fdir1 ignition:expressed_in="b">1 0 0</fdir1><slip2>.1</slip2></ode>
+        <torsional><coefficient>2</coefficient></torsional></friction>
+        <contact><collide_bitmask>3</collide_bitmask><ode><kp>1e5</kp></ode></contact>
+        <bounce><restitution_coefficient>.9</restitution_coefficient><threshold>.1</threshold></bounce>
+        </surface></collision></link>""".replace("<link ", '<link xmlns:ignition="i" ')
+        )
+        .links[0]
+        .collisions[0]
+        .surface
+    )
+    friction = Friction(0.5, 1.0, (1, 0, 0), 0.0, 0.1, "b")
+    assert surface == Surface(
+        friction=friction,
+        torsional=TorsionalFriction(2),
+        contact=Contact(kp=1e5),
+        restitution=0.9,
+        bounce_threshold=0.1,
+        collide_bitmask=3,
+    )
+
+
+def test_a_joint():
+    joint = model(
+        """<link name="a"/><link name="b"/><joint name="j" type="revolute"><parent> a </parent><child>b</child>
+        <pose relative_to="a">0 0 1 0 0 0</pose><axis><xyz expressed_in="a">0 1 0</xyz>
+        <limit><lower>-1e16</lower><upper>2</upper><effort>-1</effort><velocity>3</velocity></limit>
+        <dynamics><damping>.1</damping><spring_stiffness>5</spring_stiffness></dynamics>
+        <mimic joint="k"><multiplier>2</multiplier><reference>.1</reference></mimic></axis>
+        <physics><ode><provide_feedback>1</provide_feedback></ode></physics></joint>"""
+    ).joints[0]
+    assert (joint.type, joint.parent, joint.child, joint.pose.relative_to) == ("revolute", "a", "b", "a")
+    assert joint.provide_feedback
+    assert joint.axis2 is None
+    axis = joint.axis
+    assert axis is not None
+    assert (axis.xyz, axis.expressed_in) == ((0, 1, 0), "a")
+    assert axis.limit == AxisLimit(-inf, 2, inf, 3)
+    assert axis.dynamics == AxisDynamics(damping=0.1, spring_stiffness=5)
+    assert axis.mimic == AxisMimic("k", multiplier=2, reference=0.1)
+
+
+def test_the_pitch_of_a_screw_is_in_metres_for_each_turn_whichever_word_says_it():
+    ends = "<parent>a</parent><child>b</child>"
+    inside = '<link name="a"/><link name="b"/><joint name="j" type="screw">{}</joint>'
+    new = model(inside.format(f"{ends}<screw_thread_pitch>.01</screw_thread_pitch>")).joints[0]
+    old = model(inside.format(f"{ends}<thread_pitch>{-2 * pi / 0.01}</thread_pitch>")).joints[0]
+    assert new.thread_pitch == 0.01
+    assert old.thread_pitch is not None
+    assert isclose(old.thread_pitch, 0.01)
+
+
+def test_a_lidar_by_both_words():
+    scan = """<scan><horizontal><samples>360</samples><min_angle>-3</min_angle><max_angle>3</max_angle></horizontal>
+        </scan><range><min>.1</min><max>8</max></range><noise><stddev>.01</stddev></noise>"""
+    for word in ("ray", "lidar"):
+        sensor = (
+            model(
+                f"""<link name="a"><sensor name="s" type="gpu_lidar"><update_rate>5</update_rate><topic>scan</topic>
+            <gz_frame_id>f</gz_frame_id><{word}>{scan}</{word}></sensor></link>"""
+            )
+            .links[0]
+            .sensors[0]
+        )
+        assert (sensor.type, sensor.update_rate, sensor.topic, sensor.frame_id) == ("gpu_lidar", 5, "scan", "f")
+        lidar = sensor.lidar
+        assert lidar is not None
+        assert lidar.horizontal == Sweep(360, 1, -3, 3)
+        assert lidar.vertical == Sweep(1, 1, 0, 0)
+        assert lidar.range == Reach(0.1, 8)
+        assert lidar.noise == Noise("gaussian", 0, 0.01)
+
+
+def test_a_camera():
+    camera = (
+        model(
+            """<link name="a"><sensor name="s" type="rgbd_camera"><camera name="c"><horizontal_fov>1</horizontal_fov>
+        <image><width>64</width><height>48</height><format>L8</format></image><clip><near>.2</near></clip>
+        <distortion><k1>.1</k1></distortion><depth_camera><clip><far>5</far></clip></depth_camera>
+        <lens><intrinsics><fx>50</fx></intrinsics></lens><noise><type>gaussian</type><mean>1</mean></noise>
+        </camera></sensor></link>"""
+        )
+        .links[0]
+        .sensors[0]
+        .cameras[0]
+    )
+    assert (camera.name, camera.horizontal_fov) == ("c", 1)
+    assert (camera.image.width, camera.image.height, camera.image.format) == (64, 48, "L8")
+    assert (camera.clip.near, camera.clip.far) == (0.2, 100)
+    assert camera.depth_clip is not None
+    assert camera.depth_clip.far == 5
+    assert camera.distortion is not None
+    assert camera.distortion.k1 == 0.1
+    assert camera.intrinsics is not None
+    assert camera.intrinsics.fx == 50
+    assert camera.noise == Noise("gaussian", 1)
+
+
+def test_an_imu_and_a_receiver():
+    noise = '<noise type="gaussian"><stddev>{}</stddev></noise>'
+    imu, gps = (
+        model(
+            f"""<link name="a"><sensor name="i" type="imu"><imu>
+        <angular_velocity><x>{noise.format(1)}</x><z>{noise.format(3)}</z></angular_velocity>
+        <orientation_reference_frame><localization>NED</localization></orientation_reference_frame></imu></sensor>
+        <sensor name="g" type="gps"><gps><position_sensing><vertical>{noise.format(2)}</vertical></position_sensing>
+        </gps></sensor></link>"""
+        )
+        .links[0]
+        .sensors
+    )
+    assert imu.imu is not None
+    assert imu.imu.angular_velocity == NoiseXyz(Noise("gaussian", 0, 1), z=Noise("gaussian", 0, 3))
+    assert imu.imu.localization == "NED"
+    assert gps.navsat is not None
+    assert gps.navsat.vertical_position.stddev == 2
+
+
+def test_a_light():
+    light = world(
+        """<light name="l" type="spot"><pose>0 0 5 0 0 0</pose><diffuse>1 .5 0 1</diffuse><cast_shadows>1</cast_shadows>
+        <attenuation><range>20</range></attenuation><spot><inner_angle>.1</inner_angle><outer_angle>.5</outer_angle>
+        <falloff>1</falloff></spot></light>"""
+    ).lights[0]
+    assert (light.type, light.cast_shadows, light.diffuse) == ("spot", True, (1, 0.5, 0, 1))
+    assert light.attenuation == Attenuation(20)
+    assert light.spot == Spot(0.1, 0.5, 1)
+
+
+def test_an_actor():
+    actor = world(
+        """<actor name="a"><skin><filename>walk.dae</filename></skin><animation name="walking">
+        <filename>walk.dae</filename><interpolate_x>true</interpolate_x></animation><script><loop>0</loop>
+        <delay_start>2</delay_start><trajectory id="0" type="walking"><waypoint><time>0</time><pose>0 0 1 0 0 0</pose>
+        </waypoint><waypoint><time>4.5</time><pose>1 0 1 0 0 0</pose></waypoint></trajectory></script></actor>"""
+    ).actors[0]
+    assert actor.skin is not None
+    assert actor.skin.filename == "walk.dae"
+    assert actor.animations[0].interpolate_x
+    assert (actor.script.loop, actor.script.delay_start) == (False, 2)
+    path = actor.script.trajectories[0]
+    assert [(each.time, each.pose.pose.xyz) for each in path.waypoints] == [(0, (0, 0, 1)), (4.5, (1, 0, 1))]
+
+
+def test_plugins_keep_their_parameters():
+    plugin = model('<link name="a"/><plugin filename="libx.so" name="x"><rate>5</rate></plugin>').plugins[0]
+    assert (plugin.filename, plugin.name) == ("libx.so", "x")
+    assert plugin.element is not None
+    rate = plugin.element.first("rate")
+    assert rate is not None
+    assert rate.text() == "5"
+
+
+def test_two_equal_plugins_are_two():
+    same = '<plugin filename="libx.so" name="x"/>'
+    first, second = model(f'<link name="a"/>{same}{same}').plugins
+    assert first.element is not second.element
+
+
+def test_a_world():
+    found = world(
+        """<gravity>0 0 -1.6</gravity><wind><linear_velocity>1 0 0</linear_velocity></wind>
+        <physics type="ode"/><physics type="dart" default="1"><max_step_size>.004</max_step_size></physics>
+        <scene><shadows>0</shadows></scene><spherical_coordinates><latitude_deg>48</latitude_deg>
+        </spherical_coordinates><frame name="f"/><model name="o"><model name="i"><link name="l"/></model></model>"""
+    )
+    assert gravity_of(found) == (0, 0, -1.6)
+    assert found.wind == (1, 0, 0)
+    assert physics_of(found).max_step_size == 0.004
+    assert found.scene.shadows is False
+    assert found.spherical_coordinates is not None
+    assert found.spherical_coordinates.latitude_deg == 48
+    assert found.models[0].models[0].links[0].name == "l"
+
+
+def test_the_gravity_of_old_worlds_is_that_of_their_physics():
+    assert gravity_of(World()) == (0.0, 0.0, -9.8)
+    assert gravity_of(world("<physics><gravity>0 0 -9</gravity></physics>")) == (0, 0, -9)
+    assert gravity_of(world("<gravity>0 0 -2</gravity><physics><gravity>0 0 -9</gravity></physics>")) == (0, 0, -2)
+
+
+def test_comments_keep_their_hyphens():
+    text = '<sdf version="1.6"><!-- a --b- c --><world name="w"/><!----x----></sdf>'
+    document, warnings = parse_as_gazebo(text, "w.sdf")
+    comments = [each.data for each in document.root.children if isinstance(each, Comment)]
+    assert comments == [" a --b- c ", "--x--"]
+    assert [each.code for each in warnings] == ["XML206"]
+    assert document.source is not None
+    assert document.source.text == text
+
+
+def test_words_of_sdf_without_effect_here_are_let_be():
+    world("<gui fullscreen='0'><camera name='c'/><anything/></gui><physics><ode><solver/></ode></physics>")
+    model('<link name="a"><must_be_base_link>1</must_be_base_link></link><plugin filename="p"><any/></plugin>')
+
+
+@given(st.text(alphabet="<>/=\"' sdfworlmk123.-", max_size=60), st.integers(0, 10**6))
+def test_no_text_is_too_much_for_the_reader(text, at):
+    """Pieces of a world with something else put in: a tree that is XML is read, whatever it says."""
+    whole = (
+        '<sdf version="1.6"><world name="w"><model name="m"><pose>0 0 0 0 0 0</pose><link name="l"><visual name="v">'
+        "<geometry><box><size>1 1 1</size></box></geometry></visual></link></model></world></sdf>"
+    )
+    at %= len(whole)
+    try:
+        document, _ = parse_as_gazebo(whole[:at] + text + whole[at:], "w.sdf")
+    except LinkwrightError:
+        return
+    read(document)
+
+
+def test_tags_may_stand_anywhere():
+    """Each element of the table in each other one: nothing is raised, whatever stands where."""
+    tags = sorted({each.tag for each in rules(SDF, {}).values()})
+    for rule in rules(SDF, {}).values():
+        element = Element(rule.tag, {"name": "n"})
+        element.children += [Element(tag, {"name": "n", "type": "x", "value": "y"}) for tag in tags]
+        reader_of(rule, NEWEST).read(element, element, SdfReport())
