@@ -1,0 +1,234 @@
+"""Where everything stands: the frames of models and worlds, as "pose frame semantics" of SDF 1.7 and later has them.
+
+Source: the proposal "Pose Frame Semantics" of SDFormat. Poses of older files, which name no frames, come out the same.
+A frame is named within its model or world; ``arm::tip`` is the frame ``tip`` of the model ``arm`` in it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from linkwright.geometry.single import (
+    IDENTITY,
+    Pose,
+    Transform,
+    compose,
+    invert,
+    quaternion_of,
+    rotate,
+    rpy_from_quaternion,
+)
+from linkwright.geometry.vectors import Vector3
+from linkwright.sdf.joints import Axis, Joint
+from linkwright.sdf.links import Link
+from linkwright.sdf.models import Frame, Model
+from linkwright.sdf.poses import RawPose
+from linkwright.sdf.worlds import World
+
+WORLD = "world"
+MODEL = "__model__"
+SEPARATOR = "::"
+
+Owner = Model | World
+Framed = Link | Joint | Frame | Model
+
+
+class FrameError(Exception):
+    """A frame cannot be placed.
+
+    Attributes:
+        name: the frame that is not there, or one of those that stand in a circle.
+        circle: the frames of the circle in their order; empty where a frame is not there.
+    """
+
+    def __init__(self, name: str, circle: Sequence[str] = ()) -> None:
+        super().__init__(name)
+        self.name = name
+        self.circle = tuple(circle)
+
+
+class Frames:
+    """The frames of a model or world, by names.
+
+    Args:
+        owner: the model or world, with its includes resolved.
+    """
+
+    def __init__(self, owner: Owner) -> None:
+        self.owner = owner
+        named: dict[str, Framed] = {}
+        links = owner.links if isinstance(owner, Model) else ()
+        things: tuple[Framed, ...] = (*links, *owner.frames, *owner.joints, *owner.models)
+        for each in things:
+            named.setdefault(each.name, each)
+        self.named = named
+        self._roots = frozenset({"", MODEL} if isinstance(owner, Model) else {"", WORLD})
+        self._inner: dict[str, Frames] = {}
+        self._poses: dict[str, Transform] = {}
+        self._path: dict[str, None] = {}
+
+    def __contains__(self, name: str) -> bool:
+        head, colon, tail = name.partition(SEPARATOR)
+        if not colon:
+            return name in self._roots or name in self.named
+        return isinstance(self.named.get(head), Model) and tail in self.inside(head)
+
+    def inside(self, name: str) -> Frames:
+        """The frames of a model in it."""
+        frames = self._inner.get(name)
+        if frames is None:
+            model = self.named.get(name)
+            if not isinstance(model, Model):
+                raise FrameError(name)
+            frames = self._inner[name] = Frames(model)
+        return frames
+
+    def pose(self, name: str) -> Transform:
+        """Where a frame stands in the frame of the model or world.
+
+        Raises:
+            FrameError: it is not there, or stands relative to itself by way of others.
+        """
+        if name in self._roots:
+            return IDENTITY
+        known = self._poses.get(name)
+        if known is not None:
+            return known
+        if name in self._path:
+            circle = list(self._path)
+            raise FrameError(name, [*circle[circle.index(name) :], name])
+        self._path[name] = None
+        try:
+            found = self._poses[name] = self._worked_out(name)
+        finally:
+            del self._path[name]
+        return found
+
+    def placed(self, pose: RawPose, absent: str = "") -> Transform:
+        """Where a pose is in the frame of the model or world.
+
+        Args:
+            pose: as written.
+            absent: the frame in which it is where it names none.
+
+        Raises:
+            FrameError: as for `pose`.
+        """
+        return compose(self.pose(pose.relative_to or absent), transform_of(pose.pose))
+
+    def axis(self, joint: Joint, axis: Axis) -> Vector3:
+        """The direction of an axis in the frame of its joint.
+
+        Raises:
+            FrameError: as for `pose`.
+        """
+        expressed_in = axis.expressed_in or (MODEL if axis.use_parent_model_frame else "")
+        if not expressed_in:
+            return axis.xyz
+        in_owner = rotate(self.pose(expressed_in)[3:], axis.xyz)
+        return rotate(invert(self.pose(joint.name))[3:], in_owner)
+
+    def link(self, name: str) -> str:
+        """The link that a frame moves with, named from here; ``world`` for what moves with the world.
+
+        Raises:
+            FrameError: it is not there, moves with itself by way of others, or the model has no link.
+        """
+        seen: dict[str, None] = {}
+        while True:
+            if name in seen:
+                raise FrameError(name, [*list(seen)[list(seen).index(name) :], name])
+            seen[name] = None
+            if name == WORLD or (name == "" and isinstance(self.owner, World)):
+                return WORLD
+            head, colon, tail = name.partition(SEPARATOR)
+            if colon:
+                return f"{head}{SEPARATOR}{self.inside(head).link(tail)}"
+            if name in ("", MODEL):
+                return self._canonical_link()
+            found = self.named.get(name)
+            if found is None:
+                raise FrameError(name)
+            if isinstance(found, Link):
+                return name
+            if isinstance(found, Model):
+                return f"{name}{SEPARATOR}{self.inside(name).link(MODEL)}"
+            name = found.attached_to if isinstance(found, Frame) else found.child
+
+    def _canonical_link(self) -> str:
+        """The link that the frame of the model is attached to: the one it names, or the first in it."""
+        model = self.owner
+        assert isinstance(model, Model)
+        if model.canonical_link:
+            return self.link(model.canonical_link)
+        if model.links:
+            return model.links[0].name
+        for inner in model.models:
+            return f"{inner.name}{SEPARATOR}{self.inside(inner.name).link(MODEL)}"
+        raise FrameError(MODEL)
+
+    def _worked_out(self, name: str) -> Transform:
+        head, colon, tail = name.partition(SEPARATOR)
+        if colon:
+            return compose(self.pose(head), self.inside(head).pose(tail))
+        found = self.named.get(name)
+        if found is None:
+            raise FrameError(name)
+        if isinstance(found, Model):
+            placed = self.placed(found.pose)
+            inside = self.inside(name).pose(found.placement_frame)
+            return compose(placed, invert(inside)) if found.placement_frame else placed
+        absent = found.attached_to if isinstance(found, Frame) else found.child if isinstance(found, Joint) else ""
+        return self.placed(found.pose, absent)
+
+
+@dataclass(frozen=True, slots=True)
+class PlacedLink:
+    """A link of a world.
+
+    Attributes:
+        name: with the models that it is in: ``robot::arm::tip``.
+        link: what is written about it.
+        model: the model that it is directly in.
+        pose: where its frame stands in the world.
+        static: whether its model, or one around that, never moves.
+    """
+
+    name: str
+    link: Link
+    model: Model
+    pose: Transform
+    static: bool
+
+
+def placed_links(world: World) -> Iterator[PlacedLink]:
+    """All links of a world, in the order of the file, each with its place.
+
+    Raises:
+        FrameError: one cannot be placed.
+    """
+    frames = Frames(world)
+    for model in world.models:
+        yield from _placed(model, frames.inside(model.name), frames.pose(model.name), model.name, static=False)
+
+
+def _placed(model: Model, frames: Frames, pose: Transform, path: str, *, static: bool) -> Iterator[PlacedLink]:
+    static = static or model.static
+    for link in model.links:
+        place = compose(pose, frames.pose(link.name))
+        yield PlacedLink(f"{path}{SEPARATOR}{link.name}", link, model, place, static)
+    for inner in model.models:
+        place = compose(pose, frames.pose(inner.name))
+        yield from _placed(inner, frames.inside(inner.name), place, f"{path}{SEPARATOR}{inner.name}", static=static)
+
+
+def transform_of(pose: Pose) -> Transform:
+    """A pose as a transform."""
+    return (*pose.xyz, *quaternion_of(pose))
+
+
+def pose_of(transform: Transform) -> Pose:
+    """A transform as a pose."""
+    rotation = transform[3:]
+    return Pose(transform[:3], rpy_from_quaternion(rotation), rotation)

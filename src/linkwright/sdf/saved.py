@@ -1,0 +1,71 @@
+"""``<state>``: a world as Gazebo classic saved it.
+
+A saved world says twice where everything is: in the models as they were written first, and in ``<state>``, which is
+what the simulator goes by. Poses in a state are in the frame of the world.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from linkwright.geometry.single import Transform, compose, invert
+from linkwright.sdf.frames import FrameError, Frames, pose_of, transform_of
+from linkwright.sdf.models import Model
+from linkwright.sdf.poses import RawPose
+from linkwright.sdf.worlds import ModelState, World
+
+
+def as_saved(world: World) -> World:
+    """A world, with its includes resolved, as its last state says; a world without a state is returned as it is."""
+    if not world.states:
+        return world
+    state = world.states[-1]
+    gone = set(state.deletions.names)
+    models = [each for each in (*world.models, *state.insertions.models) if each.name not in gone]
+    lights = [each for each in (*world.lights, *state.insertions.lights) if each.name not in gone]
+    placed = {each.name: each for each in state.models}
+    frames = Frames(world)
+    poses = {each.name: each.pose for each in state.lights if each.pose is not None}
+    return replace(
+        world,
+        models=tuple(_restored(model, placed.get(model.name), _place(frames, model)) for model in models),
+        lights=tuple(replace(each, pose=poses.get(each.name, each.pose)) for each in lights),
+    )
+
+
+def _place(frames: Frames, model: Model) -> Transform:
+    try:
+        return frames.pose(model.name)
+    except FrameError:
+        return transform_of(model.pose.pose)  # what is wrong with it is told by those who check frames
+
+
+def _restored(model: Model, state: ModelState | None, place: Transform) -> Model:
+    """A model as its state says; `place` is where it would be without one, in the world."""
+    if state is None:
+        return model
+    if state.pose is not None:
+        place = transform_of(state.pose.pose)
+        model = replace(model, pose=state.pose, placement_frame="")
+    to_model = invert(place)
+    links = {each.name: each.pose for each in state.links if each.pose is not None}
+    models = {each.name: each for each in state.models}
+
+    def inside(pose: RawPose) -> RawPose:
+        return RawPose(pose_of(compose(to_model, transform_of(pose.pose))))
+
+    def inner(each: Model) -> Model:
+        found = models.get(each.name)
+        if found is None or found.pose is None:
+            return each
+        restored = _restored(each, found, place)
+        return replace(restored, pose=inside(found.pose))
+
+    return replace(
+        model,
+        scale=state.scale if state.scale != (1.0, 1.0, 1.0) else model.scale,
+        links=tuple(
+            replace(each, pose=inside(links[each.name])) if each.name in links else each for each in model.links
+        ),
+        models=tuple(map(inner, model.models)),
+    )

@@ -1,0 +1,124 @@
+"""Where frames stand: worked out by hand."""
+
+from __future__ import annotations
+
+from math import pi, sqrt
+
+import pytest
+
+from linkwright.geometry.single import Transform
+from linkwright.sdf.frames import FrameError, Frames, placed_links
+from tests.sdf.worlds import model, world
+
+LINKS = '<link name="a"/><link name="b"><pose>1 0 0 0 0 0</pose></link>'
+TURN = f"0 0 0 0 0 {pi / 2}"
+
+
+def near(found: Transform, *xyz: float) -> bool:
+    return found[:3] == pytest.approx(xyz, abs=1e-12)
+
+
+def test_links_stand_in_the_frame_of_their_model_or_that_which_they_name():
+    frames = Frames(
+        model(
+            f"""<link name="a"><pose>1 0 0 0 0 {pi / 2}</pose></link>
+            <link name="b"><pose relative_to="a">1 0 0 0 0 0</pose></link>
+            <link name="c"><pose relative_to="__model__">0 0 1 0 0 0</pose></link>"""
+        )
+    )
+    assert near(frames.pose("a"), 1, 0, 0)
+    assert near(frames.pose("b"), 1, 1, 0)
+    assert near(frames.pose("c"), 0, 0, 1)
+    assert frames.pose("b")[3:] == pytest.approx((0, 0, sqrt(0.5), sqrt(0.5)))
+
+
+def test_joints_stand_in_the_frame_of_their_child():
+    frames = Frames(
+        model(
+            LINKS
+            + """<joint name="j" type="fixed"><parent>a</parent><child>b</child><pose>0 1 0 0 0 0</pose></joint>
+            <joint name="k" type="fixed"><parent>world</parent><child>a</child><pose relative_to="j">1 0 0 0 0 0</pose>
+            </joint>"""
+        )
+    )
+    assert near(frames.pose("j"), 1, 1, 0)
+    assert near(frames.pose("k"), 2, 1, 0)
+
+
+def test_frames_stand_where_they_are_attached_or_where_they_say():
+    frames = Frames(
+        model(
+            LINKS
+            + """<frame name="f" attached_to="b"><pose>0 0 1 0 0 0</pose></frame>
+            <frame name="g" attached_to="f"><pose relative_to="a">0 0 5 0 0 0</pose></frame><frame name="h"/>"""
+        )
+    )
+    assert near(frames.pose("f"), 1, 0, 1)
+    assert near(frames.pose("g"), 0, 0, 5)
+    assert near(frames.pose("h"), 0, 0, 0)
+    assert (frames.link("f"), frames.link("g"), frames.link("h")) == ("b", "b", "a")
+
+
+def test_names_reach_into_models():
+    frames = Frames(
+        model(
+            f"""<model name="arm"><pose>0 0 1 0 0 {pi / 2}</pose>{LINKS}<model name="hand"><pose>2 0 0 0 0 0</pose>
+            <link name="tip"><pose>0 0 1 0 0 0</pose></link></model></model>
+            <link name="lamp"><pose relative_to="arm::hand::tip">0 0 1 0 0 0</pose></link>"""
+        )
+    )
+    assert near(frames.pose("arm::b"), 0, 1, 1)
+    assert near(frames.pose("arm::hand::tip"), 0, 2, 2)
+    assert near(frames.pose("lamp"), 0, 2, 3)
+    assert frames.link("arm") == "arm::a"
+    assert "arm::hand::tip" in frames
+    assert "arm::hand::top" not in frames
+    assert "leg::tip" not in frames
+
+
+def test_the_frame_of_a_model_moves_with_its_canonical_link():
+    assert Frames(model(LINKS)).link("__model__") == "a"
+    assert Frames(model(LINKS, 'canonical_link="b"')).link("__model__") == "b"
+    only_inner = '<model name="i"><link name="l"/></model>'
+    assert Frames(model(only_inner)).link("__model__") == "i::l"
+
+
+def test_a_placement_frame_is_put_where_the_pose_says():
+    found = world(f"""<model name="m" placement_frame="b"><pose>5 0 0 0 0 {pi / 2}</pose>{LINKS}</model>""")
+    frames = Frames(found)
+    assert near(frames.pose("m"), 5, -1, 0)
+    assert near(frames.pose("m::b"), 5, 0, 0)
+
+
+def test_an_axis_is_told_in_the_frame_of_its_joint():
+    for written in (
+        '<xyz expressed_in="__model__">1 0 0</xyz>',
+        "<xyz>1 0 0</xyz><use_parent_model_frame>1</use_parent_model_frame>",
+    ):
+        owner = model(
+            f"""<link name="a"/><link name="b"><pose>{TURN}</pose></link>
+            <joint name="j" type="revolute"><parent>a</parent><child>b</child><axis>{written}</axis></joint>"""
+        )
+        joint = owner.joints[0]
+        assert joint.axis is not None
+        assert Frames(owner).axis(joint, joint.axis) == pytest.approx((0, -1, 0))
+
+
+def test_what_stands_nowhere_is_named():
+    frames = Frames(model(LINKS))
+    for name in ("c", "a::b", "c::d"):
+        with pytest.raises(FrameError):
+            frames.pose(name)
+
+
+def test_links_of_a_world_have_their_place_and_know_whether_they_move():
+    found = world(
+        f"""<model name="m"><pose>0 0 1 0 0 0</pose>{LINKS}</model>
+        <model name="s"><static>1</static><pose relative_to="m">0 1 0 0 0 0</pose><model name="i">
+        <pose>0 0 1 0 0 0</pose><link name="l"/></model></model>"""
+    )
+    assert [(each.name, each.pose[:3], each.static) for each in placed_links(found)] == [
+        ("m::a", (0, 0, 1), False),
+        ("m::b", (1, 0, 1), False),
+        ("s::i::l", (0, 1, 2), True),
+    ]
