@@ -10,11 +10,12 @@ from linkwright.urdf.plaintext import parse_as_urdfdom
 def describe(text: str) -> str:
     """What the reader says of a URDF text, one line for each fact."""
     reading = read(parse_as_urdfdom(text, "robot.urdf"))
-    lines = [line for diagnostic in reading.diagnostics for line in _lines(diagnostic)]
+    lines = [line for diagnostic in reading.diagnostics for line in lines_of(diagnostic)]
     return "\n".join([*lines, "robot: none" if reading.robot is None else "robot: kept"])
 
 
-def _lines(diagnostic: Diagnostic) -> list[str]:
+def lines_of(diagnostic: Diagnostic) -> list[str]:
+    """One finding, one line for each fact."""
     span, source = diagnostic.span, diagnostic.source
     assert span is not None
     assert source is not None

@@ -1,0 +1,198 @@
+"""Putting included models into the worlds and models that include them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Protocol
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, Severity, phrase, term
+from linkwright.sdf.actors import Actor
+from linkwright.sdf.lights import Light
+from linkwright.sdf.merging import merged
+from linkwright.sdf.models import Include, Model
+from linkwright.sdf.reader import Reading, read
+from linkwright.sdf.resources import Missing, ResourceFinder
+from linkwright.sdf.text import parse_as_gazebo
+from linkwright.sdf.worlds import Sdf, World
+from linkwright.xmltree.reader import read_bytes
+
+_DEEPEST = 64
+"""Models that include models that include models ...; files go no deeper."""
+_MOST = 100_000
+"""So many models may come of a file; with models that include others twice each, few lines make more."""
+
+
+@dataclass
+class Included:
+    """What came of resolving the includes of a file.
+
+    Attributes:
+        sdf: the file with the included models in the places of their includes, which are gone; an include that leads
+            nowhere stays.
+        diagnostics: what is wrong with the included files, and which includes lead nowhere.
+        files: the files that were read for it, each once.
+    """
+
+    sdf: Sdf
+    diagnostics: list[Diagnostic] = field(default_factory=list)
+    files: dict[Path, None] = field(default_factory=dict)
+
+
+def resolve_includes(sdf: Sdf, path: Path, finder: ResourceFinder) -> Included:
+    """Put what a file includes where it is included.
+
+    Args:
+        sdf: what the file says.
+        path: the file.
+        finder: where models are.
+    """
+    resolver = _Resolver(finder)
+    worlds = tuple(resolver.world(world, path) for world in sdf.worlds)
+    models = tuple(resolver.model(model, path, ()) for model in sdf.models)
+    return Included(replace(sdf, worlds=worlds, models=models), resolver.diagnostics, resolver.files)
+
+
+Thing = Model | Light | Actor
+
+
+class _Named(Protocol):
+    @property
+    def name(self) -> str: ...
+
+
+def _names(*groups: Iterable[_Named]) -> set[str]:
+    return {each.name for group in groups for each in group}
+
+
+class _Resolver:
+    def __init__(self, finder: ResourceFinder) -> None:
+        self.diagnostics: list[Diagnostic] = []
+        self.files: dict[Path, None] = {}
+        self._finder = finder
+        self._readings: dict[Path, Reading | None] = {}
+        self._count = 0
+
+    def world(self, world: World, path: Path) -> World:
+        models = [self.model(model, path, ()) for model in world.models]
+        lights, actors, left = list(world.lights), list(world.actors), []
+        names = _names(models, world.frames, world.joints)
+        for include in world.includes:
+            thing = self._included(include, path, ())
+            self._check_name(thing, include, names)
+            if isinstance(thing, Model):
+                models.append(thing)
+            elif isinstance(thing, Light):
+                lights.append(thing)
+            elif isinstance(thing, Actor):
+                actors.append(thing)
+            else:
+                left.append(include)
+        return replace(world, models=tuple(models), lights=tuple(lights), actors=tuple(actors), includes=tuple(left))
+
+    def model(self, model: Model, path: Path, chain: tuple[Path, ...]) -> Model:
+        if not (model.models or model.includes):
+            return model
+        inner = [self.model(each, path, chain) for each in model.models]
+        parts, left = [], []
+        names = _names(model.links, model.joints, model.frames, inner)
+        for include in model.includes:
+            thing = self._included(include, path, chain)
+            if not include.merge:
+                self._check_name(thing, include, names)
+            if not isinstance(thing, Model):
+                left.append(include)
+            elif include.merge:
+                parts.append(thing)
+            else:
+                inner.append(thing)
+        whole = replace(model, models=tuple(inner), includes=tuple(left))
+        for part in parts:
+            whole = merged(whole, part)
+        return whole
+
+    def _included(self, include: Include, path: Path, chain: tuple[Path, ...]) -> Thing | None:
+        """The included model, light or actor, as it is here; None where there is none, which has been told."""
+        if not include.uri:
+            return None  # which the reader told
+        found = self._finder.model(include.uri, path.parent)
+        if isinstance(found, Missing):
+            message = phrase("'{uri}' is left out: {reason}", uri=include.uri, reason=found.reason)
+            self._tell("SDF160", message, include, found.hint)
+            return None
+        if found in chain or found == path or len(chain) >= _DEEPEST:
+            self._tell("SDF161", phrase("'{uri}' includes itself", uri=include.uri), include, None)
+            return None
+        self._count += 1
+        if self._count > _MOST:
+            if self._count == _MOST + 1:
+                self._tell("SDF161", phrase("more than {count} models are included", count=_MOST), include, None)
+            return None
+        reading = self._read(found, include)
+        if reading is None or reading.sdf is None:
+            return None
+        sdf = reading.sdf
+        if sdf.models:
+            model = self.model(sdf.models[0], found, (*chain, path))
+            return _as_included(model, include)
+        if sdf.lights or sdf.actors:
+            thing: Light | Actor = sdf.lights[0] if sdf.lights else sdf.actors[0]
+            return replace(thing, name=include.name or thing.name, pose=include.pose or thing.pose)
+        self._tell("SDF160", phrase("'{uri}' is left out: there is no model in it", uri=include.uri), include, None)
+        return None
+
+    def _check_name(self, thing: Thing | None, include: Include, names: set[str]) -> None:
+        """Tell of an included model whose name something beside it has already, and keep the name in mind."""
+        if not isinstance(thing, Model):
+            return
+        if thing.name in names:
+            hint = phrase("give it a name of its own: <include><name>...</name>")
+            message = phrase("{kind} '{name}' is defined twice", kind=term("model"), name=thing.name)
+            self._tell("SDF110", message, include, hint, Severity.ERROR)
+        names.add(thing.name)
+
+    def _read(self, path: Path, include: Include) -> Reading | None:
+        """What a file says; what is wrong with it is told once, with the place that includes it."""
+        if path in self._readings:
+            return self._readings[path]
+        self.files[path] = None
+        found: tuple[Diagnostic, ...]
+        reading = None
+        try:
+            document, found = parse_as_gazebo(read_bytes(path), str(path))
+            reading = read(document)
+            found = (*found, *reading.diagnostics)
+        except LinkwrightError as error:
+            found = error.diagnostics
+        note = Note(phrase("included here"), include.element.span() if include.element else None)
+        self.diagnostics += [replace(each, notes=(*each.notes, note)) for each in found]
+        self._readings[path] = reading
+        return reading
+
+    def _tell(
+        self,
+        code: str,
+        message: Phrase,
+        include: Include,
+        hint: Phrase | None,
+        severity: Severity = Severity.WARNING,
+    ) -> None:
+        element = include.element
+        uri = None if element is None else element.first("uri")
+        place = uri or element
+        span = None if place is None else place.span()
+        source = None if place is None else place.source
+        self.diagnostics.append(Diagnostic(code, message, span, severity, hint=hint, source=source))
+
+
+def _as_included(model: Model, include: Include) -> Model:
+    """A model with what the include says about it."""
+    return replace(
+        model,
+        name=include.name or model.name,
+        pose=model.pose if include.pose is None else include.pose,
+        placement_frame=include.placement_frame or model.placement_frame,
+        static=model.static if include.static is None else include.static,
+        plugins=(*model.plugins, *include.plugins),
+    )

@@ -1,0 +1,56 @@
+"""What stands in a world, as text."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from linkwright.diagnostics import Phrase, counted, joined, phrase, term
+from linkwright.diagnostics.translation import localized
+from linkwright.sdf.models import Model
+from linkwright.sdf.worlds import Sdf, World
+
+
+def sdf_text(sdf: Sdf) -> str:
+    """Worlds with their models, lights and actors, models with those in them; two blanks a level, a line for each."""
+    lines: list[str] = []
+    for world in sdf.worlds:
+        lines += [_line(0, phrase("world {name}", name=world.name)), *_world(world)]
+    for model in sdf.models:
+        lines += _model(model, 0)
+    return "".join(f"{line}\n" for line in (*lines, *_others(sdf, 0)))
+
+
+def _world(world: World) -> Iterator[str]:
+    for model in world.models:
+        yield from _model(model, 1)
+    yield from _others(world, 1)
+    yield from (_line(1, phrase("{uri}: not found", uri=include.uri)) for include in world.includes)
+
+
+def _others(owner: Sdf | World, level: int) -> Iterator[str]:
+    yield from (_line(level, phrase("actor {name}", name=actor.name)) for actor in owner.actors)
+    for light in owner.lights:
+        yield _line(level, phrase("light {name}: {kind}", name=light.name, kind=term(light.type)))
+
+
+def _model(model: Model, level: int) -> Iterator[str]:
+    sensors = sum(len(link.sensors) for link in model.links)
+    parts = joined(
+        [
+            counted("{count} link", "{count} links", len(model.links)),
+            *([counted("{count} joint", "{count} joints", len(model.joints))] if model.joints else []),
+            *([counted("{count} sensor", "{count} sensors", sensors)] if sensors else []),
+            *([counted("{count} plugin", "{count} plugins", len(model.plugins))] if model.plugins else []),
+        ]
+    )
+    if model.static:
+        yield _line(level, phrase("static model {name}: {parts}", name=model.name, parts=parts))
+    else:
+        yield _line(level, phrase("model {name}: {parts}", name=model.name, parts=parts))
+    for inner in model.models:
+        yield from _model(inner, level + 1)
+    yield from (_line(level + 1, phrase("{uri}: not found", uri=include.uri)) for include in model.includes)
+
+
+def _line(level: int, text: Phrase) -> str:
+    return "  " * level + localized(text)

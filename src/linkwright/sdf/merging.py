@@ -1,0 +1,77 @@
+"""``<include merge="true">``: the parts of one model become parts of another (SDF 1.9).
+
+Source: the proposal "Merge include" of SDFormat and libsdformat's frame ``_merged__NAME__model__``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TypeVar
+
+from linkwright.geometry.single import compose, invert
+from linkwright.sdf.frames import MODEL, Frames, pose_of, transform_of
+from linkwright.sdf.joints import Axis, Joint
+from linkwright.sdf.links import Link
+from linkwright.sdf.models import Frame, Model
+from linkwright.sdf.poses import RawPose
+
+_Posed = TypeVar("_Posed", Link, Frame, Model)
+
+
+def merged(whole: Model, part: Model) -> Model:
+    """A model with the parts of another as its own.
+
+    What stood in the frame of the other model stands in a frame of its own, which is placed as the other model was.
+
+    Raises:
+        FrameError: the other model's placement frame is not there.
+    """
+    frame = f"_merged__{part.name}__model__"
+    pose = part.pose
+    if part.placement_frame:
+        inside = Frames(part).pose(part.placement_frame)
+        pose = RawPose(pose_of(compose(transform_of(pose.pose), invert(inside))), pose.relative_to)
+    anchor = part.canonical_link or (part.links[0].name if part.links else "")
+    pose = RawPose(pose.pose, pose.relative_to or MODEL)
+    frames = (Frame(frame, anchor, pose), *(_attached(_moved(each, frame), frame) for each in part.frames))
+    return replace(
+        whole,
+        links=(*whole.links, *(_moved(each, frame) for each in part.links)),
+        joints=(*whole.joints, *(_connected(each, frame) for each in part.joints)),
+        frames=(*whole.frames, *frames),
+        models=(*whole.models, *(_moved(each, frame) for each in part.models)),
+        plugins=(*whole.plugins, *part.plugins),
+    )
+
+
+def _moved(thing: _Posed, frame: str) -> _Posed:
+    """A part whose pose was in the frame of its model: now in that which stands for it."""
+    pose = thing.pose
+    is_attached = isinstance(thing, Frame) and thing.attached_to != ""
+    if pose.relative_to == MODEL or (pose.relative_to == "" and not is_attached):
+        return replace(thing, pose=RawPose(pose.pose, frame))
+    return thing
+
+
+def _attached(thing: Frame, frame: str) -> Frame:
+    return replace(thing, attached_to=frame) if thing.attached_to in ("", MODEL) else thing
+
+
+def _connected(joint: Joint, frame: str) -> Joint:
+    """A joint whose ends, pose or axes were in the frame of its model; its pose is in the frame of its child."""
+    pose = RawPose(joint.pose.pose, frame) if joint.pose.relative_to == MODEL else joint.pose
+    return replace(
+        joint,
+        parent=frame if joint.parent == MODEL else joint.parent,
+        child=frame if joint.child == MODEL else joint.child,
+        pose=pose,
+        axis=_turned(joint.axis, frame),
+        axis2=_turned(joint.axis2, frame),
+    )
+
+
+def _turned(axis: Axis | None, frame: str) -> Axis | None:
+    """An axis that was in the frame of its model."""
+    if axis is None or not (axis.expressed_in == MODEL or axis.use_parent_model_frame):
+        return axis
+    return replace(axis, expressed_in=frame, use_parent_model_frame=False)

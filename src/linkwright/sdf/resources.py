@@ -1,0 +1,226 @@
+"""Finding models and the files of models: ``model://``, ``package://``, ``file://``, paths, Fuel addresses."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
+from functools import cached_property
+from pathlib import Path
+from typing import NamedTuple
+from urllib.parse import unquote, urlsplit
+
+from linkwright.diagnostics import LinkwrightError, Phrase, did_you_mean, joined, phrase
+from linkwright.packages import PackageFinder
+from linkwright.packages.manifest import MANIFEST
+from linkwright.packages.readers.package_xml import Manifest
+from linkwright.xmltree.reader import parse_file
+
+SEARCH_VARIABLES = (
+    "GZ_SIM_RESOURCE_PATH",
+    "IGN_GAZEBO_RESOURCE_PATH",
+    "SDF_PATH",
+    "GAZEBO_MODEL_PATH",
+    "GAZEBO_RESOURCE_PATH",
+)
+"""The environment variables with folders in which models and their files are looked for, in this order."""
+
+CONFIG = "model.config"
+_MODEL_FILE = "model.sdf"
+_SHIPPED = Path(__file__).parent / "models"
+_NEWEST_MINOR = 12
+_SUN_AND_GROUND = {"sun": "sun", "ground plane": "ground_plane"}
+"""Models of Fuel that stand in nearly every world, and ours by which they are replaced."""
+
+
+class Missing(NamedTuple):
+    """Why an address leads nowhere, and what to do about it."""
+
+    reason: Phrase
+    hint: Phrase | None
+
+
+class ResourceFinder:
+    """Finds what worlds refer to.
+
+    ``model://NAME/PATH`` is looked for as ``NAME/PATH`` in, one after the other,
+
+    1. the folders of `SEARCH_VARIABLES`,
+    2. those that packages export for it in their ``package.xml`` (``<gazebo_ros gazebo_model_path="..."/>``),
+    3. the folders that hold packages, so that ``model://PACKAGE/PATH`` works as in gz,
+    4. the folder ``models`` of each package,
+    5. our own: ``ground_plane`` and ``sun``.
+
+    Nothing is fetched from the network: of addresses on Fuel only what gz has put into its cache is found.
+
+    Args:
+        packages: where packages are.
+        environment: the variables; those of the process by default.
+    """
+
+    def __init__(self, packages: PackageFinder, environment: Mapping[str, str] | None = None) -> None:
+        self._packages = packages
+        self._environment = os.environ if environment is None else environment
+
+    def file(self, address: str, beside: Path) -> Path | Missing:
+        """The file or folder that an address means, which exists, or why there is none.
+
+        Args:
+            address: as written.
+            beside: the folder of the file that it is written in, from which plain paths start.
+        """
+        address = address.strip()
+        scheme, colon, rest = address.partition("://")
+        if not colon:
+            return self._plain(address, beside)
+        if scheme == "model":
+            return self._in_folders(address, unquote(rest).lstrip("/"))
+        if scheme in ("http", "https"):
+            return self._cached(address)
+        try:
+            path = self._packages.resolve(address, beside)
+        except LinkwrightError as error:
+            return Missing(error.diagnostics[0].message, error.diagnostics[0].hint)
+        return path if path.exists() else _no_file(path)
+
+    def model(self, address: str, beside: Path) -> Path | Missing:
+        """The SDF file of the model that an address means: the file itself, or the newest that its folder offers."""
+        found = self.file(address, beside)
+        if isinstance(found, Missing) or not found.is_dir():
+            return found
+        return model_file(found)
+
+    def folders(self) -> tuple[Path, ...]:
+        """Where models are looked for, in this order; folders that are not there are left out."""
+        return self._folders
+
+    def models(self) -> dict[str, Path]:
+        """All models that can be named: name of the folder -> the folder; of two of a name the one that is found."""
+        found: dict[str, Path] = {}
+        for folder in self._folders:
+            with suppress(OSError):
+                for place in sorted(folder.iterdir()):
+                    if (place / CONFIG).is_file() or (place / _MODEL_FILE).is_file():
+                        found.setdefault(place.name, place)
+        return found
+
+    @cached_property
+    def _folders(self) -> tuple[Path, ...]:
+        return tuple(dict.fromkeys(path for path in self._places() if path.is_dir()))
+
+    def _places(self) -> Iterator[Path]:
+        for variable in SEARCH_VARIABLES:
+            for folder in self._environment.get(variable, "").split(os.pathsep):
+                if folder:
+                    yield Path(folder)
+        shares = self._packages.packages()
+        for share in shares.values():
+            yield from exported_folders(share, "gazebo_model_path")
+        for share in shares.values():
+            yield share.parent
+        for share in shares.values():
+            yield share / "models"
+        yield _SHIPPED
+
+    def _plain(self, path: str, beside: Path) -> Path | Missing:
+        places = [Path(path)] if os.path.isabs(path) else [beside / path, *(each / path for each in self._folders)]  # noqa: PTH117
+        return next((place for place in places if place.exists()), None) or _no_file(places[0])
+
+    def _in_folders(self, address: str, path: str) -> Path | Missing:
+        if not path:
+            return Missing(phrase("'{uri}' names no model", uri=address), phrase("write model://MODEL"))
+        for folder in self._folders:
+            if (folder / path).exists():
+                return folder / path
+        name = path.partition("/")[0]
+        known = self.models()
+        if name in known:
+            return _no_file(known[name] / path.partition("/")[2])
+        hint = did_you_mean(name, known) or phrase(
+            "add the folder that holds '{name}' to {variable}", name=name, variable=SEARCH_VARIABLES[0]
+        )
+        return Missing(phrase("there is no model '{name}' on the search path", name=name), hint)
+
+    def _cached(self, address: str) -> Path | Missing:
+        """What gz keeps of an address on Fuel: ``HOST/OWNER/models/NAME/VERSION`` below its cache, in small letters."""
+        parts = [unquote(part) for part in urlsplit(address).path.split("/") if part]
+        host = urlsplit(address).netloc.lower()
+        if parts and re.fullmatch(r"[0-9.]+", parts[0]):
+            parts = parts[1:]
+        if len(parts) < 3 or parts[1] not in ("models", "worlds"):
+            return Missing(phrase("'{uri}' is no address of a model", uri=address), None)
+        owner, kind, name, *rest = parts
+        for cache in self._caches():
+            place = cache / host / owner.lower() / kind / name.lower()
+            found = _version_in(place, rest)
+            if found is not None and found.exists():
+                return found
+        known = _SUN_AND_GROUND.get(name.lower())
+        if known is not None and not rest[1:]:
+            return _SHIPPED / known
+        hint = phrase(
+            "nothing is fetched from the network: `gz fuel download -u '{uri}'` puts it into the cache", uri=address
+        )
+        return Missing(phrase("'{name}' of Fuel is not in the cache", name=name), hint)
+
+    def _caches(self) -> Iterator[Path]:
+        given = self._environment.get("GZ_FUEL_CACHE_PATH") or self._environment.get("IGN_FUEL_CACHE_PATH")
+        if given:
+            yield Path(given)
+        home = Path(self._environment.get("HOME") or Path.home())
+        yield from (home / ".gz" / "fuel", home / ".ignition" / "fuel")
+
+
+def model_file(folder: Path) -> Path | Missing:
+    """The SDF file of a model's folder: by its ``model.config`` the newest that can be read, or else ``model.sdf``."""
+    newest: tuple[int, Path] | None = None
+    with suppress(LinkwrightError):
+        for element in parse_file(folder / CONFIG).root.elements("sdf"):
+            version = re.fullmatch(r"1\.([0-9]+)", element.attributes.get("version", "1.0").strip())
+            minor = int(version[1]) if version else 0
+            path = folder / element.text().strip()
+            if minor <= _NEWEST_MINOR and path.is_file() and (newest is None or minor > newest[0]):
+                newest = minor, path
+    if newest is not None:
+        return newest[1]
+    path = folder / _MODEL_FILE
+    return path if path.is_file() else _no_file(path)
+
+
+def exported_folders(share: Path, attribute: str) -> Iterator[Path]:
+    """What a package exports to Gazebo in its ``package.xml``; ``${prefix}`` there is its share folder."""
+    text = ""
+    with suppress(OSError):
+        text = (share / MANIFEST).read_text(encoding="utf-8", errors="replace")
+    if "gazebo_ros" not in text:
+        return
+    with suppress(LinkwrightError):
+        export = Manifest(parse_file(share / MANIFEST)).root.first("export")
+        for element in export.elements("gazebo_ros") if export is not None else ():
+            for folder in element.attributes.get(attribute, "").split(":"):
+                if folder:
+                    yield Path(os.path.normpath(folder.replace("${prefix}", str(share))))
+
+
+def _version_in(place: Path, rest: list[str]) -> Path | None:
+    """The folder of a version in the cache, and what of it is meant; ``tip`` or nothing stands for the newest."""
+    try:
+        versions = sorted((int(each.name), each) for each in place.iterdir() if each.name.isdigit())
+    except OSError:
+        return None
+    if not versions:
+        return None
+    chosen = versions[-1][1]
+    if rest and rest[0].isdigit():
+        chosen = place / rest[0]
+    inside = rest[2:] if len(rest) > 1 and rest[1] == "files" else []
+    return chosen.joinpath(*inside)
+
+
+def _no_file(path: Path) -> Missing:
+    hint = None
+    with suppress(OSError):
+        names = sorted(each.name for each in path.parent.iterdir())
+        hint = did_you_mean(path.name, names) or phrase("there are: {names}", names=joined(names[:8]))
+    return Missing(phrase("there is no '{path}'", path=str(path)), hint)

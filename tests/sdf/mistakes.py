@@ -1,0 +1,20 @@
+"""Findings as ``mistakes.md`` writes them."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+
+from linkwright.descriptions import examine_world
+from linkwright.lint.engine import in_order
+from tests.urdf.mistakes import lines_of
+
+
+def describe(text: str) -> str:
+    """What is said of a world, one line for each fact; it stands in an empty folder, and nothing else is installed."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, "w.world")
+        path.write_text(text, encoding="utf-8")
+        found = examine_world(path, environment={"HOME": folder}).diagnostics
+        lines = [line for each in in_order(found, str(path)) for line in lines_of(each)]
+        return "\n".join(lines).replace(folder, "FOLDER")

@@ -1,0 +1,96 @@
+"""Real worlds, where they are there: what is in them and where it stands, by the facts that were checked elsewhere."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections import Counter
+from pathlib import Path
+
+import pytest
+
+from linkwright.descriptions import examine_world
+from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere
+from linkwright.geometry.single import Pose
+from linkwright.packages import PackageFinder
+from linkwright.sdf import shapes
+from linkwright.sdf.frames import Frames, placed_links, transform_of
+from linkwright.sdf.saved import as_saved
+
+WORLDS = Path(__file__).parents[3] / "shared" / "worlds"
+MANIFEST = WORLDS / "manifest.json"
+ITEMS = json.loads(MANIFEST.read_text(encoding="utf-8"))["items"] if MANIFEST.is_file() else []
+FILES = [
+    pytest.param(each, id=f"{each['source']}/{each['name']}")
+    for each in ITEMS
+    if each["kind"] == "world" and each["entry"].endswith((".world", ".sdf"))
+]
+NAMES = {
+    Box: "box",
+    Capsule: "capsule",
+    Cylinder: "cylinder",
+    Sphere: "sphere",
+    shapes.Cone: "cone",
+    shapes.Ellipsoid: "ellipsoid",
+    shapes.Heightmap: "heightmap",
+    shapes.Mesh: "mesh",
+    shapes.Plane: "plane",
+    tuple: "polyline",
+}
+
+pytestmark = pytest.mark.skipif(not ITEMS, reason="the collection of worlds is not beside the repository")
+
+
+def examined(item):
+    path = WORLDS / item["entry"]
+    folders = dict.fromkeys(str(WORLDS / each) for each in item["model_paths"])
+    finder = PackageFinder(start=path.parent, environment={})
+    return examine_world(
+        path, packages=finder, environment={"GAZEBO_MODEL_PATH": os.pathsep.join(folders), "HOME": "/nowhere"}
+    )
+
+
+def _is_ours(known) -> bool:
+    """Whether it is a model of Fuel in whose place stands ours, which has another name."""
+    return known.get("include", "").lower().endswith(("/ground plane", "/sun"))
+
+
+@pytest.mark.parametrize("item", FILES)
+def test_a_world_has_what_is_known_to_be_in_it(item):
+    facts = item["facts"]
+    found = examined(item)
+    assert found.sdf is not None
+    world = found.sdf.worlds[0]
+    links = list(placed_links(world))
+    collisions = Counter(NAMES[type(each.geometry)] for place in links for each in place.link.collisions)
+    visuals = Counter(NAMES[type(each.geometry)] for place in links for each in place.link.visuals)
+    assert len(links) == facts["links"]
+    assert (dict(collisions), dict(visuals)) == (facts["collisions"], facts["visuals"])
+    assert Counter(each.type for each in world.lights) == Counter(facts["lights"])
+    assert len(world.actors) == facts["actors"]
+    assert len(world.includes) <= facts["unresolved_includes"]
+
+
+@pytest.mark.parametrize("item", FILES)
+def test_models_stand_where_they_are_known_to(item):
+    found = examined(item)
+    assert found.sdf is not None
+    world = as_saved(found.sdf.worlds[0])
+    frames = Frames(world)
+    known = {each["name"]: each for each in item["facts"]["top_level_models"] if not each.get("pose_attributes")}
+    for model in world.models:
+        if model.name in known:
+            pose = known[model.name]["pose"]
+            expected = transform_of(Pose(tuple(pose[:3]), tuple(pose[3:])))
+            place = frames.pose(model.name)
+            sign = 1.0 if sum(a * b for a, b in zip(place[3:], expected[3:], strict=True)) > 0 else -1.0
+            assert place[:3] == pytest.approx(expected[:3], abs=1e-9)
+            assert [sign * each for each in place[3:]] == pytest.approx(expected[3:], abs=1e-9)
+    there = {each.name for each in (*world.models, *world.lights)}
+    left_out = {each.uri for each in world.includes}
+    assert {name for name, each in known.items() if each.get("include") not in left_out and not _is_ours(each)} <= there
+
+
+@pytest.mark.parametrize("item", FILES)
+def test_a_world_that_simulators_take_has_no_errors(item):
+    assert [each for each in examined(item).diagnostics if each.severity.value == "error"] == []

@@ -1,0 +1,251 @@
+"""Models of other files: where they are found, and what becomes of them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from linkwright.packages import PackageFinder
+from linkwright.sdf.frames import Frames, placed_links
+from linkwright.sdf.resources import Missing, ResourceFinder, model_file
+from tests.sdf.worlds import examined, write
+
+
+def sdf(inside: str, version: str = "1.9") -> str:
+    return f'<sdf version="{version}">{inside}</sdf>'
+
+
+BOX = sdf('<model name="box"><link name="l"/></model>')
+
+
+def models(found) -> list[str]:
+    return [each.name for each in found.sdf.worlds[0].models]
+
+
+def test_a_model_is_found_in_the_folders_of_each_variable(tmp_path):
+    for variable in ("GAZEBO_MODEL_PATH", "GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH", "SDF_PATH"):
+        write(tmp_path, {f"{variable}/box/model.sdf": BOX.replace("box", variable)})
+        found = examined(
+            tmp_path, "<include><uri>model://box</uri></include>", **{variable: f"/nowhere:{tmp_path / variable}"}
+        )
+        assert (models(found), found.diagnostics) == ([variable], ())
+        assert found.files[1] == tmp_path / variable / "box" / "model.sdf"
+
+
+def test_a_model_is_found_in_packages(tmp_path):
+    manifest = "<package><name>{}</name>{}</package>"
+    export = '<export><gazebo_ros gazebo_model_path="${prefix}/assets:${prefix}/more"/></export>'
+    write(
+        tmp_path,
+        {
+            "one/package.xml": manifest.format("one", export),
+            "one/assets/in_assets/model.sdf": BOX.replace("box", "a"),
+            "one/more/in_more/model.sdf": BOX.replace("box", "b"),
+            "two/package.xml": manifest.format("two", ""),
+            "two/models/in_models/model.sdf": BOX.replace("box", "c"),
+            "two/any/model.sdf": BOX.replace("box", "d"),
+        },
+    )
+    addresses = ["model://in_assets", "model://in_more", "model://in_models", "model://two/any", "package://two/any"]
+    addresses += ["two/any", "two/any/model.sdf", f"file://{tmp_path}/two/any/model.sdf"]
+    names = [f"<include><uri>{each}</uri><name>m{at}</name></include>" for at, each in enumerate(addresses)]
+    found = examined(tmp_path, "".join(names))
+    assert found.diagnostics == ()
+    assert len(models(found)) == len(addresses)
+
+
+def test_the_newest_file_that_can_be_read_is_taken(tmp_path):
+    config = "<model>{}</model>".format(
+        "".join(f'<sdf version="{each}">{each}.sdf</sdf>' for each in ("1.4", "1.12", "1.99", "1.5"))
+    )
+    write(tmp_path, {"m/model.config": config, **{f"m/{each}.sdf": BOX for each in ("1.4", "1.12", "1.99", "1.5")}})
+    assert model_file(tmp_path / "m") == tmp_path / "m" / "1.12.sdf"
+    assert isinstance(model_file(tmp_path), Missing)
+
+
+def test_models_of_fuel_come_from_the_caches_of_gz(tmp_path):
+    place = "fuel.gazebosim.org/openrobotics/models/cafe table"
+    write(
+        tmp_path,
+        {
+            f".gz/fuel/{place}/2/model.sdf": BOX.replace("box", "two"),
+            f".gz/fuel/{place}/10/model.sdf": BOX.replace("box", "ten"),
+            ".ignition/fuel/fuel.ignitionrobotics.org/someone/models/old/1/model.sdf": BOX,
+        },
+    )
+    cafe = "https://fuel.gazebosim.org/1.0/OpenRobotics/models/Cafe table"
+    for address, name in (
+        (cafe, "ten"),
+        (f"{cafe}/tip", "ten"),
+        (f"{cafe}/2", "two"),
+        (cafe.replace(" ", "%20"), "ten"),
+        ("https://fuel.ignitionrobotics.org/1.0/someone/models/Old", "box"),
+        ("https://fuel.gazebosim.org/1.0/OpenRobotics/models/Ground Plane", "ground_plane"),
+    ):
+        found = examined(tmp_path, f"<include><uri>{address}</uri></include>")
+        assert (models(found), found.diagnostics) == ([name], ())
+
+
+def test_our_sun_and_ground_are_there(tmp_path):
+    inside = "<include><uri>model://sun</uri></include><include><uri>model://ground_plane</uri></include>"
+    found = examined(tmp_path, inside)
+    assert found.sdf is not None
+    world = found.sdf.worlds[0]
+    assert [each.name for each in world.lights] == ["sun"]
+    assert [(each.name, each.static) for each in world.models] == [("ground_plane", True)]
+
+
+def test_an_include_says_what_is_different_here(tmp_path):
+    write(tmp_path, {"box/model.sdf": sdf('<model name="box"><pose>1 1 1 0 0 0</pose><link name="l"/></model>')})
+    found = examined(
+        tmp_path,
+        """<include><uri>box</uri></include><include><uri>box</uri><name>other</name><pose>0 0 2 0 0 0</pose>
+        <static>true</static><plugin filename="p"/></include>""",
+    )
+    assert found.sdf is not None
+    first, second = found.sdf.worlds[0].models
+    assert (first.name, first.pose.pose.xyz, first.static, first.plugins) == ("box", (1, 1, 1), False, ())
+    assert (second.name, second.pose.pose.xyz, second.static) == ("other", (0, 0, 2), True)
+    assert [each.filename for each in second.plugins] == ["p"]
+
+
+def test_models_include_models_and_know_where_they_stand(tmp_path):
+    write(
+        tmp_path,
+        {
+            "models/car/model.sdf": sdf(
+                """<model name="car"><link name="body"/><include><uri>model://wheel</uri><name>left</name>
+                <pose relative_to="body">0 1 0 0 0 0</pose></include>
+                <joint name="j" type="revolute"><parent>body</parent><child>left::rim</child></joint></model>"""
+            ),
+            "models/wheel/model.sdf": sdf('<model name="wheel"><link name="rim"/></model>'),
+        },
+    )
+    inside = "<include><uri>model://car</uri><pose>5 0 0 0 0 0</pose></include>"
+    found = examined(tmp_path, inside, GZ_SIM_RESOURCE_PATH=str(tmp_path / "models"))
+    assert found.diagnostics == ()
+    assert found.sdf is not None
+    places = {each.name: each.pose[:3] for each in placed_links(found.sdf.worlds[0])}
+    assert places == {"car::body": (5, 0, 0), "car::left::rim": (5, 1, 0)}
+
+
+def test_merged_parts_are_parts_of_the_model_around_them(tmp_path):
+    write(
+        tmp_path,
+        {
+            "mast/model.sdf": sdf(
+                """<model name="mast" placement_frame="foot"><link name="pole"><pose>0 0 1 0 0 0</pose></link>
+                <link name="lamp"><pose relative_to="pole">0 0 1 0 0 0</pose></link>
+                <frame name="foot"><pose>1 0 0 0 0 0</pose></frame>
+                <joint name="weld" type="fixed"><parent>__model__</parent><child>lamp</child></joint></model>"""
+            )
+        },
+    )
+    found = examined(
+        tmp_path,
+        """<model name="m"><link name="base"/><include merge="true"><uri>mast</uri><pose>0 0 5 0 0 0</pose></include>
+        <joint name="j" type="fixed"><parent>base</parent><child>pole</child></joint></model>""",
+    )
+    assert found.diagnostics == ()
+    assert found.sdf is not None
+    model = found.sdf.worlds[0].models[0]
+    assert [each.name for each in model.links] == ["base", "pole", "lamp"]
+    frames = Frames(model)
+    assert frames.pose("pole")[:3] == pytest.approx((-1, 0, 6))
+    assert frames.pose("lamp")[:3] == pytest.approx((-1, 0, 7))
+    assert frames.pose("foot")[:3] == pytest.approx((0, 0, 5))
+    assert model.joints[1].parent == "_merged__mast__model__"
+    assert frames.link("_merged__mast__model__") == "pole"
+
+
+def test_lights_and_actors_are_included_too(tmp_path):
+    write(tmp_path, {"lamp/model.sdf": sdf('<light name="lamp" type="point"/>')})
+    write(tmp_path, {"walker/model.sdf": sdf('<actor name="walker"/>')})
+    found = examined(
+        tmp_path,
+        """<include><uri>lamp</uri><name>l</name><pose>0 0 3 0 0 0</pose></include>
+        <include><uri>walker</uri></include>""",
+    )
+    assert found.sdf is not None
+    world = found.sdf.worlds[0]
+    assert [(each.name, each.pose.pose.xyz) for each in world.lights] == [("l", (0, 0, 3))]
+    assert [each.name for each in world.actors] == ["walker"]
+
+
+def test_what_cannot_be_included_is_said_once_and_the_rest_stays(tmp_path):
+    write(
+        tmp_path,
+        {
+            "again/model.sdf": sdf('<model name="again"><include><uri>model.sdf</uri></include></model>'),
+            "broken/model.sdf": "<sdf",
+            "nothing/model.sdf": sdf('<world name="w"/>'),
+            "doubtful/model.sdf": sdf('<model name="d"><link name="l"/><lnk name="k"/></model>'),
+        },
+    )
+    found = examined(
+        tmp_path,
+        "<include><uri>again</uri></include><include><uri>broken</uri></include><include><uri>nothing</uri></include>"
+        "<include><uri>doubtful</uri></include><include><uri>doubtful</uri><name>e</name></include>"
+        '<model name="m"><static>1</static></model>',
+    )
+    assert sorted(each.code for each in found.diagnostics) == ["SDF150", "SDF160", "SDF161", "XML203"]
+    assert models(found) == ["m", "again", "d", "e"]
+    doubtful = next(each for each in found.diagnostics if each.code == "SDF150")
+    assert doubtful.span is not None
+    assert doubtful.span.file.endswith("doubtful/model.sdf")
+    assert doubtful.notes[-1].span is not None
+    assert doubtful.notes[-1].span.file.endswith("w.world")
+
+
+def test_names_in_a_model_that_could_not_be_had_are_not_called_wrong(tmp_path):
+    found = examined(
+        tmp_path,
+        """<model name="m"><link name="l"/><include><uri>model://arm</uri><name>arm</name></include>
+        <joint name="j" type="fixed"><parent>l</parent><child>arm::base</child></joint></model>""",
+    )
+    assert [each.code for each in found.diagnostics] == ["SDF160"]
+
+
+def test_few_lines_cannot_include_without_end(tmp_path, monkeypatch):
+    """Thirty models, each of which includes the next one twice, would be a thousand million."""
+    monkeypatch.setattr("linkwright.sdf.includes._MOST", 500)
+    twice = "<include><uri>model://m{0}</uri><name>a</name></include><include><uri>model://m{0}</uri><name>b</name></include>"
+    files = {f"m{at}/model.sdf": sdf(f'<model name="m{at}">{twice.format(at + 1)}</model>') for at in range(30)}
+    write(tmp_path, {**files, "m30/model.sdf": BOX})
+    found = examined(tmp_path, "<include><uri>model://m0</uri></include>", GZ_SIM_RESOURCE_PATH=str(tmp_path))
+    assert [each.code for each in found.diagnostics].count("SDF161") == 1
+
+
+def test_xacro_makes_worlds_too(tmp_path):
+    from linkwright.descriptions import examine_world
+
+    path = tmp_path / "w.sdf.xacro"
+    path.write_text(
+        """<sdf version="1.9" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:arg name="n" default="2"/>
+        <world name="w"><xacro:property name="h" value="${0.5 * $(arg n)}"/><model name="m"><pose>0 0 ${h} 0 0 0</pose>
+        <static>1</static></model></world></sdf>""",
+        encoding="utf-8",
+    )
+    found = examine_world(path, arguments={"n": "6"}, environment={})
+    assert found.diagnostics == ()
+    assert found.sdf is not None
+    assert found.sdf.worlds[0].models[0].pose.pose.xyz == (0, 0, 3)
+
+
+def test_all_models_that_can_be_named_are_listed(tmp_path):
+    write(tmp_path, {"a/one/model.sdf": BOX, "b/one/model.sdf": BOX, "b/two/model.config": "<model/>", "b/x/y.txt": ""})
+    environment = {"GZ_SIM_RESOURCE_PATH": f"{tmp_path / 'a'}:{tmp_path / 'b'}"}
+    finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), environment)
+    found = finder.models()
+    assert (found["one"], found["two"]) == (tmp_path / "a" / "one", tmp_path / "b" / "two")
+    assert {"ground_plane", "sun"} <= set(found)
+    assert "x" not in found
+
+
+def test_an_address_that_means_nothing_is_said_to(tmp_path):
+    finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {"HOME": str(tmp_path)})
+    for address in ("model://", "package://nowhere/a", "https://example.org/a", "ftp://a/b", "a.sdf", "/no/a.sdf", ""):
+        found = finder.file(address, tmp_path)
+        assert isinstance(found, Missing) or found == tmp_path, address
+    assert isinstance(finder.model("", Path(tmp_path)), Missing)

@@ -1,0 +1,32 @@
+"""The mistakes of `mistakes.md`: every message with its exact place, marked text, notes and hint."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+import linkwright.sdf
+from tests.sdf.mistakes import describe
+
+PAGE = (Path(__file__).parent / "mistakes.md").read_text(encoding="utf-8")
+SECTION = re.compile(r"^### (.+?)\n\n```xml\n(.*?)\n```\n\n```text\n(.*?)\n```$", re.MULTILINE | re.DOTALL)
+MISTAKES = [pytest.param(text, said, id=title) for title, text, said in SECTION.findall(PAGE)]
+
+
+def test_the_page_was_understood():
+    assert len(MISTAKES) == PAGE.count("\n### ") > 40
+
+
+@pytest.mark.parametrize(("text", "said"), MISTAKES)
+def test_mistake(text, said):
+    assert describe(text) == said
+
+
+def test_every_code_is_shown_here_or_in_the_tests_of_includes():
+    tests = Path(__file__).parent
+    room = Path(linkwright.sdf.__file__).parent
+    written = {code for file in room.glob("*.py") for code in re.findall(r'"(SDF\d{3})"', file.read_text("utf-8"))}
+    shown = PAGE + (tests / "test_includes.py").read_text(encoding="utf-8")
+    assert written - set(re.findall(r"SDF\d{3}", shown)) == set()
