@@ -83,7 +83,7 @@ check: $(VENV)/.dev
 	$(BIN)/python tools/command_reference.py --check
 	$(BIN)/python tools/catalogues.py check
 	$(BIN)/python tools/rule_reference.py --check
-	$(BIN)/python tools/urdf_reference.py --check
+	$(BIN)/python tools/language_reference.py --check
 	$(BIN)/python tools/build_page.py run check
 
 bench: $(VENV)/.dev page

@@ -1,4 +1,4 @@
-"""``linkwright check``: read descriptions, print the tree, and say what is wrong with them."""
+"""``linkwright check``: read robots and worlds, print what is in them, and say what is wrong with them."""
 
 from __future__ import annotations
 
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from linkwright.lint.engine import Checked
     from linkwright.lint.settings import Settings
     from linkwright.packages import PackageFinder
-    from linkwright.urdf import Robot
 
 
 _USAGE = 2
@@ -36,8 +35,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "words",
         metavar="FILE|FOLDER|NAME:=VALUE",
         nargs="+",
-        help="URDF and xacro files, folders that are searched for descriptions and packages, and values for the"
-        " files' <xacro:arg>",
+        help="URDF, xacro and SDF files, folders that are searched for descriptions, worlds and packages, and values"
+        " for the files' <xacro:arg>",
     )
     parser.add_argument(
         "--package",
@@ -76,13 +75,11 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.diff:
         return _print_diff(paths, words, arguments.unsafe_fixes)
     mended = _fix(paths, words, arguments.unsafe_fixes, write=True) if arguments.fix or arguments.unsafe_fixes else []
-    found, robot = _check(paths, words)
+    found, checked = _check(paths, words)
     _print(found, arguments.format, everything=arguments.all)
     if arguments.format == "text":
-        if robot is not None:
-            from linkwright.urdf import tree_text
-
-            sys.stdout.write(tree_text(robot))
+        if checked is not None:
+            sys.stdout.write(_contents(checked))
         _summarise(found, mended)
     if arguments.statistics:
         _print_statistics(found)
@@ -129,28 +126,43 @@ class _Words:
         return settings.with_words(select, tuple(map(canonical, self.ignore))), trouble
 
 
-def _check(paths: Sequence[Path], words: _Words) -> tuple[list[Diagnostic], Robot | None]:
-    """Everything found, each thing once, and the robot where one file was named."""
+def _contents(checked: Checked) -> str:
+    """What a file describes: the tree of a robot's links, or what stands in a world."""
+    if checked.robot is not None:
+        from linkwright.urdf import tree_text
+
+        return tree_text(checked.robot)
+    if checked.sdf is not None:
+        from linkwright.sdf.listing import sdf_text
+
+        return sdf_text(checked.sdf)
+    return ""
+
+
+def _check(paths: Sequence[Path], words: _Words) -> tuple[list[Diagnostic], Checked | None]:
+    """Everything found, each thing once, and what came of the file where one was named."""
     from linkwright.lint.engine import examine_package
     from linkwright.lint.targets import find_targets
 
     targets = find_targets(paths, around=words.package)
     if not targets.files and not targets.packages:
         named = ", ".join(f"'{path}'" for path in paths)
-        hint = phrase("descriptions are .urdf files and .xacro files with <robot name=...> that no other file includes")
+        hint = phrase(
+            "descriptions are .urdf, .sdf and .world files, and .xacro files with <robot name=...> that no other file"
+            " includes"
+        )
         raise LinkwrightError(
             Diagnostic("CLI302", phrase("there is nothing to check in {named}", named=named), hint=hint)
         )
     found: dict[tuple[str, object, str], Diagnostic] = {}
-    robot = None
+    checked = None
     for file in targets.files:
         checked, trouble = _examine(file, words)
         _add(found, (*trouble, *checked.diagnostics))
-        robot = checked.robot
     for folder in targets.packages:
         settings, trouble = words.settings(folder)
         _add(found, (*trouble, *examine_package(folder, settings).diagnostics))
-    return list(found.values()), robot if len(paths) == 1 and not paths[0].is_dir() else None
+    return list(found.values()), checked if len(paths) == 1 and not paths[0].is_dir() else None
 
 
 def _add(found: dict[tuple[str, object, str], Diagnostic], more: Iterable[Diagnostic]) -> None:

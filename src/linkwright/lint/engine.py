@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from linkwright.descriptions import Description, Packages
+from linkwright.descriptions import Description, Packages, examine_world, is_world
 from linkwright.descriptions import examine as examine_description
 from linkwright.descriptions.description import TRUE_OF_PARTS
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Severity, counted, phrase
@@ -18,6 +18,7 @@ from linkwright.lint.subject import Subject
 from linkwright.lint.suppression import Suppressions
 from linkwright.packages import PackageFinder
 from linkwright.packages.manifest import MANIFEST
+from linkwright.sdf.worlds import Sdf
 from linkwright.urdf import Reading, Robot
 from linkwright.xmltree import Document, Element, Overlay
 
@@ -31,12 +32,14 @@ class Checked:
         robot: the robot, or None when there is none.
         diagnostics: everything found, in the order of the text; those of rules are `Finding`.
         subject: what the rules looked at; None when nothing of the file could be read or expanded.
+        sdf: of a world or model in SDF, what it says, with its includes; None for others and where it is no SDF.
     """
 
     path: Path
     robot: Robot | None
     diagnostics: tuple[Diagnostic, ...]
     subject: Subject | None
+    sdf: Sdf | None = None
 
 
 def check(
@@ -46,7 +49,7 @@ def check(
     packages: Packages = None,
     settings: Settings | None = None,
 ) -> list[Diagnostic]:
-    """Everything there is to say about a URDF or xacro file, in the order of the text.
+    """Everything there is to say about a URDF, xacro or SDF file, in the order of the text.
 
     Args:
         path: the file.
@@ -67,7 +70,7 @@ def examine(
     overlay: Overlay | None = None,
     scopes: Collection[Scope] = (Scope.DESCRIPTION, Scope.PACKAGE),
 ) -> Checked:
-    """Check a URDF or xacro file; arguments as for `check`.
+    """Check a URDF, xacro or SDF file; arguments as for `check`.
 
     Args:
         path: the file.
@@ -85,6 +88,8 @@ def examine(
         settings, trouble = settings_for(path)
     trouble = (*unusable_rules(), *trouble)
     finder = _finder(path, packages)
+    if is_world(str(path)):
+        return _examine_world(path, arguments, finder, settings, trouble, overlay)
     try:
         description = examine_description(path, arguments=arguments, packages=finder, overlay=overlay, partly=True)
     except LinkwrightError as error:
@@ -92,6 +97,23 @@ def examine(
     subject = Subject(description, finder, settings)
     found = _run(subject, scopes, _of_library(subject) if subject.is_library else description.diagnostics)
     return Checked(path, subject.robot, (*trouble, *found), subject)
+
+
+def _examine_world(
+    path: Path,
+    arguments: Mapping[str, str] | None,
+    finder: PackageFinder,
+    settings: Settings,
+    trouble: tuple[Diagnostic, ...],
+    overlay: Overlay | None,
+) -> Checked:
+    try:
+        described = examine_world(path, arguments=arguments, packages=finder, overlay=overlay)
+    except LinkwrightError as error:
+        return Checked(path, None, (*trouble, *error.diagnostics), None)
+    kept = [each for each in described.diagnostics if _is_wanted(each, settings)]
+    found = in_order(_with_severities(kept, settings), str(path))
+    return Checked(path, None, (*trouble, *found), None, described.sdf)
 
 
 def _run(subject: Subject, scopes: Collection[Scope], said: Iterable[Diagnostic] = ()) -> list[Diagnostic]:

@@ -16,6 +16,8 @@ from linkwright.xacro import sources
 from linkwright.xmltree import Element
 
 _URDF, _XACRO = ".urdf", ".xacro"
+_WHOLE = (_URDF, ".world", ".sdf")
+"""Endings of files that describe something by themselves."""
 _EMPTY_FILE = "XML105"
 _OTHER_FORMATS = (".srdf.xacro", ".sdf.xacro", ".world.xacro", ".launch.xacro")
 _INCLUDED = re.compile(r"""<xacro:include\b[^>]*?\bfilename\s*=\s*["']([^"']+)["']""")
@@ -72,7 +74,7 @@ def _walk(folder: Path) -> tuple[list[Path], list[Path]]:
         folders[:] = sorted(name for name in folders if not name.startswith(".") and name not in SKIPPED_FOLDERS)
         if MANIFEST in names:
             packages.append(Path(place).absolute())
-        described = [Path(place, name) for name in sorted(names) if name.endswith((_URDF, _XACRO))]
+        described = [Path(place, name) for name in sorted(names) if name.endswith((*_WHOLE, _XACRO))]
         found += [path for path in described if not path.is_fifo()]
     return found, packages
 
@@ -80,7 +82,7 @@ def _walk(folder: Path) -> tuple[list[Path], list[Path]]:
 def _entries(found: list[Path]) -> Iterator[Path]:
     included = {Path(name).name for path in found for name in _INCLUDED.findall(_text(path))}
     for path in found:
-        if path.name not in included and (path.suffix == _URDF or _describes_robot(path)):
+        if path.name not in included and (path.suffix in _WHOLE or _describes_robot(path)):
             yield path
 
 

@@ -1,0 +1,47 @@
+"""What `linkwright check` prints of a world."""
+
+from __future__ import annotations
+
+from linkwright.cli import main
+from tests.sdf.worlds import write
+
+WORLD = """<sdf version="1.9"><world name="w">
+<include><uri>model://ground_plane</uri></include><include><uri>model://sun</uri></include>
+<include><uri>model://nowhere</uri></include><actor name="walker"/>
+<model name="car"><link name="body"><sensor name="s" type="imu"/></link><link name="wheel"/>
+<joint name="j" type="fixed"><parent>body</parent><child>wheel</child></joint><plugin filename="p" name="n"/>
+<model name="arm"><link name="tip"/></model></model></world></sdf>"""
+
+
+def test_a_world_is_printed_with_what_stands_in_it(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("HOME", str(tmp_path))
+    write(tmp_path, {"w.world": WORLD})
+    assert main(["check", "w.world"]) == 0
+    printed = capsys.readouterr()
+    assert printed.out == (
+        "world w\n  model car: 2 links, 1 joint, 1 sensor, 1 plugin\n    model arm: 1 link\n"
+        "  static model ground_plane: 1 link\n  actor walker\n  light sun: directional\n  model://nowhere: not found\n"
+    )
+    assert "warning[SDF160]" in printed.err
+    assert "0 errors, 1 warning" in printed.err
+
+
+def test_errors_of_a_world_make_the_status_1_and_settings_hold(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("HOME", str(tmp_path))
+    write(tmp_path, {"w.sdf": '<sdf version="1.6"><world name="w"><model name="m"/><lite/></world></sdf>'})
+    assert main(["check", "w.sdf"]) == 1
+    assert "SDF132" in capsys.readouterr().err
+    assert main(["check", "--ignore", "SDF150", "."]) == 1
+    assert "SDF150" not in capsys.readouterr().err
+
+
+def test_a_folder_of_worlds_is_checked(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("HOME", str(tmp_path))
+    write(tmp_path, {"worlds/a.world": WORLD, "models/m/model.sdf": '<sdf version="1.6"/>'})
+    assert main(["check", "."]) == 1
+    printed = capsys.readouterr().err
+    assert "SDF160" in printed
+    assert "SDF131" in printed
