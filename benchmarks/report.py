@@ -56,14 +56,14 @@ _HEADS_OF_SIZES = (
 _ABOUT_SIZES = (
     """Time of the processor and the most memory at once, of a process for each figure. What a bound of the program
 refuses is `refused`; `-` is what would take more than four minutes. The last column compares the two largest that were
-measured, their times without what the command takes for a single thing. All rows are of one run of
+measured, their times without what the command takes for a single thing. The rows are filled by
 `python -m benchmarks --write sizes`, which measures as many of them at once as there are processors.
 
 """,
     """每个数值来自一个单独的进程：处理器时间，以及同一时刻占用的最大内存。
 `refused` 表示超出程序设定的上限而被拒绝，`-` 表示需要四分钟以上。
 最后一列比较测到的最大两个规模，时间已减去命令处理单个对象所需的部分。
-所有行都出自 `python -m benchmarks --write sizes` 的同一次运行，有几个处理器就同时测几行。
+各行由 `python -m benchmarks --write sizes` 测得，有几个处理器就同时测几行。
 
 """,
 )
