@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from linkwright.launch.engine.viewer_arguments import USAGE, asks_for_help
+from linkwright.launch.engine.viewer_host import USAGE, asks_for_help
 from linkwright.launch.log.launch_log import LaunchLog
 from linkwright.launch.model.description import LaunchDescription
 from linkwright.launch.model.plans import VIEWER

@@ -17,6 +17,7 @@ from launch_ros.parameter_descriptions import ParameterValue
 
 from launch import LaunchDescription
 from linkwright.diagnostics import Diagnostic
+from linkwright.launch.engine.reload import FileWatch
 from linkwright.launch.engine.session import LaunchSession
 from linkwright.launch.engine.supervisor import SessionOptions
 from linkwright.launch.log.launch_log import LaunchLog
@@ -314,6 +315,17 @@ async def test_a_folder_that_is_removed_and_made_anew_is_watched_again(tmp_path:
             build(link)
             await bench.until(lambda link=link: f'<link name="{link}"/>' in bench.description())
             assert not bench.findings()
+
+
+async def test_what_was_removed_before_the_watch_began_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(FileWatch, "watch", lambda *_: True)  # it never begins
+    path = tmp_path / "m.xacro"
+    path.write_text(model("a"))
+    async with running(path, viewer=False) as bench:
+        await bench.shows("a")
+        path.unlink()
+        bench.session.reload._catch_up()
+        await bench.until(lambda: bool(bench.findings()))
 
 
 async def test_what_is_wrong_elsewhere_is_told_with_what_cannot_be_expanded(tmp_path: Path) -> None:

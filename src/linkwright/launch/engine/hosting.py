@@ -10,8 +10,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
-from linkwright.launch.engine.network import Network
-from linkwright.launch.engine.shared_names import SharedNames
+from linkwright.launch.engine.network import Network, SharedNames
 from linkwright.launch.engine.viewer_host import ViewerHost
 from linkwright.launch.log.launch_log import output_destinations
 from linkwright.launch.model import events

@@ -7,11 +7,12 @@ one standing and shows what is wrong until it is repaired.
 from __future__ import annotations
 
 import asyncio
+import stat
+import threading
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, display_path, has_errors
-from linkwright.launch.engine.file_watch import FileWatch, real
 from linkwright.launch.log.launch_log import LaunchLog
 from linkwright.launch.model.descriptions import Descriptions, XacroCall
 
@@ -21,6 +22,10 @@ _MISSING_ATTEMPTS = 8
 """How many such waits for a missing file: some editors delete it before they write it."""
 _CATCH_UP_SECONDS = 0.4
 """When the files are looked at once for changes between their first reading and the beginning of the watch."""
+
+_STEP_MS = 20
+"""How often the watcher looks whether the system's notifications have settled: the latency is once this."""
+_DEBOUNCE_MS = 100
 
 Apply = Callable[[str], None]
 """Takes the new text of a description."""
@@ -108,10 +113,11 @@ class LiveReload:
         self._log.caution("launch", f"model files are not watched for changes: {reason}")
 
     def _catch_up(self) -> None:
-        """Reload what was saved after it was read and before the watch began."""
+        """Reload what was saved, or removed, after it was read and before the watch began."""
         for call in self._targets if not self._closed else ():
             read_ns = self._descriptions.read_ns(call)
-            if any(_saved_ns(path) > read_ns for path in self._files_of_interest(call)):
+            saved = [_saved_ns(path) for path in self._files_of_interest(call)]
+            if max(saved) > read_ns or (0 in saved and not self._is_broken(call)):
                 self._start_reload(call)
 
     # --- a change -------------------------------------------------------------------------------------------
@@ -189,7 +195,111 @@ def _essence(finding: Diagnostic) -> tuple[object, ...]:
 
 
 def _saved_ns(path: Path) -> int:
+    """When a file was changed; 0 for one that is not there."""
     try:
         return path.stat().st_mtime_ns
     except OSError:
         return 0
+
+
+class FileWatch:
+    """Calls back on the event loop when files of some folders change.
+
+    Folders are watched rather than files, because editors save by writing a new file and renaming it. Files
+    behind links (``colcon build --symlink-install``) are watched where they really are too. For a folder that is not
+    there, such as one that a build is about to make anew, the nearest one above it is watched.
+
+    Args:
+        on_change: called with the paths that changed.
+        on_failure: called with the reason when watching fails.
+    """
+
+    def __init__(self, on_change: Callable[[set[Path]], None], on_failure: Callable[[str], None]) -> None:
+        self._on_change = on_change
+        self._on_failure = on_failure
+        self._loop = asyncio.get_running_loop()
+        self._folders: frozenset[tuple[str, int]] = frozenset()
+        self._stop: threading.Event | None = None
+
+    def watch(self, files: Iterable[Path]) -> bool:
+        """Watch the folders of these files, and of those only, from now on.
+
+        Returns:
+            Whether that is a new watch, which takes a moment to begin.
+        """
+        folders = frozenset(
+            (str(folder), number)
+            for file in files
+            for folder, number in {_nearest_folder(file), _nearest_folder(real(file))}
+        )
+        if folders == self._folders:
+            return False
+        self.close()
+        self._folders = folders
+        if folders:
+            self._stop = threading.Event()
+            threading.Thread(
+                target=self._run,
+                args=([name for name, _ in folders], self._stop),
+                name="linkwright-file-watch",
+                daemon=True,
+            ).start()
+        return True
+
+    def close(self) -> None:
+        """Stop watching."""
+        if self._stop is not None:
+            self._stop.set()
+        self._stop = None
+        self._folders = frozenset()
+
+    def _run(self, folders: list[str], stop: threading.Event) -> None:
+        import watchfiles
+
+        try:
+            for changes in watchfiles.watch(
+                *folders,
+                watch_filter=None,
+                debounce=_DEBOUNCE_MS,
+                step=_STEP_MS,
+                stop_event=stop,
+                rust_timeout=1000,
+                raise_interrupt=False,
+                recursive=False,
+            ):
+                if not stop.is_set():
+                    self._call(self._changed, {Path(path) for _, path in changes})
+        except (OSError, RuntimeError) as error:
+            if not stop.is_set():
+                self._call(self._on_failure, str(error))
+
+    def _changed(self, paths: set[Path]) -> None:
+        if not paths.isdisjoint(Path(name) for name, _ in self._folders):
+            self._folders = frozenset()  # one of them is gone; made anew, it may have the same number
+        self._on_change(paths)
+
+    def _call(self, function: Callable[..., None], argument: object) -> None:
+        try:
+            self._loop.call_soon_threadsafe(function, argument)
+        except RuntimeError:  # the loop is closed: the launch is over
+            return
+
+
+def _nearest_folder(file: Path) -> tuple[Path, int]:
+    """The folder of a file, or the nearest above it that is there, and a number that one made anew does not have."""
+    for folder in file.absolute().parents:
+        try:
+            facts = folder.stat()
+        except OSError:
+            continue
+        if stat.S_ISDIR(facts.st_mode):
+            return folder, facts.st_ino
+    return file.absolute().parents[-1], 0
+
+
+def real(path: Path) -> Path:
+    """The path with links followed; the path itself where that goes in circles."""
+    try:
+        return path.resolve()
+    except OSError:
+        return path

@@ -34,7 +34,7 @@ from linkwright.launch.model.markup.expose import expose_action
 from linkwright.launch.model.substitution import SomeSubstitutionsType, TextSubstitution, perform_substitutions
 
 if TYPE_CHECKING:
-    from linkwright.launch.model.markup.parser import Parser
+    from linkwright.launch.model.markup.entity import Parser
 
 _FILE = "current_launch_file_path"
 _FOLDER = "current_launch_file_directory"

@@ -13,7 +13,7 @@ from linkwright.launch.model.markup.expose import action_parse_methods, substitu
 from linkwright.launch.model.substitution import Substitution
 
 if TYPE_CHECKING:
-    from linkwright.launch.model.markup.parser import Parser
+    from linkwright.launch.model.markup.entity import Parser
 
 
 def _method(methods: dict[str, Any], name: str) -> Any:

@@ -1,4 +1,4 @@
-"""The handlers of Python's `logging.handlers`, with formats for some loggers (``launch.logging.handlers``)."""
+"""The handlers of Python's `logging`, with formats for some loggers (``launch.logging.handlers``)."""
 
 from __future__ import annotations
 
@@ -6,9 +6,47 @@ import logging
 import logging.handlers
 from typing import Any
 
-from linkwright.launch.log.loggers import ForEachLogger
-
 _CLASSES: dict[str, type[Any]] = {}
+
+
+class ForEachLogger:
+    """A handler that formats the lines of some loggers in ways of their own."""
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        super().__init__(*args, **kwargs)
+        self._formatters: dict[str, logging.Formatter] = {}
+
+    def setFormatterFor(self, logger: logging.Logger, formatter: logging.Formatter) -> None:  # noqa: N802 - ROS's name
+        """Have the lines of a logger formatted by a formatter."""
+        self._formatters[logger.name] = formatter
+
+    def unsetFormatterFor(self, logger: logging.Logger) -> None:  # noqa: N802 - ROS's name
+        """Have the lines of a logger formatted as those of others."""
+        self._formatters.pop(logger.name, None)
+
+    def format(self, record: logging.LogRecord) -> str:
+        """A line."""
+        record.msg, record.args = record.getMessage(), None
+        formatter = self._formatters.get(record.name)
+        if formatter is not None:
+            return formatter.format(record)
+        return str(super().format(record))  # type: ignore[misc]  # the class that it is mixed into has it
+
+
+class Handler(ForEachLogger, logging.Handler):
+    """A handler that users derive from."""
+
+
+class StreamHandler(ForEachLogger, logging.StreamHandler):  # type: ignore[type-arg]  # no generic at run time
+    """Writes lines to a stream."""
+
+
+class FileHandler(ForEachLogger, logging.FileHandler):
+    """Writes lines to a file."""
+
+
+class WatchedFileHandler(ForEachLogger, logging.handlers.WatchedFileHandler):
+    """Writes lines to a file that others may move away."""
 
 
 def handler_class(name: str) -> type[Any]:

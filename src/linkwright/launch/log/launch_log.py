@@ -1,21 +1,21 @@
-"""What the launcher prints: its own lines, those of processes and nodes, and diagnostics."""
+"""What the launcher prints: its own lines, those of processes and nodes, and diagnostics; where its log files are."""
 
 from __future__ import annotations
 
 import os
+import socket
 import sys
 import time
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, Severity, foreign, phrase, print_diagnostics, wants_colour
-from linkwright.launch.log.folder import log_base, new_log_folder
-from linkwright.launch.log.format import FILE_FORMATS, FORMATS, line_format
 
 if TYPE_CHECKING:
     from linkwright.graph import LogRecord
+
 
 SCREEN = "screen"
 LOG = "log"
@@ -65,7 +65,7 @@ class LaunchLog:
     """The log of one launch.
 
     On the screen, lines of the launcher and of nodes go to stderr, what processes write to the stream they write it
-    to. In the folder of the launch, below the one that `log_folder.log_base` gives, ``launch.log`` has all of the
+    to. In the folder of the launch, below the one that `log_base` gives, ``launch.log`` has all of the
     launcher and of what goes to the log; processes with a log of their own have theirs beside it. The variables
     ``OVERRIDE_LAUNCH_SCREEN_FORMAT`` and ``OVERRIDE_LAUNCH_LOG_FORMAT`` change how lines look, as in ROS.
 
@@ -204,3 +204,84 @@ class LaunchLog:
     def _unwritable(self, path: Path, error: OSError) -> None:
         problem = phrase("log file '{path}' cannot be written: {strerror}", path=path, strerror=foreign(error.strerror))
         self.diagnostics([Diagnostic("LAUNCH145", problem, severity=Severity.WARNING)])
+
+
+FORMATS = {
+    "default": "[{levelname}] [{name}]: {msg}",
+    "default_with_timestamp": "{created:.7f} [{levelname}] [{name}]: {msg}",
+}
+FILE_FORMATS = {"default": FORMATS["default_with_timestamp"]}
+
+Line = Callable[[str, str, str], str]
+"""Makes a line of a level, a logger's name and a text."""
+
+
+def line_format(wanted: str | None, named: dict[str, str]) -> Line:
+    """What makes lines.
+
+    Args:
+        wanted: a name of `named`, or a format with the fields of Python's log records in braces; None for the default.
+        named: formats by name.
+
+    Returns:
+        The maker of lines. A format that cannot be filled gives the default one's lines.
+    """
+    template = named.get(wanted or "default", wanted or "")
+
+    def line(level: str, name: str, text: str) -> str:
+        created = time.time()
+        fields = {
+            "levelname": level,
+            "name": name,
+            "msg": text,
+            "message": text,
+            "created": created,
+            "msecs": (created % 1.0) * 1000.0,
+            "asctime": time.strftime("%Y-%m-%d %H:%M:%S", time.localtime(created)),
+        }
+        try:
+            return template.format(**fields)
+        except (LookupError, ValueError):
+            return named["default"].format(**fields)
+
+    return line
+
+
+LATEST = "latest"
+
+
+def log_base(environment: Mapping[str, str] | None = None) -> Path:
+    """The folder of all logs: ``ROS_LOG_DIR``, else ``ROS_HOME/log``, else ``~/.ros/log``."""
+    environment = os.environ if environment is None else environment
+    given = environment.get("ROS_LOG_DIR")
+    if given:
+        return Path(given).expanduser()
+    home = environment.get("ROS_HOME")
+    return (Path(home).expanduser() if home else Path.home() / ".ros") / "log"
+
+
+def new_log_folder(base: Path) -> Path:
+    """Make the folder of one launch, named by the date, the machine and the process; ``latest`` links to it.
+
+    Raises:
+        OSError: it cannot be made.
+    """
+    while True:
+        # The machine's own time, as ROS names these folders; a person is to find the launch of this morning.
+        seconds, nanoseconds = divmod(time.time_ns(), 1_000_000_000)
+        stamp = f"{time.strftime('%Y-%m-%d-%H-%M-%S', time.localtime(seconds))}-{nanoseconds // 1000:06d}"
+        folder = base / f"{stamp}-{socket.gethostname()}-{os.getpid()}"
+        try:
+            folder.mkdir(parents=True)
+        except FileExistsError:
+            continue
+        _link_latest(base, folder)
+        return folder
+
+
+def _link_latest(base: Path, folder: Path) -> None:
+    waiting = base / f".{LATEST}-{os.getpid()}"
+    with suppress(OSError, NotImplementedError):  # a file system without links
+        waiting.unlink(missing_ok=True)
+        waiting.symlink_to(folder.name)
+        waiting.replace(base / LATEST)

@@ -15,8 +15,8 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from linkwright.launch.log.folder import log_base, new_log_folder
-from linkwright.launch.log.format import FILE_FORMATS, FORMATS
+from linkwright.launch.log.handlers import FileHandler, ForEachLogger, Handler, StreamHandler, WatchedFileHandler
+from linkwright.launch.log.launch_log import FILE_FORMATS, FORMATS, log_base, new_log_folder
 
 MAIN_LOG = "launch.log"
 
@@ -29,46 +29,6 @@ _OUTPUTS: Mapping[str, Mapping[str, set[str]]] = {
     "own_log": {"both": {"own_log"}, "stdout": {"own_log"}, "stderr": {"own_log"}},
     "full": {"both": {"screen", "log", "own_log"}, "stdout": {"own_log"}, "stderr": {"own_log"}},
 }
-
-
-class ForEachLogger:
-    """A handler that formats the lines of some loggers in ways of their own."""
-
-    def __init__(self, *args: Any, **kwargs: Any) -> None:
-        super().__init__(*args, **kwargs)
-        self._formatters: dict[str, logging.Formatter] = {}
-
-    def setFormatterFor(self, logger: logging.Logger, formatter: logging.Formatter) -> None:  # noqa: N802 - ROS's name
-        """Have the lines of a logger formatted by a formatter."""
-        self._formatters[logger.name] = formatter
-
-    def unsetFormatterFor(self, logger: logging.Logger) -> None:  # noqa: N802 - ROS's name
-        """Have the lines of a logger formatted as those of others."""
-        self._formatters.pop(logger.name, None)
-
-    def format(self, record: logging.LogRecord) -> str:
-        """A line."""
-        record.msg, record.args = record.getMessage(), None
-        formatter = self._formatters.get(record.name)
-        if formatter is not None:
-            return formatter.format(record)
-        return str(super().format(record))  # type: ignore[misc]  # the class that it is mixed into has it
-
-
-class Handler(ForEachLogger, logging.Handler):
-    """A handler that users derive from."""
-
-
-class StreamHandler(ForEachLogger, logging.StreamHandler):  # type: ignore[type-arg]  # no generic at run time
-    """Writes lines to a stream."""
-
-
-class FileHandler(ForEachLogger, logging.FileHandler):
-    """Writes lines to a file."""
-
-
-class WatchedFileHandler(ForEachLogger, logging.handlers.WatchedFileHandler):
-    """Writes lines to a file that others may move away."""
 
 
 class _ScreenHandler(StreamHandler):

@@ -12,8 +12,7 @@ from linkwright.launch.model.entity import LaunchDescriptionEntity, as_entities
 
 if TYPE_CHECKING:
     from linkwright.launch.model.context import LaunchContext
-    from linkwright.launch.model.markup.entity import Entity
-    from linkwright.launch.model.markup.parser import Parser
+    from linkwright.launch.model.markup.entity import Entity, Parser
 
 
 class Action(LaunchDescriptionEntity):

@@ -9,6 +9,7 @@ from linkwright.launch.moveit.configs import MoveItConfigs
 from linkwright.launch.moveit.files import (
     ParameterBuilderFileNotFoundError,
     ParameterValueType,
+    Xacro,
     get_path,
     load_file,
     load_xacro,
@@ -26,7 +27,6 @@ from linkwright.launch.moveit.launches import (
     generate_static_virtual_joint_tfs_launch,
     generate_warehouse_db_launch,
 )
-from linkwright.launch.moveit.xacro import Xacro
 
 __all__ = [
     "DeclareBooleanLaunchArg",

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 from linkwright.diagnostics import display_path, joined, phrase
 from linkwright.launch.errors.places import Place, error_at
 from linkwright.launch.moveit.configs import MoveItConfigs, Parameters
-from linkwright.launch.moveit.files import ParameterValueType, load_file, load_xacro, load_yaml
-from linkwright.launch.moveit.xacro import Xacro
+from linkwright.launch.moveit.files import ParameterValueType, Xacro, load_file, load_xacro, load_yaml
 from linkwright.packages import current_finder
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.launch.errors.places import Placed, located
 from linkwright.launch.model.action import parse_condition
 from linkwright.launch.model.context import LaunchContext
-from linkwright.launch.model.markup.parser import parse_texts
+from linkwright.launch.model.markup.entity import parse_texts
 from linkwright.launch.model.substitution import (
     SomeSubstitutionsType,
     Substitution,
@@ -32,8 +32,7 @@ from linkwright.launch.ros.scoping import NAMESPACE, PARAMETERS, REMAPPINGS
 
 if TYPE_CHECKING:
     from linkwright.launch.model.conditions import Condition
-    from linkwright.launch.model.markup.entity import Entity
-    from linkwright.launch.model.markup.parser import Parser
+    from linkwright.launch.model.markup.entity import Entity, Parser
 
 
 @with_deprecated_arguments(node_plugin="plugin", node_name="name", node_namespace="namespace")

@@ -26,8 +26,7 @@ from linkwright.launch.ros.parsing import Entities
 
 if TYPE_CHECKING:
     from linkwright.launch.model.context import LaunchContext
-    from linkwright.launch.model.markup.entity import Entity
-    from linkwright.launch.model.markup.parser import Parser
+    from linkwright.launch.model.markup.entity import Entity, Parser
     from linkwright.packages import PackageFinder
 
 _LOGGER = "launch_ros.actions.load_composable_nodes"

@@ -27,8 +27,7 @@ if TYPE_CHECKING:
 
     from linkwright.launch.model.action import Action
     from linkwright.launch.model.context import LaunchContext
-    from linkwright.launch.model.markup.entity import Entity
-    from linkwright.launch.model.markup.parser import Parser
+    from linkwright.launch.model.markup.entity import Entity, Parser
 
 _CONFIGURE, _ACTIVATE = 1, 3
 _LOOK_SECONDS = 0.2

@@ -41,8 +41,7 @@ from linkwright.launch.ros.substitutions import ExecutableInPackage
 from linkwright.packages.programs.workspace_environment import workspace_environment
 
 if TYPE_CHECKING:
-    from linkwright.launch.model.markup.entity import Entity
-    from linkwright.launch.model.markup.parser import Parser
+    from linkwright.launch.model.markup.entity import Entity, Parser
     from linkwright.packages import PackageFinder
     from linkwright.viewer import RvizConfig
 

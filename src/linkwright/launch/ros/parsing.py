@@ -6,13 +6,12 @@ from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import LinkwrightError, Phrase, phrase
 from linkwright.launch.errors.places import error_at, reading
-from linkwright.launch.model.markup.entity import Entity
-from linkwright.launch.model.markup.parser import parse_texts
+from linkwright.launch.model.markup.entity import Entity, parse_texts
 from linkwright.launch.ros.parameter_files import ParameterFile
 from linkwright.launch.ros.parameter_values import ParameterValue
 
 if TYPE_CHECKING:
-    from linkwright.launch.model.markup.parser import Parser
+    from linkwright.launch.model.markup.entity import Parser
 
 Entities = list[Entity]
 

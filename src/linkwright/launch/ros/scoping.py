@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import phrase
 from linkwright.launch.errors.places import error_at
-from linkwright.launch.log.folder import log_base
+from linkwright.launch.log.launch_log import log_base
 from linkwright.launch.model.action import Action
 from linkwright.launch.model.context import LaunchContext
 from linkwright.launch.model.markup.expose import expose_action
@@ -25,8 +25,7 @@ from linkwright.launch.ros.names import check_namespace, make_namespace_absolute
 from linkwright.launch.ros.parameter_lists import evaluate_parameter_dict, normalize_parameter_dict
 
 if TYPE_CHECKING:
-    from linkwright.launch.model.markup.entity import Entity
-    from linkwright.launch.model.markup.parser import Parser
+    from linkwright.launch.model.markup.entity import Entity, Parser
 
 NAMESPACE = "ros_namespace"
 PARAMETERS = "global_params"

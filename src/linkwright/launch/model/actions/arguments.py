@@ -9,9 +9,8 @@ from linkwright.diagnostics import Phrase, did_you_mean, phrase, quoted_names
 from linkwright.launch.errors.places import error_at
 from linkwright.launch.model.action import Action
 from linkwright.launch.model.context import LaunchContext
-from linkwright.launch.model.markup.entity import Entity
+from linkwright.launch.model.markup.entity import Entity, parse_texts
 from linkwright.launch.model.markup.expose import expose_action
-from linkwright.launch.model.markup.parser import parse_texts
 from linkwright.launch.model.substitution import (
     SomeSubstitutionsType,
     Substitution,
@@ -21,7 +20,7 @@ from linkwright.launch.model.substitution import (
 )
 
 if TYPE_CHECKING:
-    from linkwright.launch.model.markup.parser import Parser
+    from linkwright.launch.model.markup.entity import Parser
 
 _TRUTHS = ("true", "false", "True", "False", "TRUE", "FALSE")
 

@@ -17,8 +17,7 @@ from linkwright.launch.model.context import LaunchContext
 from linkwright.launch.model.markup.expose import expose_action
 
 if TYPE_CHECKING:
-    from linkwright.launch.model.markup.entity import Entity
-    from linkwright.launch.model.markup.parser import Parser
+    from linkwright.launch.model.markup.entity import Entity, Parser
 
 
 @expose_action("let")

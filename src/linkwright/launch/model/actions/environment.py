@@ -15,8 +15,8 @@ from linkwright.launch.model.actions.named import (
     perform_pairs,
 )
 from linkwright.launch.model.context import LaunchContext
+from linkwright.launch.model.markup.entity import parse_texts
 from linkwright.launch.model.markup.expose import expose_action
-from linkwright.launch.model.markup.parser import parse_texts
 from linkwright.launch.model.markup.values import normalize_typed_substitution, perform_typed_substitution
 from linkwright.launch.model.substitution import (
     SomeSubstitutionsType,
@@ -26,8 +26,7 @@ from linkwright.launch.model.substitution import (
 )
 
 if TYPE_CHECKING:
-    from linkwright.launch.model.markup.entity import Entity
-    from linkwright.launch.model.markup.parser import Parser
+    from linkwright.launch.model.markup.entity import Entity, Parser
 
 
 @expose_action("set_env")

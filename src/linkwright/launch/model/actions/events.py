@@ -21,8 +21,7 @@ from linkwright.launch.model.substitution import (
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from linkwright.launch.model.markup.entity import Entity
-    from linkwright.launch.model.markup.parser import Parser
+    from linkwright.launch.model.markup.entity import Entity, Parser
 
 
 class _HandlerAction(Action):

@@ -28,8 +28,7 @@ from linkwright.launch.model.substitution import (
 
 if TYPE_CHECKING:
     from linkwright.launch.model.actions.named import Pairs
-    from linkwright.launch.model.markup.entity import Entity
-    from linkwright.launch.model.markup.parser import Parser
+    from linkwright.launch.model.markup.entity import Entity, Parser
 
 OnExit = SomeEntitiesType | Callable[..., Any] | None
 

@@ -19,8 +19,7 @@ from linkwright.launch.model.entity import LaunchDescriptionEntity, as_entities
 from linkwright.launch.model.markup.expose import expose_action
 
 if TYPE_CHECKING:
-    from linkwright.launch.model.markup.entity import Entity
-    from linkwright.launch.model.markup.parser import Parser
+    from linkwright.launch.model.markup.entity import Entity, Parser
 
 _KEEP = "keep"
 

@@ -22,8 +22,7 @@ from linkwright.launch.model.substitution import (
 
 if TYPE_CHECKING:
     from linkwright.launch.errors.places import Place
-    from linkwright.launch.model.markup.entity import Entity
-    from linkwright.launch.model.markup.parser import Parser
+    from linkwright.launch.model.markup.entity import Entity, Parser
 
 _LOGGER = "launch.user"
 LEVELS = {

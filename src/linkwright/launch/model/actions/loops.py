@@ -23,8 +23,7 @@ from linkwright.launch.model.substitution import (
 from linkwright.launch.model.substitutions.loops import local_name
 
 if TYPE_CHECKING:
-    from linkwright.launch.model.markup.entity import Entity
-    from linkwright.launch.model.markup.parser import Parser
+    from linkwright.launch.model.markup.entity import Entity, Parser
 
 
 @expose_action("for_each")

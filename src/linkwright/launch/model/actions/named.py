@@ -18,7 +18,7 @@ from linkwright.launch.model.substitution import (
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from linkwright.launch.model.markup.parser import Parser
+    from linkwright.launch.model.markup.entity import Parser
 
 Pairs = list[tuple[list[Substitution], list[Substitution]]]
 """Names and values, as substitutions."""

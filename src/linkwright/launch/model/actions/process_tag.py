@@ -10,8 +10,7 @@ from linkwright.launch.model.actions.named import parse_pairs
 from linkwright.launch.model.markup.command_line import parse_command_line
 
 if TYPE_CHECKING:
-    from linkwright.launch.model.markup.entity import Entity
-    from linkwright.launch.model.markup.parser import Parser
+    from linkwright.launch.model.markup.entity import Entity, Parser
 
 _TEXTS = {"cwd": "cwd", "name": "name", "prefix": "launch-prefix", "output": "output", "respawn": "respawn"}
 """Argument -> attribute, of those that may have substitutions in them."""

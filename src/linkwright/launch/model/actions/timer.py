@@ -16,8 +16,7 @@ from linkwright.launch.model.markup.values import normalize_typed_substitution, 
 from linkwright.launch.model.substitution import SomeSubstitutionsType, perform_substitutions
 
 if TYPE_CHECKING:
-    from linkwright.launch.model.markup.entity import Entity
-    from linkwright.launch.model.markup.parser import Parser
+    from linkwright.launch.model.markup.entity import Entity, Parser
     from linkwright.launch.model.running_launch import Schedule
 
 

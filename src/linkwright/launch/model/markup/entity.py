@@ -1,11 +1,13 @@
-"""An entity of a launch file in a markup language: an XML tag, or a YAML mapping."""
+"""What the functions that read tags are given: the entity, an XML tag or YAML mapping, and the parser of its file."""
 
 from __future__ import annotations
 
 import typing
-from typing import Any
+from typing import Any, Protocol
 
 from linkwright.launch.errors.places import Place
+from linkwright.launch.model.entity import LaunchDescriptionEntity
+from linkwright.launch.model.substitution import Substitution
 
 
 class Entity:
@@ -85,3 +87,31 @@ class PlacedText(str):
 def place_of(text: object) -> Place | None:
     """Where a text stands, if it knows."""
     return text.place if isinstance(text, PlacedText) else None
+
+
+class Parser(Protocol):
+    """Makes actions and substitutions out of entities; `linkwright.launch.frontend.parser.Parser` is one."""
+
+    def parse_action(self, entity: Entity) -> LaunchDescriptionEntity:
+        """The action of an entity."""
+
+    def parse_substitution(self, value: str) -> list[Substitution]:
+        """A text with ``$(...)`` in it, as substitutions."""
+
+    def parse_if_substitutions(self, value: Any) -> Any:
+        """A value with the substitutions in its texts."""
+
+    def escape_characters(self, value: str) -> str:
+        """The text with its escapes resolved."""
+
+
+def parse_texts(entity: Entity, parser: Parser, **attributes: str) -> dict[str, list[Substitution]]:
+    """The keyword arguments that are texts with substitutions in them, those whose attribute the tag has.
+
+    Args:
+        entity: the tag.
+        parser: for the substitutions.
+        attributes: the attribute of each argument.
+    """
+    given = {argument: entity.get_attr(attribute, optional=True) for argument, attribute in attributes.items()}
+    return {argument: parser.parse_substitution(text) for argument, text in given.items() if text is not None}

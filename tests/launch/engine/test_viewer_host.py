@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from linkwright.launch import run_viewer
-from linkwright.launch.engine.viewer_arguments import asks_for_help, read_viewer_config
+from linkwright.launch.engine.viewer_host import asks_for_help, read_viewer_config
 
 CONFIG = """
 Visualization Manager:
