@@ -15,7 +15,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.graph import QoSProfile, Subscription, SubscriptionEventCallbacks, TransformException
+from linkwright.graph import (
+    ExtrapolationException,
+    QoSProfile,
+    Subscription,
+    SubscriptionEventCallbacks,
+    TransformException,
+)
 from linkwright.viewer.config.property_store import qos_of
 from linkwright.viewer.config.rviz_config import DisplayConfig
 from linkwright.viewer.config.schema import FILTER_SIZE, Path, Schema, topic_spec
@@ -82,6 +88,9 @@ TRANSFORM = "Transform"
 _FAILURE = "Failure"
 """The status row of a message that a display failed at; RViz has none such."""
 
+_LATE = 1.0
+"""Seconds that transforms of the time of a message are waited for before it is an error: as a rule they come later."""
+
 _COUNT_PERIOD = 1.0
 """Seconds between two updates of the row that counts messages or says why there are none."""
 
@@ -123,6 +132,8 @@ class TopicDisplay(DataDisplay):
         self._since = 0.0
         self._telling: asyncio.TimerHandle | None = None
         self._incompatibility = ""
+        self._late: asyncio.TimerHandle | None = None
+        self._late_reason = ""
 
     # --- what subclasses override ------------------------------------------------------------------------------
 
@@ -251,6 +262,7 @@ class TopicDisplay(DataDisplay):
         if self._release is not None:
             self._release()
             self._release = None
+        self._in_time()
         self._waiting.clear()
         self._held.clear()
 
@@ -322,12 +334,32 @@ class TopicDisplay(DataDisplay):
         try:
             pose = self.context.transforms.pose(self._fixed_frame, frame, stamp_ns)
         except TransformException as error:
-            reason = error.diagnostics[0].message
-            self.say(TRANSFORM, "error", f"Could not transform from [{frame}] to [{self._fixed_frame}]: {reason}")
+            reason = f"Could not transform from [{frame}] to [{self._fixed_frame}]: {error.diagnostics[0].message}"
+            self._could_not_place(reason, is_late=isinstance(error, ExtrapolationException))
             return False
+        self._in_time()
         self.say(TRANSFORM, "ok", "Transform OK")
         self._take(message, pose)
         return True
+
+    def _could_not_place(self, reason: str, *, is_late: bool) -> None:
+        """Say so, if it is only that transforms are late then when nothing could be placed for a while."""
+        if not is_late:
+            self.say(TRANSFORM, "error", reason)
+            return
+        self._late_reason = reason
+        if self._late is None:
+            self._late = asyncio.get_running_loop().call_later(_LATE, self._tell_late)
+
+    def _tell_late(self) -> None:
+        self._late = None
+        if self._waiting:
+            self.say(TRANSFORM, "error", self._late_reason)
+
+    def _in_time(self) -> None:
+        if self._late is not None:
+            self._late.cancel()
+            self._late = None
 
     def _take(self, message: Any, pose: Pose | None) -> None:
         """Show a message. An unexpected failure must not stop those that come after it."""
