@@ -12,6 +12,7 @@ from linkwright.packages.readers.cmake import read_cmake
 from linkwright.packages.readers.launch_files import read_launch_file
 from linkwright.packages.readers.python_values import UNKNOWN, Pattern, PythonFile, SharePath
 from linkwright.packages.readers.setup_py import read_setup
+from tests.work import lines_run
 
 _PREFACE = """
 import os
@@ -207,3 +208,12 @@ def test_warnings_about_the_users_text_are_not_passed_on():
 def test_lists_made_of_each_other_and_deep_ones(text):
     read_setup(SourceText("setup.py", text))
     read_launch_file(SourceText("x.launch.py", text), "x.launch.py")
+
+
+def test_a_launch_file_is_read_once_however_long_its_sums_are():
+    def work(terms):
+        text = f"a = {' + '.join(['b'] * terms)}"
+        return lines_run(lambda: read_launch_file(SourceText("x.launch.py", text), "x.launch.py"))
+
+    work(100)
+    assert work(300) < 4.5 * work(100)

@@ -94,7 +94,7 @@ def output_of(program: str) -> str:
         [sys.executable, "-X", "faulthandler", "-c", textwrap.dedent(program)],
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=600,
         check=False,
         env={**os.environ, "MALLOC_PERTURB_": "165"},
     )

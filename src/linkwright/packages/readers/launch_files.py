@@ -143,10 +143,7 @@ class _PathReader(ast.NodeVisitor):
         self._python = python
         self._facts = facts
         self._inside_path = 0
-        self._used: set[str] = set()
-        for node in ast.walk(python.tree):
-            if _is_path_operation(node):
-                self._used.update(each.id for each in ast.walk(node) if isinstance(each, ast.Name))
+        self._used = _names_in_path_operations(python.tree)
 
     def visit_Assign(self, node: ast.Assign) -> None:
         names = [target.id for target in node.targets if isinstance(target, ast.Name)]
@@ -168,6 +165,18 @@ class _PathReader(ast.NodeVisitor):
         self._inside_path += 1
         super().generic_visit(node)
         self._inside_path -= 1
+
+
+def _names_in_path_operations(tree: ast.AST) -> set[str]:
+    found = set()
+    waiting = [(tree, False)]
+    while waiting:
+        node, inside = waiting.pop()
+        inside = inside or _is_path_operation(node)
+        if inside and isinstance(node, ast.Name):
+            found.add(node.id)
+        waiting.extend((child, inside) for child in ast.iter_child_nodes(node))
+    return found
 
 
 def _is_path_operation(node: ast.AST) -> bool:
