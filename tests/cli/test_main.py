@@ -48,6 +48,14 @@ def test_wrong_option_is_usage(capsys):
     assert "--nonsense" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("verb", ["check", "view", "xacro", "inertia", "diagram"])
+def test_of_words_that_may_be_left_out_none_is_missed(verb, capsys):
+    with pytest.raises(SystemExit):
+        parser_for(verb).parse_args([])
+    assert "the following arguments are required: FILE" in (printed := capsys.readouterr().err)
+    assert printed.rstrip().endswith(("FILE", "FILE|FOLDER|NAME:=VALUE"))
+
+
 def test_a_bug_of_ours_is_said_without_a_traceback(monkeypatch, capsys):
     def broken(*_words):
         raise ZeroDivisionError("seeded")

@@ -21,6 +21,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "words",
         metavar="OUT",
         nargs="*",
+        default=[],  # else argparse says that it misses them too
         help="base name of the two files, default the robot's name; an ending .pdf, .svg or .png picks the picture. "
         "Words of the form NAME:=VALUE are values for the file's <xacro:arg>",
     )

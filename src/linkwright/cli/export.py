@@ -31,7 +31,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "network; OUT.glb is glTF 2.0 with a node for each link",
     )
     parser.add_argument("file", metavar="FILE", help="the URDF or xacro file")
-    parser.add_argument("values", metavar="NAME:=VALUE", nargs="*", help="values for the file's <xacro:arg>")
+    parser.add_argument(
+        "values", metavar="NAME:=VALUE", nargs="*", default=[], help="values for the file's <xacro:arg>"
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:

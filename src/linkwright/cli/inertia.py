@@ -24,7 +24,9 @@ _LARGEST = 1e15
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     parser.add_argument("file", metavar="FILE", help="the URDF or xacro file")
-    parser.add_argument("values", metavar="NAME:=VALUE", nargs="*", help="values for the file's <xacro:arg>")
+    parser.add_argument(
+        "values", metavar="NAME:=VALUE", nargs="*", default=[], help="values for the file's <xacro:arg>"
+    )
     parser.add_argument(
         "--density",
         metavar="KG_PER_M3",

@@ -11,7 +11,9 @@ from linkwright.cli.launch import add_viewer_options
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     parser.add_argument("file", metavar="FILE", help="the URDF or xacro file")
-    parser.add_argument("values", metavar="NAME:=VALUE", nargs="*", help="values for the file's <xacro:arg>")
+    parser.add_argument(
+        "values", metavar="NAME:=VALUE", nargs="*", default=[], help="values for the file's <xacro:arg>"
+    )
     parser.add_argument(
         "--join", action="store_true", help="join the ROS 2 network (ROS_DOMAIN_ID), where other programs see the nodes"
     )

@@ -25,6 +25,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "values",
         metavar="NAME:=VALUE",
         nargs="*",
+        default=[],  # else argparse says that it misses them too
         help="values for the file's <xacro:arg>; an empty value, as in prefix:=, leaves the default in force",
     )
     parser.add_argument("-o", metavar="OUT", dest="output", help="write to this file instead of standard output")
