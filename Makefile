@@ -36,6 +36,8 @@ endif
 
 # With AGAIN, what fails is run again; see docs/decisions/0037.
 PYTEST = $(BIN)/$(if $(AGAIN),python tools/pytest_again.py,pytest)
+# Files in the order of their names: those with few tests, which take longest, would else come last, one beside an idle core.
+WORKERS = -n 2 --dist loadfile --no-loadscope-reorder
 
 LOCKED := .build/constraints.txt
 PAGE_SOURCES := $(shell find frontend -path frontend/node_modules -prune -o -type f -print)
@@ -48,14 +50,14 @@ demo: $(VENV)/.ready
 
 test: $(VENV)/.dev page
 	$(BIN)/python tools/build_page.py test
-	LINKWRIGHT_CHROMIUM=$$($(BIN)/python tools/chromium.py) $(PYTEST) -n 2 --dist loadfile $(ARGS)
+	LINKWRIGHT_CHROMIUM=$$($(BIN)/python tools/chromium.py) $(PYTEST) $(WORKERS) $(ARGS)
 
 test-quick: $(VENV)/.dev
-	$(PYTEST) -n 2 --dist loadfile -m "not browser and not slow" $(ARGS)
+	$(PYTEST) $(WORKERS) -m "not browser and not slow" $(ARGS)
 
 # The quick tests once more, with a look at which lines they reach; fails below the share named in pyproject.toml.
 coverage: $(VENV)/.dev
-	$(PYTEST) -n 2 --dist loadfile -m "not browser and not slow" --cov --cov-report=term:skip-covered $(ARGS)
+	$(PYTEST) $(WORKERS) -m "not browser and not slow" --cov --cov-report=term:skip-covered $(ARGS)
 
 test-browser: $(VENV)/.dev page
 	LINKWRIGHT_CHROMIUM=$$($(BIN)/python tools/chromium.py) $(BIN)/pytest -m browser $(ARGS)
