@@ -41,9 +41,10 @@ class YamlDict(dict[Any, Any]):
 
     def __getitem__(self, key: Any) -> Any:
         try:
-            return wrapped(super().__getitem__(key))
+            value = dict.__getitem__(self, key)
         except KeyError:
             raise AttributeError(phrase("the YAML mapping has no key '{key}'", key=key)) from None
+        return value if value.__class__ in _SCALARS else wrapped(value)
 
 
 class YamlList(list[Any]):
@@ -52,11 +53,14 @@ class YamlList(list[Any]):
     __slots__ = ()
 
     def __getitem__(self, index: Any) -> Any:
-        return wrapped(super().__getitem__(index))
+        return wrapped(list.__getitem__(self, index))
 
     def __iter__(self) -> Iterator[Any]:
         return map(wrapped, super().__iter__())
 
+
+_SCALARS: frozenset[type] = frozenset({str, int, float, bool})
+"""What most data ends in; it has no items."""
 
 COPIED: frozenset[type] = frozenset({YamlDict, YamlList})
 """What is made anew whenever it is reached for."""
