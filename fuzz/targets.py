@@ -11,11 +11,20 @@ from collections.abc import Callable
 from pathlib import Path
 from random import Random
 
-from fuzz import documents, interfaces, robots
+from fuzz import documents, interfaces, robots, worlds
 from fuzz.choices import Choices
 from fuzz.expressions import expression
-from linkwright.diagnostics import LinkwrightError, render, to_data
+from linkwright.diagnostics import LinkwrightError, has_errors, render, to_data
 from linkwright.kinematics import KinematicTree
+from linkwright.packages import PackageFinder
+from linkwright.sdf.frames import placed_links
+from linkwright.sdf.includes import resolve_includes
+from linkwright.sdf.listing import sdf_text
+from linkwright.sdf.reader import read as read_world
+from linkwright.sdf.references import check_references
+from linkwright.sdf.resources import ResourceFinder
+from linkwright.sdf.saved import as_saved
+from linkwright.sdf.text import parse_as_gazebo
 from linkwright.urdf import read, save, to_gv, tree_text
 from linkwright.urdf.plaintext import parse_as_urdfdom
 from linkwright.viewer.config.rviz_config import RvizConfig
@@ -119,6 +128,30 @@ def check_urdf(text: str) -> None:
     assert save(read(parse(saved, "saved.urdf")).robot or robot) == saved
 
 
+def check_world(text: str) -> None:
+    """A world that is read can be printed, and everything in it either stands somewhere or is told of."""
+    folder = Path(_FOLDER.name)
+    try:
+        document, warnings = parse_as_gazebo(text, str(folder / "fuzz.sdf"))
+    except LinkwrightError as error:
+        _check_printable(error)
+        return
+    reading = read_world(document)
+    found = [*warnings, *reading.diagnostics]
+    if reading.sdf is None:
+        assert found
+    else:
+        included = resolve_includes(reading.sdf, folder / "fuzz.sdf", _NO_MODELS)
+        found += [*included.diagnostics, *check_references(included.sdf)]
+        assert len(sdf_text(included.sdf)) <= _LONGEST_OUTPUT
+        for world in map(as_saved, included.sdf.worlds):
+            if not has_errors(found):
+                assert all(place.name for place in placed_links(world))
+    for diagnostic in found:
+        assert render(diagnostic)
+        assert to_data(diagnostic)["line"]
+
+
 def check_yaml(text: str) -> None:
     """A YAML file has a value, or a mistake."""
     session = Session("main.xacro", {}, {}, _LIMITS)
@@ -160,6 +193,7 @@ def _save(path: Path, text: str) -> None:
 _FOLDER = tempfile.TemporaryDirectory(prefix="linkwright-fuzz-")
 """Of the files that a description includes or loads; it goes with the process."""
 _contents: dict[Path, str] = {}
+_NO_MODELS = ResourceFinder(PackageFinder(start=Path(_FOLDER.name), environment={}), {"HOME": _FOLDER.name})
 
 
 def _text(data: bytes) -> str:
@@ -182,6 +216,8 @@ TARGETS: dict[str, Callable[[bytes], None]] = {
     "expression-text": lambda data: check_expression(_text(data).replace("}", "")),
     "urdf": lambda data: check_urdf(robots.urdf(Choices(data))),
     "urdf-text": lambda data: check_urdf(_text(data)),
+    "world": lambda data: check_world(worlds.world(Choices(data))),
+    "world-text": lambda data: check_world(_text(data)),
     "xml-text": lambda data: check_xml(_text(data)),
     "yaml": lambda data: check_yaml(documents.yaml_text(Choices(data))),
     "yaml-text": lambda data: check_yaml(_text(data)),
@@ -247,6 +283,7 @@ _SEED_TEXTS: dict[str, Callable[[Choices], str]] = {
     "xacro-text": lambda choices: "\x1e".join(documents.files(choices)),
     "expression-text": expression,
     "urdf-text": robots.urdf,
+    "world-text": worlds.world,
     "xml-text": lambda choices: documents.files(choices).main,
     "yaml-text": documents.yaml_text,
     "rviz-text": robots.rviz,

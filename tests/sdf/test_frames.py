@@ -104,6 +104,12 @@ def test_an_axis_is_told_in_the_frame_of_its_joint():
         assert Frames(owner).axis(joint, joint.axis) == pytest.approx((0, -1, 0))
 
 
+def test_a_chain_of_frames_may_be_long_and_told_from_its_end():
+    frames = [f'<frame name="f{at}"><pose relative_to="f{at - 1}">1 0 0 0 0 0</pose></frame>' for at in range(1, 5001)]
+    chain = Frames(model("".join(reversed(frames)) + '<frame name="f0"/><link name="a"/>'))
+    assert near(chain.pose("f5000"), 5000, 0, 0)
+
+
 def test_what_stands_nowhere_is_named():
     frames = Frames(model(LINKS))
     for name in ("c", "a::b", "c::d"):

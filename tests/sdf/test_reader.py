@@ -358,6 +358,14 @@ def test_no_text_is_too_much_for_the_reader(text, at):
     read(document)
 
 
+def test_elements_in_elements_without_end_are_refused():
+    text = '<sdf version="1.9">' + '<model name="m">' * 5000 + "</model>" * 5000 + "</sdf>"
+    document, _ = parse_as_gazebo(text, "w.sdf")
+    reading = read(document)
+    assert reading.sdf is None
+    assert [each.code for each in reading.diagnostics] == ["SDF133"]
+
+
 def test_tags_may_stand_anywhere():
     """Each element of the table in each other one: nothing is raised, whatever stands where."""
     tags = sorted({each.tag for each in rules(SDF, {}).values()})

@@ -23,12 +23,8 @@ from linkwright.geometry.vectors import Vector3
 from linkwright.sdf.joints import Axis, Joint
 from linkwright.sdf.links import Link
 from linkwright.sdf.models import Frame, Model
-from linkwright.sdf.poses import RawPose
+from linkwright.sdf.poses import MODEL, SEPARATOR, WORLD, RawPose
 from linkwright.sdf.worlds import World
-
-WORLD = "world"
-MODEL = "__model__"
-SEPARATOR = "::"
 
 Owner = Model | World
 Framed = Link | Joint | Frame | Model
@@ -66,7 +62,6 @@ class Frames:
         self._roots = frozenset({"", MODEL} if isinstance(owner, Model) else {"", WORLD})
         self._inner: dict[str, Frames] = {}
         self._poses: dict[str, Transform] = {}
-        self._path: dict[str, None] = {}
 
     def __contains__(self, name: str) -> bool:
         head, colon, tail = name.partition(SEPARATOR)
@@ -90,19 +85,16 @@ class Frames:
         Raises:
             FrameError: it is not there, or stands relative to itself by way of others.
         """
-        if name in self._roots:
-            return IDENTITY
-        known = self._poses.get(name)
-        if known is not None:
-            return known
-        if name in self._path:
-            circle = list(self._path)
-            raise FrameError(name, [*circle[circle.index(name) :], name])
-        self._path[name] = None
-        try:
-            found = self._poses[name] = self._worked_out(name)
-        finally:
-            del self._path[name]
+        pending: dict[str, None] = {}  # from the frame that is asked for to the first that is known
+        while name not in self._roots and name not in self._poses:
+            if name in pending:
+                circle = list(pending)
+                raise FrameError(name, [*circle[circle.index(name) :], name])
+            pending[name] = None
+            name = self._base(name)
+        found = self._poses.get(name, IDENTITY)
+        for each in reversed(pending):
+            found = self._poses[each] = compose(found, self._in_base(each))
         return found
 
     def placed(self, pose: RawPose, absent: str = "") -> Transform:
@@ -168,19 +160,27 @@ class Frames:
             return f"{inner.name}{SEPARATOR}{self.inside(inner.name).link(MODEL)}"
         raise FrameError(MODEL)
 
-    def _worked_out(self, name: str) -> Transform:
-        head, colon, tail = name.partition(SEPARATOR)
+    def _base(self, name: str) -> str:
+        """The frame in which the pose of another is given."""
+        head, colon, _ = name.partition(SEPARATOR)
         if colon:
-            return compose(self.pose(head), self.inside(head).pose(tail))
+            return head
         found = self.named.get(name)
         if found is None:
             raise FrameError(name)
-        if isinstance(found, Model):
-            placed = self.placed(found.pose)
-            inside = self.inside(name).pose(found.placement_frame)
-            return compose(placed, invert(inside)) if found.placement_frame else placed
         absent = found.attached_to if isinstance(found, Frame) else found.child if isinstance(found, Joint) else ""
-        return self.placed(found.pose, absent)
+        return found.pose.relative_to or absent
+
+    def _in_base(self, name: str) -> Transform:
+        """Where a frame stands in that in which its pose is given."""
+        head, colon, tail = name.partition(SEPARATOR)
+        if colon:
+            return self.inside(head).pose(tail)
+        found = self.named[name]
+        pose = transform_of(found.pose.pose)
+        if isinstance(found, Model) and found.placement_frame:
+            return compose(pose, invert(self.inside(name).pose(found.placement_frame)))
+        return pose
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,11 +9,11 @@ from dataclasses import replace
 from typing import TypeVar
 
 from linkwright.geometry.single import compose, invert
-from linkwright.sdf.frames import MODEL, Frames, pose_of, transform_of
+from linkwright.sdf.frames import Frames, pose_of, transform_of
 from linkwright.sdf.joints import Axis, Joint
 from linkwright.sdf.links import Link
 from linkwright.sdf.models import Frame, Model
-from linkwright.sdf.poses import RawPose
+from linkwright.sdf.poses import MODEL, RawPose
 
 _Posed = TypeVar("_Posed", Link, Frame, Model)
 

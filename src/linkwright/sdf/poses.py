@@ -11,6 +11,13 @@ from linkwright.sdf.values import POSE as POSE_NUMBERS
 from linkwright.sdf.values import TEXT, TRUTH, choice, pose_of
 from linkwright.xmltree import Element
 
+WORLD = "world"
+"""What poses and joints call the frame of the world."""
+MODEL = "__model__"
+"""What they call the frame of the model around them."""
+SEPARATOR = "::"
+"""What stands between the name of a model and that of something in it."""
+
 
 @dataclass(frozen=True, slots=True)
 class RawPose:

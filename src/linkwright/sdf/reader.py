@@ -12,12 +12,15 @@ from dataclasses import dataclass
 
 from linkwright.diagnostics import Diagnostic, did_you_mean, phrase
 from linkwright.schema import ElementRule, reader_of
+from linkwright.sdf.poses import SEPARATOR, WORLD
 from linkwright.sdf.report import NEWEST, SdfReport
 from linkwright.sdf.worlds import SDF, Sdf
 from linkwright.xmltree import Document, Element
 
 _VERSION = re.compile(r"1\.([0-9]{1,2})").fullmatch
 _OLDEST_MINOR = 3
+_DEEPEST = 200
+"""Elements in elements; a model of ten models in each other has twenty."""
 _NAMED = frozenset({"world", "model", "link", "joint", "frame", "light", "actor"})
 _SIBLINGS = ("visual", "collision", "sensor", "light")
 _OTHER_FORMATS = {
@@ -114,6 +117,12 @@ def read(document: Document) -> Reading:
         _explain_root(root, report)
         return Reading(None, report.in_order())
     _check_version(root, report)
+    deep = _too_deep(root)
+    if deep is not None:
+        hint = phrase("is a closing tag missing?")
+        message = phrase("elements are nested more than {count} deep", count=_DEEPEST)
+        report.reject("SDF133", message, deep, hint=hint)
+        return Reading(None, report.in_order())
     sdf: Sdf = reader_of(SDF, NEWEST).read(root, root, report)
     for element, rule in _known(root):
         _check_names(element, rule, report)
@@ -148,6 +157,17 @@ def _check_version(root: Element, report: SdfReport) -> None:
     report.warning("SDF102", message, root, "version", hint=hint)
 
 
+def _too_deep(root: Element) -> Element | None:
+    """The first element with too many around it, or None."""
+    waiting = [(root, 0)]
+    while waiting:
+        element, depth = waiting.pop()
+        if depth > _DEEPEST:
+            return element
+        waiting.extend((child, depth + 1) for child in element.elements())
+    return None
+
+
 def _known(root: Element) -> Iterator[tuple[Element, ElementRule]]:
     """Every element that SDF has a place for, with its rule, in document order."""
     waiting = [(root, SDF)]
@@ -167,7 +187,10 @@ def _is_let_be(element: Element, rule: ElementRule) -> bool:
 
 
 def _check_names(element: Element, rule: ElementRule, report: SdfReport) -> None:
-    """Tell of names that come twice: among all that poses may refer to, and among shapes and sensors of one kind."""
+    """Tell of names that come twice, among all that poses may refer to and among shapes and sensors of one kind.
+
+    Names that mean something else to poses are told of as well.
+    """
     if rule.tag == "state":
         return
     first: dict[tuple[str, str], Element] = {}
@@ -176,6 +199,8 @@ def _check_names(element: Element, rule: ElementRule, report: SdfReport) -> None
         if name is None or not (child.tag in _NAMED or child.tag in _SIBLINGS):
             continue
         space = child.tag if child.tag in _SIBLINGS else ""
+        if not space and (SEPARATOR in name or name == WORLD or (name.startswith("__") and name.endswith("__"))):
+            report.reserved(child, name)
         before = first.setdefault((space, name), child)
         if before is not child:
             report.twice(child, before)

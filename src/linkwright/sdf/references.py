@@ -6,12 +6,12 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from linkwright.diagnostics import Diagnostic, Phrase, Severity, did_you_mean, joined, phrase
-from linkwright.sdf.frames import MODEL, SEPARATOR, WORLD, FrameError, Frames
+from linkwright.sdf.frames import FrameError, Frames
 from linkwright.sdf.joints import Joint
 from linkwright.sdf.lights import Light
 from linkwright.sdf.links import Collision, Link, Visual
 from linkwright.sdf.models import Frame, Model
-from linkwright.sdf.poses import RawPose
+from linkwright.sdf.poses import MODEL, SEPARATOR, WORLD, RawPose
 from linkwright.sdf.report import described
 from linkwright.sdf.sensors import Sensor
 from linkwright.sdf.worlds import Sdf, World
@@ -21,7 +21,8 @@ from linkwright.xmltree import Element
 def check_references(sdf: Sdf) -> list[Diagnostic]:
     """What is wrong with the names that a file, with its includes resolved, refers to; each thing once."""
     found: dict[tuple[object, str], Diagnostic] = {}
-    owners: tuple[World | Model, ...] = (*sdf.worlds, *sdf.models)
+    inserted = (model for world in sdf.worlds for state in world.states for model in state.insertions.models)
+    owners: tuple[World | Model, ...] = (*sdf.worlds, *sdf.models, *inserted)
     for owner in owners:
         for diagnostic in _check(owner, Frames(owner)):
             found.setdefault((diagnostic.span, str(diagnostic.message)), diagnostic)

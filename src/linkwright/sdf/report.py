@@ -98,6 +98,12 @@ class SdfReport(Findings):
             "SDF150", phrase("<{tag}> in <{parent}> is not read", tag=element.tag, parent=rule.tag), element, hint=hint
         )
 
+    def reserved(self, element: Element, name: str) -> None:
+        """A name that means something else where poses and joints use it."""
+        message = phrase("'{name}' cannot be the name of a {kind}", name=name, kind=term(element.tag))
+        hint = phrase("'::' stands between names, and 'world' and '__...__' are names of SDF's own")
+        self.error("SDF111", message, element, "name", hint=hint)
+
     def twice(self, element: Element, first: Element) -> None:
         """Two elements side by side have one name."""
         notes: Sequence[Note] = (Note(phrase("first defined here"), first.span()),)

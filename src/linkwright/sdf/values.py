@@ -54,7 +54,7 @@ def _joined(values: Iterable[float]) -> str:
 
 def _integer(text: str) -> int:
     value = number(text)
-    if value != int(value):
+    if not value.is_integer():
         raise ValueError(text)
     return int(value)
 
