@@ -9,7 +9,7 @@ export function jointBar({ connection, angles }: Session): HTMLElement {
   const words = strings.joints;
   return h(
     "div",
-    { class: "toolbar" },
+    { class: "toolbar joint-tools" },
     button(words.randomizeHint, () => connection.send({ type: "randomize_joints" }), "tool", icon("shuffle"), words.randomize),
     button(words.centerHint, () => connection.send({ type: "center_joints" }), "tool", icon("center"), words.center),
     h("span", { class: "spacer" }),
