@@ -15,7 +15,7 @@ from linkwright.launch.ros.substitutions import FindPackageShare
 from linkwright.packages import PackageFinder, use_finder
 from linkwright.packages.ament_functions import get_package_share_directory
 from linkwright.packages.readers.cmake import read_cmake
-from linkwright.packages.share_layout import source_of
+from linkwright.packages.share_layout import share_of_sources, source_of
 from linkwright.xacro import expand
 
 MANIFEST = '<package format="3"><name>arm</name></package>'
@@ -186,3 +186,49 @@ def test_other_paths_are_their_own_sources(tmp_path: Path) -> None:
     link = tmp_path / "link"
     link.symlink_to(tmp_path)
     assert source_of(str(link)) == str(link)
+
+
+OUTSIDE = {
+    "CMakeLists.txt": """
+project(arm)
+install(FILES {outside} ../other/secret.stl DESTINATION share/arm/meshes)
+install(FILES cfg/a.yaml DESTINATION share/arm/config)
+ament_package()
+""",
+    "setup.py": """
+from glob import glob
+from setuptools import setup
+setup(name='arm', data_files=[
+    ('share/arm/config', ['cfg/a.yaml']),
+    ('share/arm/meshes', ['{outside}', '../other/secret.stl'] + glob('../other/*')),
+])
+""",
+}
+
+
+@pytest.mark.parametrize("build_file", OUTSIDE)
+def test_files_outside_of_the_package_are_not_taken_in(
+    write: Callable[..., Path], build_file: str, tmp_path: Path
+) -> None:
+    (tmp_path / "src" / "other").mkdir(parents=True)
+    secret = tmp_path / "src" / "other" / "secret.stl"
+    secret.write_text("")
+    folder = write({build_file: OUTSIDE[build_file].replace("{outside}", secret.as_posix()), "cfg/a.yaml": ""})
+    share = share_of_sources("arm", folder)
+    assert (share / "config" / "a.yaml").is_file()
+    assert not (share / "meshes").exists()
+
+
+def test_what_loops_of_setup_py_move_is_found(write: Callable[..., Path]) -> None:
+    text = (
+        "import os\nfrom setuptools import setup\ndata = []\nfor root, _, files in os.walk('description'):\n"
+        "    to = 'share/arm/' + root[len('description/'):]\n"
+        "    data.append((to, [os.path.join(root, f) for f in files]))\nsetup(name='arm', data_files=data)\n"
+    )
+    folder = write({"setup.py": text, "description/urdf/arm.xacro": ROBOT})
+    assert (share_of_sources("arm", folder) / "urdf" / "arm.xacro").read_text() == ROBOT
+
+
+def test_environment_hooks_make_no_layout(write: Callable[..., Path]) -> None:
+    folder = write({"CMakeLists.txt": "project(arm)\nament_environment_hooks(a.dsv.in)\n", "a.dsv.in": ""})
+    assert share_of_sources("arm", folder) == folder

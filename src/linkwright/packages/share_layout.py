@@ -55,8 +55,14 @@ def _shared(name: str, folder: Path) -> Iterator[tuple[str, InstalledFile]]:
     share = f"share/{name}/"
     with suppress(OSError, ValueError):
         for file in _installed(folder):
-            if file.destination.startswith(share):
+            if file.destination.startswith(share) and _is_own(file.source):
                 yield file.destination[len(share) :], file
+
+
+def _is_own(source: str) -> bool:
+    """Whether a file lies in the package: one that a stranger's package takes from elsewhere is not shown to a page."""
+    path = Path(os.path.normpath(source))
+    return not path.is_absolute() and path.parts[:1] != (os.pardir,)
 
 
 def _installed(folder: Path) -> Iterator[InstalledFile]:

@@ -119,12 +119,19 @@ class PythonFile:
             node = value
         return node
 
-    def calls(self, *names: str) -> Iterator[ast.Call]:
-        """The calls of functions or classes, by the last part of their names, in the order of the text."""
+    def calls(self, *names: str, owner: str | None = None) -> Iterator[ast.Call]:
+        """The calls of functions or classes, by the last part of their names, in the order of the text.
+
+        Args:
+            names: of the functions.
+            owner: what stands before the last part; None for anything.
+        """
         found = [
             node
             for node in ast.walk(self.tree)
-            if isinstance(node, ast.Call) and called_name(node).rpartition(".")[2] in names
+            if isinstance(node, ast.Call)
+            and called_name(node).rpartition(".")[2] in names
+            and (owner is None or called_name(node).rpartition(".")[0] == owner)
         ]
         yield from sorted(found, key=lambda node: (node.lineno, node.col_offset))
 

@@ -64,6 +64,7 @@ class SetupFile:
     """A ``setup.py``.
 
     Attributes:
+        tree: its syntax tree, where it is Python.
         error: the syntax error, where it is no Python.
         call: whether it calls ``setup``.
         name: the name it gives the package, with its place; None where that cannot be told.
@@ -76,6 +77,7 @@ class SetupFile:
     """
 
     source: SourceText
+    tree: ast.Module | None = None
     error: SyntaxMistake | None = None
     call: bool = False
     name: tuple[str, Span] | None = None
@@ -92,6 +94,13 @@ class SetupFile:
         Args:
             package: the package's folder.
         """
+        if self.tree is not None and not (self.is_complete and all(item.destination for item in self.installed)):
+            from linkwright.packages.readers.setup_run import run_setup
+
+            files = run_setup(self.tree, package)
+            if files is not None:
+                yield from files
+                return
         for item in self.installed:
             if item.destination is not None:
                 for file in item.files(package):
@@ -106,6 +115,7 @@ def read_setup(source: SourceText) -> SetupFile:
     except (SyntaxError, ValueError) as error:
         facts.error = syntax_mistake(source, error)
         return facts
+    facts.tree = python.tree
     call = next(python.calls("setup"), None)
     if call is None:
         return facts
@@ -139,33 +149,39 @@ class _Installing:
     def __init__(self, python: PythonFile, facts: SetupFile) -> None:
         self._python = python
         self._facts = facts
+        self._names: set[str] = set()  # the lists whose entries are known
 
     def read(self, node: ast.expr | None, call: ast.Call) -> None:
         self._facts.data_files_span = self._python.span(node if node is not None else call.func)
-        if node is None:
-            return
-        names = [node.id] if isinstance(node, ast.Name) else []
-        resolved = self._python.resolved(node)
-        if isinstance(resolved, ast.Name):
-            self._facts.is_complete = False
-            return
-        self._entries(resolved)
-        for name in names:
-            self._added_to(name)
+        if node is not None:
+            self._entries(node)
 
     def _entries(self, node: ast.expr) -> None:
-        if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
-            self._entries(self._python.resolved(node.left))
-            self._entries(self._python.resolved(node.right))
+        if isinstance(node, ast.Name):
+            self._entries_of_name(node)
+        elif isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
+            self._entries(node.left)
+            self._entries(node.right)
         elif isinstance(node, (ast.List, ast.Tuple)):
             for entry in node.elts:
                 self._entry(entry)
         else:
             self._facts.is_complete = False
 
+    def _entries_of_name(self, node: ast.Name) -> None:
+        if node.id in self._names:
+            return
+        self._names.add(node.id)
+        value = self._python.assigned(node.id)
+        if value is None:
+            self._facts.is_complete = False
+        else:
+            self._entries(value)
+            self._added_to(node.id)
+
     def _entry(self, node: ast.expr) -> None:
         if isinstance(node, ast.Starred):
-            self._entries(self._python.resolved(node.value))
+            self._entries(node.value)
             return
         node = self._python.resolved(node)
         if not isinstance(node, (ast.Tuple, ast.List)) or len(node.elts) != 2:
@@ -174,6 +190,8 @@ class _Installing:
         self._sources(node.elts[1], self._python.text(node.elts[0]))
 
     def _sources(self, node: ast.expr, destination: str | None) -> None:
+        if isinstance(node, ast.Name) and any(self._python.calls("append", "extend", "insert", owner=node.id)):
+            self._facts.is_complete = False
         node = self._python.resolved(node)
         value = self._python.value(node)
         span = self._python.span(node)
@@ -204,9 +222,9 @@ class _Installing:
                 if called_name(node).endswith("append"):
                     self._entry(node.args[0])
                 else:
-                    self._entries(self._python.resolved(node.args[0]))
+                    self._entries(node.args[0])
             elif isinstance(node, ast.AugAssign) and isinstance(node.target, ast.Name) and node.target.id == name:
-                self._entries(self._python.resolved(node.value))
+                self._entries(node.value)
 
 
 def _read_packages(python: PythonFile, facts: SetupFile, node: ast.expr | None) -> None:

@@ -1,0 +1,167 @@
+"""What a ``setup.py`` may call while it is followed: functions that put paths together, and that look into its package.
+
+Nothing outside of the package is looked at, no file is opened, and no result is large.
+"""
+
+from __future__ import annotations
+
+import os
+import posixpath
+import re
+from collections.abc import Callable, Iterable, Iterator
+from fnmatch import fnmatchcase
+from glob import glob
+from itertools import chain
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+_MOST_ITEMS = 20_000
+_LONGEST_TEXT = 4096
+_WIDE = re.compile(r"\d{3}|\*")
+
+METHODS: dict[type, frozenset[str]] = {
+    kind: frozenset(names.split())
+    for kind, names in {
+        str: "startswith endswith replace split rsplit strip lstrip rstrip join lower upper removeprefix removesuffix "
+        "partition rpartition splitlines find rfind count index isdigit title",
+        list: "append extend insert remove pop sort copy index reverse clear count",
+        dict: "items keys values get update setdefault pop copy",
+        set: "add update discard union",
+        tuple: "index count",
+        PurePosixPath: "joinpath relative_to with_suffix with_name as_posix match is_absolute",
+    }.items()
+}
+"""The methods of values that may be called."""
+
+ATTRIBUTES = frozenset(("name", "stem", "suffix", "suffixes", "parent", "parents", "parts"))
+"""The attributes of paths that may be read."""
+
+
+class NotKnownError(Exception):
+    """What an expression stands for cannot be told."""
+
+
+def bounded(value: Any) -> Any:
+    """A value, where it is not too large.
+
+    Raises:
+        NotKnownError: it is.
+    """
+    if isinstance(value, str) and len(value) > _LONGEST_TEXT:
+        raise NotKnownError
+    if isinstance(value, (list, tuple, dict, set)) and len(value) > _MOST_ITEMS:
+        raise NotKnownError
+    return value
+
+
+def formatted(template: str, *given: Any, **named: Any) -> str:
+    """``template.format(...)``, where it makes nothing wide and reaches into no object.
+
+    Raises:
+        NotKnownError: it does.
+    """
+    if _WIDE.search(template) or "." in "".join(re.findall(r"\{[^}]*\}", template)):
+        raise NotKnownError
+    return template.format(*given, **named)
+
+
+def percent(template: str, given: Any) -> str:
+    """``template % given``, where it makes nothing wide.
+
+    Raises:
+        NotKnownError: it does.
+    """
+    if _WIDE.search(template):
+        raise NotKnownError
+    return str(template % given)
+
+
+class PackageLibrary:
+    """The functions of ``os``, ``glob`` and ``pathlib``, as they are in the folder of a package.
+
+    Args:
+        folder: the folder, which is the working directory of its ``setup.py``.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = Path(os.path.abspath(folder))  # noqa: PTH100 - links stay
+        path: dict[str, Callable[..., Any]] = {
+            **{
+                name: getattr(posixpath, name)
+                for name in ("join", "dirname", "basename", "split", "splitext", "normpath")
+            },
+            **dict.fromkeys(("abspath", "realpath"), self._absolute),
+            "relpath": lambda path, start=".": posixpath.relpath(self._absolute(path), self._absolute(start)),
+            "isfile": lambda path: self._real(path).is_file(),
+            "isdir": lambda path: self._real(path).is_dir(),
+            "exists": lambda path: self._real(path).exists(),
+        }
+        self.functions: dict[str, Callable[..., Any]] = {
+            **{f"os.path.{name}": function for name, function in path.items()},
+            "os.walk": self._walk,
+            "os.listdir": lambda path=".": sorted(each.name for each in self._listed(path)),
+            "os.getcwd": self._folder.as_posix,
+            "os.fspath": str,
+            "glob.glob": self._glob,
+            "glob.iglob": self._glob,
+            "fnmatch.fnmatch": lambda name, pattern: fnmatchcase(str(name), str(pattern)),
+            "itertools.chain": lambda *parts: list(chain(*parts)),
+            "itertools.chain.from_iterable": lambda parts: list(chain.from_iterable(parts)),
+            **dict.fromkeys(("pathlib.Path", "pathlib.PurePath"), PurePosixPath),
+        }
+        self.path_methods: dict[str, Callable[..., Any]] = {
+            "is_file": path["isfile"],
+            "is_dir": path["isdir"],
+            "exists": path["exists"],
+            "iterdir": lambda path: sorted(path / each.name for each in self._listed(path)),
+            "glob": self._path_glob,
+            "rglob": lambda path, pattern: self._path_glob(path, f"**/{pattern}"),
+            **dict.fromkeys(("resolve", "absolute"), lambda path: PurePosixPath(self._absolute(path))),
+        }
+
+    def relative(self, path: Any) -> str:
+        """A path of the package, relative to its folder, with slashes.
+
+        Raises:
+            NotKnownError: it is outside.
+        """
+        return self._real(path).relative_to(self._folder).as_posix()
+
+    def _absolute(self, path: Any) -> str:
+        return posixpath.normpath(posixpath.join(self._folder.as_posix(), str(path)))
+
+    def _real(self, path: Any) -> Path:
+        if not isinstance(path, (str, PurePosixPath)):
+            raise NotKnownError
+        found = Path(self._absolute(path))
+        if not found.is_relative_to(self._folder):
+            raise NotKnownError
+        return found
+
+    def _listed(self, path: Any) -> Iterable[Path]:
+        return bounded(list(self._real(path).iterdir()))  # type: ignore[no-any-return]  # what it is given
+
+    def _walk(self, top: Any) -> Iterator[tuple[str, list[str], list[str]]]:
+        count = 0
+        for root, folders, files in os.walk(self._real(top)):
+            count += 1 + len(files)
+            if count > _MOST_ITEMS:
+                raise NotKnownError
+            folders.sort()
+            inside = Path(root).relative_to(self._real(top)).as_posix()
+            yield str(top) if inside == "." else posixpath.join(str(top), inside), folders, sorted(files)
+
+    def _glob(self, pattern: Any, recursive: bool = False, **other: Any) -> list[str]:
+        text = str(pattern)
+        fixed = re.split(r"[*?\[]", text, maxsplit=1)[0]
+        self._real(fixed)
+        if other or ".." in text.split("/"):
+            raise NotKnownError
+        found = glob(text, root_dir=self._folder, recursive=bool(recursive))  # noqa: PTH207 - as setup.py has it
+        return sorted(bounded([name.replace("\\", "/") for name in found]))
+
+    def _path_glob(self, path: PurePosixPath, pattern: str) -> list[PurePosixPath]:
+        if ".." in pattern.split("/") or pattern.startswith("/"):
+            raise NotKnownError
+        top = self._real(path)
+        return bounded(sorted(path / each.relative_to(top).as_posix() for each in top.glob(pattern)))  # type: ignore[no-any-return]  # what it is given

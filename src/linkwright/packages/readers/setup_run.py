@@ -1,0 +1,465 @@
+"""Follows a ``setup.py`` that puts its ``data_files`` together with loops and functions, without handing it to Python.
+
+Enough of the language is known for that: assignments, loops, conditions, functions, and those functions of the library
+that `linkwright.packages.readers.setup_library` has. What cannot be told has no value, and nothing depends on it.
+"""
+
+from __future__ import annotations
+
+import ast
+import operator
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+from linkwright.packages.readers.installed_file import InstalledFile
+from linkwright.packages.readers.setup_library import (
+    ATTRIBUTES,
+    METHODS,
+    NotKnownError,
+    PackageLibrary,
+    bounded,
+    formatted,
+    percent,
+)
+
+_MOST_STEPS = 300_000
+_DEEPEST = 40
+_COMPARISONS: dict[type[ast.cmpop], Callable[[Any, Any], Any]] = {
+    ast.Eq: operator.eq,
+    ast.NotEq: operator.ne,
+    ast.Lt: operator.lt,
+    ast.LtE: operator.le,
+    ast.Gt: operator.gt,
+    ast.GtE: operator.ge,
+    ast.Is: operator.is_,
+    ast.IsNot: operator.is_not,
+    ast.In: lambda item, items: item in items,
+    ast.NotIn: lambda item, items: item not in items,
+}
+_BUILTINS: dict[str, Callable[..., Any]] = {
+    **{each.__name__: each for each in (len, list, tuple, set, dict, str, zip, sorted, any, all, bool, int, min, max)},
+    **{each.__name__: each for each in (enumerate, reversed, map, filter)},
+    "range": lambda *numbers: bounded(list(range(*numbers)[:20_001])),
+    "sum": lambda items, start=0: [each for item in items for each in item] if start == [] else sum(items, start),
+    "print": lambda *_, **__: None,
+}
+
+
+class _Unknown:
+    """The value of what cannot be told."""
+
+
+_UNKNOWN = _Unknown()
+
+
+@dataclass(frozen=True)
+class _Named:
+    """Something of a module, by its full name."""
+
+    name: str
+
+
+class _CannotFollowError(Exception):
+    """What cannot be told, or takes long, decides all that follows."""
+
+
+class _LeaveError(Exception):
+    """``break``, ``continue`` or ``return`` with a value."""
+
+    def __init__(self, kind: str, value: Any = None) -> None:
+        super().__init__(kind)
+        self.kind = kind
+        self.value = value
+
+
+class _SetupCalledError(Exception):
+    """``setup`` was called; it carries the data files."""
+
+    def __init__(self, data_files: Any) -> None:
+        super().__init__()
+        self.data_files = data_files
+
+
+def run_setup(tree: ast.Module, folder: Path) -> list[InstalledFile] | None:
+    """What the ``data_files`` of a ``setup.py`` install, or None where it could not be followed.
+
+    Args:
+        tree: the file.
+        folder: the folder of its package.
+    """
+    library = PackageLibrary(folder)
+    try:
+        _Run(library).body(tree.body)
+    except _SetupCalledError as called:
+        return list(_installed(called.data_files, library))
+    except Exception:  # noqa: BLE001 - what the user's expressions may raise
+        return None
+    return None
+
+
+def _installed(data_files: Any, library: PackageLibrary) -> Iterator[InstalledFile]:
+    for entry in data_files if isinstance(data_files, (list, tuple)) else ():
+        if not isinstance(entry, (list, tuple)) or len(entry) != 2 or not isinstance(entry[1], (list, tuple)):
+            continue
+        for file in entry[1]:
+            try:
+                source = library.relative(file)
+            except NotKnownError:
+                continue
+            if isinstance(entry[0], (str, PurePosixPath)) and library.functions["os.path.isfile"](source):
+                yield InstalledFile(source, str(PurePosixPath(entry[0]) / PurePosixPath(source).name))
+
+
+class _Run:
+    def __init__(self, library: PackageLibrary) -> None:
+        self._library = library
+        self._scopes: list[dict[str, Any]] = [{"__file__": "setup.py", "__name__": "__main__"}]
+        self._own: set[Any] = set()  # the functions of the file
+        self._steps = self._depth = 0
+
+    # --- statements --------------------------------------------------------------------------------------------------
+
+    def body(self, statements: Iterable[ast.stmt]) -> None:
+        for statement in statements:
+            self._tick()
+            self._statement(statement)
+
+    def _tick(self) -> None:
+        self._steps += 1
+        if self._steps > _MOST_STEPS:
+            raise _CannotFollowError
+
+    def _statement(self, node: ast.stmt) -> None:
+        if isinstance(node, (ast.Import, ast.ImportFrom)):
+            self._import(node)
+        elif isinstance(node, ast.FunctionDef):
+            self._scopes[-1][node.name] = self._function(node.args, node.body)
+        elif isinstance(node, ast.Assign):
+            value = self._value(node.value)
+            for target in node.targets:
+                self._bind(target, value)
+        elif isinstance(node, ast.AnnAssign):
+            self._bind(node.target, _UNKNOWN if node.value is None else self._value(node.value))
+        elif isinstance(node, ast.AugAssign):
+            self._augment(node)
+        elif isinstance(node, ast.Expr):
+            self._value(node.value)
+        elif isinstance(node, ast.For):
+            self._loop(node)
+        elif isinstance(node, ast.If):
+            self.body(node.body if self._truth(node.test) else node.orelse)
+        elif isinstance(node, ast.With):
+            for item in node.items:
+                if item.optional_vars is not None:
+                    self._bind(item.optional_vars, _UNKNOWN)
+            self.body(node.body)
+        elif isinstance(node, ast.Try):
+            self.body([*node.body, *node.orelse, *node.finalbody])
+        elif isinstance(node, ast.Return):
+            raise _LeaveError("return", None if node.value is None else self._value(node.value))
+        elif isinstance(node, (ast.Break, ast.Continue)):
+            raise _LeaveError("break" if isinstance(node, ast.Break) else "continue")
+        elif isinstance(node, ast.ClassDef):
+            self._scopes[-1][node.name] = _UNKNOWN
+        elif not isinstance(node, (ast.Pass, ast.Assert, ast.Global, ast.Delete)):
+            raise NotKnownError
+
+    def _import(self, node: ast.Import | ast.ImportFrom) -> None:
+        for each in node.names:
+            if isinstance(node, ast.ImportFrom):
+                self._scopes[-1][each.asname or each.name] = _Named(f"{node.module}.{each.name}")
+            else:
+                name = each.name if each.asname else each.name.partition(".")[0]
+                self._scopes[-1][each.asname or name] = _Named(name)
+
+    def _augment(self, node: ast.AugAssign) -> None:
+        value = self._value(ast.BinOp(_loaded(node.target), node.op, node.value))
+        before = self._value(_loaded(node.target))
+        if isinstance(before, list) and isinstance(value, list):
+            before[:] = value  # the same list, whoever else has it
+        else:
+            self._bind(node.target, value)
+
+    def _loop(self, node: ast.For) -> None:
+        for item in self._items(self._value(node.iter)):
+            self._tick()
+            self._bind(node.target, item)
+            try:
+                self.body(node.body)
+            except _LeaveError as leave:
+                if leave.kind == "break":
+                    return
+                if leave.kind == "return":
+                    raise
+        self.body(node.orelse)
+
+    def _bind(self, target: ast.expr, value: Any) -> None:
+        if isinstance(target, ast.Name):
+            self._scopes[-1][target.id] = value
+        elif isinstance(target, (ast.Tuple, ast.List)):
+            parts = [_UNKNOWN] * len(target.elts) if value is _UNKNOWN else list(self._items(value))
+            for each, part in zip(target.elts, parts, strict=True):
+                self._bind(each, part)
+        elif isinstance(target, ast.Subscript):
+            owner = self._value(target.value)
+            if isinstance(owner, list) and isinstance(target.slice, ast.Slice):
+                owner[self._slice(target.slice)] = list(self._items(value))
+            elif isinstance(owner, (dict, list)):
+                owner[self._value(target.slice)] = value
+
+    # --- expressions -------------------------------------------------------------------------------------------------
+
+    def _value(self, node: ast.expr) -> Any:
+        """What an expression stands for; _UNKNOWN where that cannot be told."""
+        self._tick()
+        try:
+            return bounded(self._evaluated(node))
+        except (NotKnownError, TypeError, ValueError, AttributeError, LookupError, OSError):
+            return _UNKNOWN
+
+    def _known(self, node: ast.expr) -> Any:
+        value = self._value(node)
+        if value is _UNKNOWN:
+            raise NotKnownError
+        return value
+
+    def _truth(self, node: ast.expr) -> bool:
+        value = self._value(node)
+        if value is _UNKNOWN:
+            raise _CannotFollowError  # which way it goes decides all that follows
+        return bool(value)
+
+    def _items(self, value: Any) -> Iterator[Any]:
+        if isinstance(value, (_Unknown, _Named)):
+            raise _CannotFollowError
+        yield from value
+
+    def _evaluated(self, node: ast.expr) -> Any:
+        kind = _KINDS.get(type(node))
+        if kind is None:
+            raise NotKnownError
+        return kind(self, node)
+
+    def _constant(self, node: ast.Constant) -> Any:
+        return node.value
+
+    def _name(self, node: ast.Name) -> Any:
+        for scope in reversed(self._scopes):
+            if node.id in scope:
+                return scope[node.id]
+        if node.id in _BUILTINS:
+            return _BUILTINS[node.id]
+        raise NotKnownError
+
+    def _elements(self, nodes: Iterable[ast.expr]) -> list[Any]:
+        values: list[Any] = []
+        for node in nodes:
+            if isinstance(node, ast.Starred):
+                values += self._items(self._value(node.value))
+            else:
+                values.append(self._value(node))
+        return values
+
+    def _sequence(self, node: ast.List | ast.Tuple | ast.Set) -> Any:
+        made: Callable[[Any], Any] = {ast.List: list, ast.Tuple: tuple, ast.Set: set}[type(node)]
+        return made(self._elements(node.elts))
+
+    def _dict(self, node: ast.Dict) -> dict[Any, Any]:
+        made: dict[Any, Any] = {}
+        for key, value in zip(node.keys, node.values, strict=True):
+            if key is None:
+                made |= self._known(value)
+            else:
+                made[self._known(key)] = self._value(value)
+        return made
+
+    def _joined(self, node: ast.JoinedStr) -> str:
+        parts: list[str] = []
+        for piece in node.values:
+            if isinstance(piece, ast.FormattedValue):
+                if piece.format_spec is not None or piece.conversion not in (-1, ord("s")):
+                    raise NotKnownError
+                parts.append(str(self._known(piece.value)))
+            else:
+                parts.append(self._known(piece))
+        return "".join(parts)
+
+    def _operation(self, node: ast.BinOp) -> Any:
+        left, right = self._known(node.left), self._known(node.right)
+        if isinstance(node.op, ast.Add) and isinstance(left, (str, list, tuple, int)):
+            return left + right
+        if isinstance(node.op, ast.Sub) and isinstance(left, int):
+            return left - right
+        if isinstance(node.op, ast.Div) and isinstance(left, PurePosixPath):
+            return left / right
+        if isinstance(node.op, ast.Mod) and isinstance(left, str):
+            return percent(left, right)
+        raise NotKnownError
+
+    def _logic(self, node: ast.BoolOp) -> Any:
+        value = None
+        for each in node.values:
+            value = self._known(each)
+            if bool(value) == isinstance(node.op, ast.Or):
+                break
+        return value
+
+    def _unary(self, node: ast.UnaryOp) -> Any:
+        value = self._known(node.operand)
+        if isinstance(node.op, ast.Not):
+            return not value
+        if isinstance(node.op, ast.USub) and isinstance(value, int):
+            return -value
+        raise NotKnownError
+
+    def _comparison(self, node: ast.Compare) -> bool:
+        left = self._known(node.left)
+        for operation, right in zip(node.ops, map(self._known, node.comparators), strict=True):
+            if not _COMPARISONS[type(operation)](left, right):
+                return False
+            left = right
+        return True
+
+    def _choice(self, node: ast.IfExp) -> Any:
+        return self._value(node.body if self._truth(node.test) else node.orelse)
+
+    def _comprehension(self, node: ast.ListComp | ast.GeneratorExp | ast.SetComp) -> Any:
+        self._scopes.append({})
+        try:
+            made = list(self._rounds(node.generators, lambda: self._value(node.elt)))
+        finally:
+            self._scopes.pop()
+        return set(made) if isinstance(node, ast.SetComp) else made
+
+    def _rounds(self, generators: list[ast.comprehension], value: Callable[[], Any]) -> Iterator[Any]:
+        if not generators:
+            yield value()
+            return
+        first, *others = generators
+        for item in self._items(self._value(first.iter)):
+            self._tick()
+            self._bind(first.target, item)
+            if all(self._truth(condition) for condition in first.ifs):
+                yield from self._rounds(others, value)
+
+    def _part(self, node: ast.Subscript) -> Any:
+        owner = self._known(node.value)
+        key = self._slice(node.slice) if isinstance(node.slice, ast.Slice) else self._known(node.slice)
+        if not isinstance(owner, (str, list, tuple, dict)):
+            raise NotKnownError
+        return owner[key]
+
+    def _slice(self, node: ast.Slice) -> slice:
+        return slice(*(None if part is None else self._known(part) for part in (node.lower, node.upper, node.step)))
+
+    def _attribute(self, node: ast.Attribute) -> Any:
+        owner = self._known(node.value)
+        if isinstance(owner, _Named):
+            return "/" if owner.name == "os" and node.attr == "sep" else _Named(f"{owner.name}.{node.attr}")
+        if isinstance(owner, PurePosixPath) and node.attr in ATTRIBUTES:
+            return getattr(owner, node.attr)
+        return self._method(owner, node.attr)
+
+    def _method(self, owner: Any, name: str) -> Callable[..., Any]:
+        if isinstance(owner, str) and name == "format":
+            return lambda *given, **named: formatted(owner, *given, **named)
+        if isinstance(owner, PurePosixPath) and name in self._library.path_methods:
+            return lambda *given, **named: self._library.path_methods[name](owner, *given, **named)
+        if any(isinstance(owner, kind) and name in names for kind, names in METHODS.items()):
+            method: Callable[..., Any] = getattr(owner, name)
+            return method
+        raise NotKnownError
+
+    def _lambda(self, node: ast.Lambda) -> Callable[..., Any]:
+        return self._function(node.args, [ast.Return(node.body)])
+
+    # --- calls -------------------------------------------------------------------------------------------------------
+
+    def _call(self, node: ast.Call) -> Any:
+        called = self._known(node.func)
+        named: dict[str, Any] = {}
+        for keyword in node.keywords:
+            if keyword.arg is None:
+                named |= self._known(keyword.value)
+            else:
+                named[keyword.arg] = self._value(keyword.value)
+        given = self._elements(node.args)
+        if isinstance(called, _Named):
+            if called.name.rpartition(".")[2] == "setup":
+                raise _SetupCalledError(named.get("data_files"))
+            called = self._function_of_library(called.name)
+        if not callable(called):
+            raise NotKnownError
+        is_kept = getattr(called, "__name__", "") in ("append", "insert", "setdefault", "add") or called in self._own
+        if not is_kept and any(value is _UNKNOWN for value in (*given, *named.values())):
+            raise NotKnownError
+        made = called(*(self._named_function(value) for value in given), **named)
+        return (
+            list(made)
+            if isinstance(made, (map, filter, zip, enumerate, Mapping)) and not isinstance(made, dict)
+            else made
+        )
+
+    def _named_function(self, value: Any) -> Any:
+        return self._function_of_library(value.name) if isinstance(value, _Named) else value
+
+    def _function_of_library(self, name: str) -> Callable[..., Any]:
+        try:
+            return self._library.functions[name]
+        except KeyError:
+            raise NotKnownError from None
+
+    def _function(self, parameters: ast.arguments, body: list[ast.stmt]) -> Callable[..., Any]:
+        names = [each.arg for each in (*parameters.posonlyargs, *parameters.args)]
+        defaults = dict(zip(reversed(names), reversed(self._elements(parameters.defaults)), strict=False))
+        only = {
+            each.arg: _UNKNOWN if default is None else self._value(default)
+            for each, default in zip(parameters.kwonlyargs, parameters.kw_defaults, strict=True)
+        }
+        outer = self._scopes[1:]
+
+        def called(*given: Any, **named: Any) -> Any:
+            scope = {**defaults, **only, **dict(zip(names, given, strict=False)), **named}
+            if parameters.vararg is not None:
+                scope[parameters.vararg.arg] = given[len(names) :]
+            before, self._scopes = self._scopes, [self._scopes[0], *outer, scope]
+            self._depth += 1
+            try:
+                if self._depth > _DEEPEST:
+                    raise _CannotFollowError
+                self.body(body)
+            except _LeaveError as leave:
+                return leave.value
+            finally:
+                self._depth -= 1
+                self._scopes = before
+            return None
+
+        self._own.add(called)
+        return called
+
+
+def _loaded(target: ast.expr) -> ast.expr:
+    """What a target of an assignment stands for before it."""
+    return ast.Name(target.id, ast.Load()) if isinstance(target, ast.Name) else target
+
+
+_KINDS: dict[type[ast.expr], Callable[[_Run, Any], Any]] = {
+    ast.Constant: _Run._constant,
+    ast.Name: _Run._name,
+    **dict.fromkeys((ast.List, ast.Tuple, ast.Set), _Run._sequence),
+    ast.Dict: _Run._dict,
+    ast.JoinedStr: _Run._joined,
+    ast.BinOp: _Run._operation,
+    ast.BoolOp: _Run._logic,
+    ast.UnaryOp: _Run._unary,
+    ast.Compare: _Run._comparison,
+    ast.IfExp: _Run._choice,
+    **dict.fromkeys((ast.ListComp, ast.GeneratorExp, ast.SetComp), _Run._comprehension),
+    ast.Subscript: _Run._part,
+    ast.Attribute: _Run._attribute,
+    ast.Lambda: _Run._lambda,
+    ast.Call: _Run._call,
+}
