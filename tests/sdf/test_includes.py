@@ -159,6 +159,18 @@ def test_merged_parts_are_parts_of_the_model_around_them(tmp_path):
     assert frames.link("_merged__mast__model__") == "pole"
 
 
+def test_a_merged_model_without_its_placement_frame_is_told_of_and_placed_without(tmp_path):
+    write(tmp_path, {"mast/model.sdf": sdf('<model name="mast" placement_frame="foot"><link name="pole"/></model>')})
+    found = examined(
+        tmp_path,
+        """<model name="m"><link name="base"/><include merge="true"><uri>mast</uri><pose>0 0 5 0 0 0</pose></include>
+        </model>""",
+    )
+    assert [each.code for each in found.diagnostics] == ["SDF141"]
+    assert found.sdf is not None
+    assert Frames(found.sdf.worlds[0].models[0]).pose("pole")[:3] == (0, 0, 5)
+
+
 def test_lights_and_actors_are_included_too(tmp_path):
     write(tmp_path, {"lamp/model.sdf": sdf('<light name="lamp" type="point"/>')})
     write(tmp_path, {"walker/model.sdf": sdf('<actor name="walker"/>')})

@@ -18,10 +18,11 @@ from linkwright.sdf.joints import AxisDynamics, AxisLimit, AxisMimic
 from linkwright.sdf.lights import Attenuation, Spot
 from linkwright.sdf.links import Inertia
 from linkwright.sdf.materials import MaterialScript
+from linkwright.sdf.noise import Noise, NoiseXyz
 from linkwright.sdf.poses import RawPose
 from linkwright.sdf.reader import read
 from linkwright.sdf.report import NEWEST, SdfReport
-from linkwright.sdf.sensors import Noise, NoiseXyz, Reach, Sweep
+from linkwright.sdf.sensors import Reach, Sweep
 from linkwright.sdf.surfaces import Contact, Friction, Surface, TorsionalFriction
 from linkwright.sdf.text import parse_as_gazebo
 from linkwright.sdf.worlds import SDF, World, gravity_of, physics_of

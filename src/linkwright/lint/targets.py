@@ -42,9 +42,9 @@ def find_targets(paths: Iterable[Path], *, around: bool = False) -> Targets:
 
     A file is checked whatever it is; the package that it lies in is checked only if `around` says so. Of a folder and
     those below it, what is checked are the packages, that around the folder too, and, of the files that no other there
-    includes, the ``.urdf`` files and those ``.xacro`` files that describe a robot by themselves: their root is a
-    ``<robot>`` with a name, and they hold more than declarations. Build products and hidden folders are left out, and
-    so are files with nothing in them.
+    includes, the ``.urdf``, ``.sdf`` and ``.world`` files and those ``.xacro`` files that describe a robot by
+    themselves: their root is a ``<robot>`` with a name, and they hold more than declarations. Build products and hidden
+    folders are left out, and so are files with nothing in them.
     """
     files: dict[Path, None] = {}
     packages: dict[Path, None] = {}

@@ -9,6 +9,7 @@ from typing import Protocol
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, Severity, phrase, term
 from linkwright.sdf.actors import Actor
+from linkwright.sdf.frames import FrameError
 from linkwright.sdf.lights import Light
 from linkwright.sdf.merging import merged
 from linkwright.sdf.models import Include, Model
@@ -95,7 +96,8 @@ class _Resolver:
         if not (model.models or model.includes):
             return model
         inner = [self.model(each, path, chain) for each in model.models]
-        parts, left = [], []
+        parts: list[tuple[Include, Model]] = []
+        left = []
         names = _names(model.links, model.joints, model.frames, inner)
         for include in model.includes:
             thing = self._included(include, path, chain)
@@ -104,13 +106,23 @@ class _Resolver:
             if not isinstance(thing, Model):
                 left.append(include)
             elif include.merge:
-                parts.append(thing)
+                parts.append((include, thing))
             else:
                 inner.append(thing)
         whole = replace(model, models=tuple(inner), includes=tuple(left))
-        for part in parts:
-            whole = merged(whole, part)
+        for include, part in parts:
+            whole = self._merged(whole, part, include)
         return whole
+
+    def _merged(self, whole: Model, part: Model, include: Include) -> Model:
+        try:
+            return merged(whole, part)
+        except FrameError as error:
+            message = phrase(
+                "'{attribute}' names '{name}', which is not there", attribute="placement_frame", name=error.name
+            )
+            self._tell("SDF141", message, include, None, Severity.ERROR)
+            return merged(whole, replace(part, placement_frame=""))
 
     def _included(self, include: Include, path: Path, chain: tuple[Path, ...]) -> Thing | None:
         """The included model, light or actor, as it is here; None where there is none, which has been told."""

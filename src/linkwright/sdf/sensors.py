@@ -10,119 +10,12 @@ from typing import Any
 
 from linkwright.geometry.vectors import Vector3
 from linkwright.schema import AttributeRule, ElementRule
+from linkwright.sdf.cameras import CAMERA, Camera
+from linkwright.sdf.noise import NO_NOISE, NO_NOISE_XYZ, Noise, NoiseXyz, around_noise, noise_rule, noise_xyz
 from linkwright.sdf.plugins import PLUGIN, Plugin
 from linkwright.sdf.poses import AT_ORIGIN, POSE, RawPose
-from linkwright.sdf.values import INTEGER, NUMBER, TEXT, TRUTH, VECTOR2, VECTOR3, made, name_of, value
+from linkwright.sdf.values import INTEGER, NUMBER, TEXT, TRUTH, VECTOR3, made, name_of, value
 from linkwright.xmltree import Element
-
-
-@dataclass(frozen=True, slots=True)
-class Noise:
-    """Noise on a value, in the unit of the value.
-
-    Attributes:
-        type: ``none``, ``gaussian`` or ``gaussian_quantized``.
-        mean: what is added on average.
-        stddev: the standard deviation.
-        bias_mean: the mean of a bias that is drawn once.
-        bias_stddev: its standard deviation.
-        dynamic_bias_stddev: the standard deviation of a bias that wanders.
-        dynamic_bias_correlation_time: how slowly it wanders, in seconds.
-        precision: what values are rounded to, where they are quantized.
-    """
-
-    type: str = "none"
-    mean: float = 0.0
-    stddev: float = 0.0
-    bias_mean: float = 0.0
-    bias_stddev: float = 0.0
-    dynamic_bias_stddev: float = 0.0
-    dynamic_bias_correlation_time: float = 0.0
-    precision: float = 0.0
-
-
-NO_NOISE = Noise()
-
-
-@dataclass(frozen=True, slots=True)
-class Picture:
-    """Size in pixels and format of a camera's pictures, as ``R8G8B8``."""
-
-    width: int = 320
-    height: int = 240
-    format: str = "R8G8B8"
-
-
-@dataclass(frozen=True, slots=True)
-class Clip:
-    """The nearest and the farthest distance that a camera sees, in metres."""
-
-    near: float = 0.1
-    far: float = 100.0
-
-
-@dataclass(frozen=True, slots=True)
-class Distortion:
-    """Brown's coefficients of a lens; `center` in shares of the picture."""
-
-    k1: float = 0.0
-    k2: float = 0.0
-    k3: float = 0.0
-    p1: float = 0.0
-    p2: float = 0.0
-    center: tuple[float, float] = (0.5, 0.5)
-
-
-@dataclass(frozen=True, slots=True)
-class Intrinsics:
-    """Focal lengths and centre of a picture in pixels, and skew."""
-
-    fx: float = 277.0
-    fy: float = 277.0
-    cx: float = 160.0
-    cy: float = 120.0
-    s: float = 0.0
-
-
-@dataclass(frozen=True, slots=True)
-class Camera:
-    """A camera; it looks along x of its frame, with z up.
-
-    Attributes:
-        name: of one camera among several.
-        pose: in the frame of the sensor.
-        horizontal_fov: the angle that the width of the picture covers, in radians.
-        image: size and format.
-        clip: what it sees.
-        noise: on each colour, from 0 to 1.
-        distortion: of the lens; None for a perfect one.
-        intrinsics: where they are given instead of the angle; else None.
-        depth_clip: what a depth camera measures; None for the same as `clip`.
-        segmentation_type: ``semantic`` or ``instance`` (also ``panoptic``).
-        box_type: ``2d``, ``visible_2d``, ``full_2d`` or ``3d``.
-        camera_info_topic: the topic of its intrinsics; empty for the usual one.
-        optical_frame_id: the frame of its pictures; empty for that of the sensor.
-        triggered: whether it takes pictures only when asked.
-        trigger_topic: where it is asked.
-        visibility_mask: which visuals it sees: those with a bit in common.
-    """
-
-    name: str = ""
-    pose: RawPose = AT_ORIGIN
-    horizontal_fov: float = 1.047
-    image: Picture = Picture()
-    clip: Clip = Clip()
-    noise: Noise = NO_NOISE
-    distortion: Distortion | None = None
-    intrinsics: Intrinsics | None = None
-    depth_clip: Clip | None = None
-    segmentation_type: str = "semantic"
-    box_type: str = "2d"
-    camera_info_topic: str = ""
-    optical_frame_id: str = ""
-    triggered: bool = False
-    trigger_topic: str = ""
-    visibility_mask: int = 0xFFFFFFFF
 
 
 @dataclass(frozen=True, slots=True)
@@ -156,15 +49,6 @@ class Lidar:
 
 
 @dataclass(frozen=True, slots=True)
-class NoiseXyz:
-    """Noise on the three parts of a vector."""
-
-    x: Noise = NO_NOISE
-    y: Noise = NO_NOISE
-    z: Noise = NO_NOISE
-
-
-@dataclass(frozen=True, slots=True)
 class Imu:
     """An inertial measurement unit.
 
@@ -177,8 +61,8 @@ class Imu:
         custom_rpy: roll, pitch, yaw of the custom frame, in radians, in the frame `custom_parent_frame`.
     """
 
-    angular_velocity: NoiseXyz = NoiseXyz()
-    linear_acceleration: NoiseXyz = NoiseXyz()
+    angular_velocity: NoiseXyz = NO_NOISE_XYZ
+    linear_acceleration: NoiseXyz = NO_NOISE_XYZ
     enable_orientation: bool = True
     localization: str = "CUSTOM"
     custom_rpy: Vector3 = (0.0, 0.0, 0.0)
@@ -216,8 +100,8 @@ class ForceTorque:
 
     frame: str = "child"
     measure_direction: str = "child_to_parent"
-    force: NoiseXyz = NoiseXyz()
-    torque: NoiseXyz = NoiseXyz()
+    force: NoiseXyz = NO_NOISE_XYZ
+    torque: NoiseXyz = NO_NOISE_XYZ
 
 
 @dataclass(frozen=True, slots=True)
@@ -296,49 +180,6 @@ class Sensor:
     element: Element | None = field(default=None, compare=False, repr=False)
 
 
-_NOISE_PARTS = (
-    value("mean", NUMBER, "what it adds on average", default="0"),
-    value("stddev", NUMBER, "its standard deviation", default="0"),
-    value("bias_mean", NUMBER, "the mean of a bias that is drawn once", default="0"),
-    value("bias_stddev", NUMBER, "the standard deviation of that bias", default="0"),
-    value("dynamic_bias_stddev", NUMBER, "the standard deviation of a bias that wanders", default="0"),
-    value("dynamic_bias_correlation_time", NUMBER, "how slowly that bias wanders", "s", default="0"),
-    value("precision", NUMBER, "what values are rounded to", default="0"),
-)
-
-
-def _noise_of(type: str, said_type: str, **parts: float) -> Noise:  # noqa: A002 - the attribute's name
-    """Noise; older files name its type by an element, and Gazebo takes Gaussian noise where only numbers are given."""
-    return Noise(said_type or type or ("gaussian" if any(parts.values()) else "none"), **parts)
-
-
-def _noise(tag: str = "noise", meaning: str = "noise on the value", target: str = "") -> ElementRule:
-    return ElementRule(
-        tag,
-        meaning,
-        (AttributeRule("type", TEXT, "none, gaussian or gaussian_quantized", default=""),),
-        (value("type", TEXT, "the kind of noise, up to SDF 1.4", default="", field="said_type"), *_NOISE_PARTS),
-        make=_noise_of,
-        keeps=True,
-        default=NO_NOISE,
-        field=target or tag,
-    )
-
-
-def _around(tag: str, meaning: str, target: str = "") -> ElementRule:
-    """An element that has nothing but noise in it, and stands for that."""
-    return made(_inner, tag, meaning, _noise(), default=NO_NOISE, field=target or tag)
-
-
-def _inner(noise: Noise) -> Noise:
-    return noise
-
-
-def _xyz(tag: str, meaning: str, absent: NoiseXyz | None = NoiseXyz()) -> ElementRule:
-    parts = (_around("x", "along x"), _around("y", "along y"), _around("z", "along z"))
-    return made(NoiseXyz, tag, meaning, *parts, default=absent)
-
-
 def _sweep(tag: str, meaning: str, samples: int) -> ElementRule:
     return made(
         Sweep,
@@ -387,96 +228,9 @@ def _lidar(tag: str) -> ElementRule:
             default=_Scan(),
         ),
         _RANGE,
-        _noise(),
+        noise_rule(),
         value("visibility_mask", INTEGER, "which visuals it sees: those with a bit in common", default="4294967295"),
     )
-
-
-_CLIP_PARTS = (
-    value("near", NUMBER, "the nearest", "m", default="0.1"),
-    value("far", NUMBER, "the farthest", "m", default="100"),
-)
-
-
-@dataclass(frozen=True, slots=True)
-class _Lens:
-    intrinsics: Intrinsics | None
-
-
-@dataclass(frozen=True, slots=True)
-class _DepthCamera:
-    clip: Clip | None
-
-
-def _camera_of(lens: _Lens | None, depth_camera: _DepthCamera | None, **parts: Any) -> Camera:
-    return Camera(
-        intrinsics=lens.intrinsics if lens else None, depth_clip=depth_camera.clip if depth_camera else None, **parts
-    )
-
-
-_CAMERA = ElementRule(
-    "camera",
-    "what a camera sees",
-    (AttributeRule("name", TEXT, "the name of one camera among several", default=""),),
-    (
-        POSE,
-        value("horizontal_fov", NUMBER, "the angle that the width of the picture covers", "rad", default="1.047"),
-        made(
-            Picture,
-            "image",
-            "its pictures",
-            value("width", INTEGER, "pixels in a row", default="320"),
-            value("height", INTEGER, "rows", default="240"),
-            value("format", TEXT, "the format of a pixel, such as R8G8B8 or L8", default="R8G8B8"),
-            default=Picture(),
-        ),
-        made(Clip, "clip", "the distances that it sees", *_CLIP_PARTS, default=Clip()),
-        _noise(),
-        made(
-            Distortion,
-            "distortion",
-            "how the lens distorts",
-            value("k1", NUMBER, "the first radial coefficient", default="0"),
-            value("k2", NUMBER, "the second radial coefficient", default="0"),
-            value("k3", NUMBER, "the third radial coefficient", default="0"),
-            value("p1", NUMBER, "the first tangential coefficient", default="0"),
-            value("p2", NUMBER, "the second tangential coefficient", default="0"),
-            value("center", VECTOR2, "its centre, in shares of the picture", default="0.5 0.5"),
-        ),
-        made(
-            _Lens,
-            "lens",
-            "the lens",
-            made(
-                Intrinsics,
-                "intrinsics",
-                "the focal lengths and the centre in pixels",
-                value("fx", NUMBER, "the focal length across", "pixels", default="277"),
-                value("fy", NUMBER, "the focal length down", "pixels", default="277"),
-                value("cx", NUMBER, "the centre across", "pixels", default="160"),
-                value("cy", NUMBER, "the centre down", "pixels", default="120"),
-                value("s", NUMBER, "the skew", default="0"),
-            ),
-        ),
-        made(
-            _DepthCamera,
-            "depth_camera",
-            "what a depth camera measures",
-            made(Clip, "clip", "the distances that it measures", *_CLIP_PARTS),
-        ),
-        value("segmentation_type", TEXT, "semantic, instance or panoptic", default="semantic"),
-        value("box_type", TEXT, "2d, visible_2d, full_2d or 3d", default="2d"),
-        value("camera_info_topic", TEXT, "the topic of its intrinsics", default=""),
-        value("optical_frame_id", TEXT, "the frame of its pictures", default=""),
-        value("triggered", TRUTH, "whether it takes pictures only when asked", default="false"),
-        value("trigger_topic", TEXT, "where it is asked for a picture", default=""),
-        value("visibility_mask", INTEGER, "which visuals it sees: those with a bit in common", default="4294967295"),
-    ),
-    many=True,
-    make=_camera_of,
-    keeps=True,
-    field="cameras",
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -500,8 +254,8 @@ _IMU = made(
     _imu_of,
     "imu",
     "what an IMU measures",
-    _xyz("angular_velocity", "noise on the angular velocity"),
-    _xyz("linear_acceleration", "noise on the acceleration"),
+    noise_xyz("angular_velocity", "noise on the angular velocity"),
+    noise_xyz("linear_acceleration", "noise on the acceleration"),
     value("enable_orientation", TRUTH, "whether it tells its orientation too", default="true"),
     made(
         _Reference,
@@ -538,7 +292,7 @@ def _navsat_of(position_sensing: _Sensing, velocity_sensing: _Sensing) -> Navsat
 
 def _navsat(tag: str) -> ElementRule:
     def sensing(name: str, meaning: str) -> ElementRule:
-        parts = (_around("horizontal", "across the ground"), _around("vertical", "upwards"))
+        parts = (around_noise("horizontal", "across the ground"), around_noise("vertical", "upwards"))
         return made(_Sensing, name, meaning, *parts, default=_Sensing())
 
     return made(
@@ -556,8 +310,8 @@ _FORCE_TORQUE = made(
     "what a force-torque sensor measures",
     value("frame", TEXT, "the frame of what it measures: child, parent or sensor", default="child"),
     value("measure_direction", TEXT, "child_to_parent or parent_to_child", default="child_to_parent"),
-    _xyz("force", "noise on the force"),
-    _xyz("torque", "noise on the torque"),
+    noise_xyz("force", "noise on the force"),
+    noise_xyz("torque", "noise on the torque"),
 )
 
 _SONAR = made(
@@ -601,7 +355,7 @@ SENSOR = ElementRule(
         value("frame_id", TEXT, "the frame of its messages", default=""),
         value("gz_frame_id", TEXT, "the frame of its messages, before SDF 1.12", default=""),
         value("ignition_frame_id", TEXT, "the frame of its messages, in older files", default=""),
-        _CAMERA,
+        CAMERA,
         _lidar("lidar"),
         _lidar("ray"),
         _IMU,
@@ -614,20 +368,20 @@ SENSOR = ElementRule(
         ),
         _navsat("navsat"),
         _navsat("gps"),
-        _xyz("magnetometer", "noise of a magnetometer", None),
+        noise_xyz("magnetometer", "noise of a magnetometer", None),
         made(
             Altimeter,
             "altimeter",
             "noise of an altimeter",
-            _around("vertical_position", "noise on the height"),
-            _around("vertical_velocity", "noise on the vertical velocity"),
+            around_noise("vertical_position", "noise on the height"),
+            around_noise("vertical_velocity", "noise on the vertical velocity"),
         ),
         made(
             AirPressure,
             "air_pressure",
             "what a barometer measures",
             value("reference_altitude", NUMBER, "the altitude of its zero", "m", default="0"),
-            _around("pressure", "noise on the pressure", "noise"),
+            around_noise("pressure", "noise on the pressure", "noise"),
         ),
         _FORCE_TORQUE,
         _SONAR,

@@ -1,0 +1,182 @@
+"""``<camera>``: what cameras of all kinds see.
+
+Source of the elements and defaults: the SDFormat specification 1.12, ``camera.sdf``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from linkwright.schema import AttributeRule, ElementRule
+from linkwright.sdf.noise import NO_NOISE, Noise, noise_rule
+from linkwright.sdf.poses import AT_ORIGIN, POSE, RawPose
+from linkwright.sdf.values import INTEGER, NUMBER, TEXT, TRUTH, VECTOR2, made, value
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """Size in pixels and format of a camera's pictures, as ``R8G8B8``."""
+
+    width: int = 320
+    height: int = 240
+    format: str = "R8G8B8"
+
+
+@dataclass(frozen=True, slots=True)
+class Clip:
+    """The nearest and the farthest distance that a camera sees, in metres."""
+
+    near: float = 0.1
+    far: float = 100.0
+
+
+@dataclass(frozen=True, slots=True)
+class Distortion:
+    """Brown's coefficients of a lens; `center` in shares of the picture."""
+
+    k1: float = 0.0
+    k2: float = 0.0
+    k3: float = 0.0
+    p1: float = 0.0
+    p2: float = 0.0
+    center: tuple[float, float] = (0.5, 0.5)
+
+
+@dataclass(frozen=True, slots=True)
+class Intrinsics:
+    """Focal lengths and centre of a picture in pixels, and skew."""
+
+    fx: float = 277.0
+    fy: float = 277.0
+    cx: float = 160.0
+    cy: float = 120.0
+    s: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Camera:
+    """A camera; it looks along x of its frame, with z up.
+
+    Attributes:
+        name: of one camera among several.
+        pose: in the frame of the sensor.
+        horizontal_fov: the angle that the width of the picture covers, in radians.
+        image: size and format.
+        clip: what it sees.
+        noise: on each colour, from 0 to 1.
+        distortion: of the lens; None for a perfect one.
+        intrinsics: where they are given instead of the angle; else None.
+        depth_clip: what a depth camera measures; None for the same as `clip`.
+        segmentation_type: ``semantic`` or ``instance`` (also ``panoptic``).
+        box_type: ``2d``, ``visible_2d``, ``full_2d`` or ``3d``.
+        camera_info_topic: the topic of its intrinsics; empty for the usual one.
+        optical_frame_id: the frame of its pictures; empty for that of the sensor.
+        triggered: whether it takes pictures only when asked.
+        trigger_topic: where it is asked.
+        visibility_mask: which visuals it sees: those with a bit in common.
+    """
+
+    name: str = ""
+    pose: RawPose = AT_ORIGIN
+    horizontal_fov: float = 1.047
+    image: Picture = Picture()
+    clip: Clip = Clip()
+    noise: Noise = NO_NOISE
+    distortion: Distortion | None = None
+    intrinsics: Intrinsics | None = None
+    depth_clip: Clip | None = None
+    segmentation_type: str = "semantic"
+    box_type: str = "2d"
+    camera_info_topic: str = ""
+    optical_frame_id: str = ""
+    triggered: bool = False
+    trigger_topic: str = ""
+    visibility_mask: int = 0xFFFFFFFF
+
+
+_CLIP_PARTS = (
+    value("near", NUMBER, "the nearest", "m", default="0.1"),
+    value("far", NUMBER, "the farthest", "m", default="100"),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class _Lens:
+    intrinsics: Intrinsics | None
+
+
+@dataclass(frozen=True, slots=True)
+class _DepthCamera:
+    clip: Clip | None
+
+
+def _camera_of(lens: _Lens | None, depth_camera: _DepthCamera | None, **parts: Any) -> Camera:
+    return Camera(
+        intrinsics=lens.intrinsics if lens else None, depth_clip=depth_camera.clip if depth_camera else None, **parts
+    )
+
+
+CAMERA = ElementRule(
+    "camera",
+    "what a camera sees",
+    (AttributeRule("name", TEXT, "the name of one camera among several", default=""),),
+    (
+        POSE,
+        value("horizontal_fov", NUMBER, "the angle that the width of the picture covers", "rad", default="1.047"),
+        made(
+            Picture,
+            "image",
+            "its pictures",
+            value("width", INTEGER, "pixels in a row", default="320"),
+            value("height", INTEGER, "rows", default="240"),
+            value("format", TEXT, "the format of a pixel, such as R8G8B8 or L8", default="R8G8B8"),
+            default=Picture(),
+        ),
+        made(Clip, "clip", "the distances that it sees", *_CLIP_PARTS, default=Clip()),
+        noise_rule(),
+        made(
+            Distortion,
+            "distortion",
+            "how the lens distorts",
+            value("k1", NUMBER, "the first radial coefficient", default="0"),
+            value("k2", NUMBER, "the second radial coefficient", default="0"),
+            value("k3", NUMBER, "the third radial coefficient", default="0"),
+            value("p1", NUMBER, "the first tangential coefficient", default="0"),
+            value("p2", NUMBER, "the second tangential coefficient", default="0"),
+            value("center", VECTOR2, "its centre, in shares of the picture", default="0.5 0.5"),
+        ),
+        made(
+            _Lens,
+            "lens",
+            "the lens",
+            made(
+                Intrinsics,
+                "intrinsics",
+                "the focal lengths and the centre in pixels",
+                value("fx", NUMBER, "the focal length across", "pixels", default="277"),
+                value("fy", NUMBER, "the focal length down", "pixels", default="277"),
+                value("cx", NUMBER, "the centre across", "pixels", default="160"),
+                value("cy", NUMBER, "the centre down", "pixels", default="120"),
+                value("s", NUMBER, "the skew", default="0"),
+            ),
+        ),
+        made(
+            _DepthCamera,
+            "depth_camera",
+            "what a depth camera measures",
+            made(Clip, "clip", "the distances that it measures", *_CLIP_PARTS),
+        ),
+        value("segmentation_type", TEXT, "semantic, instance or panoptic", default="semantic"),
+        value("box_type", TEXT, "2d, visible_2d, full_2d or 3d", default="2d"),
+        value("camera_info_topic", TEXT, "the topic of its intrinsics", default=""),
+        value("optical_frame_id", TEXT, "the frame of its pictures", default=""),
+        value("triggered", TRUTH, "whether it takes pictures only when asked", default="false"),
+        value("trigger_topic", TEXT, "where it is asked for a picture", default=""),
+        value("visibility_mask", INTEGER, "which visuals it sees: those with a bit in common", default="4294967295"),
+    ),
+    many=True,
+    make=_camera_of,
+    keeps=True,
+    field="cameras",
+)

@@ -1,0 +1,95 @@
+"""``<noise>`` on what sensors measure.
+
+Source of the elements and defaults: the SDFormat specification 1.12, ``noise.sdf``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from linkwright.schema import AttributeRule, ElementRule
+from linkwright.sdf.values import NUMBER, TEXT, made, value
+
+
+@dataclass(frozen=True, slots=True)
+class Noise:
+    """Noise on a value, in the unit of the value.
+
+    Attributes:
+        type: ``none``, ``gaussian`` or ``gaussian_quantized``.
+        mean: what is added on average.
+        stddev: the standard deviation.
+        bias_mean: the mean of a bias that is drawn once.
+        bias_stddev: its standard deviation.
+        dynamic_bias_stddev: the standard deviation of a bias that wanders.
+        dynamic_bias_correlation_time: how slowly it wanders, in seconds.
+        precision: what values are rounded to, where they are quantized.
+    """
+
+    type: str = "none"
+    mean: float = 0.0
+    stddev: float = 0.0
+    bias_mean: float = 0.0
+    bias_stddev: float = 0.0
+    dynamic_bias_stddev: float = 0.0
+    dynamic_bias_correlation_time: float = 0.0
+    precision: float = 0.0
+
+
+NO_NOISE = Noise()
+
+
+@dataclass(frozen=True, slots=True)
+class NoiseXyz:
+    """Noise on the three parts of a vector."""
+
+    x: Noise = NO_NOISE
+    y: Noise = NO_NOISE
+    z: Noise = NO_NOISE
+
+
+NO_NOISE_XYZ = NoiseXyz()
+
+_NOISE_PARTS = (
+    value("mean", NUMBER, "what it adds on average", default="0"),
+    value("stddev", NUMBER, "its standard deviation", default="0"),
+    value("bias_mean", NUMBER, "the mean of a bias that is drawn once", default="0"),
+    value("bias_stddev", NUMBER, "the standard deviation of that bias", default="0"),
+    value("dynamic_bias_stddev", NUMBER, "the standard deviation of a bias that wanders", default="0"),
+    value("dynamic_bias_correlation_time", NUMBER, "how slowly that bias wanders", "s", default="0"),
+    value("precision", NUMBER, "what values are rounded to", default="0"),
+)
+
+
+def _noise_of(type: str, said_type: str, **parts: float) -> Noise:  # noqa: A002 - the attribute's name
+    """Noise; older files name its type by an element, and Gazebo takes Gaussian noise where only numbers are given."""
+    return Noise(said_type or type or ("gaussian" if any(parts.values()) else "none"), **parts)
+
+
+def noise_rule(tag: str = "noise", meaning: str = "noise on the value", target: str = "") -> ElementRule:
+    """An element that says how something is noisy."""
+    return ElementRule(
+        tag,
+        meaning,
+        (AttributeRule("type", TEXT, "none, gaussian or gaussian_quantized", default=""),),
+        (value("type", TEXT, "the kind of noise, up to SDF 1.4", default="", field="said_type"), *_NOISE_PARTS),
+        make=_noise_of,
+        keeps=True,
+        default=NO_NOISE,
+        field=target or tag,
+    )
+
+
+def around_noise(tag: str, meaning: str, target: str = "") -> ElementRule:
+    """An element that has nothing but noise in it, and stands for that."""
+    return made(_inner, tag, meaning, noise_rule(), default=NO_NOISE, field=target or tag)
+
+
+def _inner(noise: Noise) -> Noise:
+    return noise
+
+
+def noise_xyz(tag: str, meaning: str, absent: NoiseXyz | None = NO_NOISE_XYZ) -> ElementRule:
+    """An element with noise for each of three parts."""
+    parts = (around_noise("x", "along x"), around_noise("y", "along y"), around_noise("z", "along z"))
+    return made(NoiseXyz, tag, meaning, *parts, default=absent)
