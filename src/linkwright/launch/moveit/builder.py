@@ -72,7 +72,7 @@ class ParameterBuilder:
 
 
 class MoveItConfigsBuilder(ParameterBuilder):
-    """Reads the files of a configuration package, each where its usual place is or where it is said to be.
+    """Reads the files of a configuration package, each from its usual place or from the path given.
 
     Args:
         robot_name: the robot.
@@ -165,7 +165,7 @@ class MoveItConfigsBuilder(ParameterBuilder):
         return self
 
     def sensors_3d(self, file_path: _Path = None) -> MoveItConfigsBuilder:
-        """Read the sensors that see obstacles, if there are any."""
+        """Read the sensors whose data becomes the occupancy map, if there are any."""
         path = self.__file(file_path, "sensors_3d.yaml")
         content = load_yaml(path) if path.exists() else None
         if content and any(content.get("sensors") or ()):
@@ -183,7 +183,7 @@ class MoveItConfigsBuilder(ParameterBuilder):
         Args:
             default_planning_pipeline: the one to use where none is named.
             pipelines: their names; by default all that the package has a file for.
-            load_all: whether by default also those count that MoveIt has files for, if it is in the workspace.
+            load_all: whether the default includes those that MoveIt itself has files for, if it is in the workspace.
 
         Raises:
             RuntimeError: LAUNCH154, the default is none of them.

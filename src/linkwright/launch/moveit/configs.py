@@ -21,7 +21,7 @@ class MoveItConfigs:
         planning_pipelines: planners.
         trajectory_execution: controllers, and how trajectories are given to them.
         planning_scene_monitor: what is published of the planning scene.
-        sensors_3d: sensors that see obstacles.
+        sensors_3d: the sensors whose data becomes the occupancy map.
         move_group_capabilities: what move_group can do besides its usual capabilities.
         joint_limits: limits that replace those of the URDF.
         moveit_cpp: parameters of MoveItCpp.

@@ -159,7 +159,7 @@ def generate_move_group_launch(moveit_config: MoveItConfigs) -> LaunchDescriptio
 
 
 def generate_demo_launch(moveit_config: MoveItConfigs, launch_package_path: Path | None = None) -> LaunchDescription:
-    """All of it, with simulated joints.
+    """All of the above, with simulated joints.
 
     Args:
         moveit_config: the parameters.

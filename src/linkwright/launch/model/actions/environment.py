@@ -155,8 +155,8 @@ class PopEnvironment(Action):
 
 @expose_action("reset_env")
 class ResetEnvironment(Action):
-    """Gives the environment back that the launch was started with."""
+    """Restores the environment that the launch was started with."""
 
     def execute(self, context: LaunchContext) -> None:
-        """Give it back."""
+        """Restore it."""
         context.reset_environment()

@@ -67,7 +67,7 @@ class UnregisterEventHandler(_HandlerAction):
 
 
 class EmitEvent(Action):
-    """Puts an event into the queue."""
+    """Emits an event: puts it into the queue of the launch."""
 
     def __init__(self, *, event: events.Event, **kwargs: Any) -> None:
         super().__init__(**kwargs)
@@ -91,7 +91,7 @@ class EmitEvent(Action):
 
 @expose_action("shutdown")
 class Shutdown(EmitEvent):
-    """Ends the launch. Also good as ``on_exit`` of a node: then the log names the node."""
+    """Shuts the launch down. As ``on_exit`` of a process, the reason that is logged names the process."""
 
     def __init__(self, *, reason: SomeSubstitutionsType = "reason not given", **kwargs: Any) -> None:
         self._reason: list[Substitution] = normalize_to_list_of_substitutions(reason)

@@ -28,7 +28,7 @@ class Executable:
         cmd: program and arguments, each a text, a substitution, or a list of these to be joined.
         prefix: a command to put before it, such as ``gdb -ex run --args``; by default the launch configuration
             ``launch-prefix``, where the program's name matches the pattern ``launch-prefix-filter``.
-        name: its name in the log, the program's by default; a number is put behind.
+        name: its name in the log, the program's by default; a number is appended.
         cwd: the folder it runs in.
         env: its whole environment; that of the launcher by default.
         additional_env: variables set besides.

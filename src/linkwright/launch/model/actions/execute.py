@@ -45,7 +45,7 @@ class ExecuteLocal(Action):
         sigterm_timeout: seconds between SIGINT and SIGTERM when it is to end; by default the launch configuration
             of this name, else 5.
         sigkill_timeout: seconds between SIGTERM and SIGKILL; by default the launch configuration of this name, else 5.
-        emulate_tty: whether it shall think that it writes to a terminal; the launch configuration of this name wins.
+        emulate_tty: whether it is given a pseudo-terminal; the launch configuration of this name takes precedence.
         output: where what it writes goes: ``screen``, ``log``, ``both``, ``own_log``, ``full``, or a mapping of
             ``stdout``, ``stderr`` and ``both`` to sets of ``screen``, ``log`` and ``own_log``. The environment
             variable ``OVERRIDE_LAUNCH_PROCESS_OUTPUT`` wins.
@@ -122,7 +122,7 @@ class ExecuteLocal(Action):
 
     @property
     def emulate_tty(self) -> Any:
-        """Whether it shall think that it writes to a terminal, as it was given."""
+        """Whether it is given a pseudo-terminal, as it was asked for."""
         return self._emulate_tty
 
     @property

@@ -46,7 +46,7 @@ class OpaqueFunction(Action):
 
 
 class OpaqueCoroutine(Action):
-    """Begins a coroutine when it is visited; the launch does not end before it has, and its end cancels it.
+    """Starts a coroutine when it is visited; the launch waits for it to finish, and a shutdown cancels it.
 
     Args:
         coroutine: called as ``coroutine(context, *args, **kwargs)``.

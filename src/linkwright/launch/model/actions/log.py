@@ -38,7 +38,7 @@ LEVELS = {
 
 @expose_action("log")
 class Log(Action):
-    """Writes a line of a level.
+    """Writes a line at a log level.
 
     Args:
         msg: the line.
@@ -113,7 +113,7 @@ def _number(level: str, place: Place | None) -> int:
 
 
 class _LogOfLevel(Log):
-    """Writes a line of one level."""
+    """Writes a line at one log level."""
 
     _LEVEL = "INFO"
 
@@ -136,13 +136,13 @@ class LogDebug(_LogOfLevel):
 
 @expose_action("log_warning")
 class LogWarning(_LogOfLevel):
-    """Writes a line that warns."""
+    """Writes a warning."""
 
     _LEVEL = "WARNING"
 
 
 @expose_action("log_error")
 class LogError(_LogOfLevel):
-    """Writes a line about an error; the launch goes on."""
+    """Writes an error; the launch goes on."""
 
     _LEVEL = "ERROR"

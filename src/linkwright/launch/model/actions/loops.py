@@ -1,4 +1,4 @@
-"""Actions that are visited several times, with other values each time."""
+"""Actions that are repeated, each time with other values."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ class ForLoop(Action):
     """Calls a function for each number from 0, and visits what it returns.
 
     Args:
-        length: how often.
+        length: the number of iterations.
         function: called with the number as ``i``; returns entities.
         name: the name by which ``$(index NAME)`` gives the number.
     """
@@ -123,7 +123,7 @@ class ForLoop(Action):
 
     @property
     def length(self) -> list[Substitution]:
-        """How often, as substitutions."""
+        """The number of iterations, as substitutions."""
         return self._length
 
     @property

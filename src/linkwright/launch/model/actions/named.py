@@ -25,7 +25,7 @@ Pairs = list[tuple[list[Substitution], list[Substitution]]]
 
 
 class NamedAction(Action):
-    """An action on the thing of a name."""
+    """An action on a launch configuration or environment variable, given by its name."""
 
     def __init__(self, name: SomeSubstitutionsType, **kwargs: Any) -> None:
         super().__init__(**kwargs)
@@ -53,7 +53,7 @@ class NamedAction(Action):
 
 
 class AssigningAction(NamedAction):
-    """An action that gives a value to the thing of a name."""
+    """An action that assigns a value to a launch configuration or environment variable."""
 
     def __init__(self, name: SomeSubstitutionsType, value: SomeSubstitutionsType, **kwargs: Any) -> None:
         super().__init__(name, **kwargs)

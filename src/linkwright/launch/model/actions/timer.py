@@ -1,4 +1,4 @@
-"""Actions after a while."""
+"""Actions that are delayed."""
 
 from __future__ import annotations
 
@@ -83,13 +83,13 @@ class TimerAction(Action):
         return self._actions
 
     def cancel(self) -> None:
-        """Visit nothing, if the time has not come yet."""
+        """Cancel it: unless the period has passed already, nothing is visited."""
         self._canceled = True
         if self._cancel is not None:
             self._cancel()
 
     def execute(self, context: LaunchContext) -> None:
-        """Start to wait.
+        """Start the timer.
 
         Raises:
             LinkwrightError: LAUNCH127, if the period is no number.

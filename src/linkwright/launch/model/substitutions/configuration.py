@@ -106,7 +106,7 @@ class EnvironmentVariable(DeclaredSubstitution, tag="env", shown="EnvVar({name})
 
 
 class LocalSubstitution(Substitution):
-    """A value of the moment, named by an expression such as ``event.reason``."""
+    """A local of the launch context, named by an expression such as ``event.reason``."""
 
     def __init__(self, expression: str, description: str | None = None) -> None:
         self.expression = expression
@@ -120,7 +120,7 @@ class LocalSubstitution(Substitution):
         """The value.
 
         Raises:
-            SubstitutionFailure: LAUNCH123, if there is no such value now.
+            SubstitutionFailure: LAUNCH123, if there is no such local now.
         """
         known = context.get_locals_as_dict()
         first, *rest = self.expression.split(".")
@@ -188,7 +188,7 @@ class LaunchLogDir(DeclaredSubstitution, tag="launch_log_dir/log_dir"):
 
 
 class AnonName(DeclaredSubstitution, tag=_ANONYMOUS):
-    """A name with host and numbers behind it that no other launch has; the same each time in one launch."""
+    """A name made unique by host name and numbers; the same one each time within a launch."""
 
     name: Texts = Texts()
 

@@ -38,7 +38,7 @@ def _operand(value: Any) -> list[Substitution]:
 
 
 class EqualsSubstitution(DeclaredSubstitution, tag="equals"):
-    """``true`` if two texts are equal, by number or truth value where both are such."""
+    """``true`` if two texts are equal; two numbers, or two truth values, are compared as such."""
 
     left: AnyTexts = AnyTexts(read=_operand)
     right: AnyTexts = AnyTexts(read=_operand)

@@ -26,11 +26,11 @@ def local_name(name: str) -> str:
 
 
 class ForEachVar(DeclaredSubstitution, tag="for-var", shown="{kind}(name={name}, default_value={default_value})"):
-    """A value of this round of a `ForEach`.
+    """A value of the current iteration of a `ForEach`.
 
     Args:
         name: the value's name.
-        default_value: the text where the round has no such value; None makes that an error.
+        default_value: the text where the iteration has no such value; None makes that an error.
     """
 
     name: Texts = Texts()
@@ -69,7 +69,7 @@ class ForEachVar(DeclaredSubstitution, tag="for-var", shown="{kind}(name={name},
 
 
 class ForLoopIndex(ForEachVar, tag="index"):
-    """The number of this round of a `ForLoop`, by the loop's name."""
+    """The index of the current iteration of a `ForLoop`, by the loop's name."""
 
     def __init__(self, name: SomeSubstitutionsType, **_: Any) -> None:
         super().__init__(name)
