@@ -17,7 +17,7 @@ from contextlib import asynccontextmanager
 from inspect import signature
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, install_hint, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, phrase
 from linkwright.event_loop import run_coroutine
 from linkwright.interruption import raise_interrupts
 
@@ -232,7 +232,7 @@ async def join_others(graph: Graph, spin_time: float | None, *, only_looks: bool
                 "CLI401",
                 phrase("the nodes of other processes cannot be reached without DDS"),
                 notes=(Note(dds.why_not()),),
-                hint=phrase("unset LINKWRIGHT_DDS") if os.environ.get("LINKWRIGHT_DDS") else install_hint("dds"),
+                hint=phrase("unset LINKWRIGHT_DDS") if os.environ.get("LINKWRIGHT_DDS") else None,
             )
         )
     await asyncio.to_thread(transport.wait_until_ready, _LONGEST_DISCOVERY)
