@@ -36,6 +36,26 @@ export function gridLines({ cells, normalCells, cellSize, plane }: GridShape): F
   return new Float32Array(points);
 }
 
+/**
+ * The same lines, each as many pieces end to end. A line with an end behind the camera is left out whole by Chromium's
+ * software renderer (SwiftShader), which would take the lines at the viewer's feet; of pieces only the nearest goes.
+ */
+export function inPieces(lines: Float32Array, pieces: number): Float32Array {
+  const found = new Float32Array(lines.length * pieces);
+  let at = 0;
+  for (let line = 0; line < lines.length; line += 6) {
+    const [ax = 0, ay = 0, az = 0, bx = 0, by = 0, bz = 0] = lines.subarray(line, line + 6);
+    for (let end = 0; end < 2 * pieces; end++) {
+      const share = (end + 1) >> 1;
+      const ratio = share / pieces;
+      found[at++] = ax + (bx - ax) * ratio;
+      found[at++] = ay + (by - ay) * ratio;
+      found[at++] = az + (bz - az) * ratio;
+    }
+  }
+  return found;
+}
+
 function turned([a = 0, b = 0, normal = 0]: readonly number[], plane: string): [number, number, number] {
   if (plane === "XZ") return [a, normal, b];
   if (plane === "YZ") return [normal, a, b];

@@ -3,7 +3,10 @@ import { FIXED_FRAME } from "../../state/view";
 import { WideLines } from "../objects/wide-lines";
 import { framePose } from "../pose";
 import type { Drawing, DrawingContext } from "./drawing";
-import { gridLines } from "./grid-lines";
+import { gridLines, inPieces } from "./grid-lines";
+
+/** As many cells have lines of a piece for each; more are not made of more pieces. */
+const MOST_PIECES = 20;
 
 /** rviz_default_plugins/Grid */
 export class GridDrawing implements Drawing {
@@ -20,8 +23,9 @@ export class GridDrawing implements Drawing {
 
   propertiesChanged(): void {
     const { rows } = this.context.display;
+    const cells = rows.number(10, "Plane Cell Count");
     const segments = gridLines({
-      cells: rows.number(10, "Plane Cell Count"),
+      cells,
       normalCells: rows.number(0, "Normal Cell Count"),
       cellSize: rows.number(1, "Cell Size"),
       plane: rows.text("XY", "Plane"),
@@ -35,8 +39,9 @@ export class GridDrawing implements Drawing {
     this.billboards.root.position.set(...offset);
     this.billboards.setSegments(wide ? segments : new Float32Array(0));
     this.billboards.setStyle(color, alpha, rows.number(0.03, "Line Style", "Line Width"));
+    const pieces = wide ? new Float32Array(0) : inPieces(segments, Math.max(1, Math.min(cells, MOST_PIECES)));
     this.lines.geometry.dispose();
-    this.lines.geometry = new BufferGeometry().setAttribute("position", new Float32BufferAttribute(segments, 3));
+    this.lines.geometry = new BufferGeometry().setAttribute("position", new Float32BufferAttribute(pieces, 3));
     this.lines.material.color.set(color);
     this.lines.material.opacity = alpha;
     this.lines.material.transparent = alpha < 1;
