@@ -220,6 +220,10 @@ setup(data_files=data)
         "items = ['x' * 10 ** 9]\nfor number in range(10 ** 12):\n    items.extend(items)",
         "for a in range(10 ** 5):\n    for b in range(10 ** 5):\n        c = [a, b]",
         "while True:\n    pass",
+        "x = [1]\nfor number in range(60):\n    x = [x, x]\ntext = str(x)",
+        "x = [1]\nfor n in range(60):\n    y = []\n    y.append(x)\n    y.append(x)\n    x = y\nsame = x == [x, x]",
+        "x = (1,)\nfor number in range(60):\n    x = (x, x)\nkeys = {x: 1}",
+        "x = {}\nx['own'] = x\ntext = f'{x}' + '%s' % x",
     ],
 )
 def test_what_would_take_long_is_given_up(statements: str, package: Path) -> None:

@@ -54,6 +54,26 @@ def bounded(value: Any) -> Any:
     return value
 
 
+def weight(value: Any, most: int) -> int:
+    """How many items a value has, with those in its items and a share for the length of texts, up to a bound.
+
+    A list that holds another one twice, which holds another one twice and so on, is small in memory and without end for
+    whoever prints or compares it.
+    """
+    count, pending = 0, [value]
+    while pending and count <= most:
+        each = pending.pop()
+        count += 1
+        if isinstance(each, str):
+            count += len(each) // 64
+        elif isinstance(each, dict):
+            count += len(each)
+            pending += each.values()
+        elif isinstance(each, (list, tuple, set, frozenset)):
+            pending += each
+    return min(count, most)
+
+
 def formatted(template: str, *given: Any, **named: Any) -> str:
     """``template.format(...)``, where it makes nothing wide and reaches into no object.
 

@@ -22,9 +22,12 @@ from linkwright.packages.readers.setup_library import (
     bounded,
     formatted,
     percent,
+    weight,
 )
 
 _MOST_STEPS = 300_000
+_MOST_WEIGHT = 100_000
+_WEIGHED_IN_A_STEP = 32
 _DEEPEST = 40
 _COMPARISONS: dict[type[ast.cmpop], Callable[[Any, Any], Any]] = {
     ast.Eq: operator.eq,
@@ -215,9 +218,18 @@ class _Run:
         """What an expression stands for; _UNKNOWN where that cannot be told."""
         self._tick()
         try:
-            return bounded(self._evaluated(node))
+            value = bounded(self._evaluated(node))
         except (NotKnownError, TypeError, ValueError, AttributeError, LookupError, OSError):
             return _UNKNOWN
+        if isinstance(value, (list, tuple, dict, set)):
+            self._weigh(value)
+        return value
+
+    def _weigh(self, value: Any) -> None:
+        weighed = weight(value, _MOST_WEIGHT)
+        self._steps += weighed // _WEIGHED_IN_A_STEP
+        if weighed == _MOST_WEIGHT:
+            raise _CannotFollowError
 
     def _known(self, node: ast.expr) -> Any:
         value = self._value(node)
