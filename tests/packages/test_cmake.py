@@ -426,3 +426,16 @@ def test_what_commands_of_ament_install(package: Path) -> None:
 def test_what_xacro_would_make_is_told(package: Path) -> None:
     found = rules("xacro_add_files(urdf/arm.urdf.xacro INSTALL DESTINATION urdf)", package)
     assert found.unknown == ["'urdf/arm.urdf' would have to be made by xacro"]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "set(x a)\n" + 'set(x "${x}${x}")\n' * 60,
+        "set(x a)\nforeach(i RANGE 60)\n  list(APPEND x ${x})\nendforeach()\n",
+        "set(x a)\nforeach(i RANGE 60)\n  string(APPEND x ${x}${x})\nendforeach()\n",
+    ],
+)
+def test_values_that_grow_without_end_are_given_up(text: str, package: Path) -> None:
+    found = rules(f"project(arm)\n{text}install(DIRECTORY launch DESTINATION share/arm)\n", package)
+    assert found.unknown

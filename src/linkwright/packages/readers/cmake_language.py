@@ -35,6 +35,9 @@ _VARIABLE = re.compile(r"\$\{([A-Za-z0-9_.+/-]+)\}")
 _ENVIRONMENT = re.compile(r"\$ENV\{(\w+)\}")
 _DEEPEST = 20
 _MOST_COMMANDS = 20_000
+_LONGEST_TEXT = 1_000_000
+_OF_A_COMMAND = 1_000
+"""So many characters count as much as a command."""
 
 SOURCE, BUILD, PREFIX = "<source>", "<build>", "<prefix>"
 """What the folder of the package, that of the build and that of the installation are called in values of variables."""
@@ -444,15 +447,25 @@ class CMakeProgram:
     def _arguments(self, statement: Statement) -> Iterator[Argument]:
         for token in statement.tokens:
             text = self._filled(token)
+            self._count += len(text) // _OF_A_COMMAND
             for each in [text] if token.is_quoted else items_of(text):
                 yield Argument(each, token.start, token.end, statement.source)
 
     def _filled(self, token: Token) -> str:
         """The text of an argument with the values of known variables in it."""
-        text = token.text
+        text, room = token.text, _LONGEST_TEXT
+
+        def value(match: re.Match[str]) -> str:
+            nonlocal room
+            found = self.variables.get(match[1], match[0])
+            room -= len(found)
+            if room < 0:
+                raise _TooMuchError(token.text)
+            return found
+
         for _ in range(_DEEPEST if token.has_variables else 0):  # ${${NAME}_FILES}
             filled = _ENVIRONMENT.sub(lambda match: _environment(match[1]) or match[0], text)
-            filled = _VARIABLE.sub(lambda match: self.variables.get(match[1], match[0]), filled)
+            filled = _VARIABLE.sub(value, filled)
             if filled == text:
                 break
             text = filled
