@@ -339,6 +339,14 @@ def test_comments_keep_their_hyphens():
     assert document.source.text == text
 
 
+def test_an_empty_file_is_told_how_a_world_begins():
+    with pytest.raises(LinkwrightError) as error:
+        parse_as_gazebo(" ", "w.sdf")
+    (found,) = error.value.diagnostics
+    assert found.code == "XML105"
+    assert "<sdf" in str(found.hint)
+
+
 def test_words_of_sdf_without_effect_here_are_let_be():
     world("<gui fullscreen='0'><camera name='c'/><anything/></gui><physics><ode><solver/></ode></physics>")
     model('<link name="a"><must_be_base_link>1</must_be_base_link></link><plugin filename="p"><any/></plugin>')

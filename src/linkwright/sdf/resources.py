@@ -91,10 +91,6 @@ class ResourceFinder:
             return found
         return model_file(found)
 
-    def folders(self) -> tuple[Path, ...]:
-        """Where models are looked for, in this order; folders that are not there are left out."""
-        return self._folders
-
     def models(self) -> dict[str, Path]:
         """All models that can be named: name of the folder -> the folder; of two of a name the one that is found."""
         found: dict[str, Path] = {}
@@ -107,6 +103,7 @@ class ResourceFinder:
 
     @cached_property
     def _folders(self) -> tuple[Path, ...]:
+        """Where models are looked for, in this order; folders that are not there are left out."""
         return tuple(dict.fromkeys(path for path in self._places() if path.is_dir()))
 
     def _places(self) -> Iterator[Path]:

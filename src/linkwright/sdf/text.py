@@ -15,7 +15,7 @@ from linkwright.xmltree import Comment, Document, Element, parse
 from linkwright.xmltree.decoding import decode
 from linkwright.xmltree.nodes import Node
 
-_UNDECLARED = "XML205"
+_UNDECLARED, _EMPTY = "XML205", "XML105"
 _OUTSIDE_TAGS = re.compile(r"<!--(.*?)-->|<!\[CDATA\[.*?\]\]>", re.DOTALL)
 _LATE_DECLARATION = re.compile(r"(?:\s|<!--.*?-->)+(<\?xml\s[^>]*\?>)", re.DOTALL)
 
@@ -53,6 +53,9 @@ def _parsed(text: str, name: str, read_as: str) -> tuple[Document, tuple[Diagnos
         return parse(text, name, blanks=False, read_as=read_as), ()
     except LinkwrightError as error:
         found = error.diagnostics[0]
+        if found.code == _EMPTY:
+            hint = phrase('a world begins with <sdf version="...">; was the file saved?')
+            raise LinkwrightError(replace(found, hint=hint)) from None
         if found.code != _UNDECLARED:
             raise
         document = parse(text, name, blanks=False, read_as=read_as, any_prefix=True)
