@@ -21,7 +21,15 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 LOCK = ROOT / "uv.lock"
-_COPIED = ("pyproject.toml", "README.md", "LICENSE", "hatch_build.py", "src/linkwright/_version.py")
+_COPIED = (
+    "pyproject.toml",
+    "README.md",
+    "LICENSE",
+    "hatch_build.py",
+    "tools/build_page.py",
+    "tools/package_readme.py",
+    "src/linkwright/_version.py",
+)
 
 
 def without_addresses(text: str) -> str:

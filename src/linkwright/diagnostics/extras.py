@@ -12,6 +12,7 @@ EXTRAS = {
     "diagram": "pygraphviz",
     "image": "PIL",
     "mesh": "trimesh",
+    "sim": "mujoco",
 }
 """Name of the extra -> the module that is missing without it; ``linkwright[all]`` has them all (decision 0022)."""
 
