@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 
 from linkwright.descriptions import load
-from linkwright.urdf import Mesh, Robot, Visual
 from linkwright.packages import PackageFinder
+from linkwright.urdf import Mesh, Robot, Visual
 from tests.places import PACKAGE, PUBLISHED
 
 TUTORIAL: dict[str, Any] = json.loads((Path(__file__).parent / "tutorial.json").read_text(encoding="utf-8"))
@@ -37,6 +37,7 @@ SENSORS = {
     "camera_gazebo.xacro": ("camera_gazebo", "camera_link", "camera"),
     "kinect_gazebo.xacro": ("kinect_gazebo", "kinect_link", "depth"),
     "lidar_gazebo.xacro": ("lidar_gazebo", "laser_link", "ray"),
+    "imu_gazebo.xacro": ("imu_gazebo", "imu_link", "imu"),
 }
 
 

@@ -1,0 +1,138 @@
+"""mbot as a simulator needs it: mbot_gazebo.xacro with every choice of sensors, for both Gazebos."""
+
+from __future__ import annotations
+
+import itertools
+
+import pytest
+
+from linkwright.descriptions import load
+from linkwright.kinematics import KinematicTree
+from linkwright.lint import examine
+from linkwright.urdf import Box, Cylinder, Robot, Sphere
+from tests.places import PACKAGE
+
+MODEL = PACKAGE / "urdf" / "mbot_gazebo.xacro"
+SENSORS = ("camera", "kinect", "laser")
+CHOICES = [
+    {"simulator": simulator, **dict.fromkeys(chosen, "true")}
+    for simulator in ("classic", "gz")
+    for count in range(len(SENSORS) + 1)
+    for chosen in itertools.combinations(SENSORS, count)
+]
+WITHOUT_MASS = {"base_footprint", "imu_link", "camera_optical_frame", "kinect_optical_frame"}
+ALONE = {"camera": "mbot_with_camera.urdf", "kinect": "mbot_with_kinect.urdf", "laser": "mbot_with_laser.urdf"}
+"""The model of the tutorial that carries one sensor."""
+
+
+def name(choice: dict[str, str]) -> str:
+    return "-".join([choice["simulator"], *(word for word in choice if word != "simulator")])
+
+
+@pytest.fixture(params=CHOICES, ids=name)
+def choice(request: pytest.FixtureRequest) -> dict[str, str]:
+    return request.param
+
+
+def robot_of(choice: dict[str, str]) -> Robot:
+    return load(MODEL, arguments=choice)
+
+
+def test_nothing_is_found_in_it(choice: dict[str, str]) -> None:
+    assert examine(MODEL, arguments=choice).diagnostics == ()
+
+
+def test_every_body_has_mass_and_collision_and_frames_have_neither(choice: dict[str, str]) -> None:
+    for link in robot_of(choice).links.values():
+        bodily = link.name not in WITHOUT_MASS
+        assert (link.inertial is not None, bool(link.collisions), bool(link.visuals)) == (bodily,) * 3, link.name
+
+
+def test_wheels_and_casters_touch_the_ground_that_the_footprint_lies_on(choice: dict[str, str]) -> None:
+    robot = robot_of(choice)
+    heights = {link: low for link, (low, _) in extents(robot).items()}
+    for part in ("left_wheel_link", "right_wheel_link", "front_caster_link", "back_caster_link"):
+        assert heights[part] == pytest.approx(0.0, abs=1e-12)
+    assert min(heights.values()) == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("choice", [each for each in CHOICES if "laser" in each], ids=name)
+def test_the_scan_passes_over_every_other_part(choice: dict[str, str]) -> None:
+    robot = robot_of(choice)
+    plane = height(robot, "laser_link")
+    assert all(high < plane for link, (_, high) in extents(robot).items() if link != "laser_link")
+
+
+@pytest.mark.parametrize("sensor", ALONE)
+def test_a_sensor_alone_is_where_the_tutorial_puts_it(sensor: str) -> None:
+    link = f"{sensor}_link"
+    of_tutorial, ours = load(PACKAGE / "urdf" / ALONE[sensor]), robot_of({sensor: "true"})
+    assert ours.joints[f"{sensor}_joint"].origin == of_tutorial.joints[f"{sensor}_joint"].origin
+    assert [visual.geometry for visual in ours.links[link].visuals] == [
+        visual.geometry for visual in of_tutorial.links[link].visuals
+    ]
+
+
+def test_the_base_is_that_of_the_tutorial() -> None:
+    base, ours = load(PACKAGE / "urdf" / "mbot_base.urdf"), robot_of({})
+    for link in base.links.values():
+        assert [each.geometry for each in ours.links[link.name].visuals] == [each.geometry for each in link.visuals]
+        assert [each.geometry for each in ours.links[link.name].collisions] == [each.geometry for each in link.visuals]
+    for joint in base.joints.values():
+        assert ours.joints[joint.name].origin == joint.origin
+
+
+@pytest.mark.parametrize(
+    ("simulator", "drive"), [("classic", "libgazebo_ros_diff_drive.so"), ("gz", "gz-sim-diff-drive-system")]
+)
+def test_the_drive_knows_the_wheels(simulator: str, drive: str) -> None:
+    plugins = {
+        plugin.attributes["filename"]: {child.tag: child.text() for child in plugin.elements()}
+        for extension in robot_of({"simulator": simulator}).extensions
+        for plugin in extension.elements()
+        if plugin.tag == "plugin"
+    }
+    values = plugins[drive]
+    assert (values["left_joint"], values["right_joint"]) == ("left_wheel_joint", "right_wheel_joint")
+    assert float(values["wheel_separation"]) == pytest.approx(0.38)
+    radius = float(values["wheel_radius"]) if simulator == "gz" else float(values["wheel_diameter"]) / 2
+    assert radius == pytest.approx(0.06)
+
+
+def test_optical_frames_look_along_the_sensors_x_axis() -> None:
+    robot = robot_of({"camera": "true", "kinect": "true"})
+    tree = KinematicTree(robot)
+    frames = tree.forward({joint: 0.0 for joint in robot.joints if "wheel" in joint or "caster" in joint})
+    for sensor in ("camera", "kinect"):
+        rotation = frames[tree.link_index(f"{sensor}_optical_frame")][:3, :3]
+        assert rotation[:, 2] == pytest.approx([1, 0, 0])  # z into the picture
+        assert rotation[:, 0] == pytest.approx([0, -1, 0])  # x to the right
+
+
+def height(robot: Robot, link: str) -> float:
+    """How high a link's frame is above the footprint, in metres; the model's fixed joints are not turned."""
+    by_child = {joint.child: joint for joint in robot.joints.values()}
+    above = 0.0
+    while link in by_child:
+        above += by_child[link].origin.xyz[2]
+        link = by_child[link].parent
+    return above
+
+
+def extents(robot: Robot) -> dict[str, tuple[float, float]]:
+    """The lowest and the highest point of each link's collision above the ground, in metres."""
+    found = {}
+    for link in robot.links.values():
+        for collision in link.collisions:
+            middle = height(robot, link.name) + collision.origin.xyz[2]
+            lying = abs(collision.origin.rpy[0]) > 1.0
+            shape = collision.geometry
+            if isinstance(shape, Box):
+                half = shape.size[2] / 2
+            elif isinstance(shape, Sphere) or (isinstance(shape, Cylinder) and lying):
+                half = shape.radius
+            else:
+                assert isinstance(shape, Cylinder)
+                half = shape.length / 2
+            found[link.name] = (middle - half, middle + half)
+    return found
