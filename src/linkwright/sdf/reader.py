@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 from linkwright.diagnostics import Diagnostic, did_you_mean, phrase
 from linkwright.schema import ElementRule, reader_of
@@ -117,22 +118,33 @@ def read(document: Document) -> Reading:
         _explain_root(root, report)
         return Reading(None, report.in_order())
     _check_version(root, report)
-    deep = _too_deep(root)
-    if deep is not None:
-        hint = phrase("is a closing tag missing?")
-        message = phrase("elements are nested more than {count} deep", count=_DEEPEST)
-        report.reject("SDF133", message, deep, hint=hint)
+    if is_too_deep(root, report):
         return Reading(None, report.in_order())
-    sdf: Sdf = reader_of(SDF, NEWEST).read(root, root, report)
-    for element, rule in _known(root):
-        _check_names(element, rule, report)
-        for child in element.elements():
-            if child.tag not in rule.child_rules and not _is_let_be(child, rule):
-                report.unknown_element(child, rule)
+    sdf: Sdf = read_element(root, SDF, report)
     if not (sdf.worlds or sdf.models or sdf.lights or sdf.actors):
         hint = phrase("put a <world> or a <model> in it")
         report.error("SDF131", phrase("<sdf> has neither a world nor a model in it"), root, hint=hint)
     return Reading(sdf, report.in_order())
+
+
+def read_element(element: Element, rule: ElementRule, report: SdfReport) -> Any:
+    """The object of an element that is not nested too deeply, with all that is wrong in it told."""
+    found = reader_of(rule, NEWEST).read(element, element, report)
+    for each, each_rule in _known(element, rule):
+        _check_names(each, each_rule, report)
+        for child in each.elements():
+            if child.tag not in each_rule.child_rules and not _is_let_be(child, each_rule):
+                report.unknown_element(child, each_rule)
+    return found
+
+
+def is_too_deep(root: Element, report: SdfReport) -> bool:
+    """Whether an element has too many in each other to be read, which is told."""
+    deep = _too_deep(root)
+    if deep is not None:
+        message = phrase("elements are nested more than {count} deep", count=_DEEPEST)
+        report.reject("SDF133", message, deep, hint=phrase("is a closing tag missing?"))
+    return deep is not None
 
 
 def _explain_root(root: Element, report: SdfReport) -> None:
@@ -168,9 +180,9 @@ def _too_deep(root: Element) -> Element | None:
     return None
 
 
-def _known(root: Element) -> Iterator[tuple[Element, ElementRule]]:
-    """Every element that SDF has a place for, with its rule, in document order."""
-    waiting = [(root, SDF)]
+def _known(root: Element, rule: ElementRule) -> Iterator[tuple[Element, ElementRule]]:
+    """An element and every element in it that SDF has a place for, with its rule, in document order."""
+    waiting = [(root, rule)]
     while waiting:
         element, rule = waiting.pop()
         if rule.tag in _OPEN:

@@ -1,0 +1,95 @@
+"""The bodies of a robot: which of its links are one, and where they stand in it.
+
+Source: libsdformat's parser of URDF, which makes one link of those that fixed joints connect.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from linkwright.geometry.single import IDENTITY, Pose, Transform, compose
+from linkwright.sdf.frames import pose_of, transform_of
+from linkwright.sdf.poses import WORLD
+from linkwright.urdf import Robot
+from linkwright.urdf.model import Joint, Link
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """A link of a body.
+
+    Attributes:
+        link: the link.
+        pose: where its frame stands in that of the body.
+        joint: the fixed joint that makes it a part; None for the link that the body is named by.
+    """
+
+    link: Link
+    pose: Transform = IDENTITY
+    joint: Joint | None = None
+
+
+@dataclass(slots=True)
+class Body:
+    """Links that move as one.
+
+    Attributes:
+        parts: the link that the body is named by, then those that hang from it.
+        joint: what it hangs from the rest by; None for the root.
+        parent: the name of the body above; ``world``, or empty for the root.
+        pose: where the joint stands in the body above.
+        children: the bodies that hang from it.
+    """
+
+    parts: list[Part]
+    joint: Joint | None = None
+    parent: str = ""
+    pose: Pose = field(default_factory=Pose)
+    children: list[Body] = field(default_factory=list)
+
+    @property
+    def name(self) -> str:
+        """The name of the link that it becomes."""
+        return self.parts[0].link.name
+
+
+def bodies_of(robot: Robot, is_lumped: Callable[[Joint], bool]) -> list[Body]:
+    """The bodies of a robot, parents before children, and children by the names of their joints, as gz has them.
+
+    Args:
+        robot: the robot; a root link called ``world`` stands for the world.
+        is_lumped: whether the child of a joint becomes a part of the body that its parent belongs to.
+    """
+    below: dict[str, list[Joint]] = defaultdict(list)
+    for joint in robot.joints.values():
+        below[joint.parent].append(joint)
+    root = Body([Part(robot.links[robot.root])])
+    places: dict[str, tuple[Body, Part]] = {robot.root: (root, root.parts[0])}
+    bodies = [] if robot.root == WORLD else [root]
+    waiting = _by_name(below[robot.root])
+    while waiting:
+        joint = waiting.pop()
+        link = robot.links[joint.child]
+        body, above = places[joint.parent]
+        origin = joint.origin
+        if above.joint is not None:
+            origin = pose_of(compose(above.pose, transform_of(origin)))
+        if body.name != WORLD and is_lumped(joint):
+            part = Part(link, transform_of(origin), joint)
+            body.parts.append(part)
+        else:
+            part = Part(link)
+            inner = Body([part], joint, body.name, origin)
+            body.children.append(inner)
+            bodies.append(inner)
+            body = inner
+        places[link.name] = body, part
+        waiting += _by_name(below[link.name])
+    return bodies
+
+
+def _by_name(joints: list[Joint]) -> list[Joint]:
+    """Joints in the order in which they are taken from the end of a list."""
+    return sorted(joints, key=lambda joint: joint.name, reverse=True)

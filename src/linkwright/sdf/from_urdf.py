@@ -1,0 +1,302 @@
+"""A robot as a model of SDF, as gz makes it of a URDF.
+
+Source: libsdformat's parser of URDF and its page "URDF extensions in SDFormat".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TypeVar
+
+from linkwright.diagnostics import Diagnostic, phrase
+from linkwright.geometry.single import Pose, Transform, compose
+from linkwright.sdf import shapes
+from linkwright.sdf.bodies import Body, Part, bodies_of
+from linkwright.sdf.frames import pose_of, transform_of
+from linkwright.sdf.gazebo import Extensions, LinkExtension
+from linkwright.sdf.joints import Axis, AxisLimit, AxisMimic, Joint
+from linkwright.sdf.lights import Light
+from linkwright.sdf.links import Collision, Inertia, Inertial, Link, Visual
+from linkwright.sdf.materials import Material, Pbr, Workflow
+from linkwright.sdf.models import Frame, Model
+from linkwright.sdf.poses import MODEL, WORLD, RawPose
+from linkwright.sdf.report import SdfReport
+from linkwright.sdf.sensors import Sensor
+from linkwright.urdf import Robot
+from linkwright.urdf import model as urdf
+
+_Posed = TypeVar("_Posed", Sensor, Light)
+
+_TYPES = {"revolute": "revolute", "continuous": "revolute", "prismatic": "prismatic", "fixed": "fixed"}
+"""Types of joints in URDF, and what they are in SDF; a link of another moves freely there."""
+_LUMP = "_fixed_joint_lump__"
+_BRIGHTER = 1.25
+"""A colour of URDF becomes brighter by this: gz's renderer shows colours darker than RViz does."""
+
+
+@dataclass(frozen=True, slots=True)
+class Conversion:
+    """What a robot becomes.
+
+    Attributes:
+        model: the robot as a model of SDF.
+        diagnostics: what is wrong in its ``<gazebo>`` elements, and what has no place in SDF.
+    """
+
+    model: Model
+    diagnostics: tuple[Diagnostic, ...]
+
+
+def model_from_robot(robot: Robot, *, lump_fixed_joints: bool) -> Conversion:
+    """A robot as gz takes it from its URDF.
+
+    A root link called ``world`` is the world. The addresses of meshes stay as they are written.
+
+    Args:
+        robot: the robot.
+        lump_fixed_joints: whether links that fixed joints connect become one link, as gz does unless it is told not
+            to; what they were are then frames, and links without a mass are left out. Otherwise every link and every
+            fixed joint stays.
+    """
+    report = SdfReport()
+    extensions = Extensions(robot, report)
+    converter = _Converter(robot, extensions, report, lump_fixed_joints=lump_fixed_joints)
+    return Conversion(converter.model(), report.in_order())
+
+
+class _Converter:
+    def __init__(self, robot: Robot, extensions: Extensions, report: SdfReport, *, lump_fixed_joints: bool) -> None:
+        self._robot = robot
+        self._extensions = extensions
+        self._report = report
+        self._lumps = lump_fixed_joints
+
+    def model(self) -> Model:
+        bodies = bodies_of(self._robot, self._is_lumped)
+        if self._lumps:
+            bodies = self._with_mass(bodies)
+        parts = [part for body in bodies for part in body.parts]
+        told = {part.link.name: self._extensions.link(part.link) for part in parts}
+        joints = [self._joint(body, body.joint) for body in bodies if body.joint is not None]
+        known = self._extensions.model(self._robot)
+        return replace(
+            known,
+            name=self._robot.name,
+            links=(*(self._link(body, told) for body in bodies), *known.links),
+            joints=(*(joint for joint in joints if joint is not None), *known.joints),
+            frames=(*(frame for body in bodies for frame in self._frames(body)), *known.frames),
+            element=self._robot.element,
+        )
+
+    def _is_lumped(self, joint: urdf.Joint) -> bool:
+        return (
+            self._lumps
+            and joint.type == "fixed"
+            and not self._extensions.stays_fixed(joint)
+            and not self._extensions.becomes_revolute(joint)
+        )
+
+    def _with_mass(self, bodies: list[Body]) -> list[Body]:
+        """The bodies that have a mass, without those that hang from one which has none, as gz leaves them out."""
+        left_out: set[str] = set()
+        kept = []
+        for body in bodies:
+            if body.parent in left_out:
+                left_out.add(body.name)
+            elif sum(part.link.inertial.mass for part in body.parts if part.link.inertial) > 0:
+                kept.append(body)
+            else:
+                left_out.add(body.name)
+                self._tell_without_mass(body)
+        return kept
+
+    def _tell_without_mass(self, body: Body) -> None:
+        element = body.parts[0].link.element
+        if element is None:
+            return
+        message = phrase("link '{name}' has no mass, so it is left out", name=body.name)
+        if body.children:
+            message = phrase("link '{name}' has no mass, so it is left out with all that hangs from it", name=body.name)
+        self._report.warning("SDF170", message, element, hint=phrase("give it an <inertial> with a mass"))
+
+    def _link(self, body: Body, told: dict[str, LinkExtension]) -> Link:
+        said = told[body.name].link
+        link = body.parts[0].link
+        others = [told[part.link.name].link for part in body.parts[1:]]
+        poses = [part.pose for part in body.parts[1:]]
+        sensors = [_moved(sensor, pose) for other, pose in zip(others, poses, strict=True) for sensor in other.sensors]
+        lights = [_moved(light, pose) for other, pose in zip(others, poses, strict=True) for light in other.lights]
+        return replace(
+            said,
+            pose=self._pose(body),
+            inertial=_inertial(body.parts),
+            visuals=(*_visuals(body, told), *said.visuals),
+            collisions=(*_collisions(body, told), *said.collisions),
+            sensors=(*said.sensors, *sensors),
+            lights=(*said.lights, *lights),
+            gravity=said.gravity and all(other.gravity for other in others),
+            self_collide=next((each.self_collide for each in (said, *others) if each.self_collide is not None), None),
+            element=link.element,
+        )
+
+    def _pose(self, body: Body) -> RawPose:
+        """Where a link stands: where its joint does, in the frame of that, or in that of the link above it."""
+        if body.joint is None:
+            return RawPose()
+        if body.joint.type in _TYPES and body.joint.name not in self._robot.links:
+            return RawPose(relative_to=body.joint.name)
+        return _from_parent(body)
+
+    def _joint(self, body: Body, joint: urdf.Joint) -> Joint | None:
+        if joint.type not in _TYPES:
+            if joint.type == "planar" and joint.element is not None:
+                message = phrase("joint '{name}' is planar, which SDF does not have: it is left out", name=joint.name)
+                hint = phrase("two prismatic joints and a continuous one move in a plane")
+                self._report.warning("SDF171", message, joint.element, hint=hint)
+            return None
+        said = self._extensions.joint(joint, self._robot)
+        kind, axis = _TYPES[joint.type], None
+        if kind != "fixed":
+            axis = _axis(joint, said.axis or Axis())
+        elif self._lumps and self._extensions.becomes_revolute(joint):
+            kind, axis = "revolute", Axis(limit=AxisLimit(0.0, 0.0))
+        if joint.name in self._robot.links and joint.element is not None:
+            message = phrase("joint '{name}' has the name of a link, which SDF does not allow", name=joint.name)
+            self._report.warning("SDF171", message, joint.element, "name", hint=phrase("give each a name of its own"))
+        return replace(
+            said,
+            type=kind,
+            parent=body.parent,
+            child=body.name,
+            pose=_from_parent(body),
+            axis=axis,
+            element=joint.element,
+        )
+
+    def _frames(self, body: Body) -> Iterator[Frame]:
+        """What the lumped links and their joints were, as frames."""
+        for part in body.parts[1:]:
+            joint, link = part.joint, part.link
+            assert joint is not None
+            self._tell_of_sensors(joint)
+            if joint.name in self._robot.links:
+                yield Frame(link.name, joint.parent, RawPose(joint.origin), link.element)
+            else:
+                yield Frame(joint.name, joint.parent, RawPose(joint.origin), joint.element)
+                yield Frame(link.name, joint.name, element=link.element)
+
+    def _tell_of_sensors(self, joint: urdf.Joint) -> None:
+        for sensor in self._extensions.joint(joint, self._robot).sensors:
+            if sensor.element is not None:
+                message = phrase(
+                    "sensor '{name}' is left out: the links of joint '{joint}' become one",
+                    name=sensor.name,
+                    joint=joint.name,
+                )
+                hint = phrase(
+                    'keep the joint: <gazebo reference="{name}"><preserveFixedJoint>true</preserveFixedJoint></gazebo>',
+                    name=joint.name,
+                )
+                self._report.warning("SDF171", message, sensor.element, hint=hint)
+
+
+def _from_parent(body: Body) -> RawPose:
+    return RawPose(body.pose, MODEL if body.parent == WORLD else body.parent)
+
+
+def _moved(thing: _Posed, pose: Transform) -> _Posed:
+    """What stood in the frame of a link, in that of the body which the link is a part of."""
+    if thing.pose.relative_to:
+        return thing
+    return replace(thing, pose=RawPose(pose_of(compose(pose, transform_of(thing.pose.pose)))))
+
+
+def _placed(pose: Pose, part: Part) -> RawPose:
+    """A pose in the frame of a part, in that of its body."""
+    return RawPose(pose if part.joint is None else pose_of(compose(part.pose, transform_of(pose))))
+
+
+def _inertial(parts: Sequence[Part]) -> Inertial | None:
+    first = parts[0].link.inertial
+    if any(part.link.inertial for part in parts[1:]):
+        from linkwright.sdf.lumping import lumped_inertial  # which takes numpy
+
+        return lumped_inertial(parts)
+    if first is None:
+        return None
+    tensor = Inertia(first.ixx, first.iyy, first.izz, first.ixy, first.ixz, first.iyz)
+    return Inertial(first.mass, RawPose(first.origin), tensor, element=first.element)
+
+
+def _visuals(body: Body, told: Mapping[str, LinkExtension]) -> Iterator[Visual]:
+    shown = ((part, visual) for part in body.parts for visual in part.link.visuals)
+    for count, (part, visual) in enumerate(shown):
+        said = told[part.link.name].visual
+        yield replace(
+            said,
+            name=_name_of_shape(body, part, visual.name, "visual", count),
+            geometry=_shape(visual.geometry),
+            pose=_placed(visual.origin, part),
+            material=_material(visual.material, said.material),
+            element=visual.element,
+        )
+
+
+def _collisions(body: Body, told: Mapping[str, LinkExtension]) -> Iterator[Collision]:
+    solid = ((part, collision) for part in body.parts for collision in part.link.collisions)
+    for count, (part, collision) in enumerate(solid):
+        yield replace(
+            told[part.link.name].collision,
+            name=_name_of_shape(body, part, collision.name, "collision", count),
+            geometry=_shape(collision.geometry),
+            pose=_placed(collision.origin, part),
+            element=collision.element,
+        )
+
+
+def _name_of_shape(body: Body, part: Part, own: str, kind: str, count: int) -> str:
+    """``wheel_visual``, ``wheel_visual_1``, ``base_fixed_joint_lump__camera_visual_2``."""
+    name = f"{own or part.link.name}_{kind}"
+    if count:
+        name = f"{name}_{count}"
+    return name if name.startswith(body.name) else f"{body.name}{_LUMP}{name}"
+
+
+def _shape(geometry: urdf.Geometry) -> shapes.Shape:
+    if isinstance(geometry, urdf.Mesh):
+        return shapes.Mesh(geometry.filename, geometry.scale)
+    return geometry
+
+
+def _material(written: urdf.Material | None, said: Material | None) -> Material | None:
+    """The material of a visual with what ``<gazebo>`` says of it, whose colours come first."""
+    if written is None or (said is not None and (said.diffuse or said.ambient)):
+        return said
+    found = said or Material()
+    if written.rgba is not None:
+        red, green, blue, alpha = written.rgba
+        color = (_brighter(red), _brighter(green), _brighter(blue), alpha)
+        found = replace(found, ambient=color, diffuse=color)
+    if written.texture is not None and found.pbr is None:
+        found = replace(found, pbr=Pbr(metal=Workflow(albedo_map=written.texture)))
+    return found
+
+
+def _brighter(part: float) -> float:
+    return min(max(part * _BRIGHTER, 0.0), 1.0)
+
+
+def _axis(joint: urdf.Joint, said: Axis) -> Axis:
+    """The axis of a joint with the spring that ``<gazebo>`` gives it."""
+    limit, dynamics, mimic = AxisLimit(), said.dynamics, None
+    if joint.limit is not None:
+        limit = AxisLimit(effort=joint.limit.effort, velocity=joint.limit.velocity)
+        if joint.type != "continuous":
+            low, high = sorted((joint.limit.lower, joint.limit.upper))
+            limit = replace(limit, lower=low, upper=high)
+    if joint.dynamics is not None:
+        dynamics = replace(dynamics, damping=joint.dynamics.damping, friction=joint.dynamics.friction)
+    if joint.mimic is not None:
+        mimic = AxisMimic(joint.mimic.joint, multiplier=joint.mimic.multiplier, offset=joint.mimic.offset)
+    return replace(said, xyz=joint.axis, limit=limit, dynamics=dynamics, mimic=mimic)

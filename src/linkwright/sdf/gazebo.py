@@ -1,0 +1,230 @@
+"""``<gazebo>`` in a URDF: what a description says to simulators alone.
+
+Most of what stands in it is SDF for the link, joint or model that it refers to; some words are older than SDF and stand
+for elements of it (``mu1``, ``turnGravityOff``). Both are put together as one element of SDF and read by SDF's tables,
+so that mistakes in them are told at their place in the URDF.
+
+Source: libsdformat's parser of URDF. Where that finds the shapes of a link by its name in theirs, and so passes over
+those which have names of their own, all shapes of the link are meant here.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+
+from linkwright.schema import ElementRule
+from linkwright.sdf.joints import JOINT, Joint
+from linkwright.sdf.links import COLLISION, LINK, VISUAL, Collision, Link, Visual
+from linkwright.sdf.models import MODEL, Model
+from linkwright.sdf.reader import is_too_deep, read_element
+from linkwright.sdf.report import SdfReport
+from linkwright.sdf.values import TRUTH
+from linkwright.urdf import Robot
+from linkwright.urdf import model as urdf
+from linkwright.xmltree import Element, Text
+
+_Words = Mapping[str, tuple[str, ...]]
+"""A word of ``<gazebo>``: the elements of SDF that it stands for."""
+
+_MODEL_WORDS: _Words = {"static": ("static",)}
+_LINK_WORDS: _Words = {
+    "turnGravityOff": ("gravity",),
+    "selfCollide": ("self_collide",),
+    "dampingFactor": ("velocity_decay/linear", "velocity_decay/angular"),
+}
+_COLLISION_WORDS: _Words = {
+    "mu1": ("surface/friction/ode/mu",),
+    "mu2": ("surface/friction/ode/mu2",),
+    "fdir1": ("surface/friction/ode/fdir1",),
+    "kp": ("surface/contact/ode/kp",),
+    "kd": ("surface/contact/ode/kd",),
+    "maxVel": ("surface/contact/ode/max_vel",),
+    "minDepth": ("surface/contact/ode/min_depth",),
+    "laserRetro": ("laser_retro",),
+    "maxContacts": ("max_contacts",),
+}
+_VISUAL_WORDS: _Words = {"material": ("material/script/name",)}
+_JOINT_WORDS: _Words = {
+    "springReference": ("axis/dynamics/spring_reference",),
+    "springStiffness": ("axis/dynamics/spring_stiffness",),
+    "provideFeedback": ("physics/provide_feedback",),
+}
+_KEPT_FIXED = "preserveFixedJoint"
+_MADE_REVOLUTE = "disableFixedJointLumping"
+_OTHER_WORDS = frozenset(
+    {
+        _KEPT_FIXED,
+        _MADE_REVOLUTE,
+        *("canonicalBody", "cfmDamping", "fudgeFactor", "implicitSpringDamper", "stopCfm", "stopErp"),
+    }
+)
+"""Words of ``<gazebo>`` without a place in SDF, or in what is read of it."""
+_WORDS = frozenset({*_MODEL_WORDS, *_LINK_WORDS, *_COLLISION_WORDS, *_VISUAL_WORDS, *_JOINT_WORDS, *_OTHER_WORDS})
+_SHAPES = frozenset({"collision", "visual"})
+_NEGATED = frozenset({"turnGravityOff"})
+_TRUE, _FALSE = frozenset({"true", "yes", "1"}), frozenset({"false", "no", "0"})
+_MATERIALS = "file://media/materials/scripts/gazebo.material"
+"""Where Gazebo's own materials are."""
+
+
+@dataclass(frozen=True, slots=True)
+class LinkExtension:
+    """What simulators are told of a link.
+
+    Attributes:
+        link: sensors, lights and whether it falls; its shapes, mass and pose are not those of the link.
+        visual: what holds for each of its visuals; geometry and pose are not those of the visual.
+        collision: the same for each of its collisions.
+    """
+
+    link: Link
+    visual: Visual
+    collision: Collision
+
+
+class Extensions:
+    """The ``<gazebo>`` elements of a robot by what they refer to.
+
+    Args:
+        robot: the robot.
+        report: takes what is wrong in them.
+    """
+
+    def __init__(self, robot: Robot, report: SdfReport) -> None:
+        self._report = report
+        self._by_name: dict[str, list[Element]] = defaultdict(list)
+        for element in robot.extensions:
+            if element.tag == "gazebo" and not is_too_deep(element, report):
+                self._by_name[element.attributes.get("reference", "")].append(element)
+
+    def model(self, robot: Robot) -> Model:
+        """What the whole robot is told: plugins, and the links and joints that URDF cannot have."""
+        whole = _like(robot.element, "model", robot.name)
+        for gazebo in self._by_name.get("", ()):
+            whole.children += _blobs(gazebo)
+            self._add_words(whole, gazebo, _MODEL_WORDS, MODEL)
+        model: Model = read_element(whole, MODEL, self._report)
+        return model
+
+    def link(self, link: urdf.Link) -> LinkExtension:
+        """What a link, its visuals and its collisions are told."""
+        whole = _like(link.element, "link", link.name)
+        visual, collision = _like(link.element, "visual", link.name), _like(link.element, "collision", link.name)
+        for gazebo in self._by_name.get(link.name, ()):
+            whole.children += _blobs(gazebo)
+            for shape, words, rule in ((visual, _VISUAL_WORDS, VISUAL), (collision, _COLLISION_WORDS, COLLISION)):
+                for said in gazebo.elements(shape.tag):
+                    _take(shape, said)
+                self._add_words(shape, gazebo, words, rule)
+            self._add_words(whole, gazebo, _LINK_WORDS, LINK)
+        return LinkExtension(
+            read_element(whole, LINK, self._report),
+            read_element(visual, VISUAL, self._report),
+            read_element(collision, COLLISION, self._report),
+        )
+
+    def joint(self, joint: urdf.Joint, robot: Robot) -> Joint:
+        """What a joint is told: sensors, a spring, whether its forces are measured."""
+        whole = _like(joint.element, "joint", joint.name)
+        whole.attributes["type"] = "fixed"
+        _put(whole, "parent", joint.parent, whole)
+        _put(whole, "child", joint.child, whole)
+        for gazebo in self._by_name.get(joint.name, ()):
+            if joint.name not in robot.links:
+                whole.children += map(_copied, _blobs(gazebo))
+            self._add_words(whole, gazebo, _JOINT_WORDS, JOINT)
+        found: Joint = read_element(whole, JOINT, self._report)
+        return found
+
+    def stays_fixed(self, joint: urdf.Joint) -> bool:
+        """Whether the links of a fixed joint are to stay two (``preserveFixedJoint``)."""
+        return self._is_true(joint, _KEPT_FIXED)
+
+    def becomes_revolute(self, joint: urdf.Joint) -> bool:
+        """Whether a fixed joint is to be one that could turn, by no angle (``disableFixedJointLumping``)."""
+        return self._is_true(joint, _MADE_REVOLUTE) and not self.stays_fixed(joint)
+
+    def _is_true(self, joint: urdf.Joint, word: str) -> bool:
+        said = (each for gazebo in self._by_name.get(joint.name, ()) for each in gazebo.elements(word))
+        return any(_said(each).casefold() in _TRUE for each in said)
+
+    def _add_words(self, whole: Element, gazebo: Element, words: _Words, rule: ElementRule) -> None:
+        """Put what words stand for into an element; of several that say the same thing the last counts."""
+        for word in gazebo.elements():
+            for path in words.get(word.tag, ()):
+                place, text = _rule_at(rule, path), _said(word)
+                assert place.text is not None
+                if place.text.type is TRUTH:
+                    text = _truth(word.tag, text)
+                try:
+                    place.text.type.read(text)
+                except ValueError:
+                    self._report.malformed(_with_text(word, text), replace(place, tag=word.tag), place.text, whole)
+                    continue
+                _put(whole, path, text, word)
+                if word.tag == "material":
+                    _put(whole, "material/script/uri", _MATERIALS, word)
+
+
+def _like(element: Element | None, tag: str, name: str) -> Element:
+    """An element of SDF that stands where one of URDF does."""
+    if element is None:
+        return Element(tag, {"name": name})
+    return Element(tag, {"name": name}, element.source, element.offset, element.origin)
+
+
+def _blobs(gazebo: Element) -> Iterator[Element]:
+    """What is SDF already."""
+    return (each for each in gazebo.elements() if each.tag not in _WORDS and each.tag not in _SHAPES)
+
+
+def _take(shape: Element, said: Element) -> None:
+    """Put what is said of all shapes of a link into one; a later surface or material replaces an earlier one."""
+    for each in said.elements():
+        if each.tag in ("surface", "material"):
+            shape.children = [other for other in shape.elements() if other.tag != each.tag]
+        shape.children.append(_copied(each))
+
+
+def _copied(element: Element) -> Element:
+    copy = Element(element.tag, dict(element.attributes), element.source, element.offset, element.origin)
+    copy.children = [_copied(each) if isinstance(each, Element) else each for each in element.children]
+    return copy
+
+
+def _put(whole: Element, path: str, text: str, place: Element) -> None:
+    """Make an element in others say something; those that are not there are made, and stand where another does."""
+    for tag in path.split("/"):
+        inner = whole.first(tag)
+        if inner is None:
+            inner = Element(tag, None, place.source, place.offset, place.origin)
+            whole.children.append(inner)
+        whole = inner
+    whole.children[:] = [Text(text)]
+
+
+def _with_text(word: Element, text: str) -> Element:
+    element = Element(word.tag, None, word.source, word.offset, word.origin)
+    element.children.append(Text(text))
+    return element
+
+
+def _said(word: Element) -> str:
+    """What a word says, as its attribute ``value`` or inside."""
+    return word.attributes.get("value", word.text()).strip()
+
+
+def _truth(word: str, text: str) -> str:
+    """``true`` or ``false``; what is neither leaves things as they usually are."""
+    said = text.casefold()
+    if word in _NEGATED:
+        return "true" if said in _FALSE else "false"
+    return "true" if said in _TRUE else "false"
+
+
+def _rule_at(rule: ElementRule, path: str) -> ElementRule:
+    for tag in path.split("/"):
+        rule = rule.child_rules[tag]
+    return rule

@@ -1,0 +1,407 @@
+"""A robot as gz takes it from its URDF."""
+
+from __future__ import annotations
+
+import json
+from math import pi
+from pathlib import Path
+
+import pytest
+
+from linkwright.descriptions import examine
+from linkwright.diagnostics import LinkwrightError
+from linkwright.geometry.shapes import Box
+from linkwright.geometry.single import Pose
+from linkwright.sdf.frames import Frames
+from linkwright.sdf.from_urdf import model_from_robot
+from linkwright.sdf.materials import MaterialScript
+from linkwright.sdf.poses import RawPose
+from linkwright.sdf.references import check_references
+from linkwright.sdf.shapes import Mesh
+from linkwright.sdf.worlds import Sdf
+
+SHARED = Path(__file__).parents[3] / "shared"
+INERTIAL = '<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>'
+
+
+def robot_of(inside):
+    description = examine(f'<robot name="r">{inside}</robot>')
+    assert description.diagnostics == ()
+    return description.robot
+
+
+def converted(inside, *, lump=False):
+    """The model of a robot with nothing wrong."""
+    conversion = model_from_robot(robot_of(inside), lump_fixed_joints=lump)
+    assert conversion.diagnostics == ()
+    return conversion.model
+
+
+def link(name, inside="", *, inertial=INERTIAL):
+    return f'<link name="{name}">{inertial}{inside}</link>'
+
+
+def joint(name, parent, child, *, kind="fixed", origin="0 0 0", rpy="0 0 0", inside=""):
+    return (
+        f'<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/>'
+        f'<origin xyz="{origin}" rpy="{rpy}"/>{inside}</joint>'
+    )
+
+
+BOX = '<geometry><box size="1 2 3"/></geometry>'
+SHAPED = f"<visual>{BOX}</visual><collision>{BOX}</collision>"
+LIMIT = '<limit lower="-1" upper="2" effort="3" velocity="4"/>'
+
+
+def test_links_stand_at_their_joints():
+    model = converted(link("a") + link("b") + joint("j", "a", "b", origin="1 2 3", rpy=f"0 0 {pi / 2}"))
+    assert [(each.name, each.pose.relative_to) for each in model.links] == [("a", ""), ("b", "j")]
+    assert model.joints[0].pose == RawPose(Pose((1.0, 2.0, 3.0), (0.0, 0.0, pi / 2)), "a")
+    assert (model.joints[0].type, model.joints[0].parent, model.joints[0].child) == ("fixed", "a", "b")
+    assert Frames(model).pose("b")[:3] == (1.0, 2.0, 3.0)
+
+
+@pytest.mark.parametrize(
+    ("kind", "expected", "lower", "upper"),
+    [
+        ("revolute", "revolute", -1.0, 2.0),
+        ("continuous", "revolute", float("-inf"), float("inf")),
+        ("prismatic", "prismatic", -1.0, 2.0),
+    ],
+)
+def test_a_joint_that_moves_has_its_axis_limits_and_dynamics(kind, expected, lower, upper):
+    inside = f'<axis xyz="0 1 0"/>{LIMIT}<dynamics damping="0.5" friction="0.25"/>'
+    found = converted(link("a") + link("b") + joint("j", "a", "b", kind=kind, inside=inside)).joints[0]
+    assert found.type == expected
+    assert found.axis is not None
+    assert found.axis.xyz == (0.0, 1.0, 0.0)
+    limit = found.axis.limit
+    assert (limit.lower, limit.upper, limit.effort, limit.velocity) == (lower, upper, 3.0, 4.0)
+    assert (found.axis.dynamics.damping, found.axis.dynamics.friction) == (0.5, 0.25)
+
+
+def test_a_mimic_joint_follows():
+    turning = joint("j", "a", "b", kind="revolute", inside=LIMIT)
+    inside = LIMIT + '<mimic joint="j" multiplier="-2" offset="0.5"/>'
+    model = converted(
+        link("a") + link("b") + link("c") + turning + joint("k", "a", "c", kind="revolute", inside=inside)
+    )
+    axis = next(each.axis for each in model.joints if each.name == "k")
+    assert axis is not None
+    assert axis.mimic is not None
+    assert (axis.mimic.joint, axis.mimic.multiplier, axis.mimic.offset) == ("j", -2.0, 0.5)
+
+
+def test_a_root_called_world_is_the_world():
+    model = converted('<link name="world"/>' + link("a") + joint("j", "world", "a", origin="0 0 1"), lump=True)
+    assert [each.name for each in model.links] == ["a"]
+    assert (model.joints[0].parent, model.joints[0].pose.relative_to) == ("world", "__model__")
+    assert Frames(model).pose("a")[:3] == (0.0, 0.0, 1.0)
+    assert check_references(Sdf("1.11", models=(model,))) == []
+
+
+def test_a_floating_link_moves_freely_and_a_planar_one_too():
+    robot = robot_of(
+        link("a") + link("b") + link("c")
+        + joint("f", "a", "b", kind="floating", origin="1 0 0") + joint("p", "a", "c", kind="planar")
+    )  # fmt: skip
+    conversion = model_from_robot(robot, lump_fixed_joints=False)
+    assert conversion.model.joints == ()
+    assert Frames(conversion.model).pose("b")[:3] == (1.0, 0.0, 0.0)
+    assert [(each.code, str(each.message)) for each in conversion.diagnostics] == [
+        ("SDF171", "joint 'p' is planar, which SDF does not have: it is left out")
+    ]
+
+
+def test_shapes_are_named_as_gz_names_them():
+    inside = f"<visual>{BOX}</visual><visual>{BOX}</visual>" + f'<visual name="a_top">{BOX}</visual>'
+    model = converted(link("a", inside + f'<visual name="lid">{BOX}</visual>' + f"<collision>{BOX}</collision>"))
+    names = [each.name for each in model.links[0].visuals]
+    assert names == ["a_visual", "a_visual_1", "a_top_visual_2", "a_fixed_joint_lump__lid_visual_3"]
+    assert [each.name for each in model.links[0].collisions] == ["a_collision"]
+    assert model.links[0].visuals[0].geometry == Box((1.0, 2.0, 3.0))
+
+
+def test_addresses_of_meshes_stay_as_written():
+    geometry = '<geometry><mesh filename="package://p/m.dae" scale="1 2 3"/></geometry>'
+    model = converted(link("a", f"<visual>{geometry}</visual>"))
+    assert model.links[0].visuals[0].geometry == Mesh("package://p/m.dae", (1.0, 2.0, 3.0))
+
+
+def test_colours_are_as_gz_makes_them_and_those_of_gazebo_come_first():
+    visual = f'<visual>{BOX}<material name="m"><color rgba="0.4 0.8 1 0.5"/></material></visual>'
+    material = converted(link("a", visual)).links[0].visuals[0].material
+    assert material is not None
+    assert material.diffuse == material.ambient == pytest.approx((0.5, 1.0, 1.0, 0.5))
+    said = '<gazebo reference="a"><visual><material><diffuse>1 0 0 1</diffuse></material></visual></gazebo>'
+    material = converted(link("a", visual) + said).links[0].visuals[0].material
+    assert material is not None
+    assert (material.ambient, material.diffuse) == (None, (1.0, 0.0, 0.0, 1.0))
+
+
+def test_a_material_of_gazebo_is_a_script():
+    model = converted(link("a", SHAPED) + '<gazebo reference="a"><material>Gazebo/Blue</material></gazebo>')
+    material = model.links[0].visuals[0].material
+    assert material is not None
+    assert material.script == MaterialScript(("file://media/materials/scripts/gazebo.material",), "Gazebo/Blue")
+
+
+def test_words_for_links_and_collisions():
+    words = {
+        "mu1": "0.1", "mu2": "0.2", "fdir1": "1 0 0", "kp": "1000", "kd": "2", "minDepth": "0.003", "maxVel": "4",
+        "maxContacts": "5", "laserRetro": "6", "selfCollide": "Yes", "turnGravityOff": "true", "dampingFactor": "0.7",
+        "canonicalBody": "a",
+    }  # fmt: skip
+    said = "".join(f"<{word}>{text}</{word}>" for word, text in words.items())
+    found = converted(link("a", SHAPED + f'<collision name="own">{BOX}</collision>')
+                      + f'<gazebo reference="a">{said}</gazebo>').links[0]  # fmt: skip
+    for collision in found.collisions:
+        friction, contact = collision.surface.friction, collision.surface.contact
+        assert friction is not None
+        assert contact is not None
+        assert (friction.mu, friction.mu2, friction.direction) == (0.1, 0.2, (1.0, 0.0, 0.0))
+        assert (contact.kp, contact.kd, contact.min_depth, contact.max_vel) == (1000.0, 2.0, 0.003, 4.0)
+        assert (collision.max_contacts, collision.laser_retro) == (5, 6.0)
+    assert (found.self_collide, found.gravity) == (True, False)
+    assert (found.velocity_decay.linear, found.velocity_decay.angular) == (0.7, 0.7)
+
+
+def test_a_word_may_stand_in_an_attribute_and_the_last_of_several_counts():
+    said = '<gazebo reference="a"><mu1 value="0.1"/></gazebo><gazebo reference="a"><mu1> 0.3 </mu1></gazebo>'
+    friction = converted(link("a", SHAPED) + said).links[0].collisions[0].surface.friction
+    assert friction is not None
+    assert friction.mu == 0.3
+
+
+def test_a_surface_in_collision_and_words_go_together():
+    surface = "<surface><friction><ode><mu>0.5</mu><mu2>0.6</mu2></ode></friction></surface>"
+    said = f'<gazebo reference="a"><collision>{surface}</collision><mu1>0.1</mu1></gazebo>'
+    robot = robot_of(link("a", SHAPED) + said)
+    for _ in range(2):  # the robot's elements stay as they are
+        friction = model_from_robot(robot, lump_fixed_joints=False).model.links[0].collisions[0].surface.friction
+        assert friction is not None
+        assert (friction.mu, friction.mu2) == (0.1, 0.6)
+    assert [each.text() for each in robot.extensions[0].walk() if each.tag == "mu"] == ["0.5"]
+
+
+def test_sensors_and_plugins_keep_their_places():
+    text = (
+        '<robot name="r"><link name="a"/>\n'
+        '<gazebo reference="a"><sensor name="s" type="imu"><update_rate>50</update_rate>'
+        '<plugin name="p" filename="libp.so"/></sensor></gazebo>\n'
+        '<gazebo><static>true</static><plugin name="q" filename="libq.so"><left_joint>l</left_joint></plugin></gazebo>'
+        "</robot>"
+    )
+    model = model_from_robot(examine(text).robot, lump_fixed_joints=False).model
+    sensor, plugin = model.links[0].sensors[0], model.plugins[0]
+    assert (sensor.name, sensor.update_rate, sensor.plugins[0].filename) == ("s", 50.0, "libp.so")
+    assert sensor.element.span().line == 2
+    assert (plugin.name, plugin.element.span().line, plugin.element.first("left_joint").text()) == ("q", 3, "l")
+    assert model.static
+
+
+def test_words_and_sensors_of_joints():
+    said = (
+        '<gazebo reference="j"><provideFeedback>1</provideFeedback><springStiffness>3</springStiffness>'
+        "<springReference>0.5</springReference><implicitSpringDamper>true</implicitSpringDamper><stopErp>0.2</stopErp>"
+        '<sensor name="ft" type="force_torque"/></gazebo>'
+    )
+    turning = joint("j", "a", "b", kind="revolute", inside=LIMIT + '<dynamics damping="2"/>')
+    found = converted(link("a") + link("b") + turning + said).joints[0]
+    assert found.axis is not None
+    dynamics = found.axis.dynamics
+    assert (dynamics.spring_stiffness, dynamics.spring_reference, dynamics.damping) == (3.0, 0.5, 2.0)
+    assert found.provide_feedback
+    assert [each.type for each in found.sensors] == ["force_torque"]
+
+
+def test_links_and_joints_that_urdf_cannot_have():
+    loop = '<gazebo><joint name="loop" type="revolute"><parent>a</parent><child>b</child></joint></gazebo>'
+    model = converted(link("a") + link("b") + joint("j", "a", "b", kind="revolute", inside=LIMIT) + loop)
+    assert [each.name for each in model.joints] == ["j", "loop"]
+
+
+def test_what_is_wrong_in_gazebo_is_told_at_its_place():
+    text = (
+        '<robot name="r"><link name="a"/>\n<gazebo reference="a">\n'
+        "<mu1>much</mu1>\n"
+        '<sensor name="s" type="camera"><update_rate>fast</update_rate></sensor>\n'
+        "<plugin filename='p.so'/>\n</gazebo></robot>"
+    )
+    found = model_from_robot(examine(text).robot, lump_fixed_joints=False).diagnostics
+    assert [(each.code, each.span.line, str(each.message)) for each in found] == [
+        ("SDF121", 3, "<mu1> of collision 'a' is not a number: 'much'"),
+        ("SDF121", 4, "<update_rate> of sensor 's' is not a number: 'fast'"),
+        ("SDF150", 5, "<plugin> in <link> is not read"),
+    ]
+
+
+def test_a_gazebo_element_that_is_too_deep_is_left_out():
+    deep = "<model>" * 300 + "</model>" * 300
+    robot = examine(f'<robot name="r"><link name="a"/><gazebo>{deep}</gazebo></robot>').robot
+    conversion = model_from_robot(robot, lump_fixed_joints=False)
+    assert [each.code for each in conversion.diagnostics] == ["SDF133"]
+    assert conversion.model.models == ()
+
+
+def test_lumped_links_are_frames_and_their_shapes_and_sensors_move():
+    model = converted(
+        link("base", SHAPED) + link("arm") + link("camera", SHAPED) + link("optical", SHAPED, inertial="")
+        + joint("to_arm", "base", "arm", origin="1 0 0", rpy=f"0 0 {pi / 2}")
+        + joint("to_camera", "arm", "camera", origin="1 0 0")
+        + joint("to_optical", "camera", "optical", origin="0 0 1")
+        + '<gazebo reference="camera"><sensor name="s" type="camera"><pose>0 0 2 0 0 0</pose></sensor>'
+        "<mu1>0.5</mu1></gazebo>",
+        lump=True,
+    )  # fmt: skip
+    assert [each.name for each in model.links] == ["base"]
+    assert model.joints == ()
+    frames = Frames(model)
+    assert frames.pose("optical")[:3] == pytest.approx((1.0, 1.0, 1.0))
+    assert [each.name for each in model.frames] == ["to_arm", "arm", "to_camera", "camera", "to_optical", "optical"]
+    base = model.links[0]
+    assert [each.name for each in base.visuals] == [
+        "base_visual",
+        "base_fixed_joint_lump__camera_visual_1",
+        "base_fixed_joint_lump__optical_visual_2",
+    ]
+    assert base.collisions[1].pose.pose.xyz == pytest.approx((1.0, 1.0, 0.0))
+    assert base.sensors[0].pose.pose.xyz == pytest.approx((1.0, 1.0, 2.0))
+    frictions = [each.surface.friction for each in base.collisions]
+    assert [each.mu if each else None for each in frictions] == [None, 0.5, None]
+    assert check_references(Sdf("1.11", models=(model,))) == []
+
+
+def test_lumped_masses_are_one_body():
+    point = '<inertial><mass value="2"/><inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial>'
+    model = converted(
+        link("a", inertial=point) + link("b", inertial=point) + joint("j", "a", "b", origin="2 0 0"), lump=True
+    )
+    inertial = model.links[0].inertial
+    assert inertial is not None
+    assert (inertial.mass, inertial.pose.pose.xyz) == (4.0, (1.0, 0.0, 0.0))
+    assert (inertial.inertia.ixx, inertial.inertia.iyy, inertial.inertia.izz) == pytest.approx((0.0, 4.0, 4.0))
+
+
+def test_lumped_inertia_stays_in_the_axes_of_the_first():
+    turned = (
+        f'<inertial><origin rpy="0 0 {pi / 2}"/><mass value="1"/>'
+        '<inertia ixx="1" ixy="0" ixz="0" iyy="2" iyz="0" izz="2.5"/></inertial>'
+    )
+    nothing = '<inertial><mass value="0"/><inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial>'
+    model = converted(link("a", inertial=turned) + link("b", inertial=nothing) + joint("j", "a", "b"), lump=True)
+    inertial = model.links[0].inertial
+    assert inertial is not None
+    assert (inertial.inertia.ixx, inertial.inertia.iyy, inertial.inertia.izz) == pytest.approx((1.0, 2.0, 2.5))
+
+
+def test_what_hangs_from_a_lumped_link_hangs_from_the_body():
+    turning = joint("j", "b", "c", kind="revolute", origin="0 1 0", inside=LIMIT)
+    model = converted(link("a") + link("b") + link("c") + joint("k", "a", "b", origin="1 0 0") + turning, lump=True)
+    assert [each.name for each in model.links] == ["a", "c"]
+    assert (model.joints[0].parent, model.joints[0].pose.pose.xyz) == ("a", (1.0, 1.0, 0.0))
+    assert Frames(model).pose("c")[:3] == (1.0, 1.0, 0.0)
+
+
+@pytest.mark.parametrize(("word", "kind"), [("preserveFixedJoint", "fixed"), ("disableFixedJointLumping", "revolute")])
+def test_a_fixed_joint_that_is_to_stay(word, kind):
+    said = f'<gazebo reference="j"><{word}>true</{word}></gazebo>'
+    found = converted(link("a") + link("b") + joint("j", "a", "b") + said, lump=True).joints[0]
+    assert found.type == kind
+    if found.axis is not None:
+        assert (found.axis.limit.lower, found.axis.limit.upper) == (0.0, 0.0)
+
+
+def test_links_without_mass_are_left_out_only_when_lumping():
+    robot = robot_of(
+        '<link name="footprint"/>' + link("base") + '<link name="ghost"/>' + link("tip")
+        + joint("f", "footprint", "base")
+        + joint("g", "base", "ghost", kind="continuous") + joint("h", "ghost", "tip", kind="continuous")
+    )  # fmt: skip
+    kept = model_from_robot(robot, lump_fixed_joints=False)
+    assert [each.name for each in kept.model.links] == ["footprint", "base", "ghost", "tip"]
+    assert kept.diagnostics == ()
+    lumped = model_from_robot(robot, lump_fixed_joints=True)
+    assert [each.name for each in lumped.model.links] == ["footprint"]
+    assert [(each.code, str(each.message)) for each in lumped.diagnostics] == [
+        ("SDF170", "link 'ghost' has no mass, so it is left out with all that hangs from it")
+    ]
+
+
+def test_a_sensor_of_a_lumped_joint_is_told_of():
+    said = '<gazebo reference="j"><sensor name="ft" type="force_torque"/></gazebo>'
+    conversion = model_from_robot(robot_of(link("a") + link("b") + joint("j", "a", "b") + said), lump_fixed_joints=True)
+    assert [(each.code, str(each.message)) for each in conversion.diagnostics] == [
+        ("SDF171", "sensor 'ft' is left out: the links of joint 'j' become one")
+    ]
+
+
+def test_a_joint_with_the_name_of_a_link():
+    robot = robot_of(link("a") + link("b") + link("c") + joint("b", "a", "b", origin="1 0 0", kind="continuous")
+                     + joint("c", "b", "c", origin="0 1 0"))  # fmt: skip
+    for lump in (False, True):
+        conversion = model_from_robot(robot, lump_fixed_joints=lump)
+        assert Frames(conversion.model).pose("c")[:3] == (1.0, 1.0, 0.0)
+        assert {each.code for each in conversion.diagnostics} == {"SDF171"}
+
+
+def test_a_chain_of_many_links():
+    count = 3000
+    robot = robot_of(
+        "".join(link(f"l{i}") for i in range(count))
+        + "".join(joint(f"j{i}", f"l{i}", f"l{i + 1}", origin="1 0 0") for i in range(count - 1))
+    )
+    assert len(model_from_robot(robot, lump_fixed_joints=False).model.links) == count
+    lumped = model_from_robot(robot, lump_fixed_joints=True).model
+    assert len(lumped.links) == 1
+    assert lumped.links[0].inertial.mass == count
+
+
+def _robots():
+    """Real robots that are beside the repository: name, file, arguments, packages, known facts."""
+    for folder, where in (("worlds", ""), ("corpus", "robots")):
+        manifest = SHARED / folder / "manifest.json"
+        if not manifest.is_file():
+            continue
+        data = json.loads(manifest.read_text(encoding="utf-8"))
+        root = SHARED / folder / where
+        named = data.get("packages") or {
+            name: path for source in data["sources"].values() for name, path in source["packages"].items()
+        }
+        packages = {name: root / path for name, path in named.items()}
+        for item in data.get("models") or data["items"]:
+            if item.get("kind", "robot") == "robot" and ".sdf" not in item["entry"]:
+                arguments = item.get("arguments") or item.get("args") or {}
+                entry = root / item["entry"]
+                facts = item.get("facts")
+                yield pytest.param(entry, arguments, packages, facts, id=f"{folder}/{item.get('name', entry.name)}")
+
+
+@pytest.mark.parametrize(("entry", "arguments", "packages", "facts"), list(_robots()))
+def test_real_robots(entry, arguments, packages, facts):
+    try:
+        robot = examine(entry, arguments=arguments, packages=packages).robot
+    except LinkwrightError:
+        return  # some only work with arguments, or are parts of others
+    if robot is None:
+        return
+    for lump in (False, True):
+        conversion = model_from_robot(robot, lump_fixed_joints=lump)
+        model = conversion.model
+        assert [each for each in conversion.diagnostics if each.severity.value == "error"] == []
+        references = {each.code for each in check_references(Sdf("1.11", models=(model,)))}
+        assert references <= {"SDF132"}, "what nothing in it has a mass has no links left"
+        frames = Frames(model)
+        for name in robot.links:
+            if name != "world" and (name in frames.named or not lump):
+                frames.pose(name)
+        if facts is not None and not lump:
+            sensors = [each for link in model.links for each in link.sensors]
+            assert len(model.links) == facts["links"] - ("world" in robot.links)
+            assert len(model.joints) == sum(facts["joints"].values())
+            assert {each.name for each in sensors} == {each["name"] for each in facts["sensors"]}
+            written = sum(each.tag == "plugin" for gazebo in robot.extensions if "reference" not in gazebo.attributes
+                          for each in gazebo.elements())  # fmt: skip
+            assert len(model.plugins) == written
+            assert sum(len(link.visuals) for link in model.links) == sum(facts["visuals"].values())
+            assert sum(len(link.collisions) for link in model.links) == sum(facts["collisions"].values())
