@@ -10,9 +10,9 @@ from typing import Any
 
 import pytest
 
+from linkwright.hosting.launch_log import LaunchLog
 from linkwright.launch.engine.session import LaunchSession
 from linkwright.launch.engine.supervisor import SessionOptions
-from linkwright.launch.log.launch_log import LaunchLog
 from linkwright.launch.model.description import LaunchDescription
 from linkwright.launch.model.entity import LaunchDescriptionEntity
 from linkwright.packages import PackageFinder, use_finder

@@ -18,16 +18,16 @@ from linkwright.interruption import end_at_once
 end_at_once()
 print("begun", flush=True)
 import sys
-from dataclasses import replace
 from linkwright.diagnostics import LinkwrightError, print_diagnostics
-from linkwright.launch import LaunchOptions, parse_launch_words, run_launch, run_view
+from linkwright.hosting.plans import HostOptions
+from linkwright.hosting.view import run_view
+from linkwright.launch import LaunchOptions, parse_launch_words, run_launch
 from linkwright.standins import activate
 activate()
-options = LaunchOptions(open_browser=False)
 try:
     if sys.argv[1] == "view":
-        sys.exit(run_view(sys.argv[2], {}, replace(options, network="--join" in sys.argv)))
-    sys.exit(run_launch(*parse_launch_words(sys.argv[1:]), options))
+        sys.exit(run_view(sys.argv[2], {}, HostOptions(open_browser=False, network="--join" in sys.argv)))
+    sys.exit(run_launch(*parse_launch_words(sys.argv[1:]), LaunchOptions(open_browser=False)))
 except LinkwrightError as error:
     print_diagnostics(error.diagnostics, sys.stderr)
     sys.exit(1)

@@ -3,7 +3,6 @@ from __future__ import annotations
 import os
 import re
 import signal
-import socket
 import subprocess
 import sys
 import time
@@ -14,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.launch import LaunchOptions, LaunchTarget, run_launch, run_view
+from linkwright.launch import LaunchOptions, LaunchTarget, run_launch
 from tests.launch.launcher import Running, is_gone, launch_file
 from tests.places import TUTORIAL_PACKAGES
 from tests.waiting import SECONDS, wait_until
@@ -172,17 +171,6 @@ class TestBadInput:
         with pytest.raises(LinkwrightError, match="'gui' has the value 'x'"):
             run_launch(LaunchTarget(str(path)), {"gui": "x"}, LaunchOptions(open_browser=False))
 
-    def test_a_port_in_use(self, write: Write, capsys: pytest.CaptureFixture[str]) -> None:
-        with socket.socket() as taken:
-            taken.bind(("127.0.0.1", 0))
-            taken.listen()
-            port = taken.getsockname()[1]
-            options = LaunchOptions(port=port, open_browser=False)
-            assert run_view(write("a.urdf", '<robot name="a"><link name="b"/></robot>'), {}, options) == 1
-        err = capsys.readouterr().err
-        assert f"{port}" in err
-        assert err.count("error[VIEW") == 1
-
     def test_a_failing_action_ends_the_launch_with_status_1(
         self, write: Write, capsys: pytest.CaptureFixture[str]
     ) -> None:
@@ -286,13 +274,6 @@ class TestView:
             assert response.status == 200
         running.until("Robot initialized")
         assert running.end()[0] == 130
-
-    def test_a_model_that_does_not_exist(self, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-        assert run_view(tmp_path / "none.urdf", {}, LaunchOptions(open_browser=False)) == 1
-        captured = capsys.readouterr()
-        assert captured.err.count("error[") == 1
-        assert "none.urdf" in captured.err
-        assert captured.out == ""
 
     def test_a_broken_model_is_shown_as_such_until_it_is_repaired(
         self, start: Callable[..., Running], write: Write

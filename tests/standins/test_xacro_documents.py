@@ -11,7 +11,7 @@ import pytest
 
 import xacro
 from linkwright.diagnostics import LinkwrightError
-from linkwright.launch.model.descriptions import DescriptionError, Descriptions, use_descriptions
+from linkwright.hosting.xacro_calls import DescriptionError, Descriptions, use_descriptions
 from linkwright.packages import PackageFinder
 from linkwright.xacro import expand
 from tests.standins.conftest import HEAD

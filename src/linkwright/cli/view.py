@@ -22,14 +22,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Show the model until the user ends it."""
-    from linkwright.launch import LaunchOptions, run_view
+    from linkwright.hosting.plans import HostOptions
+    from linkwright.hosting.view import run_view
 
     values = parse_assignments(arguments.values)
-    options = LaunchOptions(
-        arguments.host,
-        arguments.port,
-        not arguments.no_open,
-        foxglove=arguments.foxglove,
-        network=arguments.join,
-    )
-    return run_view(arguments.file, values, options)
+    options = HostOptions(arguments.host, arguments.port, not arguments.no_open, network=arguments.join)
+    return run_view(arguments.file, values, options, foxglove=arguments.foxglove)

@@ -1,11 +1,10 @@
 """Launch descriptions: actions, substitutions, conditions, events, and running what they describe."""
 
-from linkwright.launch.model.plans import is_viewer
+from linkwright.hosting.plans import is_viewer
 from linkwright.launch.program import find_program, run_viewer
 from linkwright.launch.ros.executables import Executable, builtin_packages, executables_of
 from linkwright.launch.run import LaunchOptions, print_description, run_launch, show_arguments
 from linkwright.launch.target import LaunchTarget, parse_launch_words
-from linkwright.launch.view import run_view
 
 __all__ = [
     "Executable",
@@ -18,7 +17,6 @@ __all__ = [
     "parse_launch_words",
     "print_description",
     "run_launch",
-    "run_view",
     "run_viewer",
     "show_arguments",
 ]

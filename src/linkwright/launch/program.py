@@ -7,10 +7,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from linkwright.launch.engine.viewer_host import USAGE, asks_for_help
-from linkwright.launch.log.launch_log import LaunchLog
+from linkwright.hosting.launch_log import LaunchLog
+from linkwright.hosting.plans import VIEWER
+from linkwright.hosting.rviz2_arguments import USAGE, asks_for_help
 from linkwright.launch.model.description import LaunchDescription
-from linkwright.launch.model.plans import VIEWER
 from linkwright.launch.ros import Node
 from linkwright.launch.ros.executables import Origin, find_executable
 from linkwright.launch.run import LaunchOptions, run_description

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
@@ -10,19 +9,19 @@ from pathlib import Path
 from typing import Any
 
 from linkwright.diagnostics import LinkwrightError
+from linkwright.hosting.launch_log import LaunchLog
+from linkwright.hosting.signals import SignalWatch, own_environment, run_to_end
+from linkwright.hosting.xacro_calls import Descriptions, use_descriptions
 from linkwright.launch.arguments import argument_listing, check_arguments
 from linkwright.launch.engine.omissions import note_that_nothing_is_left
 from linkwright.launch.engine.session import LaunchSession
-from linkwright.launch.engine.signals import SignalWatch, interruption_text
 from linkwright.launch.engine.supervisor import SessionOptions
 from linkwright.launch.frontend.launch_file import load_launch_file
-from linkwright.launch.log.launch_log import LaunchLog
 from linkwright.launch.model.action import Action
 from linkwright.launch.model.context import LaunchContext
 from linkwright.launch.model.description import LaunchDescription
-from linkwright.launch.model.descriptions import Descriptions, use_descriptions
 from linkwright.launch.target import LaunchTarget
-from linkwright.packages import PackageFinder, use_finder
+from linkwright.packages import PackageFinder
 
 
 @dataclass(frozen=True)
@@ -139,14 +138,9 @@ def print_description(target: LaunchTarget) -> str:
 
 def _read(target: LaunchTarget, tell: Callable[[LaunchDescription], str]) -> str:
     """What is told of a launch file that is read and not run."""
-    environment = dict(os.environ)
     finder = target.finder()
-    try:
-        with use_finder(finder):
-            finder.offer_prefix_path(os.environ)
-            return tell(load_launch_file(target.resolve(finder)))
-    finally:
-        _restore(environment)
+    with own_environment(finder):
+        return tell(load_launch_file(target.resolve(finder)))
 
 
 def run_description(
@@ -164,27 +158,18 @@ def run_description(
     Raises:
         LinkwrightError: what `load` raises.
     """
-    environment = dict(os.environ)
     log = LaunchLog(debug=options.debug)
-    with SignalWatch() as signals, use_finder(finder), use_descriptions(Descriptions(finder)):
-        try:
-            finder.offer_prefix_path(os.environ)
+
+    def run(signals: SignalWatch) -> bool:
+        with use_descriptions(Descriptions(finder)):
             description, values = load(log)
             if options.foxglove is not None:
                 description.add_action(_foxglove_bridge(options.foxglove))
             session = partial(LaunchSession, finder, options.for_session(title), log)
             given = {**options.configurations, **configurations}
-            succeeded = signals.run(lambda: _run(description, values, given, session, options.noninteractive, signals))
-        except KeyboardInterrupt:
-            if signals.received is None:  # not in the main thread, or raised by the user's own code
-                raise
-            log.caution("launch", interruption_text(signals.received))
-            succeeded = False
-        finally:
-            _restore(environment)
-        if signals.exit_status is not None:
-            return signals.exit_status
-        return 0 if succeeded else 1
+            return signals.run(lambda: _run(description, values, given, session, options.noninteractive, signals))
+
+    return run_to_end(run, finder, log)
 
 
 async def _run(
@@ -208,10 +193,3 @@ def _foxglove_bridge(port: int) -> Action:
 
     package = executable = "foxglove_bridge"
     return Node(package=package, executable=executable, parameters=[{"port": port}])
-
-
-def _restore(environment: dict[str, str]) -> None:
-    """Undo what the launch did to the environment of this process."""
-    for name in [name for name in os.environ if name not in environment]:
-        del os.environ[name]
-    os.environ.update(environment)

@@ -25,7 +25,7 @@ from launch.substitutions import EnvironmentVariable
 from launch_ros.actions import Node, RosTimer, SetROSLogDir, SetUseSimTime
 
 from launch import LaunchContext
-from linkwright.launch.engine.network import Network
+from linkwright.hosting.network import Network
 from tests.domains import own_domain
 from tests.launch.ending import ends_when, printed
 

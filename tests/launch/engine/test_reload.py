@@ -17,10 +17,10 @@ from launch_ros.parameter_descriptions import ParameterValue
 
 from launch import LaunchDescription
 from linkwright.diagnostics import Diagnostic
-from linkwright.launch.engine.reload import FileWatch
+from linkwright.hosting.launch_log import LaunchLog
+from linkwright.hosting.reload import FileWatch
 from linkwright.launch.engine.session import LaunchSession
 from linkwright.launch.engine.supervisor import SessionOptions
-from linkwright.launch.log.launch_log import LaunchLog
 from linkwright.packages import PackageFinder, use_finder
 from tests.waiting import SECONDS, eventually
 

@@ -17,8 +17,8 @@ from launch_ros.actions import Node, PushRosNamespace, SetParameter, SetParamete
 from launch_ros.parameter_descriptions import Parameter, ParameterValue
 
 from launch import LaunchContext
-from linkwright.launch.engine.hosting import NodeHost
-from linkwright.launch.model.plans import HostedPlan
+from linkwright.hosting.node_host import NodeHost
+from linkwright.hosting.plans import HostedPlan
 from linkwright.packages import PackageFinder
 
 Write = Callable[[str, str], Path]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Severity, counted, foreign, phrase
 
 if TYPE_CHECKING:
-    from linkwright.launch.log.launch_log import LaunchLog
+    from linkwright.hosting.launch_log import LaunchLog
 
 _MISSING = frozenset({"LAUNCH101", "LAUNCH124", "LAUNCH131", "LAUNCH142", "PKG101", "PKG102"})
 """Codes of findings that something is not there."""

@@ -19,8 +19,8 @@ from linkwright.packages.programs.child_python import process_environment
 
 if TYPE_CHECKING:
     from linkwright.diagnostics import LinkwrightError
+    from linkwright.hosting.launch_log import LaunchLog
     from linkwright.launch.engine.guardian import Guardian
-    from linkwright.launch.log.launch_log import LaunchLog
 
 _HAS_GROUPS = hasattr(os, "killpg")
 _LAST_WORDS_SECONDS = 0.2

@@ -117,11 +117,11 @@ class LaunchService:
 
     async def run_async(self, *, shutdown_when_idle: bool = True) -> int:
         """The same as a coroutine, on the running loop."""
+        from linkwright.hosting.launch_log import LaunchLog
+        from linkwright.hosting.signals import SignalWatch
+        from linkwright.hosting.xacro_calls import Descriptions, use_descriptions
         from linkwright.launch.engine.session import LaunchSession
-        from linkwright.launch.engine.signals import SignalWatch
         from linkwright.launch.engine.supervisor import SessionOptions
-        from linkwright.launch.log.launch_log import LaunchLog
-        from linkwright.launch.model.descriptions import Descriptions, use_descriptions
         from linkwright.packages import PackageFinder, use_finder
 
         if threading.current_thread() is not threading.main_thread():

@@ -10,24 +10,25 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
-from linkwright.launch.engine.hosting import NodeHost
+from linkwright.hosting.launch_log import LaunchLog
+from linkwright.hosting.node_host import NodeHost
+from linkwright.hosting.reload import LiveReload
+from linkwright.hosting.xacro_calls import DescriptionError, Descriptions, XacroCall, current_descriptions
 from linkwright.launch.engine.omissions import Omissions
 from linkwright.launch.engine.process_table import ProcessTable
-from linkwright.launch.engine.reload import LiveReload
 from linkwright.launch.engine.supervisor import SessionOptions
 from linkwright.launch.errors.places import located
 from linkwright.launch.errors.user_code import DEEPEST, endless, explain
-from linkwright.launch.log.launch_log import LaunchLog
 from linkwright.launch.log.loggers import launch_config
 from linkwright.launch.model import events
 from linkwright.launch.model.context import LaunchContext
-from linkwright.launch.model.descriptions import DescriptionError, Descriptions, XacroCall, current_descriptions
 from linkwright.launch.model.entity import LaunchDescriptionEntity, as_entities
 from linkwright.packages import PackageFinder
 
 if TYPE_CHECKING:
     from tempfile import TemporaryDirectory
 
+    from linkwright.hosting.plans import HostedPlan
     from linkwright.launch.model.plans import ProcessPlan
     from linkwright.launch.model.running_launch import Schedule
 
@@ -133,7 +134,7 @@ class LaunchSession:
             self.log.diagnostics(self._omissions.offered(error))
             self.fail(entity)
             self.host.forget_planned()
-            self.emit(events.Shutdown(reason="a launch action failed"))
+            self.shut_down("a launch action failed")
         except KeyboardInterrupt:
             self.interrupt("user interrupted with ctrl-c (SIGINT)")
         finally:
@@ -221,7 +222,22 @@ class LaunchSession:
         self._waiting[token] = cancel if cancel_on_shutdown else None
         return cancel
 
+    # --- what the nodes of this process tell ------------------------------------------------------------------
+
+    def node_started(self, plan: HostedPlan) -> None:
+        """Tell that a node of this process runs."""
+        plan.owner.process_details = plan.details
+        self.emit(events.ProcessStarted(action=plan.owner, **plan.details))
+
+    def node_ended(self, plan: HostedPlan, status: int) -> None:
+        """Tell that a node of this process has ended, or could not start, with an exit status."""
+        self.emit(events.ProcessExited(action=plan.owner, returncode=status, **plan.details))
+
     # --- the end --------------------------------------------------------------------------------------------
+
+    def shut_down(self, reason: str) -> None:
+        """End the launch when the events before this one are handled."""
+        self.emit(events.Shutdown(reason=reason))
 
     def interrupt(self, reason: str) -> None:
         """End the launch because the user said so; what is to end already is given no more than half a second."""
@@ -232,6 +248,14 @@ class LaunchSession:
         self.emit(events.Shutdown(reason=reason, due_to_sigint=True))
         if self.loop is not None:
             self.loop.call_later(_SILENT_SECONDS, self._tell_what_is_awaited)
+
+    def seconds_to_end(self) -> float:
+        """How long the processes may take to end."""
+        return self.processes.seconds_to_end()
+
+    def kill_all(self) -> None:
+        """End the processes at once; safe to call from a signal handler."""
+        self.processes.kill_all()
 
     def _tell_what_is_awaited(self) -> None:
         names = self.processes.names
@@ -292,7 +316,7 @@ class LaunchSession:
                 if self.ending:
                     return
                 if self.options.shutdown_when_idle:
-                    self.emit(events.Shutdown(reason="idle"))
+                    self.shut_down("idle")
                     continue
             self._wake.clear()
             await self._wake.wait()
@@ -317,7 +341,7 @@ class LaunchSession:
             self.log.diagnostics(explain(error, phrase("an event handler")).diagnostics)
             self.fail(event)
             if not self.ending and not isinstance(event, events.Shutdown):
-                self.emit(events.Shutdown(reason="an event handler failed"))
+                self.shut_down("an event handler failed")
         finally:
             context.pop_locals()
         self._react(event)
@@ -352,7 +376,7 @@ class LaunchSession:
         await self.host.start_planned()
         waits = any(isinstance(failure, XacroCall) for failure in self._failures)
         if waits and not self.host.has_viewer and not self.ending:
-            self.emit(events.Shutdown(reason="the robot cannot be read, and there is no viewer to wait in"))
+            self.shut_down("the robot cannot be read, and there is no viewer to wait in")
 
     def hold(self, future: asyncio.Future[Any]) -> None:
         """Keep the launch running until something that an entity began is done."""

@@ -1,6 +1,6 @@
 """The logging that launch files ask ``launch.logging`` for: Python's own, in the form of launch lines.
 
-It is apart from what the launcher itself writes (`linkwright.launch.log.launch_log`), but looks alike and honours the
+It is apart from what the launcher itself writes (`linkwright.hosting.launch_log`), but looks alike and honours the
 same environment variables. A file is opened when the first line goes to it.
 """
 
@@ -15,8 +15,8 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
+from linkwright.hosting.launch_log import FILE_FORMATS, FORMATS, log_base, new_log_folder
 from linkwright.launch.log.handlers import FileHandler, ForEachLogger, Handler, StreamHandler, WatchedFileHandler
-from linkwright.launch.log.launch_log import FILE_FORMATS, FORMATS, log_base, new_log_folder
 
 MAIN_LOG = "launch.log"
 

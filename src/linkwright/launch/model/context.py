@@ -16,7 +16,7 @@ from linkwright.launch.errors.exceptions import SubstitutionFailure
 from linkwright.launch.errors.places import Place, error_at, located
 
 if TYPE_CHECKING:
-    from linkwright.launch.model.descriptions import Descriptions
+    from linkwright.hosting.xacro_calls import Descriptions
     from linkwright.launch.model.events import Event
     from linkwright.launch.model.running_launch import RunningLaunch
 

@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, Any, Protocol
 if TYPE_CHECKING:
     from linkwright.diagnostics import Diagnostic
     from linkwright.graph import Graph, Node
-    from linkwright.launch.log.launch_log import LaunchLog
-    from linkwright.launch.model.descriptions import Descriptions
+    from linkwright.hosting.launch_log import LaunchLog
+    from linkwright.hosting.plans import HostedPlan
+    from linkwright.hosting.xacro_calls import Descriptions
     from linkwright.launch.model.events import Event
-    from linkwright.launch.model.plans import HostedPlan, ProcessPlan
+    from linkwright.launch.model.plans import ProcessPlan
     from linkwright.packages import PackageFinder
 
 

@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from linkwright.diagnostics import LinkwrightError, display_path, foreign, missing_file_hint, phrase
+from linkwright.hosting.xacro_calls import Descriptions, XacroCall, current_descriptions
 from linkwright.launch.errors.places import Place, error_at, located
 from linkwright.launch.model.context import LaunchContext
-from linkwright.launch.model.descriptions import Descriptions, XacroCall, current_descriptions
 from linkwright.launch.model.markup.expose import expose_substitution
 from linkwright.launch.model.substitution import (
     SomeSubstitutionsType,

@@ -20,8 +20,8 @@ from linkwright.diagnostics import (
     joined,
     phrase,
 )
+from linkwright.hosting.plans import VIEWER, is_viewer
 from linkwright.launch.errors.exceptions import as_ros_error
-from linkwright.launch.model.plans import VIEWER, is_viewer
 from linkwright.packages import PackageFinder, PackageNotFoundError, install_prefix, is_installed
 from linkwright.packages.programs.child_python import python_command
 

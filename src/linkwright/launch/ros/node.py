@@ -9,12 +9,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import LinkwrightError
+from linkwright.hosting.plans import HostedPlan, is_viewer
 from linkwright.launch.errors.places import located
 from linkwright.launch.model.action import Action
 from linkwright.launch.model.actions.execute import ExecuteProcess
 from linkwright.launch.model.context import LaunchContext
 from linkwright.launch.model.markup.expose import expose_action
-from linkwright.launch.model.plans import HostedPlan, ProcessPlan, is_viewer
+from linkwright.launch.model.plans import ProcessPlan
 from linkwright.launch.model.substitution import (
     SomeSubstitutionsType,
     Substitution,

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import phrase
+from linkwright.hosting.launch_log import log_base
 from linkwright.launch.errors.places import error_at
-from linkwright.launch.log.launch_log import log_base
 from linkwright.launch.model.action import Action
 from linkwright.launch.model.context import LaunchContext
 from linkwright.launch.model.markup.expose import expose_action

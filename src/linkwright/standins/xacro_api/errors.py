@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from xml.parsers.expat import ExpatError
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
-from linkwright.launch.model.descriptions import DescriptionError, XacroCall
+from linkwright.hosting.xacro_calls import DescriptionError, XacroCall
 
 
 class XacroException(LinkwrightError):

@@ -12,7 +12,7 @@ from xml.dom import minidom
 
 from linkwright.descriptions import Description
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, print_diagnostics
-from linkwright.launch.model.descriptions import XacroCall, current_descriptions
+from linkwright.hosting.xacro_calls import XacroCall, current_descriptions
 from linkwright.standins.xacro_api import dom
 from linkwright.standins.xacro_api.command_line import process_args
 from linkwright.standins.xacro_api.errors import XacroException, translated

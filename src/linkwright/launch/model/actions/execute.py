@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import did_you_mean, phrase
+from linkwright.hosting.launch_log import OUTPUT_MODES, output_destinations
 from linkwright.launch.errors.places import error_at
-from linkwright.launch.log.launch_log import OUTPUT_MODES, output_destinations
 from linkwright.launch.model import events
 from linkwright.launch.model.action import Action
 from linkwright.launch.model.actions.executable import Executable

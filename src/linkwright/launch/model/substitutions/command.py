@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, Severity, foreign, joined, phrase
+from linkwright.hosting.xacro_calls import Descriptions
 from linkwright.launch.errors.exceptions import SubstitutionFailure
 from linkwright.launch.errors.places import error_at, located
 from linkwright.launch.model.context import LaunchContext
@@ -15,14 +16,14 @@ from linkwright.launch.model.declared_substitution import (
     DeclaredSubstitution,
     Texts,
 )
-from linkwright.launch.model.descriptions import Descriptions, parse_xacro_words
 from linkwright.launch.model.substitution import (
     perform_substitutions,
 )
+from linkwright.launch.model.xacro_words import parse_xacro_words
 from linkwright.packages import current_finder
 
 if TYPE_CHECKING:
-    from linkwright.launch.model.descriptions import XacroCall
+    from linkwright.hosting.xacro_calls import XacroCall
 
 _ON_STDERR = ("fail", "warn", "ignore", "capture")
 

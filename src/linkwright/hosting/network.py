@@ -1,4 +1,4 @@
-"""The network of a launch: joined in the background; names of nodes that another launch has too are told of."""
+"""The network of ROS 2: joined in the background; names of nodes that another launch has too are told of."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, Phrase, Severity, joined, phrase, translated
-from linkwright.launch.log.launch_log import LaunchLog
+from linkwright.hosting.launch_log import LaunchLog
 
 if TYPE_CHECKING:
     from linkwright.graph import Graph
-    from linkwright.launch.engine.supervisor import Supervisor
+    from linkwright.hosting.plans import Supervisor
 
 
 _SWITCH = "LINKWRIGHT_DDS"

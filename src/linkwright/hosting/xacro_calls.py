@@ -4,21 +4,18 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, phrase, quoted_names
+from linkwright.diagnostics import Diagnostic, LinkwrightError
 from linkwright.packages import PackageFinder
 
 if TYPE_CHECKING:
     from linkwright.descriptions import Description, DescriptionLibrary
-
-_OPTIONS_WITHOUT_EFFECT = frozenset({"--inorder", "-i", "-q"})
-_OPTIONS_WITH_A_VALUE = frozenset({"-v", "--verbosity"})
 
 
 @dataclass(frozen=True)
@@ -146,60 +143,3 @@ def use_descriptions(descriptions: Descriptions) -> Iterator[None]:
         yield
     finally:
         _current.reset(token)
-
-
-def parse_xacro_words(words: Sequence[str], text: str, folder: Path) -> tuple[XacroCall, Phrase | None]:
-    """What ``xacro`` is asked for by the words of a command.
-
-    Args:
-        words: what follows ``xacro``.
-        text: the same as written, before it was split into words.
-        folder: what relative paths start from.
-
-    Returns:
-        The use of xacro, and a remark for the user or None.
-
-    Raises:
-        LinkwrightError: LAUNCH128, if the words are no use of xacro that gives a text.
-    """
-    files: list[str] = []
-    arguments: dict[str, str] = {}
-    waiting = iter(words)
-    for word in waiting:
-        name, separator, value = word.partition(":=")
-        if separator:
-            if value and not name.startswith("_"):
-                arguments[name] = value
-        elif word in _OPTIONS_WITH_A_VALUE:
-            next(waiting, None)
-        elif word.startswith("-") and len(word) > 1:
-            if word not in _OPTIONS_WITHOUT_EFFECT and not word.startswith(("-v", "--verbosity=")):
-                raise _misuse(
-                    phrase("option '{word}' of xacro has no place in a launch file", word=word), phrase("leave it out")
-                )
-        else:
-            files.append(word)
-    remark = None
-    if len(files) > 1:
-        whole = text.split(":=", 1)[0].rsplit(None, 1)[0] if ":=" in text else text
-        if not (folder / whole.strip()).is_file():
-            raise _misuse(
-                phrase(
-                    "xacro expects exactly one model file, but was given {count}: {files}",
-                    count=len(files),
-                    files=quoted_names(files),
-                ),
-                phrase("put quotes around a path with blanks: Command(['xacro \"', path, '\"'])"),
-            )
-        files = [whole.strip()]
-        remark = phrase(
-            "the path '{files}' has blanks and no quotes around it: real xacro would take it for several files",
-            files=files[0],
-        )
-    if not files:
-        raise _misuse(phrase("xacro is given no model file"), phrase("write Command(['xacro ', path])"))
-    return XacroCall(folder / files[0], tuple(arguments.items())), remark
-
-
-def _misuse(message: Phrase, hint: Phrase) -> LinkwrightError:
-    return LinkwrightError(Diagnostic("LAUNCH128", message, hint=hint))

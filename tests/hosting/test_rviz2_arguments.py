@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
+from linkwright.hosting.rviz2_arguments import asks_for_help, read_viewer_config
 from linkwright.launch import run_viewer
-from linkwright.launch.engine.viewer_host import asks_for_help, read_viewer_config
 
 CONFIG = """
 Visualization Manager:

@@ -1,26 +1,23 @@
-"""Nodes that run in the launcher's own process."""
+"""Nodes and viewers that run in this process, for a launch or for one model that is shown."""
 
 from __future__ import annotations
 
 import asyncio
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
-from linkwright.launch.engine.network import Network, SharedNames
-from linkwright.launch.engine.viewer_host import ViewerHost
-from linkwright.launch.log.launch_log import output_destinations
-from linkwright.launch.model import events
-from linkwright.launch.model.events import ProcessMatcher
-from linkwright.launch.model.plans import HostedPlan
+from linkwright.hosting.launch_log import output_destinations
+from linkwright.hosting.network import Network, SharedNames
+from linkwright.hosting.plans import HostedPlan, Supervisor
+from linkwright.hosting.viewer_host import ViewerHost
 
 if TYPE_CHECKING:
     from linkwright.graph import Graph, LogRecord, Node
-    from linkwright.launch.engine.supervisor import Supervisor
-    from linkwright.launch.model.descriptions import XacroCall
+    from linkwright.hosting.xacro_calls import XacroCall
     from linkwright.nodes import RunningNode
     from linkwright.viewer import Viewer
 
@@ -123,13 +120,13 @@ class NodeHost:
         self._model_findings = findings
         self._show_findings()
 
-    def stop_matching(self, matcher: ProcessMatcher) -> None:
-        """End the nodes whose actions a matcher accepts, as a signal would end their processes."""
+    def stop_matching(self, matcher: Callable[[Any], bool]) -> None:
+        """End the nodes whose owners a matcher accepts, as a signal would end their processes."""
         for plan, running in tuple(self._running.values()):
-            if matcher(plan.action):
+            if matcher(plan.owner):
                 self._stop_node(plan, running)
         for plan in self._viewers.plans():
-            if matcher(plan.action):
+            if matcher(plan.owner):
                 self._session.spawn(self._stop_viewer(plan, self._viewers.take(plan)))
 
     def close_nodes(self) -> None:
@@ -171,7 +168,7 @@ class NodeHost:
         if isinstance(running, ComponentContainer):
             running.loading = lambda: self._speak_as(plan.process_name)
             running.on_loaded.append(lambda each, given: self._take_in(plan.process_name, each, given.parameters))
-        self._started(plan)
+        session.node_started(plan)
         if isinstance(running, FinishingNode):
             running.finished.add_done_callback(lambda done: self._finished(plan, running, done))
 
@@ -188,7 +185,7 @@ class NodeHost:
             session.fail(plan)
             session.log.diagnostics(error.diagnostics)
             session.log.complain(plan.process_name, "node has not started")
-            session.emit(events.ProcessExited(action=plan.action, returncode=1, **plan.details))
+            session.node_ended(plan, 1)
             return
         name, call = found
         session.fail(call)
@@ -276,12 +273,12 @@ class NodeHost:
         except LinkwrightError as error:
             session.fail(plan)
             session.log.diagnostics(error.diagnostics)
-            session.emit(events.ProcessExited(action=plan.action, returncode=1, **plan.details))
-            session.emit(events.Shutdown(reason="the viewer has not started"))
+            session.node_ended(plan, 1)
+            session.shut_down("the viewer has not started")
             return
         logger = ".".join([*plan.namespace.strip("/").split("/"), plan.node_name or plan.executable]).lstrip(".")
         self._process_of_logger[logger] = plan.process_name
-        self._started(plan)
+        session.node_started(plan)
 
     async def _stop_viewer(self, plan: HostedPlan, viewer: Viewer) -> None:
         await self._viewers.stop(plan, viewer)
@@ -289,16 +286,12 @@ class NodeHost:
 
     # --- both -----------------------------------------------------------------------------------------------
 
-    def _started(self, plan: HostedPlan) -> None:
-        plan.action.process_details = plan.details
-        self._session.emit(events.ProcessStarted(action=plan.action, **plan.details))
-
     def _ended(self, plan: HostedPlan, status: int = 0) -> None:
         if status == 0:
             self._session.log.say(plan.process_name, "has finished cleanly")
         else:
             self._session.log.complain(plan.process_name, f"has ended with exit code {status}")
-        self._session.emit(events.ProcessExited(action=plan.action, returncode=status, **plan.details))
+        self._session.node_ended(plan, status)
 
     def _on_log(self, record: LogRecord) -> None:
         process = self._process_of(record.node)

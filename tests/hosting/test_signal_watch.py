@@ -9,8 +9,8 @@ import time
 
 import pytest
 
-from linkwright.launch.engine import signals
-from linkwright.launch.engine.signals import SignalWatch
+from linkwright.hosting import signals
+from linkwright.hosting.signals import SignalWatch
 from tests.waiting import SECONDS
 
 

@@ -1,4 +1,4 @@
-"""The viewers of a launch, pages that stand in for RViz; the command line of ``rviz2``, as far as they obey it."""
+"""The viewers of this process, pages that stand in for RViz."""
 
 from __future__ import annotations
 
@@ -6,19 +6,16 @@ import asyncio
 import os
 import sys
 import threading
-from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, Severity, did_you_mean, phrase
-from linkwright.launch.model.plans import HostedPlan
+from linkwright.diagnostics import Diagnostic
+from linkwright.hosting.plans import HostedPlan, Supervisor
 
 if TYPE_CHECKING:
     from linkwright.graph import Graph
-    from linkwright.launch.engine.supervisor import Supervisor
     from linkwright.nodes import RunningNode
-    from linkwright.viewer import RvizConfig, Viewer
-
+    from linkwright.viewer import Viewer
 
 _CLOSE_SECONDS = 0.8
 
@@ -66,6 +63,8 @@ class ViewerHost:
         if plan.viewer_config is not None:
             config, findings = plan.viewer_config(), list[Diagnostic]()
         else:
+            from linkwright.hosting.rviz2_arguments import read_viewer_config
+
             config, findings = read_viewer_config(plan.arguments)
         session.log.diagnostics([*findings, *find_unsaved(config)])
         viewer = Viewer(
@@ -121,94 +120,3 @@ def _open_in_browser(url: str) -> None:
     import webbrowser
 
     threading.Thread(target=webbrowser.open, args=(url,), name="linkwright-browser", daemon=True).start()
-
-
-_CONFIG = ("-d", "--display-config")
-_FIXED_FRAME = ("-f", "--fixed-frame")
-_WITHOUT_MEANING_HERE = {
-    "-s": 1,
-    "--splash-screen": 1,
-    "-l": 0,
-    "--ogre-log": 0,
-    "--stereo": 0,
-    "--fullscreen": 0,
-    "--force-x11": 0,
-}
-
-USAGE = """\
-usage: rviz2 [-d FILE] [-f FRAME] [--ros-args ...]
-
-Shows what RViz would show, in the browser.
-
-  -h, --help                   show this and end
-  -d, --display-config FILE    the .rviz file to open
-  -f, --fixed-frame FRAME      the Fixed Frame, instead of the file's
-  --ros-args ...               names, remappings and parameters of the node
-
-RViz's -s, -l, --stereo, --fullscreen and --force-x11 are taken and have no meaning here.
-"""
-
-
-def asks_for_help(arguments: Sequence[str]) -> bool:
-    """Whether the command line asks for `USAGE`."""
-    own = list(arguments)
-    if "--ros-args" in own:
-        own = own[: own.index("--ros-args")]
-    return "-h" in own or "--help" in own
-
-
-def read_viewer_config(arguments: Sequence[str]) -> tuple[RvizConfig, list[Diagnostic]]:
-    """The configuration that the arguments ask for, and what is to be said of them.
-
-    As in RViz, a file that cannot be read is told about, and the default configuration takes its place.
-    """
-    from linkwright.viewer import RvizConfig
-
-    path, fixed_frame, findings = _read(arguments)
-    config: RvizConfig | None = None
-    if path:
-        try:
-            config = RvizConfig.load(path)
-        except LinkwrightError as error:
-            findings += error.diagnostics
-    if config is None:
-        config = RvizConfig.default()
-    if fixed_frame:
-        config.options.set(("Fixed Frame",), fixed_frame)
-    return config, findings
-
-
-def _read(arguments: Sequence[str]) -> tuple[str | None, str | None, list[Diagnostic]]:
-    path: str | None = None
-    fixed_frame: str | None = None
-    findings: list[Diagnostic] = []
-    waiting = iter(arguments)
-    for argument in waiting:
-        if argument == "--ros-args":
-            for each in waiting:  # names and remappings of a node; the viewer shows what the file says
-                if each == "--":
-                    break
-        elif argument in _CONFIG or argument in _FIXED_FRAME:
-            value = next(waiting, None)
-            if value is None:
-                findings.append(_remark(phrase("argument '{argument}' of rviz2 needs a value", argument=argument)))
-            elif argument in _CONFIG:
-                path = value
-            else:
-                fixed_frame = value
-        elif argument in _WITHOUT_MEANING_HERE:
-            for _ in range(_WITHOUT_MEANING_HERE[argument]):
-                next(waiting, None)
-        elif argument:
-            known = (*_CONFIG, *_FIXED_FRAME, *_WITHOUT_MEANING_HERE)
-            findings.append(
-                _remark(
-                    phrase("argument '{argument}' of rviz2 is unknown", argument=argument),
-                    did_you_mean(argument, known),
-                )
-            )
-    return path, fixed_frame, findings
-
-
-def _remark(message: Phrase, hint: Phrase | None = None) -> Diagnostic:
-    return replace(Diagnostic("LAUNCH144", message, hint=hint), severity=Severity.WARNING)

@@ -1,7 +1,4 @@
-"""Ctrl-C and other signals: the first ends a launch in order, the second hurries, the third ends it at once.
-
-`AsyncSafeSignalManager` is for programs of users (``launch.utilities.signal_management``).
-"""
+"""Ctrl-C and other signals: the first ends a run in order, the second hurries, the third ends it at once."""
 
 from __future__ import annotations
 
@@ -11,17 +8,15 @@ import signal
 import sys
 import threading
 import time
-from collections.abc import Callable, Coroutine
+from collections.abc import Callable, Coroutine, Iterator
+from contextlib import contextmanager
 from types import FrameType, TracebackType
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, Protocol, TypeVar
 
 from linkwright.event_loop import run_coroutine
+from linkwright.hosting.launch_log import LaunchLog
 from linkwright.interruption import when_lost
-from linkwright.launch.engine.session import LaunchSession
-
-if TYPE_CHECKING:
-    from typing_extensions import Self
-
+from linkwright.packages import PackageFinder, use_finder
 
 T = TypeVar("T")
 
@@ -34,16 +29,37 @@ _SAME_KEYPRESS_SECONDS = 0.3
 _SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
 
 
+class Session(Protocol):
+    """What a signal ends in order."""
+
+    @property
+    def loop(self) -> asyncio.AbstractEventLoop | None:
+        """The loop it runs on, while it does."""
+
+    @property
+    def visiting(self) -> bool:
+        """Whether something runs right now that a KeyboardInterrupt is to break off; the event loop cannot react."""
+
+    def interrupt(self, reason: str) -> None:
+        """End it because the user said so."""
+
+    def seconds_to_end(self) -> float:
+        """How long its processes may take for that."""
+
+    def kill_all(self) -> None:
+        """End its processes at once; called from a signal handler."""
+
+
 class SignalWatch:
     """Handles signals inside a ``with`` block; only the main thread can, elsewhere it does nothing.
 
     Attributes:
-        session: the launch to be ended; None before there is one, when a KeyboardInterrupt is raised instead.
+        session: what is to be ended; None before there is one, when a KeyboardInterrupt is raised instead.
         received: the first signal that came, or None.
     """
 
     def __init__(self) -> None:
-        self.session: LaunchSession | None = None
+        self.session: Session | None = None
         self.received: int | None = None
         self._received_at = 0.0
         self._hurried = False
@@ -111,10 +127,10 @@ class SignalWatch:
             raise KeyboardInterrupt
         session.loop.call_soon_threadsafe(session.interrupt, interruption_text(number))
 
-    def _loop_runs(self, session: LaunchSession) -> None:
+    def _loop_runs(self, session: Session) -> None:
         """The event loop does not hang: it may take as long as the processes may."""
         if not self._hurried:
-            self._end_after(_DEADLINE_SECONDS + session.processes.seconds_to_end())
+            self._end_after(_DEADLINE_SECONDS + session.seconds_to_end())
 
     def _end_after(self, seconds: float) -> None:
         if self._deadline is not None:
@@ -133,7 +149,7 @@ class SignalWatch:
 
     def _end_at_once(self) -> None:
         if self.session is not None:
-            self.session.processes.kill_all()
+            self.session.kill_all()
         for stream in (sys.stdout, sys.stderr):
             stream.flush()
         os._exit(self.exit_status or 1)
@@ -146,59 +162,43 @@ def interruption_text(number: int) -> str:
     return f"received signal {signal.Signals(number).name}"
 
 
-class AsyncSafeSignalManager:
-    """Runs signal handlers on an event loop inside a ``with`` block, in the main thread; blocks may be nested.
+def run_to_end(run: Callable[[SignalWatch], bool], finder: PackageFinder, log: LaunchLog) -> int:
+    """Run something that signals end.
 
     Args:
-        loop: calls the handlers.
+        run: does it, and returns whether nothing failed.
+        finder: where packages are meanwhile.
+        log: where a signal is told of that comes before there is a session.
+
+    Returns:
+        The exit status: 0, 1 if something failed, 128 and the signal's number after a signal.
     """
+    with SignalWatch() as signals:
+        try:
+            with own_environment(finder):
+                succeeded = run(signals)
+        except KeyboardInterrupt:
+            if signals.received is None:  # not in the main thread, or raised by the user's own code
+                raise
+            log.caution("launch", interruption_text(signals.received))
+            succeeded = False
+        if signals.exit_status is not None:
+            return signals.exit_status
+        return 0 if succeeded else 1
 
-    def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
-        self._loop = loop
-        self._handlers: dict[int, Callable[[int], object]] = {}
-        self._before: dict[int, Any] = {}
-        self._entered = False
 
-    def __enter__(self) -> Self:
-        self._entered = True
-        for number in self._handlers:
-            self._take_over(number)
-        return self
+@contextmanager
+def own_environment(finder: PackageFinder) -> Iterator[None]:
+    """Inside a ``with`` block packages are found with a finder, and ``AMENT_PREFIX_PATH`` says what it says.
 
-    def __exit__(self, *_: object) -> None:
-        self._entered = False
-        for number in tuple(self._before):
-            self._give_back(number)
-
-    def handle(self, signum: int, handler: Callable[[int], object] | None) -> Callable[[int], object] | None:
-        """Set the handler of a signal, which is called with the signal's number; None removes it.
-
-        Returns:
-            What handled the signal before; None for nothing.
-
-        Raises:
-            ValueError: there is no such signal.
-        """
-        number = signal.Signals(signum)
-        previous = self._handlers.pop(number, None)
-        if handler is not None:
-            self._handlers[number] = handler
-        if self._entered and handler is not None:
-            self._take_over(number)
-        elif self._entered:
-            self._give_back(number)
-        return previous
-
-    def _take_over(self, number: int) -> None:
-        if number not in self._before:
-            self._before[number] = signal.signal(number, self._came)
-
-    def _give_back(self, number: int) -> None:
-        if number in self._before:
-            before = self._before.pop(number)
-            signal.signal(number, signal.SIG_DFL if before is None else before)
-
-    def _came(self, number: int, _: FrameType | None) -> None:
-        handler = self._handlers.get(number)
-        if handler is not None and not self._loop.is_closed():
-            self._loop.call_soon_threadsafe(handler, number)
+    What happened to the environment of this process meanwhile is undone.
+    """
+    before = dict(os.environ)
+    try:
+        with use_finder(finder):
+            finder.offer_prefix_path(os.environ)
+            yield
+    finally:
+        for name in [name for name in os.environ if name not in before]:
+            del os.environ[name]
+        os.environ.update(before)

@@ -13,8 +13,8 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, display_path, has_errors
-from linkwright.launch.log.launch_log import LaunchLog
-from linkwright.launch.model.descriptions import Descriptions, XacroCall
+from linkwright.hosting.launch_log import LaunchLog
+from linkwright.hosting.xacro_calls import Descriptions, XacroCall
 
 _SETTLE_SECONDS = 0.06
 """Wait before a failure is reported: an editor may be in the middle of writing."""

@@ -1,0 +1,154 @@
+"""What a host of nodes is asked for, and what it asks of the run that it belongs to."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Coroutine, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Protocol
+
+from linkwright.hosting.launch_log import LaunchLog, output_destinations
+
+if TYPE_CHECKING:
+    from linkwright.descriptions import DescriptionLibrary
+    from linkwright.hosting.reload import LiveReload
+    from linkwright.hosting.xacro_calls import Descriptions
+    from linkwright.nodes import NodeOptions
+    from linkwright.packages import PackageFinder
+    from linkwright.viewer import RvizConfig
+
+VIEWER = ("rviz2", "rviz2")
+"""Package and executable of RViz, for which our viewer stands in."""
+
+
+@dataclass(eq=False)
+class HostedPlan:
+    """A node to be started in this process.
+
+    Attributes:
+        owner: who asks for it, such as an action of a launch file.
+        process_name: its name in the log, such as ``robot_state_publisher-1``.
+        package: the package it belongs to.
+        executable: its executable there.
+        node_name: the name given to it, or None.
+        namespace: its namespace.
+        parameters: values by name.
+        remappings: rules ``(from, to)``.
+        arguments: its command line.
+        viewer_config: makes the viewer's configuration; by default the command line says which.
+        destinations: where its lines on stdout (1) and stderr (2) go, see `linkwright.hosting.launch_log`.
+        respawns: how often it is started again when it has done its work; without end if negative.
+        respawn_delay: seconds to wait before that.
+    """
+
+    owner: Any
+    process_name: str
+    package: str
+    executable: str
+    node_name: str | None
+    namespace: str
+    parameters: dict[str, Any] = field(default_factory=dict)
+    remappings: list[tuple[str, str]] = field(default_factory=list)
+    arguments: list[str] = field(default_factory=list)
+    viewer_config: Callable[[], RvizConfig] | None = None
+    destinations: Mapping[int, frozenset[str]] = field(default_factory=lambda: output_destinations("screen"))
+    respawns: int = 0
+    respawn_delay: float = 0.0
+
+    @property
+    def is_viewer(self) -> bool:
+        """Whether it is RViz, for which our viewer stands in."""
+        return is_viewer(self.package, self.executable)
+
+    def node_options(self, library: DescriptionLibrary) -> NodeOptions:
+        """How to start it; `library` is the readings of robot descriptions that the process shares."""
+        from linkwright.nodes import NodeOptions
+
+        return NodeOptions(
+            name=self.node_name,
+            namespace=self.namespace,
+            parameters=dict(self.parameters),
+            remappings=self.remappings,
+            arguments=self.arguments,
+            library=library,
+        )
+
+    @property
+    def details(self) -> dict[str, Any]:
+        """What events say of it."""
+        command = [self.executable, *self.arguments]
+        return {"name": self.process_name, "cmd": command, "cwd": None, "env": None, "pid": os.getpid()}
+
+
+def is_viewer(package: str | None, executable: str) -> bool:
+    """Whether a node is RViz, for which our viewer stands in."""
+    return (package, executable) == VIEWER
+
+
+@dataclass(frozen=True)
+class HostOptions:
+    """How nodes and viewers of this process are run.
+
+    Attributes:
+        host: the address that the viewer's server binds to.
+        port: its port; None for the default one, or the next that is free.
+        open_browser: whether the page is opened in the user's browser.
+        title: what the page is called.
+        network: whether the nodes join the ROS 2 network, where other programs see them.
+    """
+
+    host: str = "127.0.0.1"
+    port: int | None = None
+    open_browser: bool = True
+    title: str = ""
+    network: bool = True
+
+
+class Supervisor(Protocol):
+    """The run that a host belongs to: a launch, or one model that is shown."""
+
+    @property
+    def finder(self) -> PackageFinder:
+        """Where packages are."""
+
+    @property
+    def options(self) -> HostOptions:
+        """How nodes and viewers are run."""
+
+    @property
+    def log(self) -> LaunchLog:
+        """What is printed."""
+
+    @property
+    def descriptions(self) -> Descriptions:
+        """The robot descriptions that are expanded."""
+
+    @property
+    def reload(self) -> LiveReload:
+        """What gives nodes the new text of a description."""
+
+    @property
+    def ending(self) -> bool:
+        """Whether it is about to end."""
+
+    @property
+    def has_processes(self) -> bool:
+        """Whether it runs any processes besides."""
+
+    def fail(self, what: object) -> None:
+        """Record a failure: the exit status is 1 unless it is mended."""
+
+    def mend(self, what: object) -> None:
+        """Clear a failure: what had failed works now."""
+
+    def spawn(self, work: Coroutine[Any, Any, None]) -> None:
+        """Run something in the background; the run does not end before it has."""
+
+    def shut_down(self, reason: str) -> None:
+        """End the run as soon as what is being done is done."""
+
+    def node_started(self, plan: HostedPlan) -> None:
+        """Take note that a node or viewer runs."""
+
+    def node_ended(self, plan: HostedPlan, status: int) -> None:
+        """Take note that a node or viewer has ended, or could not start, with an exit status."""

@@ -1,0 +1,252 @@
+"""Showing one model file, with sliders for its joints, without a launch file."""
+
+from __future__ import annotations
+
+import asyncio
+import re
+from collections.abc import Callable, Coroutine, Mapping
+from dataclasses import replace
+from itertools import count
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.hosting.launch_log import LaunchLog, output_destinations
+from linkwright.hosting.node_host import NodeHost
+from linkwright.hosting.plans import VIEWER, HostedPlan, HostOptions
+from linkwright.hosting.reload import LiveReload
+from linkwright.hosting.signals import SignalWatch, run_to_end
+from linkwright.hosting.xacro_calls import DescriptionError, Descriptions, XacroCall
+from linkwright.packages import PackageFinder
+
+if TYPE_CHECKING:
+    from linkwright.urdf import Robot
+    from linkwright.viewer import RvizConfig
+
+_PUBLISH_FREQUENCY = 60.0
+"""Hz; at robot_state_publisher's own 20 a dragged slider is seen to lag."""
+_FIRST_LINK = re.compile(r"""<link\s[^>]*?\bname\s*=\s*["']([^"'$]+)["']""")
+
+
+def run_view(
+    model_path: str | Path,
+    arguments: Mapping[str, str] | None = None,
+    options: HostOptions | None = None,
+    *,
+    foxglove: int | None = None,
+) -> int:
+    """Show a URDF or xacro file, with sliders for its joints, until the user ends it.
+
+    Args:
+        model_path: the file.
+        arguments: name -> value of the xacro arguments.
+        options: how it is run; when left out, its nodes are seen by no other program.
+        foxglove: a port for Foxglove and Lichtblick to connect to; None for none.
+
+    Returns:
+        The exit status, see `linkwright.hosting.signals.run_to_end`.
+    """
+    path = Path(model_path).absolute()
+    call = XacroCall(path, tuple((arguments or {}).items()))
+    finder = PackageFinder(start=[path.parent, Path.cwd()])
+    options = replace(options or HostOptions(network=False), title=path.name)
+    log = LaunchLog()
+
+    def run(signals: SignalWatch) -> bool:
+        async def show() -> bool:
+            signals.session = view = ModelView(call, finder, options, log)
+            return await view.run(foxglove)
+
+        return signals.run(show)
+
+    return run_to_end(run, finder, log)
+
+
+class ModelView:
+    """One model that is shown, on the running event loop: robot_state_publisher, sliders and the viewer.
+
+    Args:
+        call: the model.
+        finder: where packages are.
+        options: how it is run.
+        log: what is printed.
+
+    Attributes:
+        ending: whether it is about to end.
+        visiting: whether the model is expanded right now, so that the event loop cannot react.
+        has_processes: that it never runs any.
+    """
+
+    has_processes = False
+
+    def __init__(self, call: XacroCall, finder: PackageFinder, options: HostOptions, log: LaunchLog) -> None:
+        self.finder = finder
+        self.options = options
+        self.log = log
+        self.descriptions = Descriptions(finder)
+        self.loop: asyncio.AbstractEventLoop | None = None
+        self.ending = False
+        self.visiting = False
+        self._call = call
+        self._failures: set[object] = set()
+        self._tasks: set[asyncio.Task[Any]] = set()
+        self._is_over = asyncio.Event()
+        self._crash: BaseException | None = None
+        self._numbers = count(1)
+        self.host = NodeHost(self)
+        self.reload = LiveReload(self.descriptions, self.host.show_findings, log)
+
+    async def run(self, foxglove: int | None) -> bool:
+        """Show the model until the user, or a viewer that cannot start, ends it; returns whether nothing failed."""
+        self.loop = asyncio.get_running_loop()
+        self.log.begin()
+        try:
+            if self._publish():
+                self._plan("joint_state_publisher_gui", "joint_state_publisher_gui")
+                self._plan(*VIEWER, name="viewer", viewer_config=self._viewer_config)
+                if foxglove is not None:
+                    self._plan("foxglove_bridge", "foxglove_bridge", {"port": foxglove})
+                await self.host.start_planned()
+                self.reload.start()
+            await self._is_over.wait()
+            self.ending = True
+            self.reload.close()
+            self.host.close_nodes()
+            while self._tasks:
+                await asyncio.wait(self._tasks)
+        finally:
+            await self._close()
+        if self._crash is not None:
+            raise self._crash
+        return not self._failures
+
+    # --- what is shown ----------------------------------------------------------------------------------------
+
+    def _publish(self) -> bool:
+        """Have the model published, as soon as its file is right; returns whether the view goes on."""
+        self.visiting = True
+        try:
+            text = self.descriptions.expand(self._call)
+            self.reload.report(self._call, self.descriptions.warnings_of(self._call))
+        except DescriptionError as error:
+            self.fail(self._call)
+            if not error.missing:
+                self.reload.bind(self._call, self._publish_repaired)
+                self.reload.report(self._call, error.diagnostics)
+                return True
+            self.log.diagnostics(error.diagnostics)
+            self.shut_down("there is no model")
+            return False
+        except KeyboardInterrupt:
+            self.interrupt("user interrupted with ctrl-c (SIGINT)")
+            return False
+        finally:
+            self.visiting = False
+        parameters = {"robot_description": text, "publish_frequency": _PUBLISH_FREQUENCY}
+        self._plan("robot_state_publisher", "robot_state_publisher", parameters)
+        return True
+
+    def _publish_repaired(self, _: str) -> None:
+        self.reload.unbind(self._call, self._publish_repaired)
+        self.mend(self._call)
+        self._publish()
+        self.spawn(self.host.start_planned())
+
+    def _plan(
+        self,
+        package: str,
+        executable: str,
+        parameters: dict[str, Any] | None = None,
+        *,
+        name: str | None = None,
+        viewer_config: Callable[[], RvizConfig] | None = None,
+    ) -> None:
+        plan = HostedPlan(
+            self,
+            f"{name or executable}-{next(self._numbers)}",
+            package,
+            executable,
+            name,
+            "/",
+            parameters or {},
+            viewer_config=viewer_config,
+            destinations=output_destinations("log"),
+        )
+        self.host.plan(plan)
+
+    def _viewer_config(self) -> RvizConfig:
+        """Grid, RobotModel and TF, with the model's root link as the fixed frame."""
+        from linkwright.viewer import RvizConfig, size_of
+
+        robot = self._robot()
+        frame = robot.root if robot is not None else _first_link(self._call.path)
+        size = size_of(robot) if robot is not None else None
+        return RvizConfig.for_model(frame, size=size, name=str(self._call.path))
+
+    def _robot(self) -> Robot | None:
+        """The model; None of one that is broken."""
+        try:
+            return self.descriptions.library.read(self.descriptions.expand(self._call)).robot
+        except LinkwrightError:
+            return None
+
+    # --- what its nodes and signals ask for ---------------------------------------------------------------------
+
+    def fail(self, what: object) -> None:
+        """Record a failure: the exit status is 1 unless it is mended."""
+        self._failures.add(what)
+
+    def mend(self, what: object) -> None:
+        """Clear a failure: what had failed works now."""
+        self._failures.discard(what)
+
+    def spawn(self, work: Coroutine[Any, Any, None]) -> None:
+        """Run something in the background; the view does not end before it has."""
+        task = asyncio.get_running_loop().create_task(work)
+        self._tasks.add(task)
+        task.add_done_callback(self._done)
+
+    def _done(self, task: asyncio.Task[Any]) -> None:
+        self._tasks.discard(task)
+        if not task.cancelled() and task.exception() is not None:
+            self._crash = task.exception()
+            self._is_over.set()
+
+    def node_started(self, plan: HostedPlan) -> None:
+        """Nothing waits for that."""
+
+    def node_ended(self, plan: HostedPlan, status: int) -> None:
+        """Nothing waits for that."""
+
+    def interrupt(self, reason: str) -> None:
+        """End it because the user said so."""
+        self.log.caution("launch", reason)
+        self._is_over.set()
+
+    def shut_down(self, reason: str) -> None:  # noqa: ARG002 - what was wrong has been told
+        """End it."""
+        self._is_over.set()
+
+    def seconds_to_end(self) -> float:
+        """No time: there are no processes."""
+        return 0.0
+
+    def kill_all(self) -> None:
+        """There are no processes to be ended."""
+
+    async def _close(self) -> None:
+        self.reload.close()
+        for task in tuple(self._tasks):
+            task.cancel()
+        await asyncio.gather(*self._tasks, return_exceptions=True)
+        await self.host.close()
+        self.log.close()
+
+
+def _first_link(path: Path) -> str:
+    """The first link that the text of a broken model names, for most the root."""
+    try:
+        found = _FIRST_LINK.search(path.read_text(encoding="utf-8", errors="replace"))
+    except OSError:
+        found = None
+    return found.group(1) if found else "base_link"

@@ -1,0 +1,69 @@
+"""What a launch file asks of xacro by the words of a command."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, phrase, quoted_names
+from linkwright.hosting.xacro_calls import XacroCall
+
+_OPTIONS_WITHOUT_EFFECT = frozenset({"--inorder", "-i", "-q"})
+_OPTIONS_WITH_A_VALUE = frozenset({"-v", "--verbosity"})
+
+
+def parse_xacro_words(words: Sequence[str], text: str, folder: Path) -> tuple[XacroCall, Phrase | None]:
+    """What ``xacro`` is asked for by the words of a command.
+
+    Args:
+        words: what follows ``xacro``.
+        text: the same as written, before it was split into words.
+        folder: what relative paths start from.
+
+    Returns:
+        The use of xacro, and a remark for the user or None.
+
+    Raises:
+        LinkwrightError: LAUNCH128, if the words are no use of xacro that gives a text.
+    """
+    files: list[str] = []
+    arguments: dict[str, str] = {}
+    waiting = iter(words)
+    for word in waiting:
+        name, separator, value = word.partition(":=")
+        if separator:
+            if value and not name.startswith("_"):
+                arguments[name] = value
+        elif word in _OPTIONS_WITH_A_VALUE:
+            next(waiting, None)
+        elif word.startswith("-") and len(word) > 1:
+            if word not in _OPTIONS_WITHOUT_EFFECT and not word.startswith(("-v", "--verbosity=")):
+                raise _misuse(
+                    phrase("option '{word}' of xacro has no place in a launch file", word=word), phrase("leave it out")
+                )
+        else:
+            files.append(word)
+    remark = None
+    if len(files) > 1:
+        whole = text.split(":=", 1)[0].rsplit(None, 1)[0] if ":=" in text else text
+        if not (folder / whole.strip()).is_file():
+            raise _misuse(
+                phrase(
+                    "xacro expects exactly one model file, but was given {count}: {files}",
+                    count=len(files),
+                    files=quoted_names(files),
+                ),
+                phrase("put quotes around a path with blanks: Command(['xacro \"', path, '\"'])"),
+            )
+        files = [whole.strip()]
+        remark = phrase(
+            "the path '{files}' has blanks and no quotes around it: real xacro would take it for several files",
+            files=files[0],
+        )
+    if not files:
+        raise _misuse(phrase("xacro is given no model file"), phrase("write Command(['xacro ', path])"))
+    return XacroCall(folder / files[0], tuple(arguments.items())), remark
+
+
+def _misuse(message: Phrase, hint: Phrase) -> LinkwrightError:
+    return LinkwrightError(Diagnostic("LAUNCH128", message, hint=hint))

@@ -1,0 +1,103 @@
+"""One model that is shown without a launch file."""
+
+from __future__ import annotations
+
+import asyncio
+import io
+import re
+import socket
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
+from pathlib import Path
+
+import pytest
+
+from linkwright.hosting.launch_log import LaunchLog
+from linkwright.hosting.plans import HostOptions
+from linkwright.hosting.view import ModelView, run_view
+from linkwright.hosting.xacro_calls import XacroCall
+from linkwright.packages import PackageFinder
+from tests.waiting import eventually
+
+GOOD = '<robot name="a"><link name="b"/></robot>'
+BROKEN = '<robot name="a">\n  <link name="b">\n</robot>'
+
+
+@pytest.fixture(autouse=True)
+def _logs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "ros_log"))
+    monkeypatch.setenv("LINKWRIGHT_DDS", "0")
+
+
+@asynccontextmanager
+async def shown(path: Path, foxglove: int | None = None) -> AsyncIterator[tuple[ModelView, Callable[[str], object]]]:
+    """A view, and what waits for a text that it prints; it ends without a failure."""
+    out, err = io.StringIO(), io.StringIO()
+    finder = PackageFinder(start=path.parent, environment={})
+    options = HostOptions(port=0, open_browser=False, network=False)
+    view = ModelView(XacroCall(path), finder, options, LaunchLog(out, err))
+    running = asyncio.create_task(view.run(foxglove))
+
+    async def until(text: str) -> str:
+        await eventually(lambda: text in err.getvalue() or running.done(), what=err.getvalue)
+        assert not running.done(), err.getvalue()
+        return err.getvalue()
+
+    try:
+        yield view, until
+    finally:
+        view.interrupt("the test is over")
+        succeeded = await running
+    assert succeeded
+
+
+def names_started(printed: str) -> list[str]:
+    return re.findall(r"^\[INFO\] \[(\S+)\]: started in the launcher's process", printed, re.MULTILINE)
+
+
+async def test_the_viewer_comes_first(tmp_path: Path) -> None:
+    (tmp_path / "m.urdf").write_text(GOOD)
+    async with shown(tmp_path / "m.urdf") as (_, until):
+        await until("Robot initialized")
+        printed = await until("joint_state_publisher_gui-2]: started")
+        assert names_started(printed) == ["viewer-3", "robot_state_publisher-1", "joint_state_publisher_gui-2"]
+
+
+async def test_with_foxglove_a_bridge_is_started_too(tmp_path: Path) -> None:
+    (tmp_path / "m.urdf").write_text(GOOD)
+    async with shown(tmp_path / "m.urdf", foxglove=0) as (_, until):
+        assert names_started(await until("foxglove_bridge-4]: started"))[-1] == "foxglove_bridge-4"
+
+
+async def test_a_broken_model_is_published_as_soon_as_it_is_right(tmp_path: Path) -> None:
+    path = tmp_path / "m.urdf"
+    path.write_text(BROKEN)
+    async with shown(path) as (view, until):
+        printed = await until("joint_state_publisher_gui-1]: started")
+        assert "error[XML" in printed
+        assert names_started(printed) == ["viewer-2", "joint_state_publisher_gui-1"]
+        path.write_text(GOOD)
+        printed = await until("Robot initialized")
+        assert f"repaired {path}" in printed
+        assert names_started(printed)[-1] == "robot_state_publisher-3"
+        assert view.reload.findings() == []
+
+
+def test_a_model_that_does_not_exist(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run_view(tmp_path / "none.urdf", {}, HostOptions(open_browser=False)) == 1
+    captured = capsys.readouterr()
+    assert captured.err.count("error[") == 1
+    assert "none.urdf" in captured.err
+    assert captured.out == ""
+
+
+def test_a_port_in_use(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "m.urdf").write_text(GOOD)
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = taken.getsockname()[1]
+        assert run_view(tmp_path / "m.urdf", {}, HostOptions(port=port, open_browser=False)) == 1
+    err = capsys.readouterr().err
+    assert f"{port}" in err
+    assert err.count("error[VIEW") == 1
