@@ -210,17 +210,29 @@ def placed_links(world: World) -> Iterator[PlacedLink]:
     """
     frames = Frames(world)
     for model in world.models:
-        yield from _placed(model, frames.inside(model.name), frames.pose(model.name), model.name, static=False)
+        yield from links_of(model, frames.inside(model.name), frames.pose(model.name), model.name)
 
 
-def _placed(model: Model, frames: Frames, pose: Transform, path: str, *, static: bool) -> Iterator[PlacedLink]:
+def links_of(model: Model, frames: Frames, pose: Transform, name: str, *, static: bool = False) -> Iterator[PlacedLink]:
+    """All links of a model and of those in it, each with its place.
+
+    Args:
+        model: with its includes resolved.
+        frames: those of the model.
+        pose: where its frame stands in the world.
+        name: what it is called in the world.
+        static: whether a model around it never moves.
+
+    Raises:
+        FrameError: one cannot be placed.
+    """
     static = static or model.static
     for link in model.links:
-        place = compose(pose, frames.pose(link.name))
-        yield PlacedLink(f"{path}{SEPARATOR}{link.name}", link, model, place, static)
+        yield PlacedLink(f"{name}{SEPARATOR}{link.name}", link, model, compose(pose, frames.pose(link.name)), static)
     for inner in model.models:
         place = compose(pose, frames.pose(inner.name))
-        yield from _placed(inner, frames.inside(inner.name), place, f"{path}{SEPARATOR}{inner.name}", static=static)
+        path = f"{name}{SEPARATOR}{inner.name}"
+        yield from links_of(inner, frames.inside(inner.name), place, path, static=static)
 
 
 def transform_of(pose: Pose) -> Transform:

@@ -1,0 +1,1 @@
+"""Worlds and their robots, moved by MuJoCo."""

@@ -1,0 +1,25 @@
+"""The library MuJoCo, which the extra ``sim`` brings: version 4, and on Python 3.10 the last that has wheels for it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from linkwright.diagnostics import missing_extra
+
+
+def load_mujoco() -> Any:
+    """The module ``mujoco``; it has no types.
+
+    Raises:
+        LinkwrightError: SIM101 it is not installed.
+    """
+    try:
+        import mujoco  # type: ignore[import-untyped, unused-ignore]
+    except ModuleNotFoundError as error:
+        raise missing_extra("SIM101", error) from None
+    mujoco.set_mju_user_warning(_unheard)
+    return mujoco
+
+
+def _unheard(text: str) -> None:
+    """What MuJoCo would write to standard error is found in its data, and said by those who look there."""

@@ -1,0 +1,1 @@
+"""Worlds and models as MuJoCo's specification of bodies, joints and shapes."""

@@ -1,0 +1,193 @@
+"""Links as bodies of MuJoCo: mass, joints, and the shapes that touch and those that are seen."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from linkwright.diagnostics import Diagnostic, Phrase, Severity, phrase
+from linkwright.geometry.arrays import rotation_matrix
+from linkwright.geometry.single import Transform, compose, invert, rotate
+from linkwright.geometry.validity import is_positive_definite
+from linkwright.geometry.vectors import Vector3
+from linkwright.sdf.frames import Frames, transform_of
+from linkwright.sdf.joints import Axis
+from linkwright.sdf.links import Collision, Inertial, Link, Visual
+from linkwright.sdf.poses import RawPose
+from linkwright.simulation.library import load_mujoco
+from linkwright.simulation.scene.meshes import MeshLibrary
+from linkwright.simulation.scene.shapes import add_shape
+from linkwright.simulation.scene.structure import PlacedJoint
+from linkwright.simulation.scene.surfaces import apply_surface
+from linkwright.xmltree import Element
+
+COLLISION_GROUP, VISUAL_GROUP = 3, 2
+"""MuJoCo's groups of shapes that touch, and of those that are seen."""
+SECOND_AXIS = "#2"
+"""What the name of a second axis of a joint ends in."""
+
+_LEAST_MASS = 1e-6
+"""In kg: MuJoCo moves nothing that has no mass."""
+_LEAST_INERTIA = 1e-9
+"""In kg m2."""
+_USUAL_INERTIAL = Inertial()
+
+
+class BodyWriter:
+    """Writes links into a specification.
+
+    Args:
+        meshes: where meshes come from.
+
+    Attributes:
+        diagnostics: what could not be taken over.
+    """
+
+    def __init__(self, meshes: MeshLibrary) -> None:
+        self.diagnostics: list[Diagnostic] = []
+        self._meshes = meshes
+        self._mujoco = load_mujoco()
+
+    def give_mass(self, body: Any, link: Link) -> None:
+        """Give a body the mass properties of its link; 1 kg and 1 kg m2 where nothing is said, as SDF has it."""
+        inertial = link.inertial or _USUAL_INERTIAL
+        placed = transform_of(inertial.pose.pose)
+        turn = rotation_matrix(placed[3:])
+        about = inertial.inertia
+        tensor = np.array(
+            [[about.ixx, about.ixy, about.ixz], [about.ixy, about.iyy, about.iyz], [about.ixz, about.iyz, about.izz]]
+        )
+        tensor = turn @ tensor @ turn.T
+        mass = inertial.mass
+        if not (isfinite(mass) and mass >= _LEAST_MASS):
+            message = phrase(
+                "link '{name}' has a mass of {mass} kg, and moves as if it had {least} kg",
+                name=link.name,
+                mass=mass,
+                least=_LEAST_MASS,
+            )
+            self._warn("SIM110", message, inertial.element or link.element)
+            mass = _LEAST_MASS
+        if not np.isfinite(tensor).all() or not is_positive_definite(tensor):
+            if not (np.isfinite(tensor).all() and not tensor.any()):
+                message = phrase(
+                    "no body has the inertia of link '{name}'; it moves as a ball of its mass", name=link.name
+                )
+                self._warn("SIM111", message, inertial.element or link.element)
+            tensor = np.eye(3) * max(mass * 1e-4, _LEAST_INERTIA)
+        body.explicitinertial = True
+        body.mass = mass
+        body.ipos = list(placed[:3])
+        body.fullinertia = [tensor[0, 0], tensor[1, 1], tensor[2, 2], tensor[0, 1], tensor[0, 2], tensor[1, 2]]
+
+    def add_joint(self, body: Any, placed: PlacedJoint, child: Transform) -> None:
+        """Let a body move as a joint lets it.
+
+        Args:
+            body: that of the child link.
+            placed: the joint.
+            child: where the child link stands in the world.
+        """
+        kinds = self._mujoco.mjtJoint
+        in_child = compose(invert(child), placed.pose)
+        kind = placed.joint.type
+        if kind == "fixed":
+            return
+        if kind == "ball":
+            body.add_joint(name=placed.name, type=kinds.mjJNT_BALL, pos=list(in_child[:3]))
+            return
+        sliding = kind == "prismatic"
+        count = 2 if kind in ("universal", "revolute2") else 1
+        for axis, direction in placed.axes[:count]:
+            name = placed.name if axis is placed.joint.axis else placed.name + SECOND_AXIS
+            joint = body.add_joint(
+                name=name,
+                type=kinds.mjJNT_SLIDE if sliding else kinds.mjJNT_HINGE,
+                pos=list(in_child[:3]),
+                axis=list(rotate(in_child[3:], direction)),
+            )
+            self._limit(joint, axis, endless=kind == "continuous")
+
+    def _limit(self, joint: Any, axis: Axis, *, endless: bool) -> None:
+        limit, dynamics = axis.limit, axis.dynamics
+        joint.limited = not endless and (isfinite(limit.lower) or isfinite(limit.upper)) and limit.lower < limit.upper
+        if joint.limited:
+            joint.range = [max(limit.lower, -1e6), min(limit.upper, 1e6)]
+        joint.actfrclimited = isfinite(limit.effort) and limit.effort > 0
+        if joint.actfrclimited:
+            joint.actfrcrange = [-limit.effort, limit.effort]
+        _set_first(joint, "damping", max(dynamics.damping, 0.0))
+        _set_first(joint, "stiffness", max(dynamics.spring_stiffness, 0.0))
+        joint.springref = dynamics.spring_reference
+        joint.frictionloss = max(dynamics.friction, 0.0)
+
+    def add_visuals(self, body: Any, link: Link, frames: Frames, *, fixed: bool) -> None:
+        """Add what is seen of a link, which touches nothing."""
+        for visual in link.visuals:
+            pose = _pose_in_link(frames, link, visual.pose)
+            for geom in self._geoms(body, visual, pose, fixed=fixed, collision=False):
+                geom.group = VISUAL_GROUP
+                geom.contype = geom.conaffinity = 0
+                geom.rgba = _colour(visual)
+
+    def add_collisions(self, body: Any, link: Link, frames: Frames, *, fixed: bool) -> None:
+        """Add what touches of a link."""
+        for collision in link.collisions:
+            pose = _pose_in_link(frames, link, collision.pose)
+            surface = collision.surface
+            for geom in self._geoms(body, collision, pose, fixed=fixed, collision=True):
+                geom.group = COLLISION_GROUP
+                geom.contype, geom.conaffinity = surface.category_bitmask, surface.collide_bitmask
+                apply_surface(geom, surface)
+
+    def _geoms(
+        self, body: Any, part: Visual | Collision, pose: Transform, *, fixed: bool, collision: bool
+    ) -> Iterable[Any]:
+        simple = add_shape(body, part.geometry, pose, fixed=fixed)
+        geoms = [simple] if simple is not None else []
+        if simple is None:
+            source = part.element.source if part.element is not None else None
+            beside = Path(source.name).parent if source is not None else Path()
+            geoms = list(self._meshes.add(body, part.geometry, pose, beside, fixed=fixed, collision=collision))
+        for index, geom in enumerate(geoms):
+            suffix = f"#{index}" if index else ""
+            geom.name = f"{body.name}::{part.name}#{'collision' if collision else 'visual'}{suffix}"
+        return geoms
+
+    def _warn(self, code: str, message: Phrase, element: Element | None) -> None:
+        span = element.span() if element is not None else None
+        source = element.source if element is not None else None
+        self.diagnostics.append(Diagnostic(code, message, severity=Severity.WARNING, span=span, source=source))
+
+
+def _pose_in_link(frames: Frames, link: Link, raw: RawPose) -> Transform:
+    if not raw.relative_to:
+        return transform_of(raw.pose)
+    return compose(invert(frames.pose(link.name)), frames.placed(raw, link.name))
+
+
+def _colour(visual: Visual) -> list[float]:
+    material = visual.material
+    red, green, blue, alpha = (material.diffuse if material is not None else None) or (0.7, 0.7, 0.7, 1.0)
+    return [red, green, blue, alpha * (1.0 - visual.transparency)]
+
+
+def _set_first(thing: Any, name: str, value: float) -> None:
+    """Set a coefficient; of some MuJoCo has a polynomial since version 4, whose first term is what it had before."""
+    held = getattr(thing, name)
+    if np.ndim(held):
+        held[0] = value
+    else:
+        setattr(thing, name, value)
+
+
+def hinge_anchors(placed: PlacedJoint, distance: float) -> list[Vector3]:
+    """Two points on the axis of a joint, in the world, that hold it where nothing turns about anything else."""
+    x, y, z = placed.pose[:3]
+    _, direction = placed.axes[0]
+    dx, dy, dz = (distance * each for each in rotate(placed.pose[3:], direction))
+    return [(x, y, z), (x + dx, y + dy, z + dz)]

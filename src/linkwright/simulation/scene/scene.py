@@ -1,0 +1,235 @@
+"""A world as MuJoCo's specification: every link a body with its frame, every joint a joint, every shape a geom."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from itertools import combinations
+from math import isfinite
+from typing import Any
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+from linkwright.geometry.single import IDENTITY, Transform, compose, invert, rotate
+from linkwright.sdf.frames import Frames
+from linkwright.sdf.models import Model
+from linkwright.sdf.poses import SEPARATOR, WORLD
+from linkwright.sdf.worlds import World, gravity_of, physics_of
+from linkwright.simulation.library import load_mujoco
+from linkwright.simulation.scene.bodies import COLLISION_GROUP, BodyWriter, hinge_anchors
+from linkwright.simulation.scene.meshes import MeshLibrary
+from linkwright.simulation.scene.shapes import set_pose
+from linkwright.simulation.scene.structure import HeldLink, PlacedJoint, Structure, structure_of
+from linkwright.simulation.scene.surfaces import make_wheel
+
+_ANCHORS_APART = 0.1
+"""How far from each other in m the two points are that hold the axis of a hinge that closes a loop."""
+_ARMATURE = 0.01
+"""Inertia in kg m2 that a motor adds to its joint where the integrator knows nothing of the motor's damping."""
+
+
+@dataclass(slots=True)
+class SceneModel:
+    """A model of a scene.
+
+    Attributes:
+        name: what it is called in the world.
+        model: what is written about it.
+        pose: where its frame stood in the world when it came.
+        structure: its links and joints.
+        parts: what the specification has of it, in the order in which it was added: bodies, without those that hang on
+            others, constraints and actuators.
+    """
+
+    name: str
+    model: Model
+    pose: Transform
+    structure: Structure
+    parts: list[Any] = field(default_factory=list)
+
+
+class Scene:
+    """A world as a specification of MuJoCo.
+
+    Bodies and joints are named as in the world: ``robot::arm::tip``; a second axis of a joint has ``#2`` behind its
+    name, and what lets a body move freely ``#free`` behind that of the body.
+
+    Args:
+        world: with its includes resolved, and as it was saved (`linkwright.sdf.saved`).
+        meshes: where meshes come from.
+        step: the time step in s; that of the world by default.
+
+    Attributes:
+        spec: the specification.
+        step: the time step in s.
+        models: by their names, in the order in which they came.
+        joints: the joints of models that move, by name.
+        bodies: the bodies of the specification, by the names of the links.
+    """
+
+    def __init__(self, world: World, meshes: MeshLibrary, step: float | None = None) -> None:
+        self.step = step or physics_of(world).max_step_size
+        self.models: dict[str, SceneModel] = {}
+        self.joints: dict[str, PlacedJoint] = {}
+        self.bodies: dict[str, Any] = {}
+        self._mujoco = mujoco = load_mujoco()
+        self.spec = mujoco.MjSpec()
+        meshes.spec = self.spec
+        self._writer = BodyWriter(meshes)
+        self._motors = 0
+        self.spec.modelname = world.name or WORLD
+        self.spec.compiler.degree = False
+        self.spec.compiler.balanceinertia = True
+        self.spec.compiler.inertiafromgeom = mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_FALSE
+        self._set_options(world)
+        frames = Frames(world)
+        for model in world.models:
+            self.add(model, model.name, frames.pose(model.name))
+
+    def _set_options(self, world: World) -> None:
+        """What measurements of wheels, casters and rest have shown to be right: decision 0042."""
+        kinds, option = self._mujoco.mjtIntegrator, self.spec.option
+        option.timestep = self.step
+        option.gravity = list(gravity_of(world))
+        option.cone = self._mujoco.mjtCone.mjCONE_ELLIPTIC
+        option.impratio = 10.0
+        self._discrete = hasattr(kinds, "mjINT_DISCRETE")  # since MuJoCo 4
+        option.integrator = kinds.mjINT_DISCRETE if self._discrete else kinds.mjINT_EULER
+        option.disableflags |= self._mujoco.mjtDisableBit.mjDSBL_AUTORESET
+
+    @property
+    def diagnostics(self) -> list[Diagnostic]:
+        """What could not be taken over."""
+        return self._writer.diagnostics
+
+    def add(self, model: Model, name: str, pose: Transform) -> SceneModel:
+        """Add a model.
+
+        Args:
+            model: with its includes resolved.
+            name: what it is called; no other has that name.
+            pose: where its frame stands in the world.
+
+        Raises:
+            FrameError: a link of it cannot be placed.
+            LinkwrightError: SIM102 there is a model of that name.
+        """
+        if name in self.models:
+            raise LinkwrightError(Diagnostic("SIM102", phrase("there is already a model '{name}'", name=name)))
+        structure = structure_of(model, name, pose)
+        added = self.models[name] = SceneModel(name, model, pose, structure)
+        poses = {held.link.name: held.link.pose for held in structure.links}
+        for held in structure.links:
+            body = self._add_link(held, poses)
+            if body.parent == self.spec.worldbody:
+                added.parts.append(body)
+        for joint in structure.loops:
+            added.parts += self._closed(joint, poses)
+        added.parts += self._strangers(structure)
+        return added
+
+    def remove(self, name: str) -> None:
+        """Remove a model.
+
+        Raises:
+            KeyError: there is none of that name.
+        """
+        model = self.models.pop(name)
+        for part in reversed(model.parts):
+            self.spec.delete(part)
+        for held in model.structure.links:
+            del self.bodies[held.link.name]
+            if held.joint is not None:
+                self.joints.pop(held.joint.name, None)
+
+    def add_velocity_motor(self, joint: str, gain: float, limit: float) -> str:
+        """Add a motor that holds the velocity of a joint, and let the wheel that it turns roll without slipping.
+
+        Args:
+            joint: the name of the joint.
+            gain: torque for each rad/s of difference, in N m s/rad (N s/m).
+            limit: the greatest torque in N m (N).
+
+        Returns:
+            The name of MuJoCo's actuator, whose control is the velocity in rad/s (m/s).
+        """
+        actuator = self._actuator(joint, limit)
+        actuator.set_to_velocity(kv=gain)
+        if not self._discrete:
+            self.spec.joint(joint).armature = _ARMATURE
+        self._let_roll(self.joints[joint])
+        return str(actuator.name)
+
+    def _actuator(self, joint: str, limit: float) -> Any:
+        self._motors += 1
+        actuator = self.spec.add_actuator(name=f"{joint}#motor{self._motors}", target=joint)
+        actuator.trntype = self._mujoco.mjtTrn.mjTRN_JOINT
+        actuator.forcelimited = isfinite(limit)
+        if actuator.forcelimited:
+            actuator.forcerange = [-limit, limit]
+        self.models[joint.partition(SEPARATOR)[0]].parts.append(actuator)
+        return actuator
+
+    def _let_roll(self, joint: PlacedJoint) -> None:
+        """Make cylinders ellipsoids, which touch the ground in one point as tyres do, and contacts hard."""
+        kinds = self._mujoco.mjtGeom
+        for geom in self.bodies[joint.child].geoms:
+            if geom.group != COLLISION_GROUP or geom.condim == 1:
+                continue
+            if geom.type == kinds.mjGEOM_CYLINDER:
+                radius, half, _ = geom.size
+                geom.type = kinds.mjGEOM_ELLIPSOID
+                geom.size = [radius, radius, half]
+            if geom.type in (kinds.mjGEOM_ELLIPSOID, kinds.mjGEOM_SPHERE):
+                make_wheel(geom, self.step)
+
+    def _add_link(self, held: HeldLink, poses: dict[str, Transform]) -> Any:
+        placed = held.link
+        link, joint = placed.link, None if placed.static else held.joint
+        parent, above = self.spec.worldbody, IDENTITY
+        if joint is not None and joint.parent != WORLD:
+            parent, above = self.bodies[joint.parent], poses[joint.parent]
+        body = self.bodies[placed.name] = parent.add_body(name=placed.name)
+        set_pose(body, compose(invert(above), placed.pose))
+        fixed = placed.static or (joint is None and link.kinematic)
+        if not fixed:
+            self._writer.give_mass(body, link)
+            body.gravcomp = 0.0 if link.gravity else 1.0
+            if joint is None:
+                body.add_freejoint().name = f"{placed.name}#free"
+            else:
+                self._writer.add_joint(body, joint, placed.pose)
+                self.joints[joint.name] = joint
+        frames = Frames(placed.model)
+        self._writer.add_visuals(body, link, frames, fixed=fixed)
+        self._writer.add_collisions(body, link, frames, fixed=fixed)
+        return body
+
+    def _closed(self, joint: PlacedJoint, poses: dict[str, Transform]) -> Iterator[Any]:
+        """What holds two links together that others hold already."""
+        kinds, ends = self._mujoco.mjtEq, (joint.child, joint.parent)
+        points = hinge_anchors(joint, _ANCHORS_APART) if joint.axes else [joint.pose[:3]]
+        if joint.joint.type == "fixed":
+            yield self._equality(kinds.mjEQ_WELD, ends)
+        elif joint.joint.type in ("revolute", "hinge", "continuous", "ball"):
+            into_child = invert(poses[joint.child])
+            for point in points[: 1 if joint.joint.type == "ball" else 2]:
+                equality = self._equality(kinds.mjEQ_CONNECT, ends)
+                moved = rotate(into_child[3:], point)
+                equality.data[:3] = [a + b for a, b in zip(moved, into_child[:3], strict=True)]
+                yield equality
+
+    def _equality(self, kind: Any, ends: tuple[str, str]) -> Any:
+        equality = self.spec.add_equality(type=kind, objtype=self._mujoco.mjtObj.mjOBJ_BODY)
+        equality.name1, equality.name2 = ends[0], "" if ends[1] == WORLD else ends[1]
+        return equality
+
+    def _strangers(self, structure: Structure) -> Iterator[Any]:
+        """Let links of one model pass through each other, unless they say otherwise."""
+        touching = [held.link for held in structure.links if held.link.link.collisions and not held.link.static]
+        for one, other in combinations(touching, 2):
+            if not (_collides(one.link.self_collide, one.model) and _collides(other.link.self_collide, other.model)):
+                yield self.spec.add_exclude(bodyname1=one.name, bodyname2=other.name)
+
+
+def _collides(said: bool | None, model: Model) -> bool:
+    return model.self_collide if said is None else said

@@ -1,0 +1,67 @@
+"""The shapes of SDF as geoms of MuJoCo."""
+
+from __future__ import annotations
+
+from math import cos, pi, sin
+from typing import Any
+
+import numpy as np
+
+from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere
+from linkwright.geometry.single import Transform, compose, rotation_from_z
+from linkwright.sdf.shapes import Cone, Ellipsoid, Plane, Shape
+from linkwright.simulation.library import load_mujoco
+
+_ENDLESS = 0.0
+"""Half the width of a plane that has no end."""
+_THICKNESS = 0.005
+"""Half of what a plane is thick where it moves, in m: MuJoCo's planes stand still."""
+_CORNERS = 32
+
+
+def set_pose(thing: Any, pose: Transform) -> None:
+    """Place a body, geom, site or camera of a specification in the frame of its body."""
+    x, y, z, qx, qy, qz, qw = pose
+    thing.pos = [x, y, z]
+    thing.quat = [qw, qx, qy, qz]
+
+
+def add_shape(body: Any, shape: Shape, pose: Transform, *, fixed: bool) -> Any | None:
+    """Add a simple shape to a body; None for one that is none, or has no extent.
+
+    Args:
+        body: the body of the specification.
+        shape: the shape; meshes and what is made of images are the business of `linkwright.simulation.scene.meshes`.
+        pose: where it stands in the frame of the body.
+        fixed: whether the body never moves.
+    """
+    kinds = load_mujoco().mjtGeom
+    match shape:
+        case Box(size) if min(size) > 0:
+            kind, sizes = kinds.mjGEOM_BOX, [each / 2 for each in size]
+        case Sphere(radius) if radius > 0:
+            kind, sizes = kinds.mjGEOM_SPHERE, [radius, 0, 0]
+        case Cylinder(radius, length) if radius > 0 and length > 0:
+            kind, sizes = kinds.mjGEOM_CYLINDER, [radius, length / 2, 0]
+        case Capsule(radius, length) if radius > 0 and length > 0:
+            kind, sizes = kinds.mjGEOM_CAPSULE, [radius, length / 2, 0]
+        case Ellipsoid(radii) if min(radii) > 0:
+            kind, sizes = kinds.mjGEOM_ELLIPSOID, list(radii)
+        case Plane(normal, size):
+            pose = compose(pose, (0.0, 0.0, 0.0, *rotation_from_z(normal)))
+            if fixed:
+                kind, sizes = kinds.mjGEOM_PLANE, [_ENDLESS, _ENDLESS, 1.0]
+            else:
+                kind, sizes = kinds.mjGEOM_BOX, [size[0] / 2, size[1] / 2, _THICKNESS]
+        case _:
+            return None
+    geom = body.add_geom(type=kind, size=sizes)
+    set_pose(geom, pose)
+    return geom
+
+
+def cone_corners(cone: Cone) -> np.ndarray[Any, np.dtype[np.float64]]:
+    """The corners of a cone whose base is a polygon: shape (corners, 3), in m."""
+    turns = [2 * pi * index / _CORNERS for index in range(_CORNERS)]
+    ring = [(cone.radius * cos(turn), cone.radius * sin(turn), -cone.length / 2) for turn in turns]
+    return np.array([*ring, (0.0, 0.0, cone.length / 2)])

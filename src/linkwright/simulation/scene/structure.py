@@ -1,0 +1,131 @@
+"""The links and joints of a model as trees, which is what MuJoCo moves, and the joints that close loops in them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from linkwright.geometry.single import Transform, compose
+from linkwright.geometry.vectors import Vector3
+from linkwright.sdf.frames import FrameError, Frames, PlacedLink, links_of
+from linkwright.sdf.joints import Axis, Joint
+from linkwright.sdf.models import Model
+from linkwright.sdf.poses import SEPARATOR, WORLD
+
+
+@dataclass(frozen=True, slots=True)
+class PlacedJoint:
+    """A joint of a model.
+
+    Attributes:
+        name: with the models that it is in: ``robot::arm::elbow``.
+        joint: what is written about it.
+        parent: the link that it is fixed to, named as in `PlacedLink`; ``world`` for the world.
+        child: the link that it moves.
+        pose: where its frame stands in the world.
+        axes: its axes, with the direction of each in the frame of the joint.
+    """
+
+    name: str
+    joint: Joint
+    parent: str
+    child: str
+    pose: Transform
+    axes: tuple[tuple[Axis, Vector3], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class HeldLink:
+    """A link, and the joint that holds it; None for one that nothing holds."""
+
+    link: PlacedLink
+    joint: PlacedJoint | None
+
+
+@dataclass(frozen=True, slots=True)
+class Structure:
+    """A model as MuJoCo wants it.
+
+    Attributes:
+        links: all links, each after the one that holds it.
+        loops: joints between links that others hold already.
+        misplaced: joints between links that are not there, with the frame that is missing.
+    """
+
+    links: tuple[HeldLink, ...]
+    loops: tuple[PlacedJoint, ...]
+    misplaced: tuple[tuple[Joint, str], ...]
+
+
+def structure_of(model: Model, name: str, pose: Transform) -> Structure:
+    """The trees of a model.
+
+    Args:
+        model: with its includes resolved.
+        name: what it is called in the world.
+        pose: where its frame stands in the world.
+
+    Raises:
+        FrameError: a link cannot be placed.
+    """
+    frames = Frames(model)
+    links = {each.name: each for each in links_of(model, frames, pose, name)}
+    joints: list[PlacedJoint] = []
+    misplaced: list[tuple[Joint, str]] = []
+    for owner, inner, place, path in _models(model, frames, pose, name):
+        for joint in owner.joints:
+            try:
+                placed = _placed(joint, inner, place, path)
+            except FrameError as error:
+                misplaced.append((joint, error.name))
+                continue
+            absent = next((end for end in (placed.parent, placed.child) if end not in links and end != WORLD), None)
+            if absent is not None or placed.child == WORLD:
+                misplaced.append((joint, absent or WORLD))
+            else:
+                joints.append(placed)
+    return _trees(links, joints, tuple(misplaced))
+
+
+def _models(model: Model, frames: Frames, pose: Transform, path: str) -> Iterator[tuple[Model, Frames, Transform, str]]:
+    """A model and those in it, with the frames, the place in the world and the name of each."""
+    yield model, frames, pose, path
+    for inner in model.models:
+        place = compose(pose, frames.pose(inner.name))
+        yield from _models(inner, frames.inside(inner.name), place, f"{path}{SEPARATOR}{inner.name}")
+
+
+def _placed(joint: Joint, frames: Frames, pose: Transform, path: str) -> PlacedJoint:
+    ends = [frames.link(end) for end in (joint.parent, joint.child)]
+    parent, child = (end if end == WORLD else f"{path}{SEPARATOR}{end}" for end in ends)
+    axes = tuple((axis, frames.axis(joint, axis)) for axis in (joint.axis, joint.axis2) if axis is not None)
+    name = f"{path}{SEPARATOR}{joint.name}"
+    return PlacedJoint(name, joint, parent, child, compose(pose, frames.pose(joint.name)), axes)
+
+
+def _trees(
+    links: dict[str, PlacedLink], joints: Iterable[PlacedJoint], misplaced: tuple[tuple[Joint, str], ...]
+) -> Structure:
+    holding: dict[str, PlacedJoint] = {}
+    loops: list[PlacedJoint] = []
+    held: dict[str, list[str]] = {}
+    for joint in joints:
+        if joint.child in holding or _holds(holding, joint.child, joint.parent):
+            loops.append(joint)
+        else:
+            holding[joint.child] = joint
+            held.setdefault(joint.parent, []).append(joint.child)
+
+    ordered = [name for name in links if name not in holding or holding[name].parent == WORLD]
+    for name in ordered:  # it grows while it is walked along
+        ordered += held.get(name, ())
+    return Structure(tuple(HeldLink(links[name], holding.get(name)) for name in ordered), tuple(loops), misplaced)
+
+
+def _holds(holding: dict[str, PlacedJoint], link: str, other: str) -> bool:
+    """Whether a link is another, or holds it by way of others."""
+    while other != link:
+        if other not in holding:
+            return False
+        other = holding[other].parent
+    return True

@@ -1,0 +1,78 @@
+"""What happens where two shapes touch: friction, stiffness, and who says so when they differ.
+
+Source of the figures: measurements with MuJoCo 4.0 of a robot with differential drive (straight on, arcs, turns on the
+spot), and the chapters "Contact" and "Solver parameters" of MuJoCo's documentation.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from linkwright.sdf.surfaces import Surface
+
+_USUAL_FRICTION = 1.0
+_LEAST = 1e-5
+"""MuJoCo has no friction coefficients of less."""
+_GREATEST = 1e3
+_FRICTIONLESS = 0.1
+"""At and below it a shape slides: friction this small is written for casters, and means that there shall be none."""
+_SOFT = (0.05, 1.0)
+"""Time constant in s and damping ratio of what slides: soft enough to leave the load to the wheels beside it."""
+_HARD_STEPS = 4.0
+"""The time constant of wheels, in steps; two are the least that is stable."""
+_HARD_IMPEDANCE = (0.99, 0.999, 0.001, 0.5, 2.0)
+
+
+def apply_surface(geom: Any, surface: Surface) -> None:
+    """Give a shape of MuJoCo the surface of a collision.
+
+    Gazebo takes the lesser of two frictions, MuJoCo the greater unless one of the two shapes has priority. The
+    priority is the higher the less friction there is, which comes to the same.
+    """
+    mu = friction_of(surface)
+    geom.friction = [min(max(mu, _LEAST), _GREATEST), *geom.friction[1:]]
+    geom.priority = _priority(mu)
+    if mu < _FRICTIONLESS:
+        make_slippery(geom)
+    if surface.torsional is not None and surface.torsional.coefficient > 0:
+        geom.condim = 4
+        geom.friction = [geom.friction[0], surface.torsional.coefficient * _patch(surface), geom.friction[2]]
+    if surface.collide_without_contact:
+        geom.contype = geom.conaffinity = 0
+
+
+def friction_of(surface: Surface) -> float:
+    """The coefficient of friction that counts: MuJoCo's is the same in all directions, and so the lesser of two."""
+    if surface.friction is not None:
+        return max(min(surface.friction.mu, surface.friction.mu2), 0.0)
+    return _USUAL_FRICTION
+
+
+def make_slippery(geom: Any) -> None:
+    """Let a shape slide without friction and leave the load to others, as casters shall."""
+    geom.condim = 1
+    geom.solref = list(_SOFT)
+    geom.priority = _priority(0.0)
+
+
+def make_wheel(geom: Any, step: float) -> None:
+    """Let a shape roll without slipping: a hard contact, which counts before that of a ground of equal friction.
+
+    Args:
+        geom: the shape.
+        step: the time step of the simulation in s.
+    """
+    geom.solref = [_HARD_STEPS * step, 1.0]
+    geom.solimp = list(_HARD_IMPEDANCE)
+    geom.priority += 1
+
+
+def _priority(mu: float) -> int:
+    return 2 * round(1e6 / (1.0 + mu))
+
+
+def _patch(surface: Surface) -> float:
+    """The radius in m that turns a coefficient into MuJoCo's, which is a length."""
+    torsional = surface.torsional
+    assert torsional is not None
+    return max(torsional.patch_radius if torsional.use_patch_radius else torsional.surface_radius, 1e-3)

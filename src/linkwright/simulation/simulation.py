@@ -1,0 +1,257 @@
+"""A world that moves: time, models that come and go, and where everything is."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+from linkwright.geometry.arrays import Array
+from linkwright.geometry.single import IDENTITY, Transform, compose, invert
+from linkwright.geometry.vectors import Vector3
+from linkwright.sdf.models import Model
+from linkwright.sdf.resources import ResourceFinder
+from linkwright.sdf.saved import as_saved
+from linkwright.sdf.worlds import World
+from linkwright.simulation.library import load_mujoco
+from linkwright.simulation.scene.meshes import MeshLibrary
+from linkwright.simulation.scene.scene import Scene
+from linkwright.simulation.schedule import Schedule, Task
+
+NANOSECONDS = 1_000_000_000
+
+
+class UnstableError(LinkwrightError):
+    """The simulation has exploded: a position or velocity is no number any more (SIM120)."""
+
+
+class Simulation:
+    """A world in motion.
+
+    Nothing here waits or knows real time: `advance` computes as fast as it can, and twice the same calls give twice the
+    same bits. One thread at a time may use it.
+
+    Args:
+        world: with its includes resolved.
+        finder: where its meshes are.
+        step: the time step in s; that of the world by default.
+
+    Attributes:
+        scene: what moves.
+        model, data: MuJoCo's, of this moment: both are others after models have come or gone.
+        revision: how often they were made anew.
+        time: simulated nanoseconds since the start.
+        step: the time step in nanoseconds.
+        schedule: what is to be done at which simulated times.
+    """
+
+    def __init__(self, world: World, finder: ResourceFinder, *, step: float | None = None) -> None:
+        self._mujoco = load_mujoco()
+        self.world = as_saved(world)
+        self.scene = Scene(self.world, MeshLibrary(finder), step)
+        self.step = round(self.scene.step * NANOSECONDS)
+        self.time = 0
+        self.schedule = Schedule()
+        self.revision = 0
+        self.model = self.scene.spec.compile()
+        self.data = self._mujoco.MjData(self.model)
+        self._changed = False
+        self._current = False
+
+    @property
+    def seconds(self) -> float:
+        """Simulated seconds since the start."""
+        return self.time / NANOSECONDS
+
+    def spawn(self, model: Model, name: str, pose: Transform = IDENTITY) -> None:
+        """Put a model into the world; all others keep their state.
+
+        Args:
+            model: with its includes resolved.
+            name: what it is called; no other has that name.
+            pose: of its frame in the world.
+
+        Raises:
+            LinkwrightError: SIM102 there is a model of that name.
+            FrameError: a link cannot be placed.
+        """
+        self.scene.add(model, name, pose)
+        self._changed = True
+
+    def delete(self, name: str) -> None:
+        """Take a model out of the world.
+
+        Raises:
+            KeyError: there is none of that name.
+        """
+        self.scene.remove(name)
+        self._changed = True
+
+    def add_velocity_motor(self, joint: str, gain: float, limit: float) -> Motor:
+        """Give a joint a motor, as `Scene.add_velocity_motor` does."""
+        name = self.scene.add_velocity_motor(joint, gain, limit)
+        self._changed = True
+        return Motor(self, name)
+
+    def changed(self) -> None:
+        """Tell that the scene was changed: MuJoCo's model is made anew before it is used next."""
+        self._changed = True
+
+    def refresh(self) -> None:
+        """Bring MuJoCo's model up to the scene, and what depends on positions up to these."""
+        if self._changed:
+            self.model, self.data = self.scene.spec.recompile(self.model, self.data)
+            self._changed, self._current = False, False
+            self.revision += 1
+        if not self._current:
+            mujoco, model, data = self._mujoco, self.model, self.data
+            mujoco.mj_kinematics(model, data)
+            mujoco.mj_comPos(model, data)
+            mujoco.mj_camlight(model, data)
+            mujoco.mj_comVel(model, data)
+            self._current = True
+
+    def reset(self) -> None:
+        """Put everything back to where it was at the start; time begins anew."""
+        self.refresh()
+        self._mujoco.mj_resetData(self.model, self.data)
+        self.time = 0
+        self._current = False
+        self.schedule.restart()
+
+    def advance(self, duration: int) -> None:
+        """Let simulated time pass, and do what is scheduled on the way.
+
+        Args:
+            duration: nanoseconds; whole steps are made until no less than these have passed.
+
+        Raises:
+            UnstableError: something is no number any more. Nothing is computed any further.
+        """
+        end = self.time + duration
+        while self.time < end:
+            due = self.schedule.next_time
+            until = end if due is None else min(end, max(due, self.time + self.step))
+            self._make_steps(-(-(until - self.time) // self.step))
+            self.schedule.run(self.time)
+
+    def call_every(self, period: int, function: Callable[[], None]) -> Task:
+        """Call a function after every so many nanoseconds of simulated time; 0 for after every step."""
+        return self.schedule.add(max(period, self.step), function, self.time)
+
+    def _make_steps(self, count: int) -> None:
+        self.refresh()
+        self._mujoco.mj_step(self.model, self.data, nstep=count)
+        self.time += count * self.step
+        self._current = False
+        if not (np.isfinite(self.data.qpos).all() and np.isfinite(self.data.qvel).all()):
+            raise self._unstable()
+
+    def _unstable(self) -> UnstableError:
+        finite = np.isfinite(self.data.qvel)
+        degree = int(np.argmin(finite)) if not finite.all() else 0
+        body = self.model.body(int(self.model.dof_bodyid[degree])).name
+        message = phrase(
+            "the simulation became unstable at {time} s: '{link}' first", time=f"{self.seconds:.3f}", link=body
+        )
+        hint = phrase("look at its mass, its inertia and what it overlaps with, or make the time step shorter")
+        return UnstableError(Diagnostic("SIM120", message, hint=hint))
+
+    def link_pose(self, name: str) -> Transform:
+        """Where the frame of a link is in the world.
+
+        Raises:
+            KeyError: there is no such link.
+        """
+        self.refresh()
+        body = self.data.body(name)
+        x, y, z = body.xpos
+        qw, qx, qy, qz = body.xquat
+        return float(x), float(y), float(z), float(qx), float(qy), float(qz), float(qw)
+
+    def link_velocity(self, name: str) -> tuple[Array, Array]:
+        """The linear velocity of the origin of a link in m/s and its angular one in rad/s, in the axes of the world."""
+        self.refresh()
+        result = np.zeros(6)
+        body = self.model.body(name).id
+        self._mujoco.mj_objectVelocity(self.model, self.data, self._mujoco.mjtObj.mjOBJ_XBODY, body, result, 0)
+        return result[3:], result[:3]
+
+    def model_pose(self, name: str) -> Transform:
+        """Where the frame of a model is in the world: it moves with its first link."""
+        root, offset = self._root(name)
+        return compose(self.link_pose(root), invert(offset))
+
+    def set_model_pose(self, name: str, pose: Transform) -> None:
+        """Put a model elsewhere; it stands still there.
+
+        Raises:
+            KeyError: there is no such model.
+            LinkwrightError: SIM103 it cannot be moved, as it is fixed to the world.
+        """
+        self.refresh()
+        root, offset = self._root(name)
+        free = self.model.body(root)
+        if free.jntnum[0] != 1 or self.model.jnt_type[free.jntadr[0]] != self._mujoco.mjtJoint.mjJNT_FREE:
+            raise LinkwrightError(Diagnostic("SIM103", phrase("'{name}' is fixed to the world", name=name)))
+        joint = self.data.joint(f"{root}#free")
+        x, y, z, qx, qy, qz, qw = compose(pose, offset)
+        joint.qpos[:] = (x, y, z, qw, qx, qy, qz)
+        joint.qvel[:] = 0.0
+        self._current = False
+
+    def _root(self, name: str) -> tuple[str, Transform]:
+        """The first link of a model, and where it is in the frame of the model."""
+        model = self.scene.models[name]
+        first = model.structure.links[0].link
+        return first.name, compose(invert(model.pose), first.pose)
+
+    def joint_state(self, name: str) -> tuple[float, float]:
+        """Position and velocity of a joint of one axis, in rad and rad/s or m and m/s.
+
+        Raises:
+            KeyError: there is no such joint, or it does not move.
+        """
+        self.refresh()
+        joint = self.data.joint(name)
+        return float(joint.qpos[0]), float(joint.qvel[0])
+
+    def set_joint_position(self, name: str, position: float) -> None:
+        """Put a joint of one axis somewhere; it stands still there."""
+        self.refresh()
+        joint = self.data.joint(name)
+        joint.qpos[0], joint.qvel[0] = position, 0.0
+        self._current = False
+
+    def push(
+        self, link: str, force: Vector3 | Sequence[float], torque: Vector3 | Sequence[float] = (0.0, 0.0, 0.0)
+    ) -> None:
+        """Let a force in N and a torque in N m act on the centre of mass of a link, in the axes of the world.
+
+        They act until they are set anew.
+        """
+        self.refresh()
+        self.data.body(link).xfrc_applied[:] = (*force, *torque)
+
+
+class Motor:
+    """A motor of a joint that holds a velocity."""
+
+    def __init__(self, simulation: Simulation, name: str) -> None:
+        self._simulation = simulation
+        self._name = name
+
+    @property
+    def target(self) -> float:
+        """The velocity that it is to hold, in rad/s (m/s)."""
+        return float(self._actuator().ctrl[0])
+
+    @target.setter
+    def target(self, velocity: float) -> None:
+        self._actuator().ctrl[0] = velocity
+
+    def _actuator(self) -> Any:
+        self._simulation.refresh()
+        return self._simulation.data.actuator(self._name)

@@ -1,0 +1,94 @@
+"""A world that moves: time, models that come and go, and that it is the same twice."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.simulation.simulation import NANOSECONDS, UnstableError
+from tests.simulation.worlds import GROUND, box, mbot, model, simulated
+
+MILLISECOND = NANOSECONDS // 1000
+
+
+def test_a_body_falls_as_galileo_says():
+    simulation = simulated(box("ball", "0 0 100 0 0 0"))
+    simulation.advance(NANOSECONDS)
+    # The semi-implicit step is behind by half a step: g t dt / 2.
+    assert simulation.model_pose("ball")[2] == pytest.approx(100 - 9.81 / 2, abs=9.81 * 0.001 / 2 + 1e-9)
+    assert simulation.link_velocity("ball::link")[0][2] == pytest.approx(-9.81, abs=1e-9)
+
+
+def test_tasks_are_called_at_their_times_in_their_order():
+    simulation = simulated(GROUND)
+    calls: list[tuple[str, int]] = []
+    simulation.call_every(3 * MILLISECOND, lambda: calls.append(("three", simulation.time // MILLISECOND)))
+    simulation.call_every(2 * MILLISECOND, lambda: calls.append(("two", simulation.time // MILLISECOND)))
+    simulation.advance(6 * MILLISECOND)
+    assert calls == [("two", 2), ("three", 3), ("two", 4), ("three", 6), ("two", 6)]
+
+
+def test_a_robot_drives_straight_on():
+    simulation = simulated(GROUND, mbot())
+    motors = [simulation.add_velocity_motor(f"mbot::{side}_joint", 20.0, 5.0) for side in ("left", "right")]
+    wheel = simulation.joint_state("mbot::left_joint")[0]
+    for hundredth in range(1, 101):
+        for motor in motors:
+            motor.target = hundredth / 100 * 0.5 / 0.06
+        simulation.advance(5 * MILLISECOND)
+    simulation.advance(9 * NANOSECONDS)
+    x, y, _z, *_ = simulation.model_pose("mbot")
+    turned = simulation.joint_state("mbot::left_joint")[0] - wheel
+    assert x == pytest.approx(turned * 0.06, abs=1e-3)
+    assert x > 4.5
+    assert abs(y) < 1e-4
+
+
+def test_the_same_twice():
+    def run() -> tuple[float, ...]:
+        simulation = simulated(GROUND, mbot(), box("box", "0.5 0.05 0.2 0 0 0", "0.2 0.2 0.2"))
+        motors = [simulation.add_velocity_motor(f"mbot::{side}_joint", 20.0, 5.0) for side in ("left", "right")]
+        motors[0].target, motors[1].target = 5.0, 6.0
+        simulation.advance(2 * NANOSECONDS)
+        return simulation.model_pose("mbot") + simulation.model_pose("box")
+
+    assert run() == run()
+
+
+def test_what_comes_and_goes_leaves_the_others_as_they_are():
+    simulation = simulated(GROUND, box("one", "0 0 5 0 0 0"))
+    simulation.advance(100 * MILLISECOND)
+    before = simulation.model_pose("one"), tuple(simulation.link_velocity("one::link")[0])
+    simulation.spawn(model(box("two", "0 0 0 0 0 0")), "two", (3.0, 0.0, 0.5, 0.0, 0.0, 0.0, 1.0))
+    assert (simulation.model_pose("one"), tuple(simulation.link_velocity("one::link")[0])) == before
+    assert simulation.model_pose("two")[:3] == (3.0, 0.0, 0.5)
+    simulation.delete("one")
+    assert simulation.model_pose("two")[:3] == (3.0, 0.0, 0.5)
+    simulation.advance(100 * MILLISECOND)
+    with pytest.raises(KeyError):
+        simulation.model_pose("one")
+
+
+def test_two_of_one_name_are_refused():
+    simulation = simulated(box("one", "0 0 5 0 0 0"))
+    with pytest.raises(LinkwrightError, match="already a model 'one'"):
+        simulation.spawn(model(box("one", "0 0 0 0 0 0")), "one")
+
+
+def test_a_reset_begins_anew():
+    simulation = simulated(GROUND, box("one", "0 0 5 0 0 0"))
+    calls: list[int] = []
+    simulation.call_every(10 * MILLISECOND, lambda: calls.append(simulation.time))
+    simulation.advance(20 * MILLISECOND)
+    simulation.reset()
+    assert simulation.time == 0
+    assert simulation.model_pose("one")[2] == 5.0
+    simulation.advance(20 * MILLISECOND)
+    assert calls == [10 * MILLISECOND, 20 * MILLISECOND] * 2
+
+
+def test_an_explosion_is_said_with_the_link():
+    simulation = simulated(box("one", "0 0 5 0 0 0"))
+    simulation.push("one::link", (0.0, float("inf"), 0.0))
+    with pytest.raises(UnstableError, match="'one::link' first"):
+        simulation.advance(NANOSECONDS)
