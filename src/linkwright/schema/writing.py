@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 from linkwright.schema.rules import AttributeRule, ElementRule
 from linkwright.xmltree import Element, Text
 
+Completion = Callable[[Element, ElementRule, Any], None]
+"""Adds to the element of an object what its rule does not read."""
 
-def write_element(rule: ElementRule, instance: Any) -> Element:
+
+def write_element(rule: ElementRule, instance: Any, complete: Completion | None = None) -> Element:
     """The element of an object, which reads back as an equal one.
 
     What is as by default is left out, unless one usually writes it.
@@ -17,22 +20,27 @@ def write_element(rule: ElementRule, instance: Any) -> Element:
     Args:
         rule: what the element is like.
         instance: the object, with a field for each attribute and child.
+        complete: called for each object that has an element of its own, with that element and its rule.
     """
     if rule.choice:
         chosen = next(child for child in rule.children if type(instance) is child.make)
         element = Element(rule.tag)
-        element.children.append(write_element(chosen, instance))
+        element.children.append(write_element(chosen, instance, complete))
         return element
     texts = {attribute.name: text for attribute in rule.attributes if (text := _text(attribute, instance)) is not None}
     element = Element(rule.tag, texts)
     if rule.text is not None and (inside := _text(rule.text, instance)) is not None:
         element.children.append(Text(inside))
     for child in rule.children:
-        element.children += _inner(child, instance)
+        element.children += _inner(child, instance, complete)
+    if rule.nests:
+        element.children += (write_element(rule, each, complete) for each in rule.value_in(instance))
+    if complete is not None and not rule.is_inline:
+        complete(element, rule, instance)
     return element
 
 
-def _inner(rule: ElementRule, instance: Any) -> Iterator[Element]:
+def _inner(rule: ElementRule, instance: Any, complete: Completion | None) -> Iterator[Element]:
     if rule.is_inline:
         element = write_element(rule, instance)
         if element.attributes or element.children or rule.required:
@@ -40,8 +48,8 @@ def _inner(rule: ElementRule, instance: Any) -> Iterator[Element]:
         return
     inner = rule.value_in(instance)
     for each in inner if rule.many else (inner,):
-        if each != rule.default:
-            yield write_element(rule, each)
+        if each is not None and (each != rule.default or (rule.located and each is not rule.default)):
+            yield write_element(rule, each, complete)
 
 
 def _text(attribute: AttributeRule, instance: Any) -> str | None:

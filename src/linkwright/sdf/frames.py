@@ -115,10 +115,9 @@ class Frames:
         Raises:
             FrameError: as for `pose`.
         """
-        expressed_in = axis.expressed_in or (MODEL if axis.use_parent_model_frame else "")
-        if not expressed_in:
+        if not axis.expressed_in:
             return axis.xyz
-        in_owner = rotate(self.pose(expressed_in)[3:], axis.xyz)
+        in_owner = rotate(self.pose(axis.expressed_in)[3:], axis.xyz)
         return rotate(invert(self.pose(joint.name))[3:], in_owner)
 
     def link(self, name: str) -> str:

@@ -12,9 +12,9 @@ from typing import Any
 
 from linkwright.geometry.vectors import Vector3
 from linkwright.schema import AttributeRule, ElementRule
-from linkwright.sdf.poses import AT_ORIGIN, POSE, RawPose
+from linkwright.sdf.poses import AT_ORIGIN, MODEL, POSE, RawPose
 from linkwright.sdf.sensors import SENSOR, Sensor
-from linkwright.sdf.values import NUMBER, TEXT, TRUTH, VECTOR3, choice, made, name_of, value
+from linkwright.sdf.values import NUMBER, TEXT, TRUTH, VECTOR3, choice, made, name_of, unwritten, value
 from linkwright.xmltree import Element
 
 JOINT_TYPES = (
@@ -72,13 +72,11 @@ class Axis:
     Attributes:
         xyz: its direction in the frame `expressed_in`.
         expressed_in: a frame; empty for that of the joint.
-        use_parent_model_frame: whether `xyz` is in the frame of the model instead (up to SDF 1.6).
         initial_position: in rad or m, before SDF 1.9.
     """
 
     xyz: Vector3 = (0.0, 0.0, 1.0)
     expressed_in: str = ""
-    use_parent_model_frame: bool = False
     limit: AxisLimit = AxisLimit()
     dynamics: AxisDynamics = AxisDynamics()
     mimic: AxisMimic | None = None
@@ -123,9 +121,9 @@ class _Physics:
     ode: _Physics | None = None
 
 
-def _axis(xyz: tuple[Vector3, str] | None, **parts: Any) -> Axis:
+def _axis(xyz: tuple[Vector3, str] | None, use_parent_model_frame: bool, **parts: Any) -> Axis:
     direction, expressed_in = xyz or ((0.0, 0.0, 1.0), "")
-    return Axis(direction, expressed_in, **parts)
+    return Axis(direction, expressed_in or (MODEL if use_parent_model_frame else ""), **parts)
 
 
 def _direction(said: Vector3, expressed_in: str) -> tuple[Vector3, str]:
@@ -166,14 +164,24 @@ def _axis_rule(tag: str, meaning: str) -> ElementRule:
                     "expressed_in", TEXT, "the frame of the direction; that of the joint when absent", default=""
                 ),
             ),
-            text=AttributeRule("text", VECTOR3, "the direction, a vector of length 1", default="0 0 1", field="said"),
+            text=AttributeRule(
+                "text",
+                VECTOR3,
+                "the direction, a vector of length 1",
+                default="0 0 1",
+                usual=True,
+                field="said",
+                get=lambda axis: axis.xyz,
+            ),
             make=_direction,
+            get=lambda axis: axis,
         ),
         value(
             "use_parent_model_frame",
             TRUTH,
             "whether the direction is in the frame of the model, up to SDF 1.6",
             default="false",
+            get=unwritten,
         ),
         value("initial_position", NUMBER, "where the joint begins", "rad or m", default="0"),
         made(
@@ -228,8 +236,20 @@ JOINT = ElementRule(
         value("child", TEXT, "the link or frame it moves", default="", required=True),
         _axis_rule("axis", "its axis"),
         _axis_rule("axis2", "its second axis"),
-        value("screw_thread_pitch", NUMBER, "metres for each revolution of a screw", "m"),
-        value("thread_pitch", NUMBER, "the older word for the pitch of a screw, with the other sign", "rad/m"),
+        value(
+            "screw_thread_pitch",
+            NUMBER,
+            "metres for each revolution of a screw",
+            "m",
+            get=lambda joint: joint.thread_pitch,
+        ),
+        value(
+            "thread_pitch",
+            NUMBER,
+            "the older word for the pitch of a screw, with the other sign",
+            "rad/m",
+            get=unwritten,
+        ),
         value(
             "gearbox_ratio", NUMBER, "how often the parent of a gearbox turns for one turn of the child", default="1"
         ),
@@ -245,6 +265,7 @@ JOINT = ElementRule(
                 "the same for ODE",
                 value("provide_feedback", TRUTH, "whether the forces in it are measured", default="false"),
             ),
+            get=lambda joint: _Physics(joint.provide_feedback) if joint.provide_feedback else None,
         ),
         SENSOR,
     ),

@@ -130,9 +130,9 @@ class Link:
 
 
 _TENSOR = (
-    value("ixx", NUMBER, "the xx component", "kg m2", default="1"),
-    value("iyy", NUMBER, "the yy component", "kg m2", default="1"),
-    value("izz", NUMBER, "the zz component", "kg m2", default="1"),
+    value("ixx", NUMBER, "the xx component", "kg m2", default="1", usual=True),
+    value("iyy", NUMBER, "the yy component", "kg m2", default="1", usual=True),
+    value("izz", NUMBER, "the zz component", "kg m2", default="1", usual=True),
     value("ixy", NUMBER, "the xy component", "kg m2", default="0"),
     value("ixz", NUMBER, "the xz component", "kg m2", default="0"),
     value("iyz", NUMBER, "the yz component", "kg m2", default="0"),
@@ -143,7 +143,7 @@ INERTIAL = ElementRule(
     "mass properties",
     (AttributeRule("auto", TRUTH, "whether they are worked out from the collisions", default="false"),),
     (
-        value("mass", NUMBER, "the mass", "kg", default="1"),
+        value("mass", NUMBER, "the mass", "kg", default="1", usual=True),
         POSE,
         made(
             Inertia,

@@ -72,6 +72,6 @@ def _connected(joint: Joint, frame: str) -> Joint:
 
 def _turned(axis: Axis | None, frame: str) -> Axis | None:
     """An axis that was in the frame of its model."""
-    if axis is None or not (axis.expressed_in == MODEL or axis.use_parent_model_frame):
+    if axis is None or axis.expressed_in != MODEL:
         return axis
-    return replace(axis, expressed_in=frame, use_parent_model_frame=False)
+    return replace(axis, expressed_in=frame)

@@ -5,10 +5,10 @@ Source of the elements and defaults: the SDFormat specification 1.12, ``noise.sd
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from linkwright.schema import AttributeRule, ElementRule
-from linkwright.sdf.values import NUMBER, TEXT, made, value
+from linkwright.sdf.values import NUMBER, TEXT, made, unwritten, value
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +72,10 @@ def noise_rule(tag: str = "noise", meaning: str = "noise on the value", target: 
         tag,
         meaning,
         (AttributeRule("type", TEXT, "none, gaussian or gaussian_quantized", default=""),),
-        (value("type", TEXT, "the kind of noise, up to SDF 1.4", default="", field="said_type"), *_NOISE_PARTS),
+        (
+            value("type", TEXT, "the kind of noise, up to SDF 1.4", default="", field="said_type", get=unwritten),
+            *_NOISE_PARTS,
+        ),
         make=_noise_of,
         keeps=True,
         default=NO_NOISE,
@@ -82,7 +85,8 @@ def noise_rule(tag: str = "noise", meaning: str = "noise on the value", target: 
 
 def around_noise(tag: str, meaning: str, target: str = "") -> ElementRule:
     """An element that has nothing but noise in it, and stands for that."""
-    return made(_inner, tag, meaning, noise_rule(), default=NO_NOISE, field=target or tag)
+    inside = replace(noise_rule(), get=_inner)
+    return made(_inner, tag, meaning, inside, default=NO_NOISE, field=target or tag)
 
 
 def _inner(noise: Noise) -> Noise:

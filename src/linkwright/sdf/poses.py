@@ -8,7 +8,7 @@ from typing import Any
 from linkwright.geometry.single import IDENTITY_POSE, Pose
 from linkwright.schema import UNREADABLE, AttributeRule, ElementRule, Report
 from linkwright.sdf.values import POSE as POSE_NUMBERS
-from linkwright.sdf.values import TEXT, TRUTH, choice, pose_of
+from linkwright.sdf.values import TEXT, TRUTH, choice, pose_of, unwritten
 from linkwright.xmltree import Element
 
 WORLD = "world"
@@ -60,16 +60,25 @@ POSE = ElementRule(
             "the frame, link, joint or model in which the pose is given",
             default="",
         ),
-        AttributeRule("frame", TEXT, "the name of relative_to before SDF 1.7", default=""),
-        AttributeRule("degrees", TRUTH, "whether the angles are in degrees", default="false"),
+        AttributeRule("frame", TEXT, "the name of relative_to before SDF 1.7", default="", get=unwritten),
+        AttributeRule("degrees", TRUTH, "whether the angles are in degrees", default="false", get=unwritten),
         AttributeRule(
             "rotation_format",
             choice("euler_rpy", "quat_xyzw"),
             "quat_xyzw where a quaternion x y z w stands for the angles",
             default="euler_rpy",
+            get=lambda raw: "euler_rpy" if raw.pose.quaternion is None else "quat_xyzw",
         ),
     ),
-    text=AttributeRule("text", POSE_NUMBERS, "the pose", default="0 0 0 0 0 0", field="numbers"),
+    text=AttributeRule(
+        "text",
+        POSE_NUMBERS,
+        "the pose",
+        default="0 0 0 0 0 0",
+        usual=True,
+        field="numbers",
+        get=lambda raw: (*raw.pose.xyz, *(raw.pose.quaternion or raw.pose.rpy)),
+    ),
     make=_written,
     check=_read,
     default=AT_ORIGIN,

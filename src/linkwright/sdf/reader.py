@@ -32,7 +32,7 @@ _OTHER_FORMATS = {
     "launch": phrase("a launch file"),
 }
 
-_WITHOUT_EFFECT = {
+WITHOUT_EFFECT = {
     "world": {"audio", "gui", "population"},
     "physics": {"bullet", "dart", "ode", "profile", "simbody"},
     "scene": {"fog", "sky", "cloud"},
@@ -93,7 +93,7 @@ _WITHOUT_EFFECT = {
     "metal": {"subsurface"},
 }
 """Words of SDF that have no effect here, by the elements that they stand in."""
-_OPEN = frozenset({"plugin", "gui"})
+OPEN = frozenset({"plugin", "gui"})
 """Elements that hold what others than SDF decide."""
 
 
@@ -185,7 +185,7 @@ def _known(root: Element, rule: ElementRule) -> Iterator[tuple[Element, ElementR
     waiting = [(root, rule)]
     while waiting:
         element, rule = waiting.pop()
-        if rule.tag in _OPEN:
+        if rule.tag in OPEN:
             continue
         yield element, rule
         rules = rule.child_rules
@@ -195,7 +195,7 @@ def _known(root: Element, rule: ElementRule) -> Iterator[tuple[Element, ElementR
 
 def _is_let_be(element: Element, rule: ElementRule) -> bool:
     """Whether an element that is not read is no mistake: one with a prefix, or a word of SDF without effect here."""
-    return ":" in element.tag or element.tag in _WITHOUT_EFFECT.get(rule.tag, ())
+    return ":" in element.tag or element.tag in WITHOUT_EFFECT.get(rule.tag, ())
 
 
 def _check_names(element: Element, rule: ElementRule, report: SdfReport) -> None:

@@ -5,7 +5,8 @@ Source of the elements and defaults: the SDFormat specification 1.12, ``sensor.s
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from operator import attrgetter, itemgetter
 from typing import Any
 
 from linkwright.geometry.vectors import Vector3
@@ -14,7 +15,7 @@ from linkwright.sdf.cameras import CAMERA, Camera
 from linkwright.sdf.noise import NO_NOISE, NO_NOISE_XYZ, Noise, NoiseXyz, around_noise, noise_rule, noise_xyz
 from linkwright.sdf.plugins import PLUGIN, Plugin
 from linkwright.sdf.poses import AT_ORIGIN, POSE, RawPose
-from linkwright.sdf.values import INTEGER, NUMBER, TEXT, TRUTH, VECTOR3, made, name_of, value
+from linkwright.sdf.values import INTEGER, NUMBER, TEXT, TRUTH, VECTOR3, made, name_of, unwritten, value
 from linkwright.xmltree import Element
 
 
@@ -226,6 +227,7 @@ def _lidar(tag: str) -> ElementRule:
             _sweep("horizontal", "the rays about z", 640),
             _sweep("vertical", "the rays upwards", 1),
             default=_Scan(),
+            get=lambda lidar: _Scan(lidar.horizontal, lidar.vertical),
         ),
         _RANGE,
         noise_rule(),
@@ -265,12 +267,15 @@ _IMU = made(
         ElementRule(
             "custom_rpy",
             "roll, pitch, yaw of the custom frame",
-            (AttributeRule("parent_frame", TEXT, "the frame that it is against", default=""),),
-            text=AttributeRule("text", VECTOR3, "roll, pitch, yaw", "rad", default="0 0 0", field="said"),
+            (AttributeRule("parent_frame", TEXT, "the frame that it is against", default="", get=itemgetter(1)),),
+            text=AttributeRule(
+                "text", VECTOR3, "roll, pitch, yaw", "rad", default="0 0 0", field="said", get=itemgetter(0)
+            ),
             make=_custom,
             default=((0.0, 0.0, 0.0), ""),
         ),
         default=_Reference(),
+        get=lambda imu: _Reference(imu.localization, (imu.custom_rpy, imu.custom_parent_frame)),
     ),
 )
 
@@ -291,16 +296,19 @@ def _navsat_of(position_sensing: _Sensing, velocity_sensing: _Sensing) -> Navsat
 
 
 def _navsat(tag: str) -> ElementRule:
-    def sensing(name: str, meaning: str) -> ElementRule:
+    def sensing(kind: str, meaning: str) -> ElementRule:
         parts = (around_noise("horizontal", "across the ground"), around_noise("vertical", "upwards"))
-        return made(_Sensing, name, meaning, *parts, default=_Sensing())
+        both = attrgetter(f"horizontal_{kind}", f"vertical_{kind}")
+        return made(
+            _Sensing, f"{kind}_sensing", meaning, *parts, default=_Sensing(), get=lambda navsat: _Sensing(*both(navsat))
+        )
 
     return made(
         _navsat_of,
         tag,
         "noise of a satellite receiver",
-        sensing("position_sensing", "noise on the position"),
-        sensing("velocity_sensing", "noise on the velocity"),
+        sensing("position", "noise on the position"),
+        sensing("velocity", "noise on the velocity"),
     )
 
 
@@ -352,12 +360,18 @@ SENSOR = ElementRule(
         value("visualize", TRUTH, "whether what it measures is drawn", default="false"),
         value("enable_metrics", TRUTH, "whether it tells how fast it is", default="false"),
         value("topic", TEXT, "where it publishes", default=""),
-        value("frame_id", TEXT, "the frame of its messages", default=""),
-        value("gz_frame_id", TEXT, "the frame of its messages, before SDF 1.12", default=""),
-        value("ignition_frame_id", TEXT, "the frame of its messages, in older files", default=""),
+        value("frame_id", TEXT, "the frame of its messages", default="", get=unwritten),
+        value(
+            "gz_frame_id",
+            TEXT,
+            "the frame of its messages, before SDF 1.12",
+            default="",
+            get=lambda sensor: sensor.frame_id,
+        ),
+        value("ignition_frame_id", TEXT, "the frame of its messages, in older files", default="", get=unwritten),
         CAMERA,
         _lidar("lidar"),
-        _lidar("ray"),
+        replace(_lidar("ray"), get=unwritten),
         _IMU,
         made(
             ContactSensor,
@@ -367,7 +381,7 @@ SENSOR = ElementRule(
             value("topic", TEXT, "the topic of its messages", default="__default_topic__"),
         ),
         _navsat("navsat"),
-        _navsat("gps"),
+        replace(_navsat("gps"), get=unwritten),
         noise_xyz("magnetometer", "noise of a magnetometer", None),
         made(
             Altimeter,

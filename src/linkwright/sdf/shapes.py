@@ -5,6 +5,7 @@ Source of the elements and defaults: the SDFormat specification 1.12, ``geometry
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere
@@ -138,9 +139,14 @@ def _shape(**shapes: Shape | tuple[Polyline, ...] | None) -> Shape:
     return next((shape for shape in shapes.values() if shape), NO_SHAPE)
 
 
-_RADIUS = value("radius", NUMBER, "radius", "m", default="1")
-_LENGTH = value("length", NUMBER, "length along z", "m", default="1")
-_HALF = value("radius", NUMBER, "radius", "m", default="0.5")
+def _if(kind: type) -> Callable[[Shape], Shape | None]:
+    """What is written of a shape in the place of one kind."""
+    return lambda shape: shape if isinstance(shape, kind) else None
+
+
+_RADIUS = value("radius", NUMBER, "radius", "m", default="1", usual=True)
+_LENGTH = value("length", NUMBER, "length along z", "m", default="1", usual=True)
+_HALF = value("radius", NUMBER, "radius", "m", default="0.5", usual=True)
 _URI = value("uri", TEXT, "model://MODEL/PATH, package://PACKAGE/PATH, file://PATH or a path from the file", default="")
 
 GEOMETRY = made(
@@ -151,24 +157,27 @@ GEOMETRY = made(
         Box,
         "box",
         "a box centred at the origin",
-        value("size", VECTOR3, "edge lengths along x, y, z", "m", default="1 1 1"),
+        value("size", VECTOR3, "edge lengths along x, y, z", "m", default="1 1 1", usual=True),
+        get=_if(Box),
     ),
-    made(Capsule, "capsule", "a cylinder along z with a half sphere at each end", _HALF, _LENGTH),
-    made(Cone, "cone", "a cone along z, its tip above", _HALF, _LENGTH),
-    made(Cylinder, "cylinder", "a cylinder along z, centred at the origin", _RADIUS, _LENGTH),
+    made(Capsule, "capsule", "a cylinder along z with a half sphere at each end", _HALF, _LENGTH, get=_if(Capsule)),
+    made(Cone, "cone", "a cone along z, its tip above", _HALF, _LENGTH, get=_if(Cone)),
+    made(Cylinder, "cylinder", "a cylinder along z, centred at the origin", _RADIUS, _LENGTH, get=_if(Cylinder)),
     made(
         Ellipsoid,
         "ellipsoid",
         "an ellipsoid centred at the origin",
-        value("radii", VECTOR3, "semi-axes along x, y, z", "m", default="1 1 1"),
+        value("radii", VECTOR3, "semi-axes along x, y, z", "m", default="1 1 1", usual=True),
+        get=_if(Ellipsoid),
     ),
-    made(Sphere, "sphere", "a sphere centred at the origin", _RADIUS),
+    made(Sphere, "sphere", "a sphere centred at the origin", _RADIUS, get=_if(Sphere)),
     made(
         Plane,
         "plane",
         "a plane without end",
-        value("normal", VECTOR3, "the direction that it faces", default="0 0 1"),
-        value("size", VECTOR2, "how much of it is drawn", "m", default="1 1"),
+        value("normal", VECTOR3, "the direction that it faces", default="0 0 1", usual=True),
+        value("size", VECTOR2, "how much of it is drawn", "m", default="1 1", usual=True),
+        get=_if(Plane),
     ),
     made(
         Mesh,
@@ -183,13 +192,14 @@ GEOMETRY = made(
             value("name", TEXT, "the name of the part in the file", default=""),
             value("center", TRUTH, "whether the part is moved to the origin", default="false"),
         ),
+        get=_if(Mesh),
     ),
     made(
         Heightmap,
         "heightmap",
         "a ground whose heights are in an image",
         _URI,
-        value("size", VECTOR3, "its extent along x, y and z", "m", default="1 1 1"),
+        value("size", VECTOR3, "its extent along x, y and z", "m", default="1 1 1", usual=True),
         value("pos", VECTOR3, "the offset of its middle", "m", default="0 0 0", field="position"),
         made(
             TerrainTexture,
@@ -211,6 +221,7 @@ GEOMETRY = made(
             field="blends",
         ),
         value("sampling", INTEGER, "how many heights are made of one pixel", default="2"),
+        get=_if(Heightmap),
     ),
     made(
         Image,
@@ -221,15 +232,17 @@ GEOMETRY = made(
         value("threshold", INTEGER, "the brightness from 0 to 255 from which there is a box", default="200"),
         value("height", NUMBER, "height of the boxes", "m", default="1"),
         value("granularity", INTEGER, "how many pixels make one box along each side", default="1"),
+        get=_if(Image),
     ),
     made(
         Polyline,
         "polyline",
         "a polygon raised to a height; several of them cut holes into each other",
         values("point", VECTOR2, "a corner: x and y in metres"),
-        value("height", NUMBER, "its height along z", "m", default="1"),
+        value("height", NUMBER, "its height along z", "m", default="1", usual=True),
         many=True,
+        get=lambda shape: shape if isinstance(shape, tuple) else (),
     ),
-    made(Empty, "empty", "no shape"),
+    made(Empty, "empty", "no shape", get=_if(Empty)),
     default=NO_SHAPE,
 )

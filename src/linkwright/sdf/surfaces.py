@@ -6,10 +6,11 @@ Source of the elements and defaults: the SDFormat specification 1.12, ``surface.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TypeVar
 
 from linkwright.geometry.vectors import Vector3
 from linkwright.schema import AttributeRule, ElementRule
-from linkwright.sdf.values import INTEGER, NUMBER, TEXT, TRUTH, VECTOR3, made, value
+from linkwright.sdf.values import INTEGER, NUMBER, TEXT, TRUTH, VECTOR3, made, unwritten, value
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,6 +152,26 @@ def _surface(friction: _FrictionGroup | None, contact: _ContactGroup | None, bou
     )
 
 
+_Group = TypeVar("_Group")
+
+
+def _different(group: _Group, usual: _Group) -> _Group | None:
+    """What is to be written of a group: nothing where all is as usual."""
+    return None if group == usual else group
+
+
+def _friction_group(surface: Surface) -> _FrictionGroup | None:
+    group = _FrictionGroup(surface.friction, surface.bullet_friction, surface.torsional)
+    return _different(group, _FrictionGroup(None, None, None))
+
+
+def _contact_group(surface: Surface) -> _ContactGroup | None:
+    group = _ContactGroup(
+        surface.contact, surface.collide_without_contact, surface.collide_bitmask, surface.category_bitmask
+    )
+    return _different(group, _ContactGroup())
+
+
 _ODE_FRICTION = made(
     _friction,
     "ode",
@@ -161,11 +182,28 @@ _ODE_FRICTION = made(
         "fdir1",
         "the first direction of friction",
         (
-            AttributeRule("gz:expressed_in", TEXT, "the frame of the direction", default="", field="new"),
-            AttributeRule("ignition:expressed_in", TEXT, "the frame of the direction", default="", field="old"),
+            AttributeRule(
+                "gz:expressed_in",
+                TEXT,
+                "the frame of the direction",
+                default="",
+                field="new",
+                get=lambda friction: friction.expressed_in,
+            ),
+            AttributeRule(
+                "ignition:expressed_in", TEXT, "the frame of the direction", default="", field="old", get=unwritten
+            ),
         ),
-        text=AttributeRule("text", VECTOR3, "the direction", default="0 0 0", field="said"),
+        text=AttributeRule(
+            "text",
+            VECTOR3,
+            "the direction",
+            default="0 0 0",
+            field="said",
+            get=lambda friction: friction.direction,
+        ),
         make=_direction,
+        get=lambda friction: friction if any(friction.direction) or friction.expressed_in else None,
     ),
     value("slip1", NUMBER, "sliding for each newton along the first direction", "m/s/N", default="0"),
     value("slip2", NUMBER, "sliding for each newton across it", "m/s/N", default="0"),
@@ -197,6 +235,7 @@ SURFACE = made(
             value("patch_radius", NUMBER, "radius of the patch that touches", "m", default="0"),
             value("surface_radius", NUMBER, "radius of the surface where it touches", "m", default="0"),
         ),
+        get=_friction_group,
     ),
     made(
         _ContactGroup,
@@ -216,6 +255,7 @@ SURFACE = made(
         value("collide_without_contact", TRUTH, "whether touching is told and has no effect", default="false"),
         value("collide_bitmask", INTEGER, "which shapes it touches: those with a bit in common", default="65535"),
         value("category_bitmask", INTEGER, "the bits that others see of it", default="65535"),
+        get=_contact_group,
     ),
     made(
         _Bounce,
@@ -231,6 +271,7 @@ SURFACE = made(
         value(
             "threshold", NUMBER, "the speed above which it bounces", "m/s", default="100000", field="bounce_threshold"
         ),
+        get=lambda surface: _different(_Bounce(surface.restitution, surface.bounce_threshold), _Bounce()),
     ),
     default=USUAL_SURFACE,
 )

@@ -131,21 +131,29 @@ def value(
     default: str | None = None,
     field: str = "",
     required: bool = False,
+    usual: bool = False,
+    get: Callable[[Any], Any] | None = None,
 ) -> ElementRule:
     """An element that says one value, as ``<mass>2.5</mass>`` does."""
-    rule = AttributeRule("text", kind, meaning, unit, required=required, default=default, field=field or tag)
+    rule = AttributeRule(
+        "text", kind, meaning, unit, required=required, default=default, usual=usual, field=field or tag, get=get
+    )
     absent = None if default is None else kind.read(default)
     return ElementRule(tag, meaning, text=rule, required=required, default=(absent,))
 
 
 def values(tag: str, kind: ValueType, meaning: str, *, field: str = "") -> ElementRule:
     """An element that may come any number of times, each with one value."""
-    rule = AttributeRule("text", kind, meaning, field="said")
+    rule = AttributeRule("text", kind, meaning, field="said", get=_only)
     return ElementRule(tag, meaning, text=rule, many=True, make=_only, field=field or f"{tag}s")
 
 
 def _only(said: Any) -> Any:
     return said
+
+
+def unwritten(_: Any) -> None:
+    """What is written of a word that another one stands for today."""
 
 
 def name_of(meaning: str = "its name, unique among its kind in the model or world") -> AttributeRule:
@@ -170,6 +178,8 @@ def pose_of(found: tuple[float, ...], degrees: bool, rotation_format: str) -> Po
         length = (qx * qx + qy * qy + qz * qz + qw * qw) ** 0.5
         if length == 0.0:
             raise ValueError(found)
+        if abs(length - 1.0) < 1e-12:
+            length = 1.0  # one that was written by a program stays the same to the last bit
         quaternion: Quaternion = (qx / length, qy / length, qz / length, qw / length)
         return Pose((x, y, z), rpy_from_quaternion(quaternion), quaternion)
     x, y, z, roll, pitch, yaw = found

@@ -68,6 +68,7 @@ class Scene:
     shadows: bool = True
     grid: bool = True
     origin_visual: bool = True
+    element: Element | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -323,6 +324,7 @@ WORLD = ElementRule(
             "wind",
             "the wind",
             value("linear_velocity", VECTOR3, "its velocity", "m/s", default="0 0 0"),
+            get=lambda world: _Wind(world.wind) if any(world.wind) else None,
         ),
         PHYSICS,
         made(
@@ -334,6 +336,7 @@ WORLD = ElementRule(
             value("shadows", TRUTH, "whether there are shadows", default="true"),
             value("grid", TRUTH, "whether a grid is drawn", default="true"),
             value("origin_visual", TRUTH, "whether the origin is drawn", default="true"),
+            located=True,
             default=Scene(),
         ),
         made(

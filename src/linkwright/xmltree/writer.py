@@ -48,6 +48,26 @@ def write_element(element: Element) -> str:
     return "".join(pieces)
 
 
+def tidied(root: Element) -> Element:
+    """A copy whose texts beside elements have no blanks around them, or writing would add some each time."""
+    top = Element(root.tag, dict(root.attributes))
+    todo = [(root, top)]  # not by recursion: what is nested too deep is for the writer to say
+    while todo:
+        element, copy = todo.pop()
+        mixed = any(not isinstance(child, Text) for child in element.children)
+        for child in element.children:
+            if isinstance(child, Element):
+                inner = Element(child.tag, dict(child.attributes))
+                copy.children.append(inner)
+                todo.append((child, inner))
+            elif mixed and isinstance(child, Text) and not child.cdata:
+                if text := child.data.strip():
+                    copy.children.append(Text(text))
+            else:
+                copy.children.append(child)
+    return top
+
+
 def _write_nodes(nodes: Iterable[Node], put: Callable[[str], None]) -> None:
     # A loop with its own stack: documents may be nested deeper than Python's calls.
     stack: list[tuple[Iterator[Node], str]] = []

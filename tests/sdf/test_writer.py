@@ -1,0 +1,158 @@
+"""Writing worlds and models: reading what was written gives what it was written from."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+
+from linkwright.descriptions import examine_world
+from linkwright.geometry.single import Pose
+from linkwright.packages import PackageFinder
+from linkwright.sdf.actors import Actor
+from linkwright.sdf.joints import Joint
+from linkwright.sdf.lights import Light
+from linkwright.sdf.links import Link
+from linkwright.sdf.models import Frame, Include, Model
+from linkwright.sdf.poses import RawPose
+from linkwright.sdf.reader import read
+from linkwright.sdf.sensors import Sensor
+from linkwright.sdf.text import parse_as_gazebo
+from linkwright.sdf.worlds import Road, State, World
+from linkwright.sdf.writer import save
+from tests.sdf.objects import objects
+from tests.sdf.worlds import model, read_sdf, world
+
+WORLDS = Path(__file__).parents[3] / "shared" / "worlds"
+MANIFEST = WORLDS / "manifest.json"
+
+
+def read_back(text):
+    """What a text says, whatever is wrong with it."""
+    document, warnings = parse_as_gazebo(text, "w.sdf")
+    assert warnings == ()
+    sdf = read(document).sdf
+    assert sdf is not None
+    return sdf
+
+
+def again(thing):
+    """A world or model after writing and reading."""
+    sdf = read_back(save(thing))
+    return sdf.worlds[0] if isinstance(thing, World) else sdf.models[0]
+
+
+def same(kind, make):
+    """Whether any object of a class, put into a model or world, is the same after writing and reading."""
+
+    @settings(deadline=None, max_examples=15, suppress_health_check=list(HealthCheck))
+    @given(part=objects(kind))
+    def check(part):
+        whole = make(part)
+        assert again(whole) == whole
+
+    check()
+
+
+@pytest.mark.parametrize(
+    ("kind", "make"),
+    [
+        (Frame, lambda part: Model("m", frames=(part,))),
+        (Include, lambda part: Model("m", includes=(part,))),
+        (Joint, lambda part: Model("m", joints=(part,))),
+        (Link, lambda part: Model("m", links=(part,))),
+        (Model, lambda part: Model("m", models=(part,))),
+        (Sensor, lambda part: Model("m", links=(Link("l", sensors=(part,)),))),
+        (Actor, lambda part: World("w", actors=(part,))),
+        (Light, lambda part: World("w", lights=(part,))),
+        (Road, lambda part: World("w", roads=(part,))),
+        (State, lambda part: World("w", states=(part,))),
+        (World, lambda part: part),
+    ],
+)
+def test_anything_reads_back_as_it_was(kind, make):
+    same(kind, make)
+
+
+def test_what_is_usual_is_left_out():
+    assert save(Model("m", links=(Link("l"),))) == (
+        '<?xml version="1.0" ?>\n<sdf version="1.11">\n  <model name="m">\n    <link name="l"/>\n  </model>\n</sdf>\n'
+    )
+
+
+def test_sizes_masses_and_poses_are_written_out():
+    inertial = "<inertial><inertia><ixy>0.1</ixy></inertia></inertial>"
+    collision = '<collision name="c"><geometry><box/></geometry></collision>'
+    text = save(model(f'<link name="l">{inertial}{collision}</link>'))
+    assert "<mass>1</mass>" in text
+    assert "<ixx>1</ixx>" in text
+    assert "<size>1 1 1</size>" in text
+    framed = Model("m", frames=(Frame("f", pose=RawPose(relative_to="l")),))
+    assert '<pose relative_to="l">0 0 0 0 0 0</pose>' in save(framed)
+
+
+def test_the_inside_of_plugins_and_words_without_effect_stay():
+    inside = (
+        '<physics name="p" type="ode"><ode><solver><iters>50</iters></solver></ode></physics>'
+        '<scene><sky><clouds/></sky></scene><gui><camera name="user"/></gui>'
+        '<plugin name="p" filename="f.so" more="x"><a b="c">d</a><!-- e --></plugin>'
+    )
+    text = save(world(inside))
+    assert "<iters>50</iters>" in text
+    assert "<clouds/>" in text
+    assert '<camera name="user"/>' in text
+    assert '<a b="c">d</a>' in text
+    assert 'more="x"' in text
+    assert save(read_sdf(text)) == text
+
+
+def test_prefixes_are_declared():
+    document, warnings = parse_as_gazebo(
+        '<sdf version="1.9"><model name="m"><link name="l"/><gz:policy a="1"/></model></sdf>', "m.sdf"
+    )
+    assert len(warnings) == 1
+    sdf = read(document).sdf
+    assert sdf is not None
+    text = save(sdf)
+    assert '<gz:policy a="1"/>' in text
+    assert read_back(text) == replace(sdf, version="1.11")
+
+
+def test_the_axis_of_an_old_file_is_in_the_frame_of_its_model():
+    axis = "<axis><xyz>1 0 0</xyz><use_parent_model_frame>true</use_parent_model_frame></axis>"
+    joint = f'<joint name="j" type="revolute"><parent>a</parent><child>b</child>{axis}</joint>'
+    text = save(model(f'<link name="a"/><link name="b"/>{joint}'))
+    assert '<xyz expressed_in="__model__">1 0 0</xyz>' in text
+
+
+def test_a_quaternion_stays_one():
+    half = 0.5**0.5
+    pose = f'<pose rotation_format="quat_xyzw">1 2 3 0 0 {half} {half}</pose>'
+    found = model(f'<link name="a">{pose}</link>')
+    assert found.links[0].pose.pose.quaternion == (0.0, 0.0, half, half)
+    assert again(found) == found
+    assert again(Model("m", RawPose(Pose((1.0, 2.0, 3.0), (0.1, 0.2, 0.3))))).pose.pose.rpy == (0.1, 0.2, 0.3)
+
+
+def _files():
+    if not MANIFEST.is_file():
+        return []
+    items = json.loads(MANIFEST.read_text(encoding="utf-8"))["items"]
+    return sorted({each["entry"] for each in items if each["entry"].endswith((".world", ".sdf"))})
+
+
+def said(sdf):
+    """A file as a text in which nan is nan, which an inertia in one of these worlds is, and -0 is 0."""
+    return repr(sdf).replace("-0.0,", "0.0,").replace("-0.0)", "0.0)")
+
+
+@pytest.mark.parametrize("entry", _files())
+def test_real_worlds_and_models(entry):
+    path = WORLDS / entry
+    finder = PackageFinder(start=path.parent, environment={})
+    found = examine_world(path, packages=finder, environment={"HOME": "/nowhere"})
+    assert found.sdf is not None
+    assert said(read_back(save(found.sdf))) == said(replace(found.sdf, version="1.11"))
