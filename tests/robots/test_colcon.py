@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from linkwright.packages import PackageFinder
-from tests.places import PACKAGE
+from tests.places import GAZEBO_PACKAGE, PACKAGE
 from tests.robots.workspaces import colcon_build, sourced
 
 pytestmark = pytest.mark.slow
@@ -59,3 +59,15 @@ def test_sourcing_the_workspace_makes_the_package_known(workspace: Path) -> None
     assert prefix == str(workspace / "install" / PACKAGE.name)
     finder = PackageFinder(start=Path("/"), environment={"AMENT_PREFIX_PATH": prefix})
     assert finder.share(PACKAGE.name).resolve() == share(workspace).resolve()
+
+
+def test_the_package_of_worlds_is_installed_whole(tmp_path: Path) -> None:
+    source = tmp_path / "src" / GAZEBO_PACKAGE.name
+    shutil.copytree(GAZEBO_PACKAGE, source, ignore=shutil.ignore_patterns("__pycache__", "*.egg-info"))
+    colcon_build(tmp_path, GAZEBO_PACKAGE.name)
+    installed = tmp_path / "install" / GAZEBO_PACKAGE.name / "share" / GAZEBO_PACKAGE.name
+    for folder in ("config", "launch", "models", "rviz", "worlds"):
+        written = {path.relative_to(source) for path in (source / folder).rglob("*") if path.is_file()}
+        assert written == {path.relative_to(installed) for path in (installed / folder).rglob("*") if path.is_file()}
+        assert all((installed / path).read_bytes() == (source / path).read_bytes() for path in written)
+    assert (installed / "package.xml").is_file()

@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Installs the Python module, and into the share folder everything that ROS tools look for there."""
+
+from pathlib import Path
+
+from setuptools import find_packages, setup
+
+PACKAGE = 'my_robot_gazebo'
+SHARE = Path('share') / PACKAGE
+
+# Installed with all the folders inside them, so that a new file or folder needs no change here.
+SHARED_FOLDERS = ['config', 'launch', 'models', 'rviz', 'worlds']
+
+
+def shared_files():
+    """Yield (installed folder, [file]) for every file, as `data_files` wants them."""
+    for top in SHARED_FOLDERS:
+        for path in sorted(Path(top).rglob('*')):
+            if path.is_file() and path.suffix != '.pyc':
+                yield str(SHARE / path.parent), [str(path)]
+
+
+setup(
+    name=PACKAGE,
+    version='0.1.0',
+    packages=find_packages(exclude=['test']),
+    data_files=[
+        # The marker through which ROS 2 finds an installed package by its name.
+        ('share/ament_index/resource_index/packages', ['resource/' + PACKAGE]),
+        (str(SHARE), ['package.xml']),
+        *shared_files(),
+    ],
+    install_requires=['setuptools'],
+    zip_safe=True,
+    author='The Linkwright authors',
+    author_email='maintainers@linkwright.dev',
+    maintainer='The Linkwright authors',
+    maintainer_email='maintainers@linkwright.dev',
+    description='Worlds for mbot, models to put into them, and the launch files that load the robot.',
+    license='Apache-2.0',
+    entry_points={'console_scripts': []},
+)

@@ -1,0 +1,223 @@
+"""The models of ``robots/my_robot_gazebo``: things that a robot can detect, push or run into.
+
+`make_gazebo_worlds.py` writes them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from itertools import pairwise
+
+from gazebo_sdf import (
+    BLACK,
+    BLUE,
+    GREY,
+    ORANGE,
+    RED,
+    SKIN,
+    WHITE,
+    WOOD,
+    YELLOW,
+    Body,
+    Colour,
+    Model,
+    Part,
+    Pose,
+    Vector,
+    box,
+    cylinder,
+    mesh,
+    numbers,
+    sphere,
+)
+
+
+def prism(name: str, rings: Sequence[tuple[float, float]], sides: int, turn: float = 0.0) -> str:
+    """An STL file of a closed surface about z.
+
+    Args:
+        name: the solid's name.
+        rings: radius and height of each ring of corners, from below, in metres.
+        sides: how many corners a ring has.
+        turn: where the first corner is, radians.
+    """
+    angles = [turn + 2 * math.pi * at / sides for at in range(sides)]
+    corners = [[(r * math.cos(a), r * math.sin(a), z) for a in angles] for r, z in rings]
+    triangles: list[tuple[Vector, Vector, Vector]] = []
+    for lower, upper in pairwise(corners):
+        for at in range(sides):
+            after = (at + 1) % sides
+            triangles.append((lower[at], lower[after], upper[after]))
+            triangles.append((lower[at], upper[after], upper[at]))
+    for at in range(1, sides - 1):
+        triangles.append((corners[0][0], corners[0][at + 1], corners[0][at]))
+        triangles.append((corners[-1][0], corners[-1][at], corners[-1][at + 1]))
+    rows = [f"solid {name}"]
+    for triangle in triangles:
+        rows += [f"facet normal {numbers(normal(*triangle))}", "outer loop"]
+        rows += [f"vertex {numbers(corner)}" for corner in triangle]
+        rows += ["endloop", "endfacet"]
+    return "\n".join([*rows, f"endsolid {name}", ""])
+
+
+def normal(a: Vector, b: Vector, c: Vector) -> Vector:
+    """The unit normal of a triangle whose corners run counter-clockwise."""
+    u, v = [tuple(q - p for p, q in zip(a, other, strict=True)) for other in (b, c)]
+    n = (u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0])
+    length = math.hypot(*n)
+    return (n[0] / length, n[1] / length, n[2] / length)
+
+
+def cone_radius(z: float) -> float:
+    """The traffic cone's radius at a height, metres."""
+    return 0.13 - 0.105 * (z - 0.03) / 0.47
+
+
+def traffic_cone() -> tuple[Model, dict[str, str]]:
+    """A cone of 0.5 m with two white bands on a square foot; it can be knocked over."""
+    bands = {
+        f"band_{at}.stl": prism("band", [(cone_radius(z) + 0.002, z) for z in (low, low + 0.08)], 24)
+        for at, low in ((1, 0.15), (2, 0.32))
+    }
+    meshes = {"cone.stl": prism("cone", [(cone_radius(0.03), 0.03), (cone_radius(0.5), 0.5)], 24), **bands}
+    parts = [
+        box("foot", (0.34, 0.34, 0.03), Pose(z=0.015), ORANGE),
+        mesh("cone", "traffic_cone/meshes/cone.stl", Pose(), ORANGE),
+        *(mesh(f"band_{at}", f"traffic_cone/meshes/band_{at}.stl", Pose(), WHITE, solid=False) for at in (1, 2)),
+    ]
+    return Model("traffic_cone", parts, body=Body(1.8, (0.04, 0.04, 0.02), (0, 0, 0.12))), meshes
+
+
+def ball() -> tuple[Model, dict[str, str]]:
+    """A football of 0.22 m that rolls; its origin is on the ground below it."""
+    radius, mass = 0.11, 0.43
+    spots = [
+        cylinder(f"spot_{at}", 0.03, 0.2205, Pose(z=radius, roll=roll, pitch=pitch), BLACK, solid=False)
+        for at, (roll, pitch) in enumerate(((0, 0), (math.pi / 2, 0), (0, math.pi / 2)), start=1)
+    ]
+    shell = 2 * mass * radius**2 / 3
+    body = Body(mass, (shell, shell, shell), (0, 0, radius))
+    return Model("ball", [sphere("ball", radius, Pose(z=radius), WHITE), *spots], body=body), {}
+
+
+def crate() -> tuple[Model, dict[str, str]]:
+    """A wooden crate of 0.4 m that a robot can push."""
+    size, mass = 0.4, 3.0
+    slats = [
+        box(f"slat_{at}_{side}", (0.41, 0.41, 0.05), Pose(z=z), (0.40, 0.26, 0.14), solid=False)
+        for at, (side, z) in enumerate((("low", 0.03), ("high", 0.37)), start=1)
+    ]
+    cube = mass * size**2 / 6
+    parts = [box("crate", (size, size, size), Pose(z=size / 2), WOOD), *slats]
+    return Model("crate", parts, body=Body(mass, (cube, cube, cube), (0, 0, size / 2))), {}
+
+
+def person(name: str, scale: float, shirt: Colour, trousers: Colour) -> tuple[Model, dict[str, str]]:
+    """A standing figure, 1.75 m tall times the scale, that looks along x."""
+
+    def at(y: float, z: float, x: float = 0.0) -> Pose:
+        return Pose(x * scale, y * scale, z * scale)
+
+    sides = (("left", 1), ("right", -1))
+    parts = [
+        *(cylinder(f"{side}_leg", 0.075 * scale, 0.80 * scale, at(s * 0.10, 0.42), trousers) for side, s in sides),
+        *(
+            box(f"{side}_shoe", (0.26 * scale, 0.10 * scale, 0.08 * scale), at(s * 0.10, 0.04, 0.05), BLACK)
+            for side, s in sides
+        ),
+        box("trunk", (0.22 * scale, 0.38 * scale, 0.62 * scale), at(0, 1.13), shirt),
+        *(cylinder(f"{side}_arm", 0.05 * scale, 0.62 * scale, at(s * 0.25, 1.12), shirt) for side, s in sides),
+        *(sphere(f"{side}_hand", 0.055 * scale, at(s * 0.25, 0.78), SKIN) for side, s in sides),
+        cylinder("neck", 0.05 * scale, 0.10 * scale, at(0, 1.48), SKIN),
+        sphere("head", 0.125 * scale, at(0, 1.625), SKIN),
+        sphere("hair", 0.125 * scale, at(0, 1.655, -0.015), (0.20, 0.12, 0.07), solid=False),
+        *(sphere(f"{side}_eye", 0.016 * scale, at(s * 0.045, 1.64, 0.115), BLACK, solid=False) for side, s in sides),
+    ]
+    return Model(name, parts), {}
+
+
+# The strokes of a letter in a field of 3 by 5 steps: middle (across, up) and size (across, up).
+STROKES: dict[str, list[tuple[float, float, float, float]]] = {
+    "S": [(0, 2, 3, 1), (-1, 1, 1, 1), (0, 0, 3, 1), (1, -1, 1, 1), (0, -2, 3, 1)],
+    "T": [(0, 2, 3, 1), (0, -0.5, 1, 4)],
+    "O": [(0, 2, 3, 1), (-1, 0, 1, 3), (1, 0, 1, 3), (0, -2, 3, 1)],
+    "P": [(0, 2, 3, 1), (-1, -0.5, 1, 4), (1, 1, 1, 1), (0, 0, 3, 1)],
+}
+
+
+def lettering(word: str, step: float, pose: Pose, colour: Colour) -> list[Part]:
+    """A word of flat boxes on a plate that faces along x, read from there; `step` is the width of a stroke, metres."""
+    parts = []
+    for at, letter in enumerate(word):
+        middle = (at - (len(word) - 1) / 2) * 4
+        for stroke, (across, up, width, tall) in enumerate(STROKES[letter], start=1):
+            # Whoever reads it looks along -x and has y on the right.
+            place = Pose(pose.x, pose.y + (middle + across) * step, pose.z + up * step)
+            size = (0.004, width * step, tall * step)
+            parts.append(box(f"{letter}{at + 1}_{stroke}", size, place, colour, solid=False))
+    return parts
+
+
+def sign(name: str, plates: Sequence[tuple[str, str, Colour]], height: float) -> list[Part]:
+    """A pole with plates that face along x, each a mesh before the one before it."""
+    upright = [
+        mesh(
+            part, f"{name}/meshes/{file}", Pose(0.03 + 0.004 * at, 0, height, pitch=math.pi / 2), colour, solid=at == 0
+        )
+        for at, (part, file, colour) in enumerate(plates)
+    ]
+    pole = cylinder("pole", 0.025, height, Pose(z=height / 2), GREY)
+    return [pole, *upright]
+
+
+def plate(sides: int, radius: float, turn: float) -> str:
+    """A plate of 8 mm with its middle in the origin, its face along z."""
+    return prism("plate", [(radius, -0.004), (radius, 0.004)], sides, turn)
+
+
+def stop_sign() -> tuple[Model, dict[str, str]]:
+    """A red octagon with a white rim, the word STOP, on a pole of 1.6 m; it faces along x."""
+    height = 1.6
+    meshes = {"rim.stl": plate(8, 0.32, math.pi / 8), "field.stl": plate(8, 0.30, math.pi / 8)}
+    parts = sign("stop_sign", [("rim", "rim.stl", WHITE), ("field", "field.stl", RED)], height)
+    return Model("stop_sign", [*parts, *lettering("STOP", 0.03, Pose(0.04, 0, height), WHITE)]), meshes
+
+
+def yield_sign() -> tuple[Model, dict[str, str]]:
+    """A white triangle with a red rim, one corner down, on a pole of 1.6 m; it faces along x."""
+    # A plate is stood up by a quarter turn about y, which brings its -x to the top: a corner at +x points down.
+    meshes = {"rim.stl": plate(3, 0.40, 0.0), "field.stl": plate(3, 0.28, 0.0)}
+    parts = sign("yield_sign", [("rim", "rim.stl", RED), ("field", "field.stl", WHITE)], 1.6)
+    return Model("yield_sign", parts), meshes
+
+
+MODELS = {
+    "traffic_cone": (traffic_cone, "A traffic cone that can be knocked over"),
+    "ball": (ball, "A football that rolls"),
+    "crate": (crate, "A wooden crate that a robot can push"),
+    "person_standing": (lambda: person("person_standing", 1.0, BLUE, GREY), "A standing person of 1.75 m"),
+    "child_standing": (lambda: person("child_standing", 0.68, YELLOW, RED), "A standing child of 1.2 m"),
+    "stop_sign": (stop_sign, "A stop sign on a pole"),
+    "yield_sign": (yield_sign, "A yield sign on a pole"),
+}
+
+
+def model_config(name: str, description: str) -> str:
+    """The file by which Gazebo knows a model."""
+    return "\n".join(
+        [
+            '<?xml version="1.0"?>',
+            "<model>",
+            f"  <name>{name}</name>",
+            "  <version>1.0</version>",
+            '  <sdf version="1.6">model.sdf</sdf>',
+            "  <author>",
+            "    <name>The Linkwright authors</name>",
+            "    <email>maintainers@linkwright.dev</email>",
+            "  </author>",
+            f"  <description>{description}.</description>",
+            "</model>",
+            "",
+        ]
+    )

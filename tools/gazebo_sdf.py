@@ -1,0 +1,178 @@
+"""What the worlds and models of ``robots/my_robot_gazebo`` are written with: elements of SDF 1.6.
+
+Gazebo Classic and the newer Gazebo read 1.6 alike. Lengths are metres, angles radians, masses kilograms.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+
+Vector = tuple[float, float, float]
+Colour = tuple[float, float, float]
+
+WALL = (0.82, 0.80, 0.76)
+WOOD = (0.55, 0.38, 0.22)
+ORANGE = (0.95, 0.36, 0.05)
+WHITE = (0.95, 0.95, 0.95)
+BLACK = (0.04, 0.04, 0.04)
+RED = (0.78, 0.05, 0.06)
+GREEN = (0.10, 0.55, 0.20)
+BLUE = (0.10, 0.25, 0.70)
+YELLOW = (0.95, 0.80, 0.10)
+GREY = (0.50, 0.52, 0.55)
+SKIN = (0.85, 0.65, 0.52)
+
+
+def number(value: float) -> str:
+    """A number with at most four decimals and no negative zero, the same on every machine."""
+    text = f"{value:.4f}".rstrip("0").rstrip(".")
+    return "0" if text in ("-0", "") else text
+
+
+def numbers(values: Iterable[float]) -> str:
+    """Numbers with a blank between them."""
+    return " ".join(map(number, values))
+
+
+@dataclass(frozen=True)
+class Pose:
+    """A place in metres and a turn about z in radians; `pitch` is one about y, for what leans or lies."""
+
+    x: float = 0.0
+    y: float = 0.0
+    z: float = 0.0
+    yaw: float = 0.0
+    pitch: float = 0.0
+    roll: float = 0.0
+
+    def __str__(self) -> str:
+        return numbers((self.x, self.y, self.z, self.roll, self.pitch, self.yaw))
+
+
+@dataclass(frozen=True)
+class Part:
+    """A shape of one colour in a link: seen, and where it is solid, touched."""
+
+    name: str
+    geometry: str
+    pose: Pose
+    colour: Colour
+    solid: bool = True
+
+    def xml(self, indent: str) -> str:
+        """The part's collision and visual."""
+        rows = []
+        if self.solid:
+            rows += [f'<collision name="{self.name}">', *self._place(), "</collision>"]
+        colour = numbers((*self.colour, 1))
+        colours = f"<ambient>{colour}</ambient><diffuse>{colour}</diffuse><specular>0.1 0.1 0.1 1</specular>"
+        rows += [
+            f'<visual name="{self.name}">',
+            *self._place(),
+            f"  <material>{colours}</material>",
+            "</visual>",
+        ]
+        return "\n".join(indent + row for row in rows)
+
+    def _place(self) -> list[str]:
+        pose = [] if self.pose == Pose() else [f"  <pose>{self.pose}</pose>"]
+        return [*pose, f"  <geometry>{self.geometry}</geometry>"]
+
+
+def box(name: str, size: Vector, pose: Pose, colour: Colour, *, solid: bool = True) -> Part:
+    """A box about its pose."""
+    return Part(name, f"<box><size>{numbers(size)}</size></box>", pose, colour, solid)
+
+
+def cylinder(name: str, radius: float, length: float, pose: Pose, colour: Colour, *, solid: bool = True) -> Part:
+    """A cylinder along z about its pose."""
+    geometry = f"<cylinder><radius>{number(radius)}</radius><length>{number(length)}</length></cylinder>"
+    return Part(name, geometry, pose, colour, solid)
+
+
+def sphere(name: str, radius: float, pose: Pose, colour: Colour, *, solid: bool = True) -> Part:
+    """A sphere about its pose."""
+    return Part(name, f"<sphere><radius>{number(radius)}</radius></sphere>", pose, colour, solid)
+
+
+def mesh(name: str, file: str, pose: Pose, colour: Colour, *, solid: bool = True) -> Part:
+    """A mesh of a model of this package: MODEL/meshes/FILE."""
+    return Part(name, f"<mesh><uri>model://{file}</uri></mesh>", pose, colour, solid)
+
+
+@dataclass(frozen=True)
+class Body:
+    """What a thing that can be pushed weighs: kilograms, and moments about its centre in kg m^2."""
+
+    mass: float
+    moments: Vector
+    centre: Vector = (0.0, 0.0, 0.0)
+
+    def xml(self, indent: str) -> str:
+        """The link's inertial."""
+        xx, yy, zz = map(moment, self.moments)
+        rows = [
+            "<inertial>",
+            f"  <pose>{numbers((*self.centre, 0, 0, 0))}</pose>",
+            f"  <mass>{number(self.mass)}</mass>",
+            f"  <inertia><ixx>{xx}</ixx><ixy>0</ixy><ixz>0</ixz><iyy>{yy}</iyy><iyz>0</iyz><izz>{zz}</izz></inertia>",
+            "</inertial>",
+        ]
+        return "\n".join(indent + row for row in rows)
+
+
+def moment(value: float) -> str:
+    """A moment of inertia, which may be small."""
+    return f"{value:.4g}"
+
+
+@dataclass(frozen=True)
+class Model:
+    """Parts that stand or move as one; without a body it is part of the world and does not move."""
+
+    name: str
+    parts: Sequence[Part]
+    pose: Pose = field(default_factory=Pose)
+    body: Body | None = None
+
+    def xml(self, indent: str = "    ") -> str:
+        """The model as an element of a world or of a file of its own."""
+        place = [] if self.pose == Pose() else [f"{indent}  <pose>{self.pose}</pose>"]
+        rows = [
+            f'{indent}<model name="{self.name}">',
+            *([f"{indent}  <static>true</static>"] if self.body is None else []),
+            *place,
+            f'{indent}  <link name="link">',
+            *([self.body.xml(indent + "    ")] if self.body else []),
+            *(part.xml(indent + "    ") for part in self.parts),
+            f"{indent}  </link>",
+            f"{indent}</model>",
+        ]
+        return "\n".join(rows)
+
+
+@dataclass(frozen=True)
+class Include:
+    """A model of this package, placed in a world under a name."""
+
+    model: str
+    name: str
+    pose: Pose
+
+    def xml(self, indent: str = "    ") -> str:
+        """The include element."""
+        rows = [
+            "<include>",
+            f"  <uri>model://{self.model}</uri>",
+            f"  <name>{self.name}</name>",
+            f"  <pose>{self.pose}</pose>",
+            "</include>",
+        ]
+        return "\n".join(indent + row for row in rows)
+
+
+def sdf(content: str) -> str:
+    """A file of SDF 1.6."""
+    made_by = "SPDX-License-Identifier: Apache-2.0. Generated by tools/make_gazebo_worlds.py of Linkwright."
+    return f'<?xml version="1.0"?>\n<!-- {made_by} -->\n<sdf version="1.6">\n{content}\n</sdf>\n'
