@@ -30,6 +30,7 @@ GROUPS = {
         "inertia": "judge mass and inertia of each link by its shapes, print those computed from them, or write them",
         "diagram": "draw the links and joints of a model as urdf_to_graphviz does (.gv and PDF or SVG)",
         "export": "write a model as one HTML file that opens in any browser, or as glTF (.glb)",
+        "convert": "write a robot or world as one SDF file, as gz makes it of a URDF, or as MJCF for MuJoCo",
     },
     "packages and running them": {
         "pkg": "create ROS packages, and tell where they are and what is in them",

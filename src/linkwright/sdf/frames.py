@@ -15,6 +15,9 @@ from linkwright.geometry.single import (
     Transform,
     compose,
     invert,
+    quaternion_from_rpy,
+    quaternion_inverse,
+    quaternion_multiply,
     quaternion_of,
     rotate,
     rpy_from_quaternion,
@@ -28,6 +31,9 @@ from linkwright.sdf.worlds import World
 
 Owner = Model | World
 Framed = Link | Joint | Frame | Model
+
+_NO_ANGLE = 1e-12
+"""Half an angle in radians that is none."""
 
 
 class FrameError(Exception):
@@ -240,6 +246,9 @@ def transform_of(pose: Pose) -> Transform:
 
 
 def pose_of(transform: Transform) -> Pose:
-    """A transform as a pose."""
+    """A transform as a pose: by angles, or by the quaternion too where the angles would not say the same."""
     rotation = transform[3:]
-    return Pose(transform[:3], rpy_from_quaternion(rotation), rotation)
+    rpy = rpy_from_quaternion(rotation)
+    difference = quaternion_multiply(quaternion_from_rpy(rpy), quaternion_inverse(rotation))
+    exact = max(map(abs, difference[:3])) < _NO_ANGLE
+    return Pose(transform[:3], rpy, None if exact else rotation)

@@ -45,7 +45,7 @@ def numbers(text: str) -> tuple[float, ...]:
 
 def plain(value: float) -> str:
     """A number as short as it can be written without loss."""
-    return repr(float(value)).removesuffix(".0")
+    return repr(float(value) or 0.0).removesuffix(".0")  # -0 is 0
 
 
 def _joined(values: Iterable[float]) -> str:

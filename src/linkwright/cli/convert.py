@@ -1,0 +1,101 @@
+"""``linkwright convert``: a robot or world as one SDF or MJCF file."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from linkwright.assignments import parse_assignments
+from linkwright.cli.output import write_output
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, has_errors, phrase, print_diagnostics
+
+if TYPE_CHECKING:
+    from linkwright.packages import PackageFinder
+    from linkwright.sdf.worlds import Sdf
+
+_FORMATS = ("sdf", "mjcf")
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    parser.add_argument("file", metavar="FILE", help="the URDF, xacro or SDF file")
+    parser.add_argument(
+        "values", metavar="NAME:=VALUE", nargs="*", default=[], help="values for the file's <xacro:arg>"
+    )
+    parser.add_argument(
+        "-o", "--output", metavar="OUT", help="the file to write; without it the text goes to standard output"
+    )
+    parser.add_argument(
+        "--to",
+        choices=_FORMATS,
+        default="sdf",
+        help="sdf: SDF 1.11 as gz makes it of a URDF, or of a world with all that it includes in it (default); mjcf: "
+        "what MuJoCo simulates, meshes in it",
+    )
+    fixed = parser.add_mutually_exclusive_group()
+    fixed.add_argument(
+        "--lump-fixed-joints",
+        action="store_true",
+        default=True,
+        help="links of a URDF that fixed joints connect become one, as in gz (default)",
+    )
+    fixed.add_argument(
+        "--keep-fixed-joints",
+        action="store_false",
+        dest="lump_fixed_joints",
+        help="every link and every fixed joint of a URDF stays",
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Write the file, or print it; findings go to standard error."""
+    from linkwright.descriptions.conversion import as_sdf
+    from linkwright.packages import PackageFinder
+
+    path = Path(arguments.file).absolute()
+    finder = PackageFinder(start=[path.parent, Path.cwd()])
+    out = None if arguments.output is None else Path(arguments.output)
+    converted = as_sdf(
+        path,
+        finder,
+        arguments=parse_assignments(arguments.values),
+        lump_fixed_joints=arguments.lump_fixed_joints,
+        folder=None if out is None else out.absolute().parent,
+    )
+    print_diagnostics(converted.diagnostics, sys.stderr)
+    if converted.sdf is None or (arguments.to == "mjcf" and has_errors(converted.diagnostics)):
+        return 1  # MuJoCo takes a model as a whole or not at all
+    text, remarks = _sdf(converted.sdf) if arguments.to == "sdf" else _mjcf(converted.sdf, finder)
+    print_diagnostics(remarks, sys.stderr)
+    if out is None:
+        sys.stdout.write(text)
+    else:
+        write_output(out, text)
+        print(f"Created file {out}")
+    return 1 if has_errors((*converted.diagnostics, *remarks)) else 0
+
+
+def _sdf(sdf: Sdf) -> tuple[str, list[Diagnostic]]:
+    from linkwright.sdf.writer import save
+
+    return save(sdf), []
+
+
+def _mjcf(sdf: Sdf, finder: PackageFinder) -> tuple[str, list[Diagnostic]]:
+    from linkwright.sdf.resources import ResourceFinder
+    from linkwright.sdf.worlds import World
+    from linkwright.simulation.scene.meshes import MeshLibrary
+    from linkwright.simulation.scene.scene import Scene
+
+    world = sdf.worlds[0] if sdf.worlds else World(sdf.models[0].name if sdf.models else "", models=sdf.models)
+    scene = Scene(world, MeshLibrary(ResourceFinder(finder)))
+    try:
+        scene.spec.compile()
+    except ValueError as error:
+        reason = " ".join(str(error).split())
+        raise LinkwrightError(
+            Diagnostic("CLI321", phrase("MuJoCo refuses it: {reason}", reason=foreign(reason)))
+        ) from None
+    return scene.spec.to_xml(), scene.diagnostics

@@ -1,0 +1,130 @@
+"""Robots, models and worlds as one SDF, in which nothing is included any more."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, is_dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from linkwright.descriptions.service import examine
+from linkwright.descriptions.worlds import examine_world, is_world
+from linkwright.diagnostics import Diagnostic
+from linkwright.packages import PackageFinder
+
+if TYPE_CHECKING:
+    from linkwright.sdf.worlds import Sdf, World
+
+_ADDRESSES = {
+    "Animation": {"filename"},
+    "Heightmap": {"uri"},
+    "Image": {"uri"},
+    "Mesh": {"uri"},
+    "MaterialScript": {"uris"},
+    "Shader": {"normal_map"},
+    "Skin": {"filename"},
+    "TerrainTexture": {"diffuse", "normal"},
+    "Workflow": {
+        *("albedo_map", "ambient_occlusion_map", "emissive_map", "environment_map", "glossiness_map", "light_map"),
+        *("metalness_map", "normal_map", "roughness_map", "specular_map"),
+    },
+}
+"""Classes of `linkwright.sdf` -> their fields that name files."""
+
+
+@dataclass(frozen=True, slots=True)
+class Converted:
+    """What a file came to as SDF.
+
+    Attributes:
+        sdf: what it says; None where it cannot be read.
+        diagnostics: what is wrong with it, and what could not be taken over.
+    """
+
+    sdf: Sdf | None
+    diagnostics: tuple[Diagnostic, ...]
+
+
+def as_sdf(
+    path: Path,
+    finder: PackageFinder,
+    *,
+    arguments: Mapping[str, str] | None = None,
+    lump_fixed_joints: bool = True,
+    folder: Path | None = None,
+) -> Converted:
+    """A URDF, xacro or SDF file as one SDF that needs no other but meshes and textures.
+
+    Args:
+        path: the file.
+        finder: where packages are.
+        arguments: values for the file's ``<xacro:arg>``.
+        lump_fixed_joints: of URDF, see `linkwright.sdf.from_urdf.model_from_robot`.
+        folder: where the SDF is to lie, from which paths to meshes are then written; that of the file by default.
+
+    Raises:
+        LinkwrightError: it is not XML, or it cannot be expanded.
+    """
+    folder = folder or path.parent
+    if is_world(path.name):
+        world = examine_world(path, arguments=arguments, packages=finder)
+        if world.sdf is None:
+            return Converted(None, world.diagnostics)
+        sdf = replace(world.sdf, worlds=tuple(map(_as_it_is, world.sdf.worlds)))
+        return Converted(_from_folder(sdf, path.parent, folder), world.diagnostics)
+    from linkwright.sdf.from_urdf import model_from_robot
+    from linkwright.sdf.worlds import Sdf
+    from linkwright.sdf.writer import VERSION
+
+    description = examine(path, arguments=arguments, packages=finder)
+    if description.robot is None or not description.robot.root:
+        return Converted(None, description.diagnostics)
+    conversion = model_from_robot(description.robot, lump_fixed_joints=lump_fixed_joints)
+    sdf = Sdf(VERSION, models=(conversion.model,))
+    return Converted(_from_folder(sdf, path.parent, folder), (*description.diagnostics, *conversion.diagnostics))
+
+
+def _as_it_is(world: World) -> World:
+    """A world as it was saved, with its gravity where SDF has had it since 1.6."""
+    from linkwright.sdf.saved import as_saved
+    from linkwright.sdf.worlds import gravity_of
+
+    world = replace(as_saved(world), states=())
+    if world.gravity is None and any(each.gravity for each in world.physics):
+        physics = tuple(replace(each, gravity=None) for each in world.physics)
+        world = replace(world, gravity=gravity_of(world), physics=physics)
+    return world
+
+
+def _from_folder(thing: Any, written_in: Path, folder: Path) -> Any:
+    """The same with paths that start from a folder in place of the one that they are written in."""
+    if isinstance(thing, tuple):
+        return tuple(_from_folder(each, written_in, folder) for each in thing)
+    if not is_dataclass(thing) or isinstance(thing, type):
+        return thing
+    source = getattr(getattr(thing, "element", None), "source", None)
+    if source is not None:
+        written_in = Path(source.name).parent
+    addresses = _ADDRESSES.get(type(thing).__name__, ())
+    changed: dict[str, Any] = {}
+    for field in fields(thing):
+        value = getattr(thing, field.name)
+        if field.name in addresses:
+            many = isinstance(value, tuple)
+            moved = tuple(_address(each, written_in, folder) for each in (value if many else (value,)))
+            new = moved if many else moved[0]
+        else:
+            new = _from_folder(value, written_in, folder)
+        if new != value:
+            changed[field.name] = new
+    return replace(thing, **changed) if changed else thing
+
+
+def _address(written: str, written_in: Path, folder: Path) -> str:
+    """An address; a path to a file that is there starts from another folder, or is whole where it lies outside."""
+    file = Path(os.path.abspath(written_in / written))  # noqa: PTH100 - links stay what they are
+    folder = folder.absolute()
+    if not written or "://" in written or Path(written).is_absolute() or not file.exists():
+        return written
+    return file.relative_to(folder).as_posix() if file.is_relative_to(folder) else file.as_uri()

@@ -1,0 +1,126 @@
+"""``linkwright convert``."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.cli import main
+from linkwright.descriptions import examine_world
+
+INERTIAL = '<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>'
+ROBOT = f"""\
+<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:arg name="size" default="1"/>
+  <link name="base">{INERTIAL}<visual><geometry><box size="$(arg size) 1 1"/></geometry></visual></link>
+  <link name="tip">{INERTIAL}</link>
+  <joint name="fix" type="fixed"><parent link="base"/><child link="tip"/><origin xyz="0 0 1"/></joint>
+</robot>
+"""
+BALL = """\
+<sdf version="1.6"><model name="ball"><link name="l"><visual name="v"><geometry>
+  <mesh><uri>meshes/ball.stl</uri></mesh></geometry></visual></link></model></sdf>
+"""
+WORLD = """\
+<sdf version="1.5"><world name="w"><physics type="ode"><gravity>0 0 -1</gravity></physics>
+  <include><uri>model://ball</uri><pose>1 2 3 0 0 0</pose></include>
+  <state world_name="w"><model name="ball"><pose>4 5 6 0 0 0</pose></model></state>
+</world></sdf>
+"""
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "arm.xacro").write_text(ROBOT)
+    (tmp_path / "w.world").write_text(WORLD)
+    (tmp_path / "models/ball/meshes").mkdir(parents=True)
+    (tmp_path / "models/ball/model.sdf").write_text(BALL)
+    (tmp_path / "models/ball/meshes/ball.stl").write_bytes(bytes(84))
+    monkeypatch.setenv("GZ_SIM_RESOURCE_PATH", str(tmp_path / "models"))
+    return tmp_path
+
+
+def test_a_robot_is_printed_as_sdf_with_the_arguments_given(folder, capsys):
+    assert main(["convert", "arm.xacro", "size:=4"]) == 0
+    printed = capsys.readouterr()
+    assert printed.out.startswith('<?xml version="1.0" ?>\n<sdf version="1.11">\n  <model name="arm">\n')
+    assert "<size>4 1 1</size>" in printed.out
+    assert '<frame attached_to="fix" name="tip"/>' in printed.out
+    assert printed.err == ""
+
+
+def test_fixed_joints_stay_where_that_is_wanted(folder, capsys):
+    assert main(["convert", "arm.xacro", "--keep-fixed-joints", "-o", "out/arm.sdf"]) == 0
+    assert "Created file out/arm.sdf" in capsys.readouterr().out
+    sdf = examine_world(folder / "out/arm.sdf").sdf
+    assert sdf is not None
+    assert [link.name for link in sdf.models[0].links] == ["base", "tip"]
+    assert [joint.name for joint in sdf.models[0].joints] == ["fix"]
+
+
+def test_a_world_has_all_that_it_includes_where_it_was_saved(folder):
+    assert main(["convert", "w.world", "-o", "flat.world"]) == 0
+    found = examine_world(folder / "flat.world", environment={"HOME": "/nowhere"})
+    assert found.diagnostics == ()
+    assert found.sdf is not None
+    world = found.sdf.worlds[0]
+    assert (world.gravity, world.includes, world.states) == ((0.0, 0.0, -1.0), (), ())
+    assert world.models[0].pose.pose.xyz == (4.0, 5.0, 6.0)
+
+
+def test_paths_of_meshes_start_from_the_folder_of_the_file(folder):
+    assert main(["convert", "w.world", "-o", "flat.world"]) == 0
+    assert "<uri>models/ball/meshes/ball.stl</uri>" in (folder / "flat.world").read_text()
+    assert main(["convert", "w.world", "-o", "elsewhere/flat.world"]) == 0
+    address = (folder / "models/ball/meshes/ball.stl").as_uri()
+    assert f"<uri>{address}</uri>" in (folder / "elsewhere/flat.world").read_text()
+
+
+def test_a_model_that_is_not_there_stays_an_include_and_is_told_of(folder, capsys):
+    (folder / "w.world").write_text(WORLD.replace("model://ball", "model://cube"))
+    assert main(["convert", "w.world"]) == 0
+    printed = capsys.readouterr()
+    assert "<uri>model://cube</uri>" in printed.out
+    assert "SDF160" in printed.err
+
+
+def test_a_file_that_is_no_robot_is_an_error(folder, capsys):
+    (folder / "no.urdf").write_text("<launch/>")
+    assert main(["convert", "no.urdf"]) == 1
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert "URDF101" in printed.err
+
+
+def test_a_robot_becomes_what_mujoco_simulates(folder):
+    mujoco = pytest.importorskip("mujoco")
+    assert main(["convert", "arm.xacro", "--to", "mjcf", "-o", "arm.xml"]) == 0
+    model = mujoco.MjModel.from_xml_path(str(folder / "arm.xml"))
+    assert (model.nbody, model.njnt) == (2, 1)
+    assert sum(model.body_mass) == pytest.approx(2.0)
+
+
+def test_what_has_errors_does_not_become_mjcf(folder, capsys):
+    pytest.importorskip("mujoco")
+    (folder / "m.sdf").write_text(
+        '<sdf version="1.9"><model name="m"><link name="a"><pose relative_to="b"/></link></model></sdf>'
+    )
+    assert main(["convert", "m.sdf", "--to", "mjcf"]) == 1
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert "SDF141" in printed.err
+
+
+def test_what_mujoco_refuses_is_said(folder, capsys, monkeypatch):
+    pytest.importorskip("mujoco")
+
+    class Refused:
+        def __init__(self, *_):
+            self.spec = self
+
+        def compile(self):
+            raise ValueError("mesh volume is too small:\n  mesh0")
+
+    monkeypatch.setattr("linkwright.simulation.scene.scene.Scene", Refused)
+    assert main(["convert", "arm.xacro", "--to", "mjcf"]) == 1
+    assert "MuJoCo refuses it: mesh volume is too small: mesh0" in capsys.readouterr().err
