@@ -1,0 +1,96 @@
+"""What touches what, and how hard."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwright.geometry.arrays import Array
+from linkwright.sdf.poses import SEPARATOR
+from linkwright.simulation.library import load_mujoco
+from linkwright.simulation.sensors.mount import GeomTable, Mount, part_of
+
+_MARK = "#collision"
+
+
+@dataclass(frozen=True, slots=True)
+class Contact:
+    """Two collisions that touch, in the last step.
+
+    Attributes:
+        collision1: that of the sensor, with its link and model: ``robot::bumper::collision``.
+        collision2: the other.
+        positions: where they touch, in m in the world, shape (points, 3).
+        normals: unit vectors from the other collision to that of the sensor, in the axes of the world; of that shape.
+        depths: how far they are in each other, in m, shape (points,).
+        forces: on the link of the sensor, in N, in the axes of the world, shape (points, 3).
+        torques: on it, about the origin of its frame, in N m; of that shape.
+    """
+
+    collision1: str
+    collision2: str
+    positions: Array
+    normals: Array
+    depths: Array
+    forces: Array
+    torques: Array
+
+
+class ContactSensor:
+    """Listens to what touches collisions of a link.
+
+    Args:
+        mount: where it is: its link counts.
+        collisions: the names of the collisions; none for all of the link.
+    """
+
+    def __init__(self, mount: Mount, collisions: Sequence[str] = ()) -> None:
+        self._mount = mount
+        self._simulation = mount.simulation
+        self._wanted = {f"{mount.link}{SEPARATOR}{each.rpartition(SEPARATOR)[2]}" for each in collisions}
+        self._mine = GeomTable(self._simulation, self._listened)
+
+    def _listened(self, names: list[str]) -> list[float]:
+        return [float(self._listens(part_of(name))) for name in names]
+
+    def _listens(self, part: str) -> bool:
+        name, mark, _ = part.partition(_MARK)
+        if not mark:
+            return False
+        return name in self._wanted if self._wanted else name.rpartition(SEPARATOR)[0] == self._mount.link
+
+    def measure(self) -> list[Contact]:
+        """What touches now, a contact for each pair of collisions.
+
+        Raises:
+            KeyError: its link is gone.
+        """
+        mine, origin = self._mine.array(), np.array(self._mount.simulation.link_pose(self._mount.link)[:3])
+        model, data, mujoco = self._simulation.model, self._simulation.data, load_mujoco()
+        count = data.ncon
+        pairs = data.contact.geom[:count]
+        touching: dict[tuple[str, str], list[Array]] = {}
+        for index in np.nonzero((mine[pairs[:, 0]] > 0) | (mine[pairs[:, 1]] > 0))[0] if count else ():
+            first = mine[pairs[index, 0]] > 0
+            own, other = (pairs[index, 0], pairs[index, 1]) if first else (pairs[index, 1], pairs[index, 0])
+            wrench = np.zeros(6)
+            mujoco.mj_contactForce(model, data, int(index), wrench)
+            frame = data.contact.frame[index].reshape(3, 3)
+            side = -1.0 if first else 1.0  # the frame points from the first to the second, and so does the force
+            position = np.array(data.contact.pos[index])
+            force = side * wrench[:3] @ frame
+            torque = side * wrench[3:] @ frame + np.cross(position - origin, force)
+            row = np.concatenate([position, side * frame[0], [max(-data.contact.dist[index], 0.0)], force, torque])
+            names = _collision(model.geom(own).name), _collision(model.geom(other).name)
+            touching.setdefault(names, []).append(row)
+        return [_contact(names, np.array(rows)) for names, rows in touching.items()]
+
+
+def _collision(geom: str) -> str:
+    return geom.partition(_MARK)[0]
+
+
+def _contact(names: tuple[str, str], rows: Array) -> Contact:
+    return Contact(*names, rows[:, :3], rows[:, 3:6], rows[:, 6], rows[:, 7:10], rows[:, 10:13])

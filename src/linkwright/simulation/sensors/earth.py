@@ -1,0 +1,177 @@
+"""Sensors of where something is on earth: satellite receivers, altimeters, magnetometers.
+
+Source: the ellipsoid of WGS 84 (NIMA TR8350.2), and how the element ``<spherical_coordinates>`` lays the world upon it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import atan2, cos, degrees, hypot, radians, sin, sqrt
+
+import numpy as np
+
+from linkwright.geometry.arrays import Array, quaternion_inverse, rotate
+from linkwright.geometry.vectors import Vector3
+from linkwright.sdf.noise import NoiseXyz
+from linkwright.sdf.sensors import Altimeter, Navsat
+from linkwright.sdf.worlds import SphericalCoordinates
+from linkwright.simulation.sensors.mount import Mount
+from linkwright.simulation.sensors.noise import NoiseSource, VectorNoise
+
+_RADIUS = 6378137.0
+_FLATTENING = 1 / 298.257223563
+_E2 = _FLATTENING * (2 - _FLATTENING)
+_TURNS = 5
+"""How often the latitude is improved: each turn leaves less than a hundredth of the error."""
+EARTH_FIELD: Vector3 = (5.5645e-6, 22.8758e-6, -42.3884e-6)
+"""The magnetic field of worlds that say nothing of it, in tesla: SDFormat's default."""
+
+
+class Globe:
+    """The place of a world on earth.
+
+    Args:
+        place: what the world says; None for where latitude and longitude are 0.
+    """
+
+    def __init__(self, place: SphericalCoordinates | None) -> None:
+        place = place or SphericalCoordinates()
+        latitude, longitude = radians(place.latitude_deg), radians(place.longitude_deg)
+        heading = radians(place.heading_deg)
+        self._origin = _from_geodetic(latitude, longitude, place.elevation)
+        east = (-sin(longitude), cos(longitude), 0.0)
+        north = (-sin(latitude) * cos(longitude), -sin(latitude) * sin(longitude), cos(latitude))
+        up = (cos(latitude) * cos(longitude), cos(latitude) * sin(longitude), sin(latitude))
+        self._axes = np.array([east, north, up]).T
+        self._heading = np.array(
+            [[cos(heading), -sin(heading), 0.0], [sin(heading), cos(heading), 0.0], [0.0, 0.0, 1.0]]
+        )
+
+    def east_north_up(self, vector: Array) -> Array:
+        """A vector of the world in the axes east, north, up."""
+        turned: Array = self._heading @ vector
+        return turned
+
+    def geodetic(self, point: Array) -> tuple[float, float, float]:
+        """Latitude and longitude in degrees, and altitude above the ellipsoid in m, of a point of the world in m."""
+        x, y, z = self._origin + self._axes @ self.east_north_up(point)
+        across = hypot(x, y)
+        latitude = atan2(z, across * (1 - _E2))
+        for _ in range(_TURNS):
+            normal = _RADIUS / sqrt(1 - _E2 * sin(latitude) ** 2)
+            latitude = atan2(z + _E2 * normal * sin(latitude), across)
+        normal = _RADIUS / sqrt(1 - _E2 * sin(latitude) ** 2)
+        altitude = across * cos(latitude) + z * sin(latitude) - normal * (1 - _E2 * sin(latitude) ** 2)
+        return degrees(latitude), degrees(atan2(y, x)), altitude
+
+
+def _from_geodetic(latitude: float, longitude: float, altitude: float) -> Array:
+    """A place on earth in the axes of the earth, in m."""
+    normal = _RADIUS / sqrt(1 - _E2 * sin(latitude) ** 2)
+    across = (normal + altitude) * cos(latitude)
+    return np.array([across * cos(longitude), across * sin(longitude), (normal * (1 - _E2) + altitude) * sin(latitude)])
+
+
+@dataclass(frozen=True, slots=True)
+class Fix:
+    """What a satellite receiver measured.
+
+    Attributes:
+        latitude, longitude: in degrees.
+        altitude: above the ellipsoid, in m.
+        velocity: east, north, up, in m/s, shape (3,).
+    """
+
+    latitude: float
+    longitude: float
+    altitude: float
+    velocity: Array
+
+
+class NavsatSensor:
+    """A satellite receiver; noise in metres moves it on the ground before its latitude is worked out.
+
+    Args:
+        mount: where it is.
+        navsat: what is said of it; None for no noise.
+        place: where the world is on earth.
+        generator: where its noise comes from.
+    """
+
+    def __init__(
+        self,
+        mount: Mount,
+        navsat: Navsat | None,
+        place: SphericalCoordinates | None,
+        generator: np.random.Generator,
+    ) -> None:
+        said = navsat or Navsat()
+        across, up = said.horizontal_position, said.vertical_position
+        self.position_noise = VectorNoise(NoiseXyz(across, across, up), generator)
+        across, up = said.horizontal_velocity, said.vertical_velocity
+        self.velocity_noise = VectorNoise(NoiseXyz(across, across, up), generator)
+        self._mount = mount
+        self._globe = Globe(place)
+
+    def measure(self) -> Fix:
+        """Where it is now.
+
+        Raises:
+            KeyError: its link is gone.
+        """
+        position = self.position_noise.apply(np.array(self._mount.pose()[:3]))
+        velocity = self._globe.east_north_up(self._mount.velocity()[0])
+        return Fix(*self._globe.geodetic(position), self.velocity_noise.apply(velocity))
+
+
+class AltimeterSensor:
+    """Tells its height above where it was at the start.
+
+    Args:
+        mount: where it is.
+        altimeter: what is said of it; None for no noise.
+        generator: where its noise comes from.
+    """
+
+    def __init__(self, mount: Mount, altimeter: Altimeter | None, generator: np.random.Generator) -> None:
+        said = altimeter or Altimeter()
+        self._position_noise = NoiseSource(said.vertical_position, generator)
+        self._velocity_noise = NoiseSource(said.vertical_velocity, generator)
+        self._mount = mount
+        self.reference = mount.pose()[2]
+
+    def measure(self) -> tuple[float, float]:
+        """The height in m above the start, and the velocity upwards in m/s.
+
+        Raises:
+            KeyError: its link is gone.
+        """
+        height = np.array(self._mount.pose()[2] - self.reference)
+        velocity = self._mount.velocity()[0][2]
+        return float(self._position_noise.apply(height)), float(self._velocity_noise.apply(velocity))
+
+
+class MagnetometerSensor:
+    """Measures the magnetic field in its own axes.
+
+    Args:
+        mount: where it is.
+        noise: on each axis, in tesla; None for none.
+        field: the field of the world in tesla, in its axes.
+        generator: where its noise comes from.
+    """
+
+    def __init__(
+        self, mount: Mount, noise: NoiseXyz | None, generator: np.random.Generator, field: Vector3 = EARTH_FIELD
+    ) -> None:
+        self.noise = VectorNoise(noise or NoiseXyz(), generator)
+        self._mount = mount
+        self._field = np.array(field)
+
+    def measure(self) -> Array:
+        """The field in tesla: shape (3,).
+
+        Raises:
+            KeyError: its link is gone.
+        """
+        return self.noise.apply(rotate(quaternion_inverse(np.array(self._mount.pose()[3:])), self._field))

@@ -1,0 +1,74 @@
+"""Forces in joints."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from linkwright.geometry.arrays import Array, quaternion_inverse, rotate
+from linkwright.geometry.single import IDENTITY, Transform, compose, invert
+from linkwright.sdf.sensors import ForceTorque
+from linkwright.simulation.sensors.mount import accelerations
+from linkwright.simulation.sensors.noise import VectorNoise
+from linkwright.simulation.simulation import Simulation
+
+
+class ForceTorqueSensor:
+    """Measures what the two links of a joint do to each other, at the origin of the joint.
+
+    Args:
+        simulation: the world.
+        joint: the name of the joint in the world; it may be fixed.
+        sensor: what is said of it; None for SDF's defaults.
+        offset: the sensor in the frame of the joint.
+        generator: where its noise comes from.
+
+    Raises:
+        KeyError: there is no such joint.
+    """
+
+    def __init__(
+        self,
+        simulation: Simulation,
+        joint: str,
+        sensor: ForceTorque | None,
+        generator: np.random.Generator,
+        offset: Transform = IDENTITY,
+    ) -> None:
+        self._simulation = simulation
+        self._said = sensor or ForceTorque()
+        self._force_noise = VectorNoise(self._said.force, generator)
+        self._torque_noise = VectorNoise(self._said.torque, generator)
+        self._joint = simulation.scene.joints[joint]
+        child = simulation.scene.models[joint.partition("::")[0]].structure
+        placed = next(held.link.pose for held in child.links if held.link.name == self._joint.child)
+        self._in_child = compose(invert(placed), self._joint.pose)
+        self._offset = offset
+
+    def measure(self) -> tuple[Array, Array]:
+        """The force in N and the torque in N m, in the axes that the sensor says.
+
+        With ``parent_to_child`` they are what the parent does to the child, otherwise the opposite.
+
+        Raises:
+            KeyError: its links are gone.
+        """
+        simulation = self._simulation
+        accelerations(simulation)
+        data, body = simulation.data, int(simulation.model.body(self._joint.child).id)
+        joint = compose(simulation.link_pose(self._joint.child), self._in_child)
+        wrench, about = data.cfrc_int[body], data.subtree_com[simulation.model.body_rootid[body]]
+        force = np.array(wrench[3:])
+        torque = np.array(wrench[:3]) - np.cross(np.subtract(joint[:3], about), force)
+        if self._said.measure_direction != "parent_to_child":
+            force, torque = -force, -torque
+        into = quaternion_inverse(np.array(self._axes(joint)))
+        return self._force_noise.apply(rotate(into, force)), self._torque_noise.apply(rotate(into, torque))
+
+    def _axes(self, joint: Transform) -> tuple[float, ...]:
+        """The orientation in the world of the frame that it measures in."""
+        if self._said.frame == "parent":
+            parent = self._joint.parent
+            return (0.0, 0.0, 0.0, 1.0) if parent == "world" else self._simulation.link_pose(parent)[3:]
+        if self._said.frame == "sensor":
+            return compose(joint, self._offset)[3:]
+        return self._simulation.link_pose(self._joint.child)[3:]

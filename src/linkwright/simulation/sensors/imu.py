@@ -1,0 +1,80 @@
+"""Inertial measurement units."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwright.geometry.arrays import Array, quaternion_inverse, quaternion_multiply, rotate
+from linkwright.geometry.single import quaternion_from_rpy
+from linkwright.sdf.sensors import Imu
+from linkwright.simulation.sensors.mount import Mount
+from linkwright.simulation.sensors.noise import VectorNoise
+
+_NED = (np.pi, 0.0, np.pi / 2)
+_NWU = (0.0, 0.0, np.pi / 2)
+"""Roll, pitch and yaw of other axes in those of the world, whose x is east and y north."""
+
+
+@dataclass(frozen=True, slots=True)
+class Inertial:
+    """What an IMU measured, in its own axes.
+
+    Attributes:
+        orientation: of the unit in its reference frame: a quaternion x, y, z, w.
+        angular_velocity: in rad/s, shape (3,).
+        linear_acceleration: in m/s2, shape (3,): at rest the reaction to gravity.
+    """
+
+    orientation: Array
+    angular_velocity: Array
+    linear_acceleration: Array
+
+
+class ImuSensor:
+    """An inertial measurement unit.
+
+    The acceleration is that of the last step, and contains the reaction to gravity, as REP 145 has it for raw data.
+
+    Args:
+        mount: where it is.
+        imu: what is said of it; None for no noise.
+        initial_reference: whether the orientation is against that at the start instead of the world.
+        generator: where its noise comes from.
+    """
+
+    def __init__(
+        self, mount: Mount, imu: Imu | None, *, generator: np.random.Generator, initial_reference: bool = False
+    ) -> None:
+        said = imu or Imu()
+        self.turning_noise = VectorNoise(said.angular_velocity, generator)
+        self.acceleration_noise = VectorNoise(said.linear_acceleration, generator)
+        self._mount = mount
+        self._measured = mount.simulation.time
+        self._reference = self._start(said, initial_reference=initial_reference)
+
+    def _start(self, imu: Imu, *, initial_reference: bool) -> Array:
+        """The reference frame in the world: a quaternion."""
+        if initial_reference:
+            return np.array(self._mount.pose()[3:])
+        turns = {"NED": _NED, "NWU": _NWU, "CUSTOM": imu.custom_rpy}
+        return np.array(quaternion_from_rpy(turns.get(imu.localization, (0.0, 0.0, 0.0))))
+
+    def measure(self) -> Inertial:
+        """What it measures now.
+
+        Raises:
+            KeyError: its link is gone.
+        """
+        simulation = self._mount.simulation
+        period, self._measured = (simulation.time - self._measured) * 1e-9, simulation.time
+        orientation = np.array(self._mount.pose()[3:])
+        into = quaternion_inverse(orientation)
+        turning = rotate(into, self._mount.velocity()[1])
+        felt = rotate(into, self._mount.acceleration())
+        return Inertial(
+            quaternion_multiply(quaternion_inverse(self._reference), orientation),
+            self.turning_noise.apply(turning, period),
+            self.acceleration_noise.apply(felt, period),
+        )

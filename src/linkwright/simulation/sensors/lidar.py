@@ -1,0 +1,159 @@
+"""Lidars: rays, how far they go, and how much light comes back.
+
+Source of what is not in SDF: REP 117 for what is too near or too far; `RaySensor` and `GpuRaySensor` of Gazebo for what
+a ray sees: rays begin where the range does, so that the housing of a sensor does not hide the world.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import isfinite
+from typing import Any
+
+import numpy as np
+
+from linkwright.geometry.arrays import Array, rotation_matrix
+from linkwright.sdf.sensors import Lidar, Sweep
+from linkwright.simulation.library import load_mujoco
+from linkwright.simulation.scene.bodies import COLLISION_GROUP, VISUAL_GROUP
+from linkwright.simulation.sensors.mount import GeomTable, Mount, part_of, parts_of
+from linkwright.simulation.sensors.noise import NoiseSource
+
+_GROUPS = 6
+"""How many groups of geoms MuJoCo has."""
+_A_LITTLE = 1e-9
+"""In m: what a ray is moved on by in order not to hit the same surface again."""
+_SURFACES = 64
+"""How many surfaces of its own robot a ray goes through before the range begins."""
+
+
+@dataclass(frozen=True, slots=True)
+class Scan:
+    """What a lidar measured.
+
+    Attributes:
+        ranges: in m, shape (vertical, horizontal); -inf for what is too near and inf for what is too far.
+        intensities: `laser_retro` of what was hit, 0 where there is nothing; of the same shape.
+    """
+
+    ranges: Array
+    intensities: Array
+
+
+@dataclass(frozen=True, slots=True)
+class Angles:
+    """The directions of rays in one plane: from `first`, in rad, by `step`."""
+
+    first: float
+    last: float
+    count: int
+
+    @property
+    def step(self) -> float:
+        """The angle from one ray to the next; 0 for a single ray."""
+        return (self.last - self.first) / (self.count - 1) if self.count > 1 else 0.0
+
+    @property
+    def array(self) -> Array:
+        """All of them: shape (count,)."""
+        angles: Array = self.first + self.step * np.arange(self.count, dtype=np.float64)
+        return angles
+
+
+def angles_of(sweep: Sweep) -> Angles:
+    """The rays that a sweep describes; a resolution makes more or fewer of them."""
+    count = max(round(sweep.samples * sweep.resolution), 1) if sweep.resolution > 0 else max(sweep.samples, 1)
+    return Angles(sweep.min_angle, sweep.max_angle, count)
+
+
+class LidarSensor:
+    """A lidar: it looks along x, horizontal angles are about z and vertical ones upwards.
+
+    Ranges are exact but for noise: as in Gazebo, the resolution of the range rounds nothing. The link that carries it
+    hides nothing, nor does what is nearer than the range of other parts of its robot.
+
+    Args:
+        mount: where it is.
+        lidar: what is said of it.
+        sees_visuals: whether it sees what is drawn, as a lidar made by a graphics card does, instead of what touches.
+        generator: where its noise comes from.
+    """
+
+    def __init__(self, mount: Mount, lidar: Lidar, *, sees_visuals: bool, generator: np.random.Generator) -> None:
+        self.horizontal = angles_of(lidar.horizontal)
+        self.vertical = angles_of(lidar.vertical)
+        self.range_min = max(lidar.range.min, 0.0)
+        self.range_max = lidar.range.max if lidar.range.max > self.range_min else float("inf")
+        self._mount = mount
+        self._simulation = mount.simulation
+        self._mujoco = load_mujoco()
+        self._noise = NoiseSource(lidar.noise, generator)
+        self._groups = np.zeros(_GROUPS, dtype=np.uint8)
+        self._groups[VISUAL_GROUP if sees_visuals else COLLISION_GROUP] = 1
+        self._retro = GeomTable(self._simulation, self._retros)
+        self._own = GeomTable(self._simulation, self._owned)
+
+    @cached_property
+    def directions(self) -> Array:
+        """Where its rays go, in its own frame: unit vectors, shape (vertical * horizontal, 3)."""
+        up, across = np.meshgrid(self.vertical.array, self.horizontal.array, indexing="ij")
+        x, y, z = np.cos(up) * np.cos(across), np.cos(up) * np.sin(across), np.sin(up)
+        rays: Array = np.stack([x, y, z], axis=-1).reshape(-1, 3)
+        return rays
+
+    def measure(self) -> Scan:
+        """What it sees now.
+
+        Raises:
+            KeyError: its link is gone.
+        """
+        ranges, geoms = self._cast()
+        intensities = self._retro.array()[geoms]
+        far = (ranges >= self.range_max) | (geoms < 0)
+        near = (ranges <= self.range_min) & ~far
+        if not self._noise.silent:
+            ranges = np.clip(self._noise.apply(ranges), self.range_min, self.range_max)
+        ranges[far], ranges[near] = np.inf, -np.inf
+        intensities[far] = 0.0
+        shape = self.vertical.count, self.horizontal.count
+        return Scan(ranges.reshape(shape), intensities.reshape(shape))
+
+    def _cast(self) -> tuple[Array, Any]:
+        simulation, pose = self._simulation, self._mount.pose()
+        rays = np.ascontiguousarray(self.directions @ rotation_matrix(pose[3:]).T)
+        count = len(rays)
+        ranges, geoms = np.empty(count), np.empty(count, dtype=np.int32)
+        reach = self.range_max if isfinite(self.range_max) else self._mujoco.mjMAXVAL
+        origin, body = np.array(pose[:3]), self._mount.body
+        self._mujoco.mj_multiRay(
+            simulation.model, simulation.data, origin, rays.ravel(), self._groups, 1, body, geoms, ranges, None, count,
+            reach,
+        )  # fmt: skip
+        own = self._own.array()
+        for ray in np.nonzero((geoms >= 0) & (ranges < self.range_min) & (own[geoms] > 0))[0]:
+            ranges[ray], geoms[ray] = self._beyond(origin, rays[ray], body, float(ranges[ray]), own)
+        return ranges, geoms
+
+    def _beyond(self, origin: Array, ray: Array, body: int, reached: float, own: Array) -> tuple[float, int]:
+        """What a ray hits behind parts of its own robot that are nearer than its range: the distance, and the geom."""
+        simulation, geom = self._simulation, np.zeros(1, dtype=np.int32)
+        for _ in range(_SURFACES):
+            start = reached + _A_LITTLE
+            further = self._mujoco.mj_ray(
+                simulation.model, simulation.data, origin + start * ray, ray, self._groups, 1, body, geom
+            )
+            if further < 0:
+                return float("inf"), -1
+            reached = start + further
+            if reached >= self.range_min or not own[geom[0]]:
+                break
+        return reached, int(geom[0])
+
+    def _owned(self, names: list[str]) -> list[float]:
+        prefix = self._mount.link.partition("::")[0] + "::"
+        return [float(name.startswith(prefix)) for name in names]
+
+    def _retros(self, names: list[str]) -> list[float]:
+        said = {name: part.laser_retro for name, part in parts_of(self._simulation) if part.laser_retro}
+        return [said.get(part_of(name), 0.0) for name in names]

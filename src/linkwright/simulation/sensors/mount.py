@@ -1,0 +1,124 @@
+"""Where a sensor is fixed, and chance that is the same in every run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+from zlib import crc32
+
+import numpy as np
+
+from linkwright.geometry.arrays import Array
+from linkwright.geometry.single import IDENTITY, Transform, compose
+from linkwright.sdf.links import Collision, Visual
+from linkwright.sdf.poses import SEPARATOR
+from linkwright.simulation.library import load_mujoco
+from linkwright.simulation.simulation import Simulation
+
+
+@dataclass(frozen=True, slots=True)
+class Mount:
+    """A place on a link.
+
+    Attributes:
+        simulation: the world.
+        link: the name of the link in the world, as ``robot::laser_link``.
+        offset: where the sensor is in the frame of the link.
+    """
+
+    simulation: Simulation
+    link: str
+    offset: Transform = IDENTITY
+
+    @property
+    def model(self) -> str:
+        """The model that the link is part of."""
+        return self.link.partition(SEPARATOR)[0]
+
+    @property
+    def body(self) -> int:
+        """The number of the link in MuJoCo's model of this moment."""
+        self.simulation.refresh()
+        return int(self.simulation.model.body(self.link).id)
+
+    def pose(self) -> Transform:
+        """Where the sensor is in the world.
+
+        Raises:
+            KeyError: the link is gone.
+        """
+        return compose(self.simulation.link_pose(self.link), self.offset)
+
+    def velocity(self) -> tuple[Array, Array]:
+        """The velocity of the sensor in m/s and its angular one in rad/s, in the axes of the world."""
+        linear, angular = self.simulation.link_velocity(self.link)
+        return linear + np.cross(angular, self._arm()), angular
+
+    def _arm(self) -> Array:
+        """From the origin of the link to the sensor, in the axes of the world."""
+        link, sensor = self.simulation.link_pose(self.link), self.pose()
+        return np.subtract(sensor[:3], link[:3])
+
+    def acceleration(self) -> Array:
+        """What an accelerometer feels in m/s2, in the axes of the world: at rest the reaction to gravity, upwards."""
+        accelerations(self.simulation)
+        simulation = self.simulation
+        mujoco, result = load_mujoco(), np.zeros(6)
+        mujoco.mj_objectAcceleration(simulation.model, simulation.data, mujoco.mjtObj.mjOBJ_XBODY, self.body, result, 0)
+        arm, turning = self._arm(), self.velocity()[1]
+        felt: Array = result[3:] + np.cross(result[:3], arm) + np.cross(turning, np.cross(turning, arm))
+        return felt
+
+
+def accelerations(simulation: Simulation) -> None:
+    """Let MuJoCo compute the accelerations of all bodies and the forces between them, as they were in the last step."""
+    simulation.refresh()
+    load_mujoco().mj_rnePostConstraint(simulation.model, simulation.data)
+
+
+def generator(name: str, seed: int) -> np.random.Generator:
+    """Chance of its own for each sensor: the same for the same name and seed, whatever else there is in the world."""
+    return np.random.default_rng([seed, crc32(name.encode())])
+
+
+def part_of(geom: str) -> str:
+    """The visual or collision that a geom of MuJoCo is one piece of, as ``robot::base_link::lid#visual``."""
+    name, mark, kind = geom.partition("#")
+    return name + mark + kind.partition("#")[0]
+
+
+def parts_of(simulation: Simulation) -> Iterator[tuple[str, Visual | Collision]]:
+    """All visuals and collisions of a world by the names that `part_of` returns."""
+    for model in simulation.scene.models.values():
+        for held in model.structure.links:
+            link = held.link
+            for visual in link.link.visuals:
+                yield f"{link.name}{SEPARATOR}{visual.name}#visual", visual
+            for collision in link.link.collisions:
+                yield f"{link.name}{SEPARATOR}{collision.name}#collision", collision
+
+
+class GeomTable:
+    """A value for each geom of MuJoCo's model, worked out anew when models have come or gone.
+
+    Args:
+        simulation: the world.
+        values: all values, by the order of the geoms.
+    """
+
+    def __init__(self, simulation: Simulation, values: Any) -> None:
+        self._simulation = simulation
+        self._values = values
+        self._revision = -1
+        self._array: Array = np.zeros(0)
+
+    def array(self) -> Array:
+        """The values: shape (geoms + 1,); the last is 0, for what geom -1 stands for: nothing."""
+        self._simulation.refresh()
+        if self._revision != self._simulation.revision:
+            model = self._simulation.model
+            names = [model.geom(index).name for index in range(model.ngeom)]
+            self._array = np.array([*self._values(names), 0.0])
+            self._revision = self._simulation.revision
+        return self._array

@@ -1,0 +1,86 @@
+"""Noise on what is measured.
+
+Source: what the elements of ``<noise>`` mean, SDFormat specification 1.12, and how the ``GaussianNoiseModel`` of Gazebo
+lets a bias wander.
+"""
+
+from __future__ import annotations
+
+from math import exp, sqrt
+
+import numpy as np
+
+from linkwright.geometry.arrays import Array
+from linkwright.sdf.noise import Noise, NoiseXyz
+
+
+class NoiseSource:
+    """Makes one value, or many of the same kind, noisy.
+
+    Args:
+        noise: what is said of it, in the unit of the values.
+        generator: where chance comes from.
+    """
+
+    def __init__(self, noise: Noise, generator: np.random.Generator) -> None:
+        self._noise = noise
+        self._generator = generator
+        self._wandering = 0.0
+        self._bias = 0.0
+        if noise.type != "none" and (noise.bias_mean or noise.bias_stddev):
+            self._bias = generator.normal(noise.bias_mean, abs(noise.bias_stddev)) * generator.choice((-1.0, 1.0))
+
+    @property
+    def variance(self) -> float:
+        """The square of the standard deviation; 0 without noise."""
+        return 0.0 if self._noise.type == "none" else self._noise.stddev**2
+
+    @property
+    def silent(self) -> bool:
+        """Whether it changes nothing."""
+        return self._noise.type == "none"
+
+    def apply(self, values: Array, period: float = 0.0) -> Array:
+        """Values with noise on them.
+
+        Args:
+            values: of any shape.
+            period: seconds since it was asked last, in which the bias may have wandered.
+        """
+        noise = self._noise
+        if self.silent:
+            return values
+        if noise.dynamic_bias_stddev > 0 and noise.dynamic_bias_correlation_time > 0 and period > 0:
+            self._wander(period)
+        noisy: Array = values + self._bias + self._wandering
+        if noise.stddev > 0 or noise.mean:
+            noisy = noisy + self._generator.normal(noise.mean, abs(noise.stddev), np.shape(values))
+        if noise.type == "gaussian_quantized" and noise.precision > 0:
+            noisy = np.round(noisy / noise.precision) * noise.precision
+        return noisy
+
+    def _wander(self, period: float) -> None:
+        stddev, tau = self._noise.dynamic_bias_stddev, self._noise.dynamic_bias_correlation_time
+        step = sqrt(stddev**2 * tau / 2 * (1 - exp(-2 * period / tau)))
+        self._wandering = exp(-period / tau) * self._wandering + self._generator.normal(0.0, step)
+
+
+class VectorNoise:
+    """Noise on the three parts of a vector.
+
+    Args:
+        noise: what is said of each part.
+        generator: where chance comes from.
+    """
+
+    def __init__(self, noise: NoiseXyz, generator: np.random.Generator) -> None:
+        self._sources = [NoiseSource(each, generator) for each in (noise.x, noise.y, noise.z)]
+
+    @property
+    def variances(self) -> Array:
+        """The squares of the standard deviations: shape (3,)."""
+        return np.array([each.variance for each in self._sources])
+
+    def apply(self, vector: Array, period: float = 0.0) -> Array:
+        """A vector, shape (3,), with noise on it."""
+        return np.array([float(s.apply(vector[i], period)) for i, s in enumerate(self._sources)])

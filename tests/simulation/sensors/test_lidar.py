@@ -1,0 +1,114 @@
+"""Lidars against walls whose distance is known."""
+
+from __future__ import annotations
+
+from math import cos, pi, sin, sqrt
+
+import numpy as np
+import pytest
+
+from linkwright.simulation.sensors.lidar import LidarSensor, angles_of
+from linkwright.simulation.sensors.mount import Mount, generator
+from linkwright.simulation.simulation import Simulation
+from tests.simulation.sensors.rooms import block, carrier, flat, lidar, on_carrier, room
+from tests.simulation.worlds import GROUND, box, model, simulated
+
+GAUSSIAN = '<noise type="gaussian"><mean>0</mean><stddev>0.01</stddev></noise>'
+
+
+def look(simulation: Simulation, said, *, visuals: bool = False, seed: int = 0) -> LidarSensor:
+    return LidarSensor(on_carrier(simulation), said, sees_visuals=visuals, generator=generator("lidar", seed))
+
+
+def in_room(angle: float) -> float:
+    """How far the walls of `room` are from the origin in a direction."""
+    x, y = cos(angle), sin(angle)
+    across = 3 / x if x > 0 else -2 / x if x < 0 else float("inf")
+    along = 4 / y if y > 0 else -5 / y if y < 0 else float("inf")
+    return min(across, along)
+
+
+@pytest.mark.parametrize("visuals", [False, True])
+def test_every_ray_in_a_room_is_exact(visuals: bool):
+    scan = look(simulated(room(), carrier()), flat(720, -3.0, 3.0), visuals=visuals).measure()
+    expected = [in_room(angle) for angle in np.linspace(-3.0, 3.0, 720)]
+    assert np.abs(scan.ranges[0] - expected).max() < 1e-6
+
+
+def test_rays_turn_with_the_link_that_carries_them():
+    scan = look(simulated(room(), carrier(f"1 0 0 0 0 {pi / 2}")), flat(1, 0.0, 0.0)).measure()
+    assert scan.ranges == pytest.approx(np.array([[4.0]]), abs=1e-9)
+
+
+def test_rings_look_up_and_down():
+    said = lidar(
+        "<scan><horizontal><samples>1</samples></horizontal><vertical><samples>3</samples>"
+        f"<min_angle>{-pi / 4}</min_angle><max_angle>{pi / 4}</max_angle></vertical></scan>"
+        "<range><min>0.1</min><max>30</max></range>"
+    )
+    scan = look(simulated(GROUND, room(), carrier("0 0 1 0 0 0")), said).measure()
+    assert scan.ranges[:, 0] == pytest.approx([sqrt(2), 3.0, 3 * sqrt(2)], abs=1e-9)
+
+
+def test_what_is_out_of_range_is_infinite_as_rep_117_says():
+    world = block("far", "9 0 0 0 0 0", "1 1 1"), block("near", "0 0.55 0 0 0 0", "1 1 1")
+    scan = look(simulated(*world, carrier()), flat(3, 0.0, pi, far=8.0)).measure()
+    assert list(scan.ranges[0]) == [np.inf, -np.inf, np.inf]
+
+
+def test_what_shines_back_is_told():
+    simulation = simulated(block("shiny", "3 0 0 0 0 0", "1 1 1", retro=200.0), carrier())
+    scan = look(simulation, flat(2, 0.0, pi)).measure()
+    assert list(scan.intensities[0]) == [200.0, 0.0]
+
+
+def test_one_sees_what_touches_and_another_what_is_drawn():
+    invisible = box("invisible", "3 0 0 0 0 0")
+    for visuals, expected in ((False, 2.5), (True, np.inf)):
+        assert look(simulated(invisible, carrier()), flat(1, 0, 0), visuals=visuals).measure().ranges[0, 0] == expected
+
+
+ROBOT = """
+<model name="robot"><static>true</static>
+  <link name="base"><collision name="c"><geometry><cylinder><radius>0.3</radius><length>1</length></cylinder></geometry>
+  </collision></link>
+  <link name="laser"><collision name="c"><geometry><sphere><radius>0.5</radius></sphere></geometry></collision></link>
+</model>"""
+
+
+@pytest.mark.parametrize(("near", "expected"), [(0.1, 0.3), (0.35, 3.0)])
+def test_a_lidar_sees_its_robot_beyond_the_least_range_and_never_its_own_link(near: float, expected: float):
+    simulation = simulated(room(), ROBOT)
+    sensor = LidarSensor(
+        Mount(simulation, "robot::laser"), flat(1, 0, 0, near=near), sees_visuals=False, generator=generator("", 0)
+    )
+    assert sensor.measure().ranges[0, 0] == pytest.approx(expected, abs=1e-9)
+
+
+def test_noise_is_that_of_the_seed_and_stays_in_range():
+    simulation = simulated(room(), carrier())
+    said = flat(2000, -1.0, 1.0, GAUSSIAN, far=3.4)
+    one, same, other = (look(simulation, said, seed=seed).measure().ranges[0] for seed in (1, 1, 2))
+    assert (one == same).all()
+    assert not (one == other).all()
+    exact = look(simulation, flat(2000, -1.0, 1.0, far=3.4)).measure().ranges[0]
+    finite = np.isfinite(exact)
+    assert (np.isfinite(one) == finite).all()
+    assert one[finite].max() <= 3.4
+    inside = exact < 3.35
+    assert np.std(one[inside] - exact[inside]) == pytest.approx(0.01, rel=0.1)
+
+
+def test_models_that_come_are_seen():
+    simulation = simulated(room(), carrier())
+    sensor = look(simulation, flat(1, 0, 0))
+    assert sensor.measure().ranges[0, 0] == pytest.approx(3.0)
+    simulation.spawn(model(box("box", "0 0 0 0 0 0")), "box", (2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0))
+    assert sensor.measure().ranges[0, 0] == pytest.approx(1.5)
+
+
+def test_the_angles_are_those_of_gazebo():
+    said = flat(360, 0.0, 6.28)
+    angles = angles_of(said.horizontal)
+    assert (angles.count, angles.step) == (360, pytest.approx(6.28 / 359))
+    assert angles_of(flat(1, 0.5, 0.7).horizontal).step == 0.0

@@ -1,0 +1,167 @@
+"""IMUs, contacts, forces in joints and places on earth, against what mechanics and geodesy say."""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+import pytest
+
+from linkwright.sdf.sensors import ForceTorque
+from linkwright.sdf.worlds import SphericalCoordinates
+from linkwright.simulation.sensors.contact import ContactSensor
+from linkwright.simulation.sensors.earth import AltimeterSensor, Globe, MagnetometerSensor, NavsatSensor
+from linkwright.simulation.sensors.force_torque import ForceTorqueSensor
+from linkwright.simulation.sensors.imu import ImuSensor
+from linkwright.simulation.sensors.mount import Mount, generator
+from linkwright.simulation.simulation import NANOSECONDS, Simulation
+from tests.simulation.sensors.rooms import sensor
+from tests.simulation.worlds import GROUND, box, mbot, simulated
+
+CHANCE = generator("", 0)
+
+
+def imu(simulation: Simulation, link: str, text: str = "", *, seed: int = 0, initial: bool = False) -> ImuSensor:
+    said = sensor(f"<imu>{text}</imu>", "imu").imu
+    return ImuSensor(Mount(simulation, link), said, generator=generator("imu", seed), initial_reference=initial)
+
+
+def test_an_imu_at_rest_feels_the_reaction_to_gravity():
+    simulation = simulated(GROUND, mbot(), gravity="0 0 -9.8")
+    simulation.advance(NANOSECONDS)
+    measured = imu(simulation, "mbot::base_link").measure()
+    assert measured.linear_acceleration == pytest.approx([0, 0, 9.8], abs=1e-3)
+    assert measured.angular_velocity == pytest.approx([0, 0, 0], abs=1e-4)
+    assert measured.orientation == pytest.approx([0, 0, 0, 1], abs=1e-4)
+
+
+def test_an_imu_that_falls_feels_nothing():
+    simulation = simulated(box("box", "0 0 9 0.3 0.2 0.1"))
+    simulation.advance(NANOSECONDS // 10)
+    assert imu(simulation, "box::link").measure().linear_acceleration == pytest.approx([0, 0, 0], abs=1e-9)
+
+
+def test_an_imu_in_a_turn_feels_the_acceleration_towards_the_centre():
+    simulation = simulated(GROUND, mbot())
+    motors = [simulation.add_velocity_motor(f"mbot::{side}_joint", 20.0, 5.0) for side in ("left", "right")]
+    forwards, turning = 0.3, 0.5
+    for hundredth in range(1, 101):
+        for motor, side in zip(motors, (-0.19, 0.19), strict=True):
+            motor.target = hundredth / 100 * (forwards + turning * side) / 0.06
+        simulation.advance(NANOSECONDS // 100)
+    simulation.advance(NANOSECONDS)
+    measured = imu(simulation, "mbot::base_link").measure()
+    assert measured.angular_velocity == pytest.approx([0, 0, turning], abs=1e-3)
+    assert measured.linear_acceleration == pytest.approx([0, forwards * turning, 9.81], abs=2e-3)
+    outside = Mount(simulation, "mbot::base_link", (0.1, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0))
+    felt = ImuSensor(outside, None, generator=CHANCE).measure().linear_acceleration
+    assert felt[0] - measured.linear_acceleration[0] == pytest.approx(-0.1 * turning**2, abs=1e-3)
+
+
+def test_orientation_is_against_the_world_or_the_start():
+    simulation = simulated(box("box", f"0 0 9 0 0 {pi / 2}"))
+    assert imu(simulation, "box::link").measure().orientation == pytest.approx([0, 0, 0.5**0.5, 0.5**0.5])
+    assert imu(simulation, "box::link", initial=True).measure().orientation == pytest.approx([0, 0, 0, 1])
+
+
+def test_noise_of_an_imu_has_its_deviation_and_bias():
+    text = (
+        '<angular_velocity><x><noise type="gaussian"><stddev>0.2</stddev></noise></x></angular_velocity>'
+        '<linear_acceleration><z><noise type="gaussian"><bias_mean>5</bias_mean></noise></z></linear_acceleration>'
+    )
+    unit = imu(simulated(box("box", "0 0 9 0 0 0")), "box::link", text)
+    turns = np.array([unit.measure().angular_velocity for _ in range(2000)])
+    assert np.std(turns[:, 0]) == pytest.approx(0.2, rel=0.1)
+    assert not turns[:, 1:].any()
+    assert list(unit.turning_noise.variances) == pytest.approx([0.04, 0, 0])
+    assert abs(unit.measure().linear_acceleration[2] - 9.81) == pytest.approx(5.0)
+
+
+def test_a_bias_wanders_within_its_deviation():
+    text = (
+        '<angular_velocity><x><noise type="gaussian"><dynamic_bias_stddev>0.5</dynamic_bias_stddev>'
+        "<dynamic_bias_correlation_time>0.02</dynamic_bias_correlation_time></noise></x></angular_velocity>"
+    )
+    simulation = simulated(box("box", "0 0 9 0 0 0"))
+    unit, seen = imu(simulation, "box::link", text), []
+    for _ in range(1000):
+        simulation.advance(NANOSECONDS // 1000)
+        seen.append(unit.measure().angular_velocity[0])
+    assert len(set(seen)) == 1000
+    assert 0 < np.std(seen) < 0.5
+
+
+def test_contacts_carry_the_weight_of_what_stands():
+    simulation = simulated(GROUND, box("box", "0 0 0.5 0 0 0", mass=2.0))
+    simulation.advance(NANOSECONDS)
+    (contact,) = ContactSensor(Mount(simulation, "box::link"), ["collision"]).measure()
+    assert (contact.collision1, contact.collision2) == ("box::link::collision", "ground::link::collision")
+    assert contact.forces.sum(axis=0) == pytest.approx([0, 0, 2 * 9.81], abs=0.05)
+    assert contact.torques.sum(axis=0) == pytest.approx([0, 0, 0], abs=0.05)
+    assert contact.normals == pytest.approx(np.tile([0.0, 0.0, 1.0], (len(contact.normals), 1)))
+    assert contact.positions[:, 2] == pytest.approx(0.0, abs=1e-3)
+    assert (contact.depths >= 0).all()
+
+
+def test_nothing_touches_what_flies_and_other_collisions_do_not_count():
+    simulation = simulated(GROUND, box("box", "0 0 5 0 0 0"), box("low", "9 0 0.5 0 0 0"))
+    simulation.advance(NANOSECONDS // 10)
+    assert ContactSensor(Mount(simulation, "box::link")).measure() == []
+    assert ContactSensor(Mount(simulation, "low::link"), ["another"]).measure() == []
+
+
+ARM = """
+<model name="arm"><link name="post"><inertial><mass>1</mass></inertial></link>
+  <link name="bob"><pose>1 0 0 0 0 0</pose><inertial><mass>2</mass></inertial></link>
+  <joint name="held" type="fixed"><parent>world</parent><child>post</child></joint>
+  <joint name="wrist" type="fixed"><pose>-1 0 0 0 0 0</pose><parent>post</parent><child>bob</child></joint>
+</model>"""
+
+
+@pytest.mark.parametrize(("direction", "sign"), [("parent_to_child", 1), ("child_to_parent", -1)])
+def test_a_joint_carries_what_hangs_on_it(direction: str, sign: int):
+    simulation = simulated(ARM)
+    simulation.advance(NANOSECONDS // 100)
+    said = ForceTorque(measure_direction=direction)
+    force, torque = ForceTorqueSensor(simulation, "arm::wrist", said, CHANCE).measure()
+    assert sign * force == pytest.approx([0, 0, 2 * 9.81], abs=1e-6)
+    assert sign * torque == pytest.approx([0, -2 * 9.81, 0], abs=1e-6)
+
+
+def test_places_on_earth_are_those_of_wgs_84():
+    globe = Globe(SphericalCoordinates(latitude_deg=0.0, longitude_deg=0.0))
+    assert globe.geodetic(np.zeros(3)) == pytest.approx((0.0, 0.0, 0.0), abs=1e-9)
+    # A degree at the equator is 110 574.3 m to the north and 111 319.5 m to the east; over 10 m the arc is straight.
+    assert globe.geodetic(np.array([0.0, 10.0, 5.0])) == pytest.approx((10 / 110574.276, 0.0, 5.0), abs=1e-5)
+    assert globe.geodetic(np.array([10.0, 0.0, 0.0])) == pytest.approx((0.0, 10 / 111319.491, 0.0), abs=1e-5)
+    high = Globe(SphericalCoordinates(latitude_deg=47.5, longitude_deg=8.5, elevation=430.0))
+    assert high.geodetic(np.zeros(3)) == pytest.approx((47.5, 8.5, 430.0), abs=1e-8)
+
+
+def test_a_world_may_be_turned_on_the_earth():
+    globe = Globe(SphericalCoordinates(latitude_deg=10.0, heading_deg=90.0))
+    assert globe.east_north_up(np.array([1.0, 0.0, 0.0])) == pytest.approx([0, 1, 0])
+    latitude, longitude, _ = globe.geodetic(np.array([100.0, 0.0, 0.0]))
+    assert latitude > 10.0
+    assert longitude == pytest.approx(0.0)
+
+
+def test_a_receiver_tells_how_fast_it_goes():
+    simulation = simulated(box("box", "0 0 500 0 0 0"))
+    simulation.advance(NANOSECONDS)
+    fix = NavsatSensor(Mount(simulation, "box::link"), None, SphericalCoordinates(elevation=100.0), CHANCE).measure()
+    assert fix.altitude == pytest.approx(600 - 9.81 / 2, abs=0.01)
+    assert fix.velocity == pytest.approx([0, 0, -9.81], abs=1e-6)
+
+
+def test_an_altimeter_counts_from_where_it_began():
+    simulation = simulated(box("box", "0 0 500 0 0 0"))
+    altimeter = AltimeterSensor(Mount(simulation, "box::link"), None, CHANCE)
+    simulation.advance(NANOSECONDS)
+    assert altimeter.measure() == pytest.approx((-9.81 / 2, -9.81), abs=0.01)
+
+
+def test_a_magnetometer_turns_in_the_field():
+    simulation = simulated(box("box", f"0 0 9 0 0 {pi / 2}"))
+    field = MagnetometerSensor(Mount(simulation, "box::link"), None, CHANCE, (1.0, 2.0, 3.0)).measure()
+    assert field == pytest.approx([2.0, -1.0, 3.0])
