@@ -30,6 +30,7 @@ def test_displays_are_added_by_type_and_taken_back(grouped):
     row(page, "display-2").click()
     page.keyboard.press("Alt+a")
     page.keyboard.type("points of a cloud")
+    page.wait_for_selector(".choice-row")
     assert page.locator(".choice-row").all_inner_texts()[-1].startswith("PointCloud2")
     page.locator(".choice-row", has_text="PointCloud2").click()
     assert page.get_by_label("Display name").input_value() == "PointCloud2"

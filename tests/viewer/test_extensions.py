@@ -80,9 +80,9 @@ async def test_a_display_of_another_package_is_made_and_offered(brought):
         first = await client.opened()
         (fence,) = [each for each in first["tree"]["displays"] if each["cls"] == "brought/Fence"]
         assert (fence["supported"], fence["drawing"]) == (True, "rviz_default_plugins/Polygon")
-        assert {"cls": "brought/Fence", "messages": ["geometry_msgs/msg/PolygonStamped"]} in first["display_classes"][
-            "classes"
-        ]
+        await client.send("ask_display_choices")
+        offered = (await client.until("display_choices"))["classes"]
+        assert {"cls": "brought/Fence", "messages": ["geometry_msgs/msg/PolygonStamped"]} in offered
 
 
 async def test_a_display_that_cannot_be_imported_is_kept_and_told_of(brought):

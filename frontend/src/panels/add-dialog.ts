@@ -1,6 +1,6 @@
 import { button, h } from "../dom";
 import { displayIcon, icon } from "../icons";
-import type { TopicChoice } from "../protocol";
+import type { DisplayClass, TopicChoice } from "../protocol";
 import { Dialog } from "../shell/dialog";
 import type { DisplayState } from "../state/displays";
 import type { Session } from "../state/session";
@@ -25,7 +25,7 @@ export class AddDialog {
   private readonly tabs: Readonly<Record<Tab, HTMLButtonElement>>;
   private readonly forget: () => void;
   private tab: Tab = "type";
-  private topics: readonly TopicChoice[] | null = null;
+  private waits = false;
   private choices: Choice[] = [];
   private chosen: Choice | null = null;
   private named = "";
@@ -61,9 +61,10 @@ export class AddDialog {
       [{ label: strings.shell.cancel }, { label: words.add, main: true, run: () => this.accept() }],
       "add-dialog",
     );
-    this.forget = session.configuration.topicsListed.on((topics) => {
-      this.topics = topics;
-      if (this.tab === "topic") this.fill();
+    this.forget = session.configuration.offered.on(() => {
+      if (!this.waits) return; // what is listed stays where the mouse may be
+      this.waits = false;
+      this.fill();
     });
     this.dialog.element.addEventListener("close", () => this.forget());
   }
@@ -92,7 +93,9 @@ export class AddDialog {
       this.tabs[each].tabIndex = each === tab ? 0 : -1;
     }
     this.allBox.hidden = tab !== "topic";
-    if (tab === "topic") this.session.configuration.askTopics();
+    const { configuration } = this.session;
+    this.waits = tab === "topic" || configuration.choices === null;
+    if (this.waits) configuration.askChoices();
     this.fill();
   }
 
@@ -102,8 +105,8 @@ export class AddDialog {
     this.choices = [];
     const entries = this.tab === "type" ? this.types(wanted) : this.byTopic(wanted);
     this.list.replaceChildren(...entries);
-    if (entries.length === 0) {
-      const none = this.tab === "topic" && this.topics?.length === 0;
+    if (entries.length === 0 && !this.waits) {
+      const none = this.tab === "topic" && this.offered.topics.length === 0;
       this.list.append(h("p", { class: "empty" }, none ? strings.displays.noTopics : strings.displays.notFound));
     }
     const again = this.choices.find((each) => each.cls === before?.cls && each.topic === before.topic);
@@ -112,8 +115,13 @@ export class AddDialog {
     if (first && !again) first.element.tabIndex = 0;
   }
 
+  private get offered(): { classes: DisplayClass[]; topics: TopicChoice[] } {
+    const { choices } = this.session.configuration;
+    return this.waits || choices === null ? { classes: [], topics: [] } : choices;
+  }
+
   private types(wanted: string): HTMLElement[] {
-    return this.session.configuration.classes
+    return this.offered.classes
       .map(({ cls, messages }) => ({ cls, about: aboutDisplay(cls), messages }))
       .filter(({ cls, about, messages }) => [cls, about, ...messages].some((text) => text.toLowerCase().includes(wanted)))
       .map(({ cls, about }) => this.choice(cls, null, shortName(cls), about));
@@ -122,7 +130,7 @@ export class AddDialog {
   private byTopic(wanted: string): HTMLElement[] {
     const matches = ({ topic, message, classes }: TopicChoice): boolean =>
       [topic, message, ...classes].some((text) => text.toLowerCase().includes(wanted));
-    const listed = (this.topics ?? []).filter((each) => each.classes.length > 0 || this.showAll.checked);
+    const listed = this.offered.topics.filter((each) => each.classes.length > 0 || this.showAll.checked);
     return listed.filter(matches).map(({ topic, message, classes }) =>
       h(
         "div",

@@ -74,15 +74,15 @@ function offerTopics(
 ): void {
   const { configuration } = session;
   const own = display.rows.find(row)?.topics;
-  const known = own?.messages ?? configuration.classes.find((each) => each.cls === display.cls)?.messages ?? [];
-  const messages = known.length > 0 ? known : [TEXT];
   const words = own?.words ?? [];
   const named = (topic: string): boolean => words.length === 0 || words.some((word) => topic.toLowerCase().includes(word));
-  const forget = configuration.topicsListed.on((topics) => {
+  const forget = configuration.offered.on(({ classes, topics }) => {
     forget();
+    const known = own?.messages ?? classes.find((each) => each.cls === display.cls)?.messages ?? [];
+    const messages = known.length > 0 ? known : [TEXT];
     show(topics.filter(({ topic, message }) => messages.includes(message) && named(topic)).map(({ topic }) => topic));
   });
-  configuration.askTopics();
+  configuration.askChoices();
 }
 
 function isDrawn(display: DisplayState): boolean {

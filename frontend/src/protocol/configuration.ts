@@ -28,12 +28,6 @@ export interface DisplayClass {
   messages: string[];
 }
 
-/** All classes of displays that can be added. */
-export interface DisplayClasses {
-  classes: DisplayClass[];
-  type: "display_classes";
-}
-
 /** A topic of the graph, its type, and the classes of displays that show it; none when no display does. */
 export interface TopicChoice {
   topic: string;
@@ -41,10 +35,11 @@ export interface TopicChoice {
   classes: string[];
 }
 
-/** Answers `AskTopics`. */
-export interface TopicChoices {
+/** Answers `AskDisplayChoices`: all classes of displays that can be added, and the topics of the graph. */
+export interface DisplayChoices {
+  classes: DisplayClass[];
   topics: TopicChoice[];
-  type: "topic_choices";
+  type: "display_choices";
 }
 
 /** Answers `AskFolder`: the folders and configuration files in a folder of the server, by name. */
@@ -130,9 +125,9 @@ export interface Redo {
   type: "redo";
 }
 
-/** Which topics there are, and which displays show them. */
-export interface AskTopics {
-  type: "ask_topics";
+/** Which displays can be added, which topics there are, and which displays show them. */
+export interface AskDisplayChoices {
+  type: "ask_display_choices";
 }
 
 /** What is in a folder of the server; None for that of the open file. */

@@ -4,13 +4,13 @@ import type { DisplayForgotten, FrameTable } from "./binary";
 import type {
   AddDisplay,
   AskConfigurationText,
+  AskDisplayChoices,
   AskFolder,
-  AskTopics,
   Configuration,
   ConfigurationRefused,
   ConfigurationSaved,
   ConfigurationText,
-  DisplayClasses,
+  DisplayChoices,
   DuplicateDisplays,
   Folder,
   GroupDisplays,
@@ -25,7 +25,6 @@ import type {
   RevertConfiguration,
   SaveConfiguration,
   ShowPanels,
-  TopicChoices,
   Undo,
 } from "./configuration";
 import type {
@@ -115,7 +114,7 @@ export type ServerMessage =
   | DescriptionChanged
   | DescriptionText
   | Diagnostics
-  | DisplayClasses
+  | DisplayChoices
   | DisplayForgotten
   | DisplayProperties
   | DisplayStatus
@@ -145,7 +144,6 @@ export type ServerMessage =
   | TimeState
   | ToolPropertyChanged
   | Tools
-  | TopicChoices
   | TopicFields
   | TopicFigures
   | TopicList
@@ -161,13 +159,13 @@ export type PageMessage =
   | AskConfigurationText
   | AskDescription
   | AskDescriptionText
+  | AskDisplayChoices
   | AskExport
   | AskFields
   | AskFolder
   | AskInertia
   | AskPoint
   | AskProvenance
-  | AskTopics
   | CenterJoints
   | ChangeSavedView
   | Drive

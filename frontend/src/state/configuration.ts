@@ -3,9 +3,8 @@ import type {
   Configuration,
   ConfigurationRefused,
   ConfigurationText,
-  DisplayClass,
+  DisplayChoices,
   Folder,
-  TopicChoice,
 } from "../protocol";
 import { Signal } from "./signal";
 
@@ -17,8 +16,9 @@ export class ConfigurationState {
   readonly refused = new Signal<ConfigurationRefused>();
   readonly texts = new Signal<ConfigurationText>();
   readonly folders = new Signal<Folder>();
-  readonly topicsListed = new Signal<readonly TopicChoice[]>();
-  classes: readonly DisplayClass[] = [];
+  readonly offered = new Signal<DisplayChoices>();
+  /** What can be added, as the server said when it was asked last. */
+  choices: DisplayChoices | null = null;
   current: Configuration = {
     type: "configuration",
     path: null,
@@ -35,12 +35,14 @@ export class ConfigurationState {
       this.current = message;
       this.changed.emit();
     });
-    connection.on("display_classes", ({ classes }) => (this.classes = classes));
     connection.on("configuration_saved", ({ path }) => this.saved.emit(path));
     connection.on("configuration_refused", (message) => this.refused.emit(message));
     connection.on("configuration_text", (message) => this.texts.emit(message));
     connection.on("folder", (message) => this.folders.emit(message));
-    connection.on("topic_choices", ({ topics }) => this.topicsListed.emit(topics));
+    connection.on("display_choices", (message) => {
+      this.choices = message;
+      this.offered.emit(message);
+    });
   }
 
   /** The name of the file; null when there is none yet. */
@@ -81,8 +83,9 @@ export class ConfigurationState {
     this.connection.send({ type: "group_displays", displays, name });
   }
 
-  askTopics(): void {
-    this.connection.send({ type: "ask_topics" });
+  /** Asks which displays can be added, and for which topics. */
+  askChoices(): void {
+    this.connection.send({ type: "ask_display_choices" });
   }
 
   askFolder(path: string | null): void {

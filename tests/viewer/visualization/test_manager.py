@@ -60,7 +60,9 @@ async def test_a_box_that_is_set_back_leaves_the_file_as_it_was(box):
 
 async def test_what_can_be_added_is_told():
     async with opened() as (_, client):
-        classes = {each["cls"]: each["messages"] for each in client.first["display_classes"]["classes"]}
+        await client.send("ask_display_choices")
+        told = (await client.until("display_choices"))["classes"]
+        classes = {each["cls"]: each["messages"] for each in told}
         assert classes["rviz_default_plugins/PointStamped"] == ["geometry_msgs/msg/PointStamped"]
         assert classes["rviz_default_plugins/Grid"] == []
         assert list(classes)[-1] == "rviz_common/Group"
@@ -98,8 +100,8 @@ async def test_a_display_for_a_topic_takes_what_its_publishers_offer():
     async with opened() as (made, client):
         qos = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
         publisher = made.graph.create_node("sensor").create_publisher(PointStamped, "/found", qos)
-        await client.send("ask_topics")
-        topics = (await client.until("topic_choices"))["topics"]
+        await client.send("ask_display_choices")
+        topics = (await client.until("display_choices"))["topics"]
         cls = "rviz_default_plugins/PointStamped"
         assert {"topic": "/found", "message": "geometry_msgs/msg/PointStamped", "classes": [cls]} in topics
         await edit(client, "add_display", cls=cls, name="Found", group=None, topic="/found")

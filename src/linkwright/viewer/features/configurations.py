@@ -13,13 +13,13 @@ from linkwright.viewer.config.locations import RecentFiles, configuration_path, 
 from linkwright.viewer.config.rviz_config import RvizConfig
 from linkwright.viewer.config.schema import MAXIMUM_TEXT
 from linkwright.viewer.displays.catalogue import has_display
-from linkwright.viewer.features.displays import choices, show_topic, topic_choices
+from linkwright.viewer.features.displays import choices, show_topic
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
 from linkwright.viewer.protocol.configuration import (
     AddDisplay,
     AskConfigurationText,
+    AskDisplayChoices,
     AskFolder,
-    AskTopics,
     Configuration,
     ConfigurationRefused,
     ConfigurationSaved,
@@ -77,10 +77,6 @@ class ConfigurationFeature(PageFeature):
         super().__init__(viewer)
         self._recent = recent or RecentFiles()
         self._told: dict[VisualizationManager, Configuration] = {}
-
-    def opening(self) -> list[ServerMessage]:
-        """What can be added."""
-        return [choices()]
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
         """The current state."""
@@ -166,8 +162,8 @@ class ConfigurationFeature(PageFeature):
 
     # --- questions ---------------------------------------------------------------------------------------------
 
-    def _ask_topics(self, asked: Request[AskTopics]) -> None:
-        asked.page.send(topic_choices(self.context.node))
+    def _ask_displays(self, asked: Request[AskDisplayChoices]) -> None:
+        asked.page.send(choices(self.context.node))
 
     def _ask_folder(self, asked: Request[AskFolder]) -> None:
         asked.page.send(list_folder(asked.message.path, _folder(asked.manager)))
@@ -238,8 +234,8 @@ class ConfigurationFeature(PageFeature):
 _DEEDS: dict[type, Callable[..., None]] = {
     AddDisplay: ConfigurationFeature._add,
     AskConfigurationText: ConfigurationFeature._ask_text,
+    AskDisplayChoices: ConfigurationFeature._ask_displays,
     AskFolder: ConfigurationFeature._ask_folder,
-    AskTopics: ConfigurationFeature._ask_topics,
     DuplicateDisplays: ConfigurationFeature._duplicate,
     GroupDisplays: ConfigurationFeature._group,
     LoadConfiguration: ConfigurationFeature._load,

@@ -10,7 +10,7 @@ from linkwright.viewer.config.schema import PropertySpec
 from linkwright.viewer.displays.base.display import ViewerDisplay
 from linkwright.viewer.displays.catalogue import display_classes
 from linkwright.viewer.features.page_feature import PageFeature
-from linkwright.viewer.protocol.configuration import DisplayClass, DisplayClasses, TopicChoice, TopicChoices
+from linkwright.viewer.protocol.configuration import DisplayChoices, DisplayClass, TopicChoice
 from linkwright.viewer.protocol.displays import SetProperty
 from linkwright.viewer.protocol.markers import MarkerFeedback
 from linkwright.viewer.protocol.points import AskPoint, PointFields
@@ -49,26 +49,24 @@ class PointsFeature(PageFeature):
             page.send(PointFields(message.display, message.key, message.index, fields))
 
 
-def choices() -> DisplayClasses:
-    """All classes of displays that can be added, groups last."""
-    classes = sorted(display_classes(), key=lambda display: (display.CLASS == GROUP, display.CLASS))
-    return DisplayClasses([DisplayClass(display.CLASS, list(display.messages_shown())) for display in classes])
+def choices(node: Node) -> DisplayChoices:
+    """All classes of displays that can be added, groups last; the topics that another node publishes to, by name.
 
-
-def topic_choices(node: Node) -> TopicChoices:
-    """The topics that another node publishes to, by name, with the displays that show them."""
+    It imports every display; so pages ask for it when somebody is about to choose.
+    """
+    displays = sorted(display_classes(), key=lambda display: (display.CLASS == GROUP, display.CLASS))
     by_message: dict[str, list[str]] = {}
-    for display in display_classes():
+    for display in displays:
         for message in display.messages_shown():
             by_message.setdefault(message, []).append(display.CLASS)
-    topics = sorted(node.get_topic_names_and_types())
-    return TopicChoices(
-        [
+    return DisplayChoices(
+        classes=[DisplayClass(display.CLASS, list(display.messages_shown())) for display in displays],
+        topics=[
             TopicChoice(topic, message, sorted(by_message.get(message, [])))
-            for topic, messages in topics
+            for topic, messages in sorted(node.get_topic_names_and_types())
             for message in messages
             if any(info.node_name != node.get_name() for info in node.get_publishers_info_by_topic(topic))
-        ]
+        ],
     )
 
 

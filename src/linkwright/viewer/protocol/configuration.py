@@ -47,12 +47,6 @@ class DisplayClass(Record):
     messages: list[str]
 
 
-class DisplayClasses(ServerMessage):
-    """All classes of displays that can be added."""
-
-    classes: list[DisplayClass]
-
-
 class TopicChoice(Record):
     """A topic of the graph, its type, and the classes of displays that show it; none when no display does."""
 
@@ -61,9 +55,10 @@ class TopicChoice(Record):
     classes: list[str]
 
 
-class TopicChoices(ServerMessage):
-    """Answers `AskTopics`."""
+class DisplayChoices(ServerMessage):
+    """Answers `AskDisplayChoices`: all classes of displays that can be added, and the topics of the graph."""
 
+    classes: list[DisplayClass]
     topics: list[TopicChoice]
 
 
@@ -149,8 +144,8 @@ class Redo(PageMessage):
     """Do again what was taken back."""
 
 
-class AskTopics(PageMessage):
-    """Which topics there are, and which displays show them."""
+class AskDisplayChoices(PageMessage):
+    """Which displays can be added, which topics there are, and which displays show them."""
 
 
 class AskFolder(PageMessage):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from linkwright.viewer.protocol.message import PageMessage, ServerMessage
 
-PROTOCOL_VERSION = 4
+PROTOCOL_VERSION = 5
 """Raised on every change that an older page would misread; the page reloads itself when it differs."""
 
 
