@@ -49,14 +49,14 @@ def edits_for(link: Link, properties: MassProperties) -> tuple[SourceText, list[
     Raises:
         NotWritableError: the link is written by a macro, or with expressions.
     """
-    written = _written_element(link)
+    written = written_link(link)
     source = written.source
     assert source is not None
     inertial = written.first("inertial")
     if inertial is None:
         return source, [_new_block(source.text, written, properties)]
     if _holds(inertial, _EXPRESSION):
-        raise NotWritableError("its <inertial> is written with expressions")
+        raise NotWritableError(phrase("its <inertial> is written with expressions"))
     return source, list(_changed_block(source.text, inertial, properties))
 
 
@@ -67,27 +67,44 @@ def apply(text: str, edits: Iterable[Replacement]) -> str:
     return text
 
 
-def _written_element(link: Link) -> Element:
-    """The ``<link>`` as it stands in its file, before any expansion."""
-    element = link.element
+def written_element(element: Element | None, tag: str) -> Element:
+    """An element as it stands in its file, before any expansion.
+
+    Args:
+        element: of the expanded description.
+        tag: what it has to be there, too.
+
+    Raises:
+        NotWritableError: it comes from a macro or an expression, or from no file.
+    """
     if element is None or element.source is None:
         raise NotWritableError(phrase("it is not written in a file"))
     frame = element.origin if isinstance(element.origin, Frame) else None
     macro = next((each.macro for each in frames(frame) if each.macro is not None), None)
     if macro is not None:
-        raise NotWritableError(f"it is written by the macro '{macro}'")
+        raise NotWritableError(phrase("it is written by the macro '{macro}'", macro=macro))
     document = parse(element.source.text, element.source.name)
     written = next((each for each in document.root.walk() if each.offset == element.offset), None)
-    if written is None or written.tag != "link":
-        raise NotWritableError("it is not written as a plain <link>")
+    if written is None or written.tag != tag:
+        raise NotWritableError(phrase("it is not written as a plain <{tag}>", tag=tag))
+    return written
+
+
+def written_link(link: Link) -> Element:
+    """The ``<link>`` as it stands in its file, where nothing in its shapes is left to xacro.
+
+    Raises:
+        NotWritableError: as `written_element` does, and where numbers would not follow expressions of its shapes.
+    """
+    written = written_element(link.element, "link")
     dynamic = next((child.tag for child in written.elements() if child.tag.startswith("xacro:")), None)
     if dynamic is not None:
-        raise NotWritableError(f"part of it is written by <{dynamic}>")
+        raise NotWritableError(phrase("part of it is written by <{tag}>", tag=dynamic))
     for shape in (*written.elements("visual"), *written.elements("collision")):
         parts = (shape.first("origin"), shape.first("geometry"))
         if any(part is not None and _holds(part, _EXPRESSION) for part in parts):
             raise NotWritableError(
-                "its shapes are written with expressions, which numbers in the file would not follow"
+                phrase("its shapes are written with expressions, which numbers in the file would not follow")
             )
     return written
 

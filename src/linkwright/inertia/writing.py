@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText, display_path, foreign, phrase
 from linkwright.geometry.mass import MassProperties
 from linkwright.inertia.source_edits import NotWritableError, Replacement, apply, edits_for
 from linkwright.urdf import Link, Robot
@@ -43,27 +44,44 @@ def write_inertials(robot: Robot, properties: Mapping[str, MassProperties]) -> W
         LinkwrightError: INR201 when a file cannot be written.
     """
     times = Counter(_place(link) for link in robot.links.values())
+
+    def edits(name: str) -> tuple[SourceText, list[Replacement]]:
+        if times[_place(robot.links[name])] > 1:
+            raise NotWritableError(phrase("its place in the file makes several links"))
+        return edits_for(robot.links[name], properties[name])
+
+    return write_edits({name: partial(edits, name) for name in properties})
+
+
+def write_edits(edits_of: Mapping[str, Callable[[], tuple[SourceText, list[Replacement]]]]) -> Written:
+    """Change files in several places, each file once.
+
+    Args:
+        edits_of: name -> what to change in which text, as it was read; it may raise `NotWritableError`.
+
+    Returns:
+        What came of it, the names in the place of links.
+
+    Raises:
+        LinkwrightError: INR201 when a file cannot be written.
+    """
     refused: dict[str, str] = {}
     edits: dict[str, list[Replacement]] = {}
     texts: dict[str, str] = {}
-    links: dict[str, list[str]] = {}
-    for name, wanted in properties.items():
-        link = robot.links[name]
-        if times[_place(link)] > 1:
-            refused[name] = "its place in the file makes several links"
-            continue
+    names: dict[str, list[str]] = {}
+    for name, find in edits_of.items():
         try:
-            source, changes = edits_for(link, wanted)
+            source, changes = find()
             if source.name not in texts:
                 texts[source.name] = _current(source.name, source.text)
         except NotWritableError as error:
             refused[name] = str(error)
             continue
         edits.setdefault(source.name, []).extend(changes)
-        links.setdefault(source.name, []).append(name)
+        names.setdefault(source.name, []).append(name)
     for file, changes in edits.items():
         _save(file, texts[file], changes)
-    return Written(tuple(map(Path, edits)), tuple(name for names in links.values() for name in names), refused)
+    return Written(tuple(map(Path, edits)), tuple(name for listed in names.values() for name in listed), refused)
 
 
 def _place(link: Link) -> tuple[str, int]:

@@ -1,0 +1,6 @@
+"""What a description lacks to be driven in a simulated world: inferring it, with reasons, and adding it."""
+
+from linkwright.inference.infer import infer
+from linkwright.inference.model import DRIVE_KINDS, Drive, DriveKind, Finding, Inference, Wheel
+
+__all__ = ["DRIVE_KINDS", "Drive", "DriveKind", "Finding", "Inference", "Wheel", "infer"]

@@ -1,0 +1,53 @@
+"""A description with what was inferred about it added, in memory."""
+
+from __future__ import annotations
+
+from copy import copy
+
+from linkwright.inference.model import Inference
+from linkwright.xmltree import Document, Element
+
+SINGLE = ("inertial", "axis")
+"""What a link or joint holds once only; a new one stands in place of the old one."""
+
+
+def completed(document: Document, inference: Inference) -> Document:
+    """A description with all elements that were inferred, so that a simulator can read it.
+
+    Args:
+        document: the expanded description that the robot of the inference was read from; it stays as it is.
+        inference: what was inferred about that robot; one about another reading of the same file does not fit.
+
+    Returns:
+        A document whose new elements have the place in the file of the element that they were added to.
+    """
+    added: dict[int, list[Element]] = {}
+    for finding in inference.findings:
+        if finding.owner is not None:
+            added.setdefault(id(finding.owner), []).extend(_placed(each, finding.owner) for each in finding.added)
+    root = _grown(document.root, added)
+    root.children = [_grown(child, added) if isinstance(child, Element) else child for child in root.children]
+    assert not added, "the inference is about another reading of the description"
+    result = Document(root, document.source)
+    result.prolog, result.epilog = document.prolog, document.epilog
+    return result
+
+
+def _grown(element: Element, added: dict[int, list[Element]]) -> Element:
+    """An element with those that belong into it, as a copy; itself where there are none."""
+    new = added.pop(id(element), [])
+    if not new and element.tag != "robot":
+        return element
+    grown = copy(element)
+    grown.plan = None
+    replaced = {each.tag for each in new if each.tag in SINGLE}
+    kept = [child for child in element.children if not (isinstance(child, Element) and child.tag in replaced)]
+    grown.children = [*kept, *new]
+    return grown
+
+
+def _placed(element: Element, owner: Element) -> Element:
+    """A copy of a new element that says it is written where its owner is, so that findings about it have a place."""
+    placed = Element(element.tag, dict(element.attributes), owner.source, owner.offset, owner.origin)
+    placed.children = [_placed(child, owner) if isinstance(child, Element) else child for child in element.children]
+    return placed

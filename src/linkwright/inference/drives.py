@@ -1,0 +1,185 @@
+"""The kind of drive that wheels tell of. Where they do not, that is said, and which option decides."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from linkwright.diagnostics import Phrase, phrase, quoted_names
+from linkwright.inference.model import Drive, DriveKind, Wheel
+from linkwright.inference.undercarriage import Survey, Undercarriage
+
+_IN_LINE = 0.06
+"""How far a left wheel may stand before or behind its right one, as a part of the distance between them."""
+
+_ALIKE = 0.05
+"""How far the radii of a pair may differ, as a part of the larger."""
+
+_MUCH_SMALLER = 0.8
+"""A pair of wheels with less than this part of another pair's radius may be there for support only."""
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """What the wheels tell.
+
+    Attributes:
+        drive: the drive; None where it cannot be told.
+        reason: why it is that one, or why it cannot be told; a clause.
+        extra_casters: the links of wheels that turn out to be casters, seen beside the others.
+    """
+
+    drive: Drive | None
+    reason: Phrase
+    extra_casters: tuple[str, ...] = ()
+
+
+Pair = tuple[Wheel, Wheel]
+
+
+def judge(
+    survey: Survey, under: Undercarriage, wanted: DriveKind | None = None, chosen: Sequence[Wheel] = ()
+) -> Verdict:
+    """The drive of a robot with wheels.
+
+    Args:
+        survey: the robot.
+        under: what it stands on.
+        wanted: the kind that the user asks for; None to tell it from the wheels.
+        chosen: the driven wheels that the user names; none to find them.
+    """
+    wheels = tuple(chosen) or under.wheels
+    if not chosen and under.crooked and wanted is None:
+        names = quoted_names([each.joint for each in under.crooked])
+        return Verdict(None, phrase("the wheels on {names} do not roll forward along x", names=names))
+    fixed, single = _pairs([each for each in wheels if each.steering is None or chosen])
+    steered, single_steered = _pairs([] if chosen else [each for each in wheels if each.steering is not None])
+    if wanted == "ackermann" and chosen:
+        steered, single_steered = _pairs([each for each in under.wheels if each.steering is not None])
+        fixed = [pair for pair in fixed if pair not in steered]
+    if single_steered:
+        names = quoted_names([each.joint for each in single_steered])
+        return Verdict(None, phrase("the wheels on {names} are steered, and not in a pair", names=names))
+    casters: list[str] = []
+    if single:
+        casters = [each.link for each in single if _supports_only(each, fixed)]
+        others = [each.joint for each in single if each.link not in casters]
+        if others and (chosen or wanted is None):
+            return Verdict(None, phrase("no wheel stands opposite {names}", names=quoted_names(others)))
+    verdict = _of_pairs(survey, fixed, steered, wanted)
+    return Verdict(verdict.drive, verdict.reason, tuple(casters))
+
+
+def _of_pairs(survey: Survey, fixed: list[Pair], steered: list[Pair], wanted: DriveKind | None) -> Verdict:
+    kind = wanted or _kind_of(survey, fixed, steered)
+    if kind is None:
+        return Verdict(None, _why_none(fixed, steered))
+    lacks = _lacking(kind, fixed, steered)
+    if lacks is not None:
+        return Verdict(None, lacks)
+    if kind == "differential":
+        fixed = fixed[:1]
+    if kind == "ackermann":
+        front = steered[0][0].center[0]
+        fixed = sorted(fixed, key=lambda pair: -abs(pair[0].center[0] - front))[:1]
+    left, right = tuple(pair[0] for pair in fixed), tuple(pair[1] for pair in fixed)
+    separation = sum(abs(a.center[1] - b.center[1]) for a, b in fixed) / len(fixed)
+    drive = Drive(kind, left, right, steered[0] if kind == "ackermann" else (), separation)
+    return Verdict(drive, _reason(drive))
+
+
+def _kind_of(survey: Survey, fixed: list[Pair], steered: list[Pair]) -> DriveKind | None:
+    """The kind that pairs of wheels tell of; None where they tell of several or none."""
+    if steered:
+        return "ackermann" if len(steered) == 1 and fixed else None
+    if not fixed:
+        return None
+    if len(fixed) == 1:
+        return "differential"
+    radii = [wheel.radius for pair in fixed for wheel in pair]
+    if min(radii) < _MUCH_SMALLER * max(radii):
+        return None
+    if len(fixed) == 2 and survey.is_mecanum(tuple(wheel for pair in fixed for wheel in pair)):
+        return "mecanum"
+    return "skid"
+
+
+def _why_none(fixed: list[Pair], steered: list[Pair]) -> Phrase:
+    if len(steered) > 1:
+        return phrase("there are {count} pairs of steered wheels", count=len(steered))
+    if steered:
+        return phrase("there are steered wheels, and no pair beside them that could drive")
+    if fixed:
+        return phrase("there are pairs of wheels of different size, of which one may only support")
+    return phrase("there is no pair of wheels, one on the left and one on the right")
+
+
+def _lacking(kind: DriveKind, fixed: list[Pair], steered: list[Pair]) -> Phrase | None:
+    """What a kind of drive lacks; None for nothing."""
+    if kind == "ackermann" and len(steered) != 1:
+        return phrase(
+            "it takes one pair of wheels that vertical joints steer, and there are {count}", count=len(steered)
+        )
+    least = {"mecanum": 2, "skid": 2}.get(kind, 1)
+    if len(fixed) < least:
+        return phrase(
+            "it takes {least} pairs of wheels, each with one on the left and one on the right, and there are {count}",
+            least=least,
+            count=len(fixed),
+        )
+    if kind == "differential" and len(fixed) > 1:
+        return phrase("it takes one pair of driven wheels, and there are {count}", count=len(fixed))
+    return None
+
+
+def _reason(drive: Drive) -> Phrase:
+    names = quoted_names([wheel.joint for pair in zip(drive.left, drive.right, strict=True) for wheel in pair])
+    size = phrase(
+        "{separation:.4g} m apart, with wheels of {diameter:.4g} m",
+        separation=drive.separation,
+        diameter=2.0 * drive.radius,
+    )
+    if drive.kind == "ackermann":
+        joints = quoted_names([wheel.steering or "" for wheel in drive.steered])
+        return phrase(
+            "{names} turn wheels on the ground, {size}, and {joints} steer", names=names, size=size, joints=joints
+        )
+    if drive.kind == "mecanum":
+        return phrase("{names} turn wheels that are called mecanum, {size}", names=names, size=size)
+    return phrase("{names} turn wheels on the ground, {size}", names=names, size=size)
+
+
+def _pairs(wheels: Sequence[Wheel]) -> tuple[list[Pair], list[Wheel]]:
+    """Left and right wheels that stand opposite each other, the foremost pair first; and the wheels left over."""
+    left = sorted((each for each in wheels if each.center[1] > 0.0), key=lambda each: -each.center[0])
+    right = [each for each in wheels if each.center[1] <= 0.0]
+    pairs: list[Pair] = []
+    alone: list[Wheel] = []
+    for wheel in left:
+        opposite = min(right, key=lambda each: _skew(wheel, each), default=None)
+        if opposite is None or not _fit(wheel, opposite):
+            alone.append(wheel)
+            continue
+        right.remove(opposite)
+        pairs.append((wheel, opposite))
+    return pairs, alone + right
+
+
+def _skew(left: Wheel, right: Wheel) -> float:
+    """By how much a wheel is not the mirror image of another one, in m."""
+    return abs(left.center[0] - right.center[0]) + abs(left.center[1] + right.center[1])
+
+
+def _fit(left: Wheel, right: Wheel) -> bool:
+    apart = left.center[1] - right.center[1]
+    return (
+        apart > min(left.radius, right.radius) * 0.5
+        and abs(left.center[0] - right.center[0]) <= _IN_LINE * apart
+        and abs(left.radius - right.radius) <= _ALIKE * max(left.radius, right.radius)
+    )
+
+
+def _supports_only(wheel: Wheel, pairs: list[Pair]) -> bool:
+    """Whether a wheel without one opposite is small beside the pairs, or a ball, and so a caster."""
+    largest = max((each.radius for pair in pairs for each in pair), default=0.0)
+    return bool(pairs) and (wheel.width is None or wheel.radius < _MUCH_SMALLER * largest)

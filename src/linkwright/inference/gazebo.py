@@ -1,0 +1,200 @@
+"""The ``<gazebo>`` elements that make Gazebo Classic, and the simulation here, drive a robot.
+
+Source: the plugins of gazebo_ros_pkgs for ROS 2 and, for joints that hold their positions, gz-sim's; parameters are
+theirs.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from math import ceil
+
+from linkwright.inference.model import Drive
+from linkwright.urdf import Robot
+from linkwright.xmltree import Element, Text
+
+_DRIVES = re.compile(
+    r"diff[_-]?drive|skid[_-]?steer|planar[_-]?move|ackermann|mecanum|tricycle|omni[_-]?drive|object_controller"
+    r"|velocity[_-]control|hoverboard|ros2?_control|multicopter|track(?:ed)?[_-]",
+    re.IGNORECASE,
+)
+_JOINT_STATES = re.compile(r"joint[_-]state[_-]publisher", re.IGNORECASE)
+_JOINTS = re.compile(r"joint[_-](?:position|pose|trajectory|controller)", re.IGNORECASE)
+_SIMULATORS = re.compile(r"gz|gazebo|ign|mujoco|isaac", re.IGNORECASE)
+
+_ACCELERATION = 1.0
+"""What wheels are given to speed up with, in m/s2, so that they do not spin on the spot."""
+
+_FRICTION = "0.0"
+"""That of a caster: a ball that turns about one axis only slides where it would roll."""
+
+_GRIP = 0.5 * 9.81
+"""The torque of a wheel in N m for each kg of the robot and m of radius: two wheels can use all the grip there is."""
+
+_RATE = "50"
+
+
+def own_drive(robot: Robot) -> Element | None:
+    """The plugin, or the ``<ros2_control>`` for a simulator, by which a description says itself how it is driven."""
+    for extension in robot.extensions:
+        if extension.tag == "gazebo":
+            for plugin in extension.elements("plugin"):
+                if _DRIVES.search(f"{plugin.attributes.get('filename', '')} {plugin.attributes.get('name', '')}"):
+                    return plugin
+        elif extension.tag == "ros2_control":
+            for hardware in extension.elements("hardware"):
+                if any(_SIMULATORS.search(plugin.text()) for plugin in hardware.elements("plugin")):
+                    return extension
+    return None
+
+
+def publishes_joint_states(robot: Robot) -> bool:
+    """Whether a plugin of the description publishes joint states."""
+    return any(
+        _JOINT_STATES.search(plugin.attributes.get("filename", ""))
+        for extension in robot.extensions
+        if extension.tag == "gazebo"
+        for plugin in extension.elements("plugin")
+    )
+
+
+def controlled_joints(robot: Robot) -> frozenset[str]:
+    """The joints that plugins of the description hold and move; a plugin that names none takes all."""
+    found: set[str] = set()
+    for extension in robot.extensions:
+        for plugin in extension.elements("plugin") if extension.tag == "gazebo" else ():
+            if _JOINTS.search(plugin.attributes.get("filename", "")):
+                names = {each.text().strip() for each in plugin.elements() if each.tag in ("joint_name", "joint")}
+                found |= names or set(robot.joints)
+    return frozenset(found)
+
+
+def has_friction(robot: Robot, link: str) -> bool:
+    """Whether a ``<gazebo>`` says how slippery a link is."""
+    return any(
+        extension.tag == "gazebo"
+        and extension.attributes.get("reference") == link
+        and any(extension.first(tag) is not None for tag in ("mu1", "mu2", "mu"))
+        for extension in robot.extensions
+    )
+
+
+def slippery(link: str) -> Element:
+    """What makes a caster slide."""
+    element = Element("gazebo", {"reference": link})
+    element.children += [_with_text("mu1", _FRICTION), _with_text("mu2", _FRICTION)]
+    return element
+
+
+def drive_plugin(drive: Drive, base_frame: str, mass: float) -> Element:
+    """The plugin that drives wheels, in its ``<gazebo>``.
+
+    Args:
+        drive: of any kind but `joints`.
+        base_frame: the child frame of odometry.
+        mass: of the robot in kg.
+    """
+    makers = {"differential": _diff_drive, "skid": _diff_drive, "mecanum": _planar_move, "ackermann": _ackermann}
+    name, filename, parameters = makers[drive.kind](drive, mass)
+    odometry = [
+        ("odometry_frame", "odom"),
+        ("robot_base_frame", base_frame),
+        ("publish_odom", "true"),
+        ("publish_odom_tf", "true"),
+    ]
+    return _gazebo(_plugin(name, filename, [*parameters, *odometry]))
+
+
+def joint_states(joints: Sequence[str]) -> Element:
+    """The plugin that publishes the positions of joints."""
+    names = [("joint_name", name) for name in joints]
+    plugin = _plugin("joint_states", "libgazebo_ros_joint_state_publisher.so", [("update_rate", _RATE), *names])
+    return _gazebo(plugin)
+
+
+def joint_controllers(joints: Iterable[str]) -> Element:
+    """Plugins that hold joints where they are, and move them where they are told to."""
+    return _gazebo(
+        *(
+            _plugin(
+                "gz::sim::systems::JointPositionController",
+                "gz-sim-joint-position-controller-system",
+                [("joint_name", name), ("use_velocity_commands", "true")],
+            )
+            for name in joints
+        )
+    )
+
+
+def _diff_drive(drive: Drive, mass: float) -> tuple[str, str, list[tuple[str, str]]]:
+    count = len(drive.left)
+    pairs = [("num_wheel_pairs", str(count))] if count > 1 else []
+    separations = [abs(a.center[1] - b.center[1]) for a, b in zip(drive.left, drive.right, strict=True)]
+    diameters = [a.radius + b.radius for a, b in zip(drive.left, drive.right, strict=True)]
+    parameters = [
+        ("update_rate", _RATE),
+        *pairs,
+        *(("left_joint", wheel.joint) for wheel in drive.left),
+        *(("right_joint", wheel.joint) for wheel in drive.right),
+        *(("wheel_separation", number(each)) for each in separations),
+        *(("wheel_diameter", number(each)) for each in diameters),
+        ("max_wheel_torque", number(_torque(drive, mass))),
+        ("max_wheel_acceleration", number(_ACCELERATION)),
+        ("odometry_source", "0"),
+        ("publish_wheel_tf", "false"),
+    ]
+    return "diff_drive", "libgazebo_ros_diff_drive.so", parameters
+
+
+def _planar_move(_drive: Drive, _mass: float) -> tuple[str, str, list[tuple[str, str]]]:
+    return "planar_move", "libgazebo_ros_planar_move.so", [("update_rate", _RATE), ("publish_rate", _RATE)]
+
+
+def _ackermann(drive: Drive, mass: float) -> tuple[str, str, list[tuple[str, str]]]:
+    left, right = drive.steered
+    parameters = [
+        ("update_rate", _RATE),
+        ("front_left_joint", left.joint),
+        ("front_right_joint", right.joint),
+        ("rear_left_joint", drive.left[0].joint),
+        ("rear_right_joint", drive.right[0].joint),
+        ("left_steering_joint", left.steering or ""),
+        ("right_steering_joint", right.steering or ""),
+        ("max_steer", "0.6"),
+        ("max_speed", "20"),
+        ("left_steering_pid_gain", f"{number(10.0 * mass)} 0 {number(0.1 * mass)}"),
+        ("right_steering_pid_gain", f"{number(10.0 * mass)} 0 {number(0.1 * mass)}"),
+        ("linear_velocity_pid_gain", f"{number(10.0 * mass)} 0 {number(0.1 * mass)}"),
+        ("publish_wheel_tf", "false"),
+        ("publish_distance", "false"),
+    ]
+    return "ackermann_drive", "libgazebo_ros_ackermann_drive.so", parameters
+
+
+def _torque(drive: Drive, mass: float) -> float:
+    """The greatest torque of a wheel in N m, in whole ones."""
+    return float(max(1, ceil(_GRIP * mass * drive.radius)))
+
+
+def number(value: float) -> str:
+    """A number with six digits at most."""
+    return f"{value:.6g}"
+
+
+def _gazebo(*plugins: Element) -> Element:
+    element = Element("gazebo")
+    element.children += plugins
+    return element
+
+
+def _plugin(name: str, filename: str, parameters: Iterable[tuple[str, str]]) -> Element:
+    element = Element("plugin", {"name": name, "filename": filename})
+    element.children += [_with_text(tag, text) for tag, text in parameters]
+    return element
+
+
+def _with_text(tag: str, text: str) -> Element:
+    element = Element(tag)
+    element.children.append(Text(text))
+    return element

@@ -1,0 +1,115 @@
+"""What is inferred about a robot, each with its reason, and the text that says it in URDF."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+from linkwright.diagnostics import Diagnostic
+from linkwright.geometry.mass import MassProperties
+from linkwright.geometry.vectors import Vector3
+from linkwright.xmltree import Element
+
+DriveKind = Literal["differential", "skid", "ackermann", "mecanum", "joints"]
+"""Two driven wheels; four or more that turn by slipping; two steered and two driven; wheels with rollers, which go
+every way; and no wheels: the base stands still and the joints are held where they are told to be."""
+
+DRIVE_KINDS: tuple[DriveKind, ...] = ("differential", "skid", "ackermann", "mecanum", "joints")
+
+
+@dataclass(frozen=True, slots=True)
+class Wheel:
+    """A wheel, with all joints at zero.
+
+    Attributes:
+        joint: the joint that it turns about.
+        link: the link that the joint moves.
+        center: its middle in the base frame, in m.
+        axis: the unit vector of its joint in the base frame, as the file has it.
+        radius: in m.
+        width: in m; None for a ball.
+        steering: the joint above it that steers it or lets it swivel; None without.
+    """
+
+    joint: str
+    link: str
+    center: Vector3
+    axis: Vector3
+    radius: float
+    width: float | None
+    steering: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Drive:
+    """How a robot is moved.
+
+    Attributes:
+        kind: the kind of drive.
+        left: the driven wheels on the left, the foremost first; none of `joints`.
+        right: each beside the left one of the same place in the list.
+        steered: of `ackermann`, the steered wheels, left and right.
+        separation: between the left and the right driven wheels in m; 0 of `joints`.
+    """
+
+    kind: DriveKind
+    left: tuple[Wheel, ...] = ()
+    right: tuple[Wheel, ...] = ()
+    steered: tuple[Wheel, ...] = ()
+    separation: float = 0.0
+
+    @property
+    def radius(self) -> float:
+        """The mean radius of the driven wheels in m; 0 of `joints`."""
+        wheels = (*self.left, *self.right)
+        return sum(wheel.radius for wheel in wheels) / len(wheels) if wheels else 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """One inference.
+
+    Attributes:
+        diagnostic: what is inferred and why, at the place in the user's file that it is about.
+        owner: the element of the description that the new ones come into: a ``<link>``, a ``<joint>`` or the root;
+            None where nothing is to be written.
+        added: the new elements; one of a kind that the owner may hold only once stands in place of the one there.
+        inertial: of a new ``<inertial>``, what it says, in the link frame.
+    """
+
+    diagnostic: Diagnostic
+    owner: Element | None = None
+    added: tuple[Element, ...] = ()
+    inertial: MassProperties | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Inference:
+    """All that is inferred about a robot.
+
+    Attributes:
+        drive: how it is moved; None where its file says so itself, or where that cannot be told.
+        findings: what was inferred and what could not be, in the order of the file for each kind.
+        base_frame: the frame that odometry is told for: ``base_footprint``, ``base_link`` or the root.
+        casters: the links that touch the ground and only slide or roll along.
+        held: the joints beside those of the wheels that are held in place and can be moved, in file order.
+        fixed_base: whether the robot's root is fixed to the world.
+        ground: the z of the ground in the root's frame, in m, with all joints at zero; where it stands by its lowest
+            point. A robot is put into a world at minus this height.
+        masses: link -> mass in kg that it has or gets.
+    """
+
+    drive: Drive | None
+    findings: tuple[Finding, ...]
+    base_frame: str
+    casters: tuple[str, ...] = ()
+    held: tuple[str, ...] = ()
+    fixed_base: bool = False
+    ground: float = 0.0
+    masses: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """What there is to say, in order."""
+        return tuple(finding.diagnostic for finding in self.findings)

@@ -1,0 +1,207 @@
+"""Writing what was inferred into the files that the description is written in; all else in them stays as it is."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+from linkwright.diagnostics import Diagnostic, SourceText, phrase
+from linkwright.inertia.source_edits import (
+    NotWritableError,
+    Replacement,
+    edits_for,
+    written_element,
+    written_link,
+)
+from linkwright.inertia.writing import write_edits
+from linkwright.inference.model import Finding, Inference
+from linkwright.lint.fix import element_range, escaped, is_literal, value_edit
+from linkwright.urdf import Joint, Link, Robot
+from linkwright.xmltree import Element, Text
+
+_STEP = "  "
+
+
+@dataclass(frozen=True, slots=True)
+class Written:
+    """What came of writing.
+
+    Attributes:
+        files: the files that were changed.
+        count: how many inferences stand in them now.
+        refused: a finding (DRIVE301) for each that does not, with the reason.
+    """
+
+    files: tuple[Path, ...]
+    count: int
+    refused: tuple[Diagnostic, ...]
+
+
+def write_inference(robot: Robot, inference: Inference) -> Written:
+    """Put what was inferred into the files that the robot is written in.
+
+    Into xacro files only where an element is written there as it is: what a macro or an expression makes is refused.
+
+    Args:
+        robot: read from a file, maybe through xacro.
+        inference: what was inferred about it.
+
+    Raises:
+        LinkwrightError: INR201 when a file cannot be written.
+    """
+    groups: dict[int, list[Finding]] = {}
+    for finding in inference.findings:
+        if finding.owner is not None:
+            groups.setdefault(id(finding.owner), []).append(finding)
+    by_key = {str(key): findings for key, findings in groups.items()}
+    writer = _Writer(robot)
+    done = write_edits({key: partial(writer.edits, findings) for key, findings in by_key.items()})
+    refused = tuple(_refusal(finding, why) for key, why in done.refused.items() for finding in by_key[key])
+    return Written(done.files, sum(len(by_key[key]) for key in done.links), refused)
+
+
+def block(element: Element, indent: str = "", step: str = _STEP, newline: str = "\n") -> str:
+    """An element as it is written into a file, without a line end after it.
+
+    Args:
+        element: made by a program; its text, if any, is all that it holds.
+        indent: before each line but the first.
+        step: before the children, besides.
+        newline: between the lines.
+    """
+    opening = element.tag + "".join(f' {name}="{escaped(value)}"' for name, value in element.attributes.items())
+    children = list(element.elements())
+    if not children:
+        text = element.text()
+        return f"<{opening}>{escaped(text)}</{element.tag}>" if text else f"<{opening}/>"
+    inner = indent + step
+    lines = [f"<{opening}>", *(inner + block(child, inner, step, newline) for child in children)]
+    return newline.join([*lines, f"{indent}</{element.tag}>"])
+
+
+class _Writer:
+    """Finds the edits for what was inferred.
+
+    Args:
+        robot: read from a file, maybe through xacro.
+    """
+
+    def __init__(self, robot: Robot) -> None:
+        self._robot = robot
+        self._links = {id(link.element): link for link in robot.links.values()}
+        self._joints = {id(joint.element): joint for joint in robot.joints.values()}
+        elements = [link.element for link in robot.links.values()]
+        elements += [joint.element for joint in robot.joints.values()]
+        self._times = Counter(_place(element) for element in elements if element is not None)
+
+    def edits(self, findings: list[Finding]) -> tuple[SourceText, list[Replacement]]:
+        """What to change for the findings of one owner.
+
+        Raises:
+            NotWritableError: the owner is not written in a file as it is.
+        """
+        owner = findings[0].owner
+        assert owner is not None, "findings without an owner add nothing"
+        if self._times[_place(owner)] > 1:
+            raise NotWritableError(phrase("its place in the file makes several links or joints"))
+        if id(owner) in self._links:
+            return self._in_link(owner, findings)
+        if id(owner) in self._joints:
+            return self._in_joint(owner, findings)
+        return self._in_root(owner, findings)
+
+    def _in_link(self, owner: Element, findings: list[Finding]) -> tuple[SourceText, list[Replacement]]:
+        link = self._links[id(owner)]
+        written = written_link(link)
+        source = _source(written)
+        changes: list[Replacement] = []
+        new: list[Element] = []
+        for finding in findings:
+            if finding.inertial is not None and written.children:
+                changes += edits_for(link, finding.inertial)[1]
+            else:
+                new += finding.added
+        return source, [*changes, *_inserted(written, new)]
+
+    def _in_joint(self, owner: Element, findings: list[Finding]) -> tuple[SourceText, list[Replacement]]:
+        written = written_element(owner, "joint")
+        source = _source(written)
+        (axis,) = (each for finding in findings for each in finding.added)
+        old = written.first("axis")
+        if old is None:
+            return source, list(_inserted(written, [axis]))
+        edit = value_edit(old, "xyz", axis.attributes["xyz"]) if is_literal(old, "xyz") else None
+        if edit is None:
+            raise NotWritableError(phrase("its <axis> is written with expressions"))
+        return source, [Replacement(edit.start, edit.end, edit.replacement)]
+
+    def _in_root(self, owner: Element, findings: list[Finding]) -> tuple[SourceText, list[Replacement]]:
+        written = written_element(owner, owner.tag)
+        new = [each for finding in findings for each in finding.added]
+        for name in sorted(_named(new)):
+            part: Joint | Link | None = self._robot.joints.get(name) or self._robot.links.get(name)
+            if part is not None and (part.element is None or not is_literal(part.element, "name")):
+                raise NotWritableError(phrase("the name '{name}' in it comes from an expression", name=name))
+        return _source(written), list(_inserted(written, new))
+
+
+def _named(elements: Iterable[Element]) -> set[str]:
+    """The words of elements that may be names of links and joints."""
+    found: set[str] = set()
+    for element in elements:
+        for each in element.walk():
+            found |= {value for name, value in each.attributes.items() if name in ("reference", "link")}
+            found |= {child.data for child in each.children if isinstance(child, Text)}
+    return found
+
+
+def _inserted(owner: Element, new: list[Element]) -> Iterator[Replacement]:
+    """Elements at the end of one in a file."""
+    if not new:
+        return
+    text = _source(owner).text
+    found = element_range(owner)
+    if found is None:
+        raise NotWritableError(phrase("it is not written in a file"))
+    start, end = found
+    newline = "\r\n" if "\r\n" in text else "\n"
+    outer = _indentation(text, start)
+    child = next(owner.elements(), None)
+    inner = outer + _STEP if child is None else _indentation(text, child.offset)
+    step = inner.removeprefix(outer) if inner.startswith(outer) and inner != outer else _STEP
+    lines = newline.join(inner + block(each, inner, step, newline) for each in new)
+    if text.endswith("/>", start, end):
+        opening = text[start : end - 2].rstrip()
+        yield Replacement(start, end, f"{opening}>{newline}{lines}{newline}{outer}</{owner.tag}>")
+        return
+    closing = text.rindex("</", start, end)
+    line = text.rfind("\n", 0, closing) + 1
+    if line > start and not text[line:closing].strip():
+        yield Replacement(line, line, f"{lines}{newline}")
+    else:
+        yield Replacement(closing, closing, f"{newline}{lines}{newline}{outer}")
+
+
+def _indentation(text: str, offset: int) -> str:
+    """The blanks that the line of a place begins with."""
+    line = text[text.rfind("\n", 0, offset) + 1 : offset]
+    return line[: len(line) - len(line.lstrip())]
+
+
+def _source(element: Element) -> SourceText:
+    assert element.source is not None, "it was read from a file"
+    return element.source
+
+
+def _place(element: Element) -> tuple[str, int]:
+    return ("", id(element)) if element.source is None else (element.source.name, element.offset)
+
+
+def _refusal(finding: Finding, why: str) -> Diagnostic:
+    told = finding.diagnostic
+    message = phrase("not written into the file: {what}: {why}", what=told.message, why=why)
+    hint = phrase("write it where the macro or the expression is; `linkwright drive FILE --show` prints the text")
+    return Diagnostic("DRIVE301", message, told.span, hint=hint, source=told.source)

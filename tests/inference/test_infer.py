@@ -1,0 +1,161 @@
+"""What the user decides, what meshes tell, and what is refused."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+
+from linkwright.descriptions import load
+from linkwright.diagnostics import LinkwrightError
+from linkwright.inertia import MeshLibrary
+from linkwright.inference import infer
+from linkwright.packages import PackageFinder
+
+BASE = '<link name="base_link"><collision><geometry><box size="0.4 0.3 0.1"/></geometry></collision></link>'
+WHEEL = (
+    '<collision><origin rpy="1.5708 0 0"/><geometry><cylinder radius="{radius}" length="0.03"/></geometry></collision>'
+)
+
+
+def wheel(name: str, x: float, y: float, radius: float = 0.08, shapes: str = WHEEL) -> str:
+    """A wheel on a joint called as its link, with _joint."""
+    z = radius - 0.08
+    return (
+        f'<link name="{name}">{shapes.format(radius=radius)}</link><joint name="{name}_joint" type="continuous">'
+        f'<origin xyz="{x} {y} {z}"/><parent link="base_link"/><child link="{name}"/><axis xyz="0 1 0"/></joint>'
+    )
+
+
+def robot(*parts: str):
+    return load(f'<robot name="r">{BASE}{"".join(parts)}</robot>')
+
+
+def inferred(description, folder: Path = Path(), **options):
+    return infer(description, MeshLibrary(PackageFinder(start=folder), folder), **options)
+
+
+FOUR = (wheel("a", 0.2, 0.2), wheel("b", 0.2, -0.2), wheel("c", -0.2, 0.2), wheel("d", -0.2, -0.2))
+
+
+def test_named_wheels_drive_and_the_others_roll_along():
+    found = inferred(robot(*FOUR), wheels=["c_joint", "d"])
+    assert found.drive is not None
+    assert found.drive.kind == "differential"
+    assert [each.link for each in (*found.drive.left, *found.drive.right)] == ["c", "d"]
+    assert found.held == ()
+
+
+def test_the_kind_that_the_user_asks_for_is_taken():
+    found = inferred(robot(*FOUR), kind="mecanum")
+    assert found.drive is not None
+    assert found.drive.kind == "mecanum"
+
+
+def test_what_the_user_asks_for_goes_before_the_plugin_of_the_file():
+    plugin = '<gazebo><plugin name="d" filename="libgazebo_ros_planar_move.so"/></gazebo>'
+    own = inferred(robot(*FOUR, plugin))
+    assert own.drive is None
+    asked = inferred(robot(*FOUR, plugin), kind="skid")
+    assert asked.drive is not None
+    assert asked.drive.kind == "skid"
+
+
+def test_joints_are_held_where_the_user_says_that_nothing_rolls():
+    found = inferred(robot(*FOUR), kind="joints")
+    assert found.drive is not None
+    assert found.drive.kind == "joints"
+    assert not found.fixed_base
+
+
+@pytest.mark.parametrize(
+    ("options", "code", "words"),
+    [
+        ({"kind": "differential"}, "DRIVE211", "takes one pair of driven wheels, and there are 2"),
+        ({"kind": "ackermann"}, "DRIVE211", "vertical joints steer, and there are 0"),
+        ({"wheels": ["a", "zzz"]}, "DRIVE210", "no joint 'zzz'"),
+        ({"wheels": ["a", "c"]}, "DRIVE211", "no wheel stands opposite 'a_joint', 'c_joint'"),
+        ({"wheels": ["a", "b"], "kind": "skid"}, "DRIVE211", "takes 2 pairs of wheels"),
+    ],
+)
+def test_what_cannot_be_done_is_an_error(options, code, words):
+    with pytest.raises(LinkwrightError, match=words) as error:
+        inferred(robot(*FOUR), **options)
+    assert error.value.diagnostics[0].code == code
+
+
+def test_a_joint_that_turns_no_wheel_is_told_with_its_place():
+    square = '<collision><geometry><box size="0.1 0.03 0.1"/></geometry></collision>'
+    with pytest.raises(LinkwrightError, match="'b_joint' turns no wheel") as error:
+        inferred(robot(FOUR[0], wheel("b", 0.2, -0.2, shapes=square)), wheels=["a", "b"])
+    assert error.value.diagnostics[0].span is not None
+
+
+@pytest.fixture
+def tyre(tmp_path):
+    """An STL of a wheel that turns about y; beside it a robot may name tyre.stl."""
+    body = trimesh.creation.cylinder(radius=0.08, height=0.04, sections=24)
+    body.apply_transform(trimesh.transformations.rotation_matrix(np.pi / 2, (1, 0, 0)))
+    body.apply_translation((0, 0.01, 0))
+    body.export(tmp_path / "tyre.stl")
+    return tmp_path
+
+
+MESH = '<visual><geometry><mesh filename="tyre.stl"/></geometry></visual>'
+
+
+def _saved(folder: Path, *parts: str):
+    path = folder / "r.urdf"
+    path.write_text(f'<robot name="r">{BASE}{"".join(parts)}</robot>')
+    return load(path)
+
+
+def test_a_round_mesh_is_a_wheel_and_touches_as_a_cylinder(tyre):
+    description = _saved(tyre, wheel("a", 0, 0.2, shapes=MESH), wheel("b", 0, -0.2, shapes=MESH))
+    found = inferred(description, tyre)
+    assert found.drive is not None
+    assert found.drive.radius == pytest.approx(0.08, rel=1e-6)
+    assert found.drive.left[0].width == pytest.approx(0.04, rel=1e-6)
+    collision = next(each for each in found.findings if each.diagnostic.code == "DRIVE101").added[0]
+    shape = next(collision.first("geometry").elements())
+    assert shape.tag == "cylinder"
+    assert float(shape.attributes["radius"]) == pytest.approx(0.08)
+    assert [float(part) for part in collision.first("origin").attributes["xyz"].split()] == pytest.approx([0, 0.01, 0])
+
+
+def test_a_square_mesh_is_no_wheel(tmp_path):
+    trimesh.creation.box((0.16, 0.04, 0.16)).export(tmp_path / "tyre.stl")
+    description = _saved(tmp_path, wheel("a", 0, 0.2, shapes=MESH), wheel("b", 0, -0.2, shapes=MESH))
+    assert inferred(description, tmp_path).drive is None
+
+
+def test_a_mesh_that_is_missing_is_why_nothing_is_told(tmp_path):
+    description = _saved(tmp_path, wheel("a", 0, 0.2, shapes=MESH), wheel("b", 0, -0.2, shapes=MESH))
+    found = inferred(description, tmp_path)
+    assert found.drive is None
+    assert "mesh 'tyre.stl' of link 'a', which may be a wheel, cannot be read" in found.diagnostics[-1].message
+
+
+def test_a_mesh_of_very_many_corners_becomes_a_box(tmp_path):
+    trimesh.creation.icosphere(subdivisions=6, radius=0.1).export(tmp_path / "ball.stl")
+    path = tmp_path / "r.urdf"
+    path.write_text(
+        '<robot name="r"><link name="base_link"><visual><geometry><mesh filename="ball.stl" scale="2 1 1"/></geometry>'
+        "</visual></link></robot>"
+    )
+    finding = inferred(load(path), tmp_path).findings[0]
+    box = next(finding.added[0].first("geometry").elements())
+    assert box.tag == "box"
+    assert [float(part) for part in box.attributes["size"].split()] == pytest.approx([0.4, 0.2, 0.2], rel=1e-3)
+
+
+def test_an_inferred_mass_stays_within_bounds():
+    box = (
+        '<robot name="r"><link name="a"><visual><geometry><box size="{0} {0} {0}"/></geometry></visual></link></robot>'
+    )
+    tiny = load(box.format(1e-3))
+    huge = load(box.format(90))
+    assert inferred(tiny).masses["a"] == pytest.approx(0.01)
+    assert inferred(huge).masses["a"] == pytest.approx(1000.0)

@@ -1,0 +1,70 @@
+"""What is inferred about small robots: cases on a page, each the robot and the result."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from linkwright.descriptions import examine
+from linkwright.inertia import MeshLibrary
+from linkwright.inference import Inference, infer
+from linkwright.inference.applying import completed
+from linkwright.packages import PackageFinder
+from linkwright.xmltree import Document, write
+from tests.markdown import read_sections
+
+PAGE = Path(__file__).parent / "robots.md"
+CASES = [(title, blocks[0].text, blocks[1].text) for title, blocks in read_sections(PAGE)]
+
+
+def read_and_inferred(text: str) -> tuple[Document, Inference]:
+    """A description, and what is inferred about its robot."""
+    description = examine(text)
+    assert description.robot is not None
+    meshes = MeshLibrary(PackageFinder(start=PAGE.parent), PAGE.parent)
+    return description.document, infer(description.robot, meshes)
+
+
+def inferred(text: str) -> Inference:
+    """What is inferred about a robot."""
+    return read_and_inferred(text)[1]
+
+
+def shown(found: Inference) -> str:
+    """An inference as the page shows it."""
+    drive = found.drive
+    lines = ["none"]
+    if drive is not None:
+        lines = [f"{drive.kind} {drive.separation:.3g} {2 * drive.radius:.3g}"]
+    lines[0] += f" ground {round(found.ground, 4) + 0.0:g} base {found.base_frame}"
+    if drive is not None and drive.left:
+        left, right = (" ".join(each.joint for each in side) for side in (drive.left, drive.right))
+        lines.append(f"left {left}; right {right}")
+    lines += [f"casters {' '.join(found.casters)}"] if found.casters else []
+    lines += [f"held {' '.join(found.held)}"] if found.held else []
+    lines += [f"{each.code} {each.severity.value} {each.message}" for each in found.diagnostics]
+    return "".join(f"{line}\n" for line in lines)
+
+
+@pytest.mark.parametrize(("title", "robot", "expected"), CASES, ids=[case[0] for case in CASES])
+def test_what_is_inferred_is_what_the_page_says(title, robot, expected):
+    assert shown(inferred(robot)) == expected
+
+
+@pytest.mark.parametrize("robot", [case[1] for case in CASES], ids=[case[0] for case in CASES])
+def test_a_completed_robot_lacks_nothing(robot):
+    document, found = read_and_inferred(robot)
+    before = write(document)
+    text = write(completed(document, found))
+    assert write(document) == before, "the document that was read stays as it is"
+    again = examine(text)
+    assert not again.diagnostics
+    assert {each.code for each in inferred(text).diagnostics} <= {"DRIVE201", "DRIVE202", "DRIVE203"}
+
+
+@pytest.mark.parametrize("robot", [case[1] for case in CASES], ids=[case[0] for case in CASES])
+def test_what_is_added_has_a_place_in_the_users_file(robot):
+    document, found = read_and_inferred(robot)
+    assert all(each.span is not None and each.source is not None for each in found.diagnostics)
+    assert all(each.source is not None for each in completed(document, found).root.walk())

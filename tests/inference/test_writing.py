@@ -1,0 +1,107 @@
+"""Writing what was inferred: the file says what the completed robot has, and all else in it stays."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.descriptions import examine, load
+from linkwright.inertia import MeshLibrary
+from linkwright.inference import infer
+from linkwright.inference.applying import completed
+from linkwright.inference.writing import write_inference
+from linkwright.packages import PackageFinder
+from linkwright.urdf import read
+from tests.inference.test_robots import CASES
+
+XACRO = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
+
+
+@pytest.fixture
+def write(tmp_path):
+    """Infers and writes; returns what came of it, the completed robot and the new text."""
+
+    def run(text, name="r.urdf"):
+        path = tmp_path / name
+        path.write_bytes(text.encode())
+        description = examine(path)
+        found = infer(description.robot, MeshLibrary(PackageFinder(start=tmp_path), tmp_path))
+        written = write_inference(description.robot, found)
+        return written, read(completed(description.document, found)).robot, path.read_bytes().decode()
+
+    return run
+
+
+@pytest.mark.parametrize("robot", [case[1] for case in CASES], ids=[case[0] for case in CASES])
+def test_the_file_says_what_the_completed_robot_has(write, tmp_path, robot):
+    written, expected, text = write(robot)
+    assert not written.refused
+    again = load(tmp_path / "r.urdf")
+    assert dict(again.links) == dict(expected.links)
+    assert dict(again.joints) == dict(expected.joints)
+    assert [each.tag for each in again.extensions] == [each.tag for each in expected.extensions]
+    kept = iter(text.splitlines())
+    for line in robot.splitlines():
+        if "/>" not in line and "axis" not in line:
+            assert line in kept, "lines stay, in their order"
+
+
+def test_new_elements_take_the_indentation_and_line_ends_of_the_file(write):
+    _, _, text = write(
+        '<robot name="r">\r\n   <link name="base_link">\r\n'
+        '      <visual><geometry><sphere radius="0.1"/></geometry></visual>\r\n'
+        "   </link>\r\n</robot>\r\n"
+    )
+    assert "\n" not in text.replace("\r\n", "")
+    assert '      <collision>\r\n         <geometry>\r\n            <sphere radius="0.1"/>\r\n' in text
+    assert text.endswith("      </collision>\r\n   </link>\r\n</robot>\r\n")
+
+
+def test_a_link_without_content_is_opened(write):
+    _, _, text = write('<robot name="r">\n  <link name="a" />\n</robot>\n')
+    assert '  <link name="a">\n    <inertial>\n' in text
+    assert "    </inertial>\n  </link>\n</robot>\n" in text
+
+
+def test_what_a_macro_writes_is_refused_and_the_rest_is_written(write):
+    visual = '<visual><geometry><box size="0.1 0.1 0.1"/></geometry></visual>'
+    written, _, text = write(
+        f'{XACRO}\n<xacro:macro name="part" params="name"><link name="${{name}}">{visual}</link></xacro:macro>\n'
+        f'<xacro:part name="b"/>\n<link name="a">{visual}</link>\n'
+        '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>\n</robot>\n',
+        "r.urdf.xacro",
+    )
+    assert written.count == 2
+    assert text.count("<collision>") == 1
+    assert [each.code for each in written.refused] == ["DRIVE301", "DRIVE301"]
+    assert "by the macro 'part'" in written.refused[0].message
+    assert written.refused[0].span is not None
+
+
+def test_a_drive_of_joints_whose_names_are_expressions_is_refused(write):
+    wheel = (
+        '<link name="{side}"><collision><origin rpy="1.5708 0 0"/>'
+        '<geometry><cylinder radius="0.1" length="0.05"/></geometry></collision></link>'
+        '<joint name="${{prefix}}_{side}" type="continuous"><origin xyz="0 {y} 0"/>'
+        '<parent link="base_link"/><child link="{side}"/><axis xyz="0 1 0"/></joint>\n'
+    )
+    written, _, text = write(
+        f'{XACRO}\n<xacro:property name="prefix" value="p"/>\n<link name="base_link"/>\n'
+        + wheel.format(side="l", y="0.2")
+        + wheel.format(side="r", y="-0.2")
+        + "</robot>\n",
+        "r.urdf.xacro",
+    )
+    assert "<gazebo>" not in text
+    assert any("the name 'p_l' in it comes from an expression" in each.message for each in written.refused)
+    assert text.count("<inertial>") == 3
+
+
+def test_a_file_that_has_changed_meanwhile_is_left_alone(tmp_path):
+    path = tmp_path / "r.urdf"
+    path.write_text('<robot name="r"><link name="a"/></robot>')
+    description = examine(path)
+    found = infer(description.robot, MeshLibrary(PackageFinder(start=tmp_path), tmp_path))
+    path.write_text('<robot name="r"><link name="abc"/></robot>')
+    written = write_inference(description.robot, found)
+    assert "has changed since it was read" in written.refused[0].message
+    assert path.read_text() == '<robot name="r"><link name="abc"/></robot>'
