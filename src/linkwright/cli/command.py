@@ -28,6 +28,7 @@ GROUPS = {
         "check": "check URDF and xacro files, and the packages in folders; of one file, print the link tree",
         "explain": "say what a diagnostic code means and what to do, or what an element or attribute of URDF means",
         "inertia": "judge mass and inertia of each link by its shapes, print those computed from them, or write them",
+        "world": "list the worlds and models that there are, begin a new world, or check one",
         "diagram": "draw the links and joints of a model as urdf_to_graphviz does (.gv and PDF or SVG)",
         "export": "write a model as one HTML file that opens in any browser, or as glTF (.glb)",
         "convert": "write a robot or world as one SDF file, as gz makes it of a URDF, or as MJCF for MuJoCo",

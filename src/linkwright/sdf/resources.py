@@ -28,6 +28,7 @@ SEARCH_VARIABLES = (
 
 CONFIG = "model.config"
 _MODEL_FILE = "model.sdf"
+_WORLDS = (".world", ".sdf")
 _SHIPPED = Path(__file__).parent / "models"
 _NEWEST_MINOR = 12
 _SUN_AND_GROUND = {"sun": "sun", "ground plane": "ground_plane"}
@@ -99,6 +100,25 @@ class ResourceFinder:
                 for place in sorted(folder.iterdir()):
                     if (place / CONFIG).is_file() or (place / _MODEL_FILE).is_file():
                         found.setdefault(place.name, place)
+        return found
+
+    def worlds(self) -> dict[str, Path]:
+        """All worlds on the search path: name of the file without its ending -> the file; of two the first found.
+
+        They are in the folders in which models are looked for and in folders ``worlds`` of these and of packages.
+        """
+        found: dict[str, Path] = {}
+        shares = self._packages.packages().values()
+        for folder in dict.fromkeys(
+            (
+                *(each for place in self._folders for each in (place, place / "worlds")),
+                *(each / "worlds" for each in shares),
+            )
+        ):
+            with suppress(OSError):
+                for file in sorted(folder.iterdir()):
+                    if file.suffix in _WORLDS and file.is_file() and _holds_world(file):
+                        found.setdefault(file.stem, file)
         return found
 
     @cached_property
@@ -183,6 +203,11 @@ def model_file(folder: Path) -> Path | Missing:
         return newest[1]
     path = folder / _MODEL_FILE
     return path if path.is_file() else _no_file(path)
+
+
+def _holds_world(file: Path) -> bool:
+    """Whether an SDF file has a world in it, and not a model."""
+    return b"<world" in file.read_bytes()
 
 
 def exported_folders(share: Path, attribute: str) -> Iterator[Path]:

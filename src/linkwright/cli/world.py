@@ -1,0 +1,88 @@
+"""``linkwright world``: which worlds and models there are, a new world, and what is wrong with one."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Mapping
+from pathlib import Path
+
+from linkwright.cli import check
+from linkwright.cli.nested import SubVerb, configure_nested, run_nested
+from linkwright.cli.output import write_output
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+from linkwright.diagnostics.translation import localized
+
+
+def configure_list(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    parser.add_argument("--json", action="store_true", help="print a JSON list with kind, name and path of each")
+
+
+def run_list(arguments: argparse.Namespace) -> int:
+    """Print what worlds can be opened and include by name."""
+    from linkwright.packages import PackageFinder
+    from linkwright.sdf.resources import ResourceFinder
+
+    finder = ResourceFinder(PackageFinder(start=Path.cwd()))
+    found = {"world": finder.worlds(), "model": finder.models()}
+    if arguments.json:
+        rows = [
+            {"kind": kind, "name": name, "path": str(path)}
+            for kind, places in found.items()
+            for name, path in sorted(places.items())
+        ]
+        print(json.dumps(rows, indent=2, ensure_ascii=False))
+        return 0
+    print(localized(phrase("Worlds:")))
+    _print_places(found["world"])
+    print(localized(phrase("Models, for <include><uri>model://NAME</uri></include>:")))
+    _print_places(found["model"])
+    return 0
+
+
+def _print_places(places: Mapping[str, Path]) -> None:
+    width = max(map(len, places), default=0)
+    for name, path in sorted(places.items()):
+        print(f"  {name:<{width}}  {path}")
+
+
+def configure_new(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    parser.add_argument(
+        "name", metavar="NAME", help="the world's name, or the file to write, such as worlds/kitchen.world"
+    )
+    parser.add_argument("--force", action="store_true", help="write over a file that is there")
+
+
+def run_new(arguments: argparse.Namespace) -> int:
+    """Write a small world to begin with."""
+    from linkwright.descriptions import is_world
+    from linkwright.sdf.starting_world import starting_world
+
+    path = Path(arguments.name)
+    if not is_world(path.name) or path.suffix == ".xacro":
+        path = path.with_name(f"{path.name}.world")
+    if path.exists() and not arguments.force:
+        hint = phrase("choose another name, or add --force to write over it")
+        raise LinkwrightError(Diagnostic("CLI206", phrase("'{path}' is there already", path=path), hint=hint))
+    write_output(path, starting_world(path.stem))
+    print(f"Created file {path}")
+    return 0
+
+
+VERBS = {
+    "list": SubVerb(configure_list, run_list, "list the worlds and models on the search path, with their folders"),
+    "new": SubVerb(configure_new, run_new, "write a small world to begin with: ground, sun, a box, explained"),
+    "check": SubVerb(check.configure, check.run, "check worlds and models: what `linkwright check` says of them"),
+}
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Declare the commands."""
+    configure_nested(parser, VERBS)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the command that was named."""
+    return run_nested(arguments)
