@@ -1,0 +1,87 @@
+"""What goes between a simulation, which may have a thread of its own, and the graph."""
+
+from __future__ import annotations
+
+import threading
+from collections import deque
+from collections.abc import Callable
+from contextlib import suppress
+from functools import partial
+from typing import Any
+
+from linkwright.graph.endpoints.publisher import Publisher
+from linkwright.graph.faults import InvalidHandleError
+from linkwright.graph.loop.dispatcher import LoopDispatcher
+
+Command = Callable[[], object]
+
+_BATCHES = 4
+"""So many batches of messages may wait for the event loop; then the simulation waits for it."""
+
+
+class Exchange:
+    """Messages on their way out, and commands on their way in.
+
+    Messages are collected and handed over together: to the event loop of the graph where the simulation has a thread of
+    its own, or at once. Commands come from any thread and are done by the simulation between two chunks of time.
+
+    Attributes:
+        come: set while commands wait.
+    """
+
+    def __init__(self) -> None:
+        self.come = threading.Event()
+        self._out: list[tuple[Publisher[Any], Any]] = []
+        self._in: deque[Command] = deque()
+        self._free = threading.Semaphore(_BATCHES)
+        self._closed = False
+
+    def send(self, publisher: Publisher[Any], message: Any) -> None:
+        """Publish a message with the next batch; nobody changes it any more."""
+        self._out.append((publisher, message))
+
+    def deliver(self, dispatcher: LoopDispatcher | None = None) -> None:
+        """Publish what was sent.
+
+        Args:
+            dispatcher: that of the event loop which is to do it; None to do it here and now.
+        """
+        if not self._out:
+            return
+        batch, self._out = self._out, []
+        if dispatcher is None:
+            _publish(batch)
+            return
+        self._free.acquire()
+        if not self._closed:
+            dispatcher.call_threadsafe(partial(self._deliver, batch))
+
+    def post(self, command: Command) -> None:
+        """Have the simulation do something soon."""
+        self._in.append(command)
+        self.come.set()
+
+    def work(self) -> None:
+        """Do what was posted before."""
+        self.come.clear()
+        while self._in:
+            self._in.popleft()()
+
+    def close(self) -> None:
+        """Nothing is delivered any more; a simulation that waits goes on."""
+        self._closed = True
+        self._in.clear()
+        for _ in range(_BATCHES):
+            self._free.release()
+        self.come.set()
+
+    def _deliver(self, batch: list[tuple[Publisher[Any], Any]]) -> None:
+        self._free.release()
+        if not self._closed:
+            _publish(batch)
+
+
+def _publish(batch: list[tuple[Publisher[Any], Any]]) -> None:
+    for publisher, message in batch:
+        with suppress(InvalidHandleError):  # its model is gone
+            publisher.publish(message)

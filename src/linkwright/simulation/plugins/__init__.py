@@ -1,0 +1,1 @@
+"""What makes models act and measure: plugins of both simulators, and sensors, found through entry points."""

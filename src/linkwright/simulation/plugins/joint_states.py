@@ -1,0 +1,89 @@
+"""Joint states: ``libgazebo_ros_joint_state_publisher.so``, and that of gz.
+
+Source: gazebo_ros_pkgs for ROS 2 and gz-sim (parameters, topics, defaults). What gz sends is its message Model, of
+which a bridge makes this one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Generic, TypeVar
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.messages import Header, JointState
+from linkwright.simulation.plugins.parameters import parameter
+from linkwright.simulation.plugins.plugin import SimulatedPlugin
+
+P = TypeVar("P")
+
+
+@dataclass(frozen=True, kw_only=True)
+class ClassicParameters:
+    """Of the plugin of Gazebo classic."""
+
+    joint_name: tuple[str, ...] = parameter(aliases=("jointName",))
+    update_rate: float = parameter(100.0, aliases=("updateRate",))
+
+
+@dataclass(frozen=True, kw_only=True)
+class GzParameters:
+    """Of the plugin of gz."""
+
+    joint_name: tuple[str, ...] = ()
+    topic: str = ""
+    update_rate: float = 0.0
+
+
+class _JointStates(SimulatedPlugin[P], Generic[P]):
+    """Publishes positions and velocities of joints of one axis."""
+
+    def _publish_joints(self, names: list[str], joints: list[str], rate: float, topic: str, usual: str = "") -> None:
+        self._names, self._joints = names, joints
+        self._output = self.node.publisher("sensor_msgs/msg/JointState", topic, 1000, usual=usual)
+        self.every(rate, self._publish)
+
+    def _publish(self) -> None:
+        states = [self.simulation.joint_state(joint) for joint in self._joints]
+        message = JointState(header=Header(stamp=self.stamp()))
+        message.name = list(self._names)
+        message.position = [position for position, _ in states]
+        message.velocity = [velocity for _, velocity in states]
+        self._output.publish(message)
+
+
+class ClassicJointStates(_JointStates[ClassicParameters]):
+    """``libgazebo_ros_joint_state_publisher.so``."""
+
+    PARAMETERS = ClassicParameters
+
+    def start(self) -> None:
+        """Find the joints; one that does not move is told of and left out."""
+        asked = [name for entry in self.parameters.joint_name for name in entry.replace(",", " ").split()]
+        found = [(name, joint) for name in asked if (joint := self._joint(name)) is not None]
+        names, joints = [name for name, _ in found], [joint for _, joint in found]
+        if names:
+            self._publish_joints(names, joints, self.parameters.update_rate, "joint_states")
+
+    def _joint(self, name: str) -> str | None:
+        try:
+            return self.joint(name)
+        except LinkwrightError as error:
+            self.node.logger.warning(error.diagnostics[0].message)
+            return None
+
+
+class GzJointStates(_JointStates[GzParameters]):
+    """``gz-sim-joint-state-publisher-system``."""
+
+    PARAMETERS = GzParameters
+
+    def start(self) -> None:
+        """Find the joints, all that move unless some are named."""
+        begin = f"{self.place.path}::"
+        moving = [
+            name for name, placed in self.simulation.scene.joints.items() if name.startswith(begin) and placed.axes
+        ]
+        joints = [self.joint(name) for name in self.parameters.joint_name] or moving
+        names = [joint.removeprefix(begin) for joint in joints]
+        topic = self.parameters.topic or f"/world/{self.place.world.name}/model/{self.place.path}/joint_state"
+        self._publish_joints(names, joints, self.parameters.update_rate, topic, "/joint_states")

@@ -1,0 +1,154 @@
+"""The node of a plugin, as the plugin uses it, in the simulation's thread."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import Any
+
+from linkwright.graph import Logger, Node
+from linkwright.graph.endpoints.base import Endpoint
+from linkwright.graph.endpoints.publisher import Publisher
+from linkwright.graph.qos.profile import QoSProfile
+from linkwright.messages import get_service
+from linkwright.simulation.exchange import Exchange
+from linkwright.simulation.plugins.ros_element import overridden
+from linkwright.xmltree import Element
+
+_NO_TOPIC = re.compile(r"[^A-Za-z0-9_/~]")
+_FIRST_DIGIT = re.compile(r"(?<=/)(?=[0-9])")
+
+
+class Output:
+    """A topic that a plugin publishes, under one name or two."""
+
+    def __init__(self, exchange: Exchange, publishers: list[Publisher[Any]]) -> None:
+        self._exchange = exchange
+        self._publishers = publishers
+
+    @property
+    def is_wanted(self) -> bool:
+        """Whether anybody gets what is published: what is costly to make need not be made otherwise."""
+        return any(each.get_subscription_count() for each in self._publishers)
+
+    def publish(self, message: Any) -> None:
+        """Publish a message, which nobody changes any more."""
+        for publisher in self._publishers:
+            self._exchange.send(publisher, message)
+
+
+class PluginNode:
+    """What a plugin has of ROS.
+
+    A plugin of Gazebo classic is a node; those of gz share that of the simulation. Callbacks come in the simulation's
+    thread, between two chunks of simulated time.
+
+    Args:
+        node: the node.
+        exchange: that of the simulation.
+        owned: whether the node is the plugin's own, and ends with it.
+        qos: what overrides qualities of service (`NodeDescription.qos`).
+        usual: the usual names of topics that are still to be had; None where topics have their own names only.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        exchange: Exchange,
+        *,
+        owned: bool,
+        qos: Mapping[tuple[str, str], Element],
+        usual: set[str] | None,
+    ) -> None:
+        self._node = node
+        self._exchange = exchange
+        self._owned = owned
+        self._qos = {(node.handle.resolve_topic_name(topic), side): each for (topic, side), each in qos.items()}
+        self._usual = usual
+        self._endpoints: list[Endpoint] = []
+        self._names: list[str] = []
+
+    @property
+    def logger(self) -> Logger:
+        """The node's logger."""
+        return self._node.get_logger()
+
+    @property
+    def name(self) -> str:
+        """The full name of the node."""
+        return self._node.get_fully_qualified_name()
+
+    def publisher(self, msg_type: Any, topic: str, qos: QoSProfile | int = 10, *, usual: str = "") -> Output:
+        """A topic to publish.
+
+        Args:
+            msg_type: the class of its messages, or the name of the type.
+            topic: relative, absolute or private name. What may not be in names, in those of gz it may, is replaced.
+            qos: the quality of service; a number is a depth.
+            usual: for topics of gz, the name that they have on robots: it is published under that one too, where the
+                simulation is asked for it and no other plugin has it.
+        """
+        publishers = []
+        for name in self._both(topic, usual):
+            profile = self._profile(name, "publisher", qos)
+            publishers.append(self._node.create_publisher(msg_type, name, profile))
+        self._endpoints += publishers
+        return Output(self._exchange, publishers)
+
+    def subscribe(
+        self,
+        msg_type: Any,
+        topic: str,
+        callback: Callable[[Any], object],
+        qos: QoSProfile | int = 10,
+        *,
+        usual: str = "",
+    ) -> None:
+        """Have a function called with each message of a topic; the arguments are those of `publisher`."""
+        for name in self._both(topic, usual):
+            profile = self._profile(name, "subscriber", qos)
+            received = partial(self._received, callback)
+            self._endpoints.append(self._node.create_subscription(msg_type, name, received, profile))
+
+    def service(self, srv_type: str, name: str, callback: Callable[[Any, Any], Any]) -> None:
+        """Answer a service: a function of a request and an empty response gives the response."""
+        response = get_service(srv_type).Response
+
+        def asked(request: Any, reply: Callable[[Any], None]) -> None:
+            self._exchange.post(lambda: reply(callback(request, response())))
+
+        self._endpoints.append(self._node.create_service(srv_type, name, asked, replying=True))
+
+    def parameter(self, name: str, default: Any) -> Any:
+        """The value of a parameter of the node, which is declared with a default."""
+        if not self._node.has_parameter(name):
+            self._node.declare_parameter(name, default)
+        return self._node.get_parameter(name).value
+
+    def close(self) -> None:
+        """Take what was made out of the graph."""
+        if self._owned:
+            self._node.destroy_node()
+        else:
+            for endpoint in self._endpoints:
+                endpoint.destroy()
+        if self._usual is not None:
+            self._usual.difference_update(self._names)
+
+    def _both(self, topic: str, usual: str) -> list[str]:
+        topic = _FIRST_DIGIT.sub("_", _NO_TOPIC.sub("_", topic))
+        names = [topic]
+        if usual and self._usual is not None and topic != usual and usual not in self._usual:
+            self._usual.add(usual)
+            self._names.append(usual)
+            names.append(usual)
+        return names
+
+    def _profile(self, topic: str, side: str, qos: QoSProfile | int) -> QoSProfile:
+        profile = QoSProfile.of(qos)
+        override = self._qos.get((self._node.handle.resolve_topic_name(topic), side))
+        return profile if override is None else overridden(profile, override)
+
+    def _received(self, callback: Callable[[Any], object], message: Any) -> None:
+        self._exchange.post(partial(callback, message))

@@ -1,0 +1,138 @@
+"""Parameters of plugins: a dataclass is the table of their names, types and defaults.
+
+    @dataclass(frozen=True, kw_only=True)
+    class Parameters:
+        left_joint: tuple[str, ...] = parameter(aliases=("leftJoint",))  # required, as it has no default
+        wheel_separation: tuple[float, ...] = parameter((0.34,), aliases=("wheelSeparation",))
+        update_rate: float = 100.0
+        publish_odom: bool = False
+
+A name is that of the child element of ``<plugin>``. The types are ``str``, ``float``, ``int``, ``bool``, `Vector3`, and
+``tuple[str, ...]`` or ``tuple[float, ...]`` for elements that may be there several times.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Hashable, Mapping, Sequence
+from dataclasses import MISSING, Field, dataclass, field, fields
+from functools import cache
+from typing import Any, TypeVar, get_type_hints
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, Severity, did_you_mean, phrase
+from linkwright.geometry.vectors import Vector3
+from linkwright.xmltree import Element
+
+P = TypeVar("P")
+
+_ALIASES = "aliases"
+_COMMON = frozenset(
+    (
+        *("ros", "robotNamespace", "robot_namespace"),
+        *("alwaysOn", "always_on", "rosDebugLevel", "legacyMode", "legacyModeNS", "gui"),
+    )
+)
+"""What may stand in any plugin; the first three are read by who makes its node, the rest had a meaning once."""
+_TRUTHS = {"true": True, "1": True, "false": False, "0": False}
+
+
+@dataclass(frozen=True)
+class NoParameters:
+    """The parameters of what has none."""
+
+
+def parameter(default: Any = MISSING, *, aliases: Sequence[str] = ()) -> Any:
+    """A parameter with a default, if it has one, and the names that it had in older simulators."""
+    return field(default=default, metadata={_ALIASES: tuple(aliases)})
+
+
+def parameters_from(
+    table: type[P], element: Element | None, ignored: Collection[str] = ()
+) -> tuple[P, list[Diagnostic]]:
+    """The parameters that a plugin is given.
+
+    Args:
+        table: a dataclass, see above.
+        element: the plugin as written; None for one without.
+        ignored: names that are known and change nothing here.
+
+    Returns:
+        The parameters; and warnings for what is unknown, or cannot be read and has its default.
+
+    Raises:
+        LinkwrightError: SIM132 one without a default is missing.
+    """
+    findings: list[Diagnostic] = []
+    given: dict[str, list[Element]] = {}
+    for child in element.elements() if element is not None else ():
+        given.setdefault(child.tag, []).append(child)
+    values: dict[str, Any] = {}
+    names: dict[str, None] = {}
+    kinds = _types(table)  # type: ignore[arg-type]  # a class is hashable
+    for each in fields(table):  # type: ignore[arg-type]  # a dataclass is asked for
+        spellings = (each.name, *each.metadata.get(_ALIASES, ()))
+        names |= dict.fromkeys(spellings)
+        written = next((given[name] for name in spellings if name in given), [])
+        value = _read(each, kinds[each.name], written, findings)
+        if value is not None:
+            values[each.name] = value
+        elif each.default is MISSING:
+            raise LinkwrightError(_missing(each, element))
+    for name, children in given.items():
+        if name not in names and name not in _COMMON and name not in ignored and ":" not in name:
+            findings.append(
+                _warning(
+                    "SIM130",
+                    phrase("'{name}' is no parameter of this plugin", name=name),
+                    children[0],
+                    did_you_mean(name, names),
+                )
+            )
+    return table(**values), findings
+
+
+@cache
+def _types(table: Hashable) -> Mapping[str, Any]:
+    return get_type_hints(table)
+
+
+def _read(known: Field[Any], kind: Any, written: list[Element], findings: list[Diagnostic]) -> Any:
+    """The value of a parameter; None where none is given that can be read."""
+    many = kind in (tuple[str, ...], tuple[float, ...])
+    convert = _CONVERTERS[str if kind == tuple[str, ...] else float if kind == tuple[float, ...] else kind]
+    values = []
+    for child in written if many else written[:1]:
+        text = child.text().strip()
+        try:
+            values.append(convert(text))
+        except ValueError:
+            message = phrase("'{text}' is no value of '{name}'", text=text, name=known.name)
+            findings.append(_warning("SIM131", message, child, phrase("its default is used")))
+    if not values:
+        return None
+    return tuple(values) if many else values[0]
+
+
+def _truth(text: str) -> bool:
+    try:
+        return _TRUTHS[text.lower()]
+    except KeyError:
+        raise ValueError(text) from None
+
+
+def _vector(text: str) -> Vector3:
+    x, y, z = (float(each) for each in text.split())
+    return x, y, z
+
+
+_CONVERTERS: dict[Any, Callable[[str], Any]] = {str: str, float: float, int: int, bool: _truth, Vector3: _vector}
+
+
+def _missing(known: Field[Any], element: Element | None) -> Diagnostic:
+    message = phrase("the plugin lacks '{name}'", name=known.name)
+    if element is None:
+        return Diagnostic("SIM132", message)
+    return Diagnostic("SIM132", message, span=element.span(), source=element.source)
+
+
+def _warning(code: str, message: Phrase, element: Element, hint: Phrase | None) -> Diagnostic:
+    return Diagnostic(code, message, element.span(), Severity.WARNING, hint=hint, source=element.source)

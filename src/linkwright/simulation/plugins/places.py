@@ -1,0 +1,72 @@
+"""The plugins and sensors of a model, each with its place."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from linkwright.geometry.single import Transform, compose, invert
+from linkwright.sdf.frames import FrameError, Frames, transform_of
+from linkwright.sdf.joints import Joint
+from linkwright.sdf.links import Link
+from linkwright.sdf.models import Model
+from linkwright.sdf.poses import SEPARATOR, RawPose
+from linkwright.sdf.worlds import World
+from linkwright.simulation.plugins.plugin import PlacedSensor, PluginPlace
+
+
+def of_world(world: World) -> Iterator[PluginPlace]:
+    """The plugins of a world itself."""
+    for plugin in world.plugins:
+        yield PluginPlace(plugin.name or plugin.filename, plugin, world, None, "", None)
+
+
+def of_model(world: World, model: Model, path: str) -> Iterator[PluginPlace]:
+    """The plugins of a model, of its sensors, and its sensors without plugins; then those of the models in it.
+
+    Args:
+        world: the world, as it was read.
+        model: with its includes resolved.
+        path: what it is called in the world.
+    """
+    frames = Frames(model)
+    yield from _of_model(world, model, path, frames)
+
+
+def _of_model(world: World, model: Model, path: str, frames: Frames) -> Iterator[PluginPlace]:
+    for plugin in model.plugins:
+        yield PluginPlace(plugin.name or plugin.filename, plugin, world, model, path, None)
+    for placed in _sensors(model, path, frames):
+        plugins = placed.sensor.plugins
+        for plugin in plugins:
+            yield PluginPlace(plugin.name or placed.sensor.name, plugin, world, model, path, placed)
+        if not plugins:
+            yield PluginPlace(placed.sensor.name, None, world, model, path, placed)
+    for inner in model.models:
+        yield from _of_model(world, inner, f"{path}{SEPARATOR}{inner.name}", frames.inside(inner.name))
+
+
+def _sensors(model: Model, path: str, frames: Frames) -> Iterator[PlacedSensor]:
+    for link in model.links:
+        for sensor in link.sensors:
+            name = SEPARATOR.join((path, link.name, sensor.name))
+            pose = _in_link(frames, link, sensor.pose)
+            yield PlacedSensor(name, sensor, f"{path}{SEPARATOR}{link.name}", "", pose)
+    for joint in model.joints:
+        for sensor in joint.sensors:
+            try:
+                child = frames.link(joint.child)
+                pose = compose(_joint_in_link(frames, joint, child), transform_of(sensor.pose.pose))
+            except FrameError:
+                continue
+            name = SEPARATOR.join((path, joint.name, sensor.name))
+            yield PlacedSensor(name, sensor, f"{path}{SEPARATOR}{child}", f"{path}{SEPARATOR}{joint.name}", pose)
+
+
+def _in_link(frames: Frames, link: Link, raw: RawPose) -> Transform:
+    if not raw.relative_to:
+        return transform_of(raw.pose)
+    return compose(invert(frames.pose(link.name)), frames.placed(raw, link.name))
+
+
+def _joint_in_link(frames: Frames, joint: Joint, link: str) -> Transform:
+    return compose(invert(frames.pose(link)), frames.pose(joint.name))

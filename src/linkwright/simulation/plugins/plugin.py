@@ -1,0 +1,216 @@
+"""What plugins and sensors derive from.
+
+How to write one. A class for each plugin or type of sensor, declared as an entry point (`registry`):
+
+    class JointStatePublisher(SimulatedPlugin[Parameters]):
+        PARAMETERS = Parameters  # a dataclass, see `parameters`
+
+        def start(self) -> None:
+            self._joints = [self.joint(name) for name in self.parameters.joint_name]
+            self._output = self.node.publisher("sensor_msgs/msg/JointState", "joint_states", 1000)
+            self.every(self.parameters.update_rate, self._publish)
+
+        def _publish(self) -> None:
+            positions = [self.simulation.joint_state(joint)[0] for joint in self._joints]
+            self._output.publish(JointState(Header(self.stamp()), ..., positions, ...))
+
+For a sensor `sensor` says what is measured and where; it is the same for one in whose ``<sensor>`` a plugin stands,
+which ``linkwright.simulated_plugins`` finds by its library, and for one without, which
+``linkwright.simulated_sensors`` finds by its type. Noise is drawn from `random`, so that the same seed gives the same
+bits. What is costly is made only where ``output.is_wanted``.
+
+Everything is called in the simulation's thread: `start` after the model has come, what was passed to `every` at its
+simulated times, callbacks of topics and services between two chunks of time, `reset` after time has begun anew, `stop`
+before the model goes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection
+from dataclasses import dataclass
+from typing import Any, ClassVar, Generic, Protocol, TypeVar
+
+import numpy as np
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, phrase
+from linkwright.geometry.single import Transform
+from linkwright.messages import Time
+from linkwright.sdf.models import Model
+from linkwright.sdf.plugins import Plugin
+from linkwright.sdf.poses import SEPARATOR
+from linkwright.sdf.sensors import Sensor
+from linkwright.sdf.worlds import World
+from linkwright.simulation.plugins.node import PluginNode
+from linkwright.simulation.plugins.parameters import NoParameters
+from linkwright.simulation.schedule import Task
+from linkwright.simulation.simulation import NANOSECONDS, Simulation
+from linkwright.xmltree import Element
+
+P = TypeVar("P")
+
+
+@dataclass(frozen=True, slots=True)
+class PlacedSensor:
+    """A sensor of a model.
+
+    Attributes:
+        name: with the models, the link or the joint that it is in: ``robot::head::camera``.
+        sensor: what is written about it.
+        link: the link that carries it, named as in the simulation; of one in a joint the child of that.
+        joint: the joint that it is in; empty for a sensor of a link.
+        pose: where it is in the frame of `link`.
+    """
+
+    name: str
+    sensor: Sensor
+    link: str
+    joint: str
+    pose: Transform
+
+
+@dataclass(frozen=True, slots=True)
+class PluginPlace:
+    """Where a plugin stands, and what it is given.
+
+    Attributes:
+        name: its own name, or that of the sensor without a plugin.
+        plugin: as written; None for a sensor without one.
+        world: the world, as it was read.
+        model: the model that it is in; None for a plugin of the world.
+        path: the name of that model, ``robot`` or ``robot::arm``; empty for the world.
+        sensor: the sensor that it is in, or is.
+    """
+
+    name: str
+    plugin: Plugin | None
+    world: World
+    model: Model | None
+    path: str
+    sensor: PlacedSensor | None
+
+    @property
+    def element(self) -> Element | None:
+        """What is written about it."""
+        if self.plugin is not None:
+            return self.plugin.element
+        return None if self.sensor is None else self.sensor.sensor.element
+
+
+class Environment(Protocol):
+    """What a plugin needs of the simulation that it is in."""
+
+    @property
+    def simulation(self) -> Simulation:
+        """The simulation."""
+
+    def random(self, name: str) -> np.random.Generator:
+        """Random numbers of its own for whatever has a name; the same for the same seed."""
+
+
+class SimulatedPlugin(Generic[P]):
+    """A plugin or a sensor that runs.
+
+    Attributes:
+        PARAMETERS: the dataclass with its parameters.
+        IGNORED: names of parameters that are known and change nothing here.
+        place: where it stands.
+        node: what it has of ROS.
+        parameters: what it is given.
+        simulation: the simulation.
+    """
+
+    PARAMETERS: ClassVar[type[Any]] = NoParameters
+    IGNORED: ClassVar[Collection[str]] = ()
+
+    def __init__(self, place: PluginPlace, node: PluginNode, parameters: P, environment: Environment) -> None:
+        self.place = place
+        self.node = node
+        self.parameters = parameters
+        self.simulation = environment.simulation
+        self._environment = environment
+        self._tasks: list[Task] = []
+
+    # --- what one has of its own --------------------------------------------------------------------------------------
+
+    def start(self) -> None:
+        """Begin: find links and joints, make topics, ask to be called.
+
+        Raises:
+            LinkwrightError: it cannot work; this is logged, and it is not there.
+        """
+
+    def reset(self) -> None:
+        """Time has begun anew, and everything is where it was at the start."""
+
+    def stop(self) -> None:
+        """End; its node and what was asked for with `every` ends by itself."""
+
+    # --- what it needs ------------------------------------------------------------------------------------------------
+
+    @property
+    def sensor(self) -> PlacedSensor:
+        """The sensor; only where the plugin is one or stands in one."""
+        assert self.place.sensor is not None
+        return self.place.sensor
+
+    @property
+    def random(self) -> np.random.Generator:
+        """Random numbers of its own: keep it, and get it anew in `reset`."""
+        owner = self.sensor.name if self.place.sensor is not None else f"{self.place.path}::{self.place.name}"
+        return self._environment.random(owner)
+
+    def every(self, rate: float, function: Callable[[], None]) -> None:
+        """Have a function called so many times a simulated second; 0 for after each step."""
+        period = round(NANOSECONDS / rate) if rate > 0 else 0
+        self._tasks.append(self.simulation.call_every(period, function))
+
+    def stamp(self) -> Time:
+        """The simulated time, for headers."""
+        return Time(*divmod(self.simulation.time, NANOSECONDS))
+
+    def link(self, name: str) -> str:
+        """The name in the simulation of a link of its model.
+
+        Raises:
+            LinkwrightError: SIM133 there is none.
+        """
+        return self._found(name, self.simulation.scene.bodies, "SIM133")
+
+    def joint(self, name: str) -> str:
+        """The name in the simulation of a joint of its model that moves.
+
+        Raises:
+            LinkwrightError: SIM134 there is none.
+        """
+        return self._found(name, self.simulation.scene.joints, "SIM134")
+
+    def close(self) -> None:
+        """End it, whatever it does."""
+        for task in self._tasks:
+            task.cancelled = True
+        try:
+            self.stop()
+        finally:
+            self.node.close()
+
+    def _found(self, name: str, known: Collection[str], code: str) -> str:
+        """A name as it stands, below the model, or below one of the models in it."""
+        begin = f"{self.place.path}{SEPARATOR}" if self.place.path else ""
+        mine = [each for each in known if each.startswith(begin)]
+        for candidate in (f"{begin}{name}", name):
+            if candidate in mine:
+                return candidate
+        ending = [each for each in mine if each.endswith(f"{SEPARATOR}{name}")]
+        if len(ending) == 1:
+            return ending[0]
+        element = self.place.element
+        names = [each.removeprefix(begin) for each in mine]
+        if code == "SIM133":
+            message = phrase("plugin '{plugin}': there is no link '{name}'", plugin=self.place.name, name=name)
+        else:
+            message = phrase("plugin '{plugin}': no joint '{name}' moves", plugin=self.place.name, name=name)
+        span, source = (element.span(), element.source) if element is not None else (None, None)
+        raise LinkwrightError(Diagnostic(code, message, span, hint=did_you_mean(name, names), source=source))
+
+
+PluginClass = type[SimulatedPlugin[Any]]

@@ -1,0 +1,90 @@
+"""Which plugins and sensors can be simulated.
+
+They are found through two groups of entry points, ours and those of other packages, each naming a subclass of
+`linkwright.simulation.plugins.plugin.SimulatedPlugin`:
+
+``linkwright.simulated_plugins``
+    by library: ``gazebo_ros_diff_drive``, ``gz-sim-diff-drive-system``, in the form of `library_name`.
+
+``linkwright.simulated_sensors``
+    by type of sensor (``gpu_lidar``), for sensors that no plugin of their own publishes, as those of gz.
+"""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from typing import TYPE_CHECKING
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
+from linkwright.extensions import EntryPoint, extensions
+
+if TYPE_CHECKING:
+    from linkwright.simulation.plugins.plugin import PluginClass
+
+PLUGINS, SENSORS = "linkwright.simulated_plugins", "linkwright.simulated_sensors"
+
+_ENDING = re.compile(r"\.(so|dylib|dll)(\.[0-9.]+)?$")
+_GZ = re.compile(r"^(gz-sim|ignition-gazebo)[0-9]*-")
+_SYSTEMS = (
+    *("physics", "user-commands", "scene-broadcaster", "sensors", "imu", "contact", "navsat", "altimeter"),
+    *("air-pressure", "air-speed", "magnetometer", "forcetorque", "logical-camera", "label", "wheel-slip"),
+    *("follow-actor", "log", "log-playback", "elevator", "model-photo-shoot"),
+)
+_BUILT_IN = frozenset(
+    (
+        *(f"gz-sim-{name}-system" for name in _SYSTEMS),
+        *("gazebo_ros_init", "gazebo_ros_factory", "gazebo_ros_force_system", "gazebo_ros_api_plugin"),
+    )
+)
+"""What other simulators need plugins for and is a part of this one."""
+
+
+def library_name(filename: str) -> str:
+    """The name of a library without folders, ``lib``, ``.so`` and the version; ``ignition-gazebo-`` is ``gz-sim-``."""
+    name = _ENDING.sub("", filename.strip().replace("\\", "/").rpartition("/")[2])
+    return _GZ.sub("gz-sim-", name.removeprefix("lib"))
+
+
+def is_of_gz(filename: str) -> bool:
+    """Whether a library is one of gz, whose plugins are no nodes of ROS."""
+    return library_name(filename).startswith("gz-sim-")
+
+
+def needs_nothing(filename: str) -> bool:
+    """Whether what a library does is a part of the simulation itself."""
+    return library_name(filename) in _BUILT_IN
+
+
+def plugin_class(filename: str) -> PluginClass | None:
+    """What simulates a plugin; None where nothing does.
+
+    Raises:
+        LinkwrightError: SIM136 the package that brings it cannot be imported.
+    """
+    return _loaded(PLUGINS, library_name(filename))
+
+
+def sensor_class(kind: str) -> PluginClass | None:
+    """What simulates a sensor of a type that has no plugin; None where nothing does.
+
+    Raises:
+        LinkwrightError: SIM136 the package that brings it cannot be imported.
+    """
+    return _loaded(SENSORS, kind)
+
+
+def _loaded(group: str, name: str) -> PluginClass | None:
+    entry = extensions(group).get(name)
+    return None if entry is None else _load(entry)
+
+
+@cache
+def _load(entry: EntryPoint) -> PluginClass:
+    try:
+        found: PluginClass = entry.load()
+    except Exception as error:
+        message = phrase("the plugin '{name}' cannot be imported", name=entry.name)
+        hint = phrase("'{place}' brings it: {problem}", place=entry.distribution, problem=foreign(error))
+        raise LinkwrightError(Diagnostic("SIM136", message, hint=hint)) from error
+    return found

@@ -1,0 +1,126 @@
+"""``<ros>``: which node a plugin of Gazebo classic is.
+
+Source: ``gazebo_ros::Node`` of gazebo_ros_pkgs for ROS 2.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+from linkwright.graph.command_line.ros_arguments import parse
+from linkwright.graph.names.remapping import Remappings
+from linkwright.graph.names.rules import absolute_namespace, join
+from linkwright.graph.qos.profile import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+from linkwright.xmltree import Element
+
+_NO_NAME = re.compile(r"[^A-Za-z0-9_]")
+_NUMBERS = {"int": int, "double": float, "float": float}
+
+
+@dataclass(slots=True)
+class NodeDescription:
+    """How the node of a plugin is made.
+
+    Attributes:
+        name: its name.
+        namespace: where it lives.
+        parameters: values by name.
+        remappings: rules ``(from, to)``.
+        qos: by topic as written, and ``publisher`` or ``subscriber``, the elements that override its policies.
+    """
+
+    name: str
+    namespace: str = "/"
+    parameters: dict[str, Any] = field(default_factory=dict)
+    remappings: list[tuple[str, str]] = field(default_factory=list)
+    qos: dict[tuple[str, str], Element] = field(default_factory=dict)
+
+    @property
+    def full_name(self) -> str:
+        """The name that the node really has."""
+        rules = Remappings(self.remappings)
+        return join(absolute_namespace(rules.namespace(self.namespace, self.name)), rules.node_name(self.name))
+
+
+def node_of(name: str, element: Element | None, namespace: str) -> NodeDescription:
+    """The node of a plugin.
+
+    Args:
+        name: of the plugin; what no name of a node may have becomes an underscore.
+        element: the plugin as written.
+        namespace: where it lives if it says nothing.
+
+    Raises:
+        LinkwrightError: an ``<argument>`` is none of ROS's.
+    """
+    node = NodeDescription(_as_name(name), _namespace(element) or namespace)
+    ros = element.first("ros") if element is not None else None
+    if ros is None:
+        return node
+    given = ["--ros-args"]
+    for argument in ros.elements("argument"):
+        words = argument.text().split()
+        given += ["-r", *words] if len(words) == 1 and ":=" in words[0] else [w for w in words if w != "--ros-args"]
+    for rule in ros.elements("remapping"):
+        given += ["-r", rule.text().strip()]
+    read = parse(given)
+    node.remappings = read.remappings_for(node.name)
+    node.parameters = {each.attributes.get("name", ""): _value(each) for each in ros.elements("parameter")}
+    node.parameters |= read.parameters_for(node.full_name)
+    for topic in (each for qos in ros.elements("qos") for each in qos.elements("topic")):
+        for side in ("publisher", "subscriber", "subscription"):
+            override = topic.first(side)
+            if override is not None:
+                node.qos[topic.attributes.get("name", ""), side.replace("subscription", "subscriber")] = override
+    return node
+
+
+def overridden(profile: QoSProfile, element: Element) -> QoSProfile:
+    """A quality of service with what an element says otherwise; words that are none leave it as it is."""
+    result = QoSProfile(profile.depth, profile.reliability, profile.durability, profile.history)
+    for child in element.elements():
+        word = child.text().strip().upper()
+        if child.tag == "reliability" and word in ReliabilityPolicy.__members__:
+            result.reliability = ReliabilityPolicy[word]
+        elif child.tag == "durability" and word in DurabilityPolicy.__members__:
+            result.durability = DurabilityPolicy[word]
+        elif child.tag == "history" and word in HistoryPolicy.__members__:
+            result.history = HistoryPolicy[word]
+        if child.tag == "history" and child.attributes.get("depth", "").isdigit():
+            result.depth = int(child.attributes["depth"])
+    return result
+
+
+def _namespace(element: Element | None) -> str:
+    """What ``<ros>`` says, or, as for ROS 1, the plugin itself; empty where nothing is said."""
+    for text in _namespaces(element):
+        if text.strip("/ "):
+            return "/" + text.strip("/ ")
+    return ""
+
+
+def _namespaces(element: Element | None) -> Iterator[str]:
+    if element is None:
+        return
+    for inside in element.elements("ros"):
+        yield from (each.text() for each in inside.elements("namespace"))
+    for tag in ("robotNamespace", "robot_namespace"):
+        yield from (each.text() for each in element.elements(tag))
+
+
+def _as_name(name: str) -> str:
+    plain = _NO_NAME.sub("_", name) or "plugin"
+    return f"_{plain}" if plain[0].isdigit() else plain
+
+
+def _value(element: Element) -> Any:
+    text, kind = element.text().strip(), element.attributes.get("type", "string")
+    if kind == "bool":
+        return text.lower() in ("true", "1")
+    try:
+        return _NUMBERS[kind](text) if kind in _NUMBERS else text
+    except ValueError:
+        return text

@@ -1,0 +1,266 @@
+"""A simulation with its plugins, on a graph."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from zlib import crc32
+
+import numpy as np
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, foreign, joined, phrase
+from linkwright.geometry.single import IDENTITY, Transform
+from linkwright.graph import Node
+from linkwright.sdf.frames import FrameError
+from linkwright.sdf.models import Model
+from linkwright.simulation.exchange import Exchange
+from linkwright.simulation.plugins.node import PluginNode
+from linkwright.simulation.plugins.parameters import parameters_from
+from linkwright.simulation.plugins.places import of_model, of_world
+from linkwright.simulation.plugins.plugin import PluginClass, PluginPlace, SimulatedPlugin
+from linkwright.simulation.plugins.registry import is_of_gz, needs_nothing, plugin_class, sensor_class
+from linkwright.simulation.plugins.ros_element import node_of
+from linkwright.simulation.simulation import Simulation
+
+_WORLD = ""
+"""The name under which the plugins of the world are kept; no model has it."""
+
+
+@dataclass(frozen=True, slots=True)
+class ServerOptions:
+    """How a simulation is run.
+
+    Attributes:
+        seed: what all random numbers follow from.
+        usual_names: whether topics of gz, such as ``/model/robot/cmd_vel``, have their usual names too: ``/cmd_vel``
+            for the first robot that has one.
+    """
+
+    seed: int = 0
+    usual_names: bool = False
+
+
+class SimulationServer:
+    """A simulation with its plugins.
+
+    All methods are called in the thread that advances the simulation, which may be any one.
+
+    Args:
+        simulation: the world.
+        node: the node of the simulator, which plugins of gz share.
+        options: how it is run.
+
+    Attributes:
+        simulation: the world.
+        node: the node of the simulator.
+        exchange: messages to the graph, and commands from there.
+        on_change: called after models have come or gone.
+        on_reset: called after a reset.
+    """
+
+    def __init__(self, simulation: Simulation, node: Node, options: ServerOptions | None = None) -> None:
+        self.simulation = simulation
+        self.node = node
+        self.exchange = Exchange()
+        self.on_change: list[Callable[[], None]] = []
+        self.on_reset: list[Callable[[], None]] = []
+        self._options = options or ServerOptions()
+        self._usual: set[str] | None = set() if self._options.usual_names else None
+        self._plugins: dict[str, list[SimulatedPlugin[object]]] = {}
+        self._node_names: set[str] = set()
+        self._told: set[str] = set()
+
+    def start(self) -> None:
+        """Load the plugins of the world and of its models."""
+        self._tell(self.simulation.scene.diagnostics)
+        self._load(_WORLD, of_world(self.simulation.world), "")
+        for scene_model in tuple(self.simulation.scene.models.values()):
+            self._load(scene_model.name, of_model(self.simulation.world, scene_model.model, scene_model.name), "")
+        self._changed()
+
+    def random(self, name: str) -> np.random.Generator:
+        """Random numbers of its own for whatever has a name; the same for the same seed."""
+        return np.random.default_rng([self._options.seed, crc32(name.encode())])
+
+    def plugins(self, model: str) -> tuple[SimulatedPlugin[object], ...]:
+        """What runs of the plugins and sensors of a model."""
+        return tuple(self._plugins.get(model, ()))
+
+    def spawn(self, model: Model, name: str, pose: Transform = IDENTITY, namespace: str = "") -> None:
+        """Put a model into the world and start its plugins.
+
+        Args:
+            model: with its includes resolved.
+            name: what it is called.
+            pose: of its frame in the world.
+            namespace: of the nodes of its plugins that name none.
+
+        Raises:
+            LinkwrightError: SIM102 there is a model of that name; SIM140 it cannot be placed or moved.
+        """
+        simulation = self.simulation
+        told = len(simulation.scene.diagnostics)
+        is_new = name not in simulation.scene.models
+        try:
+            simulation.spawn(model, name, pose)
+            simulation.refresh()
+        except (FrameError, ValueError, RuntimeError, LinkwrightError) as error:
+            if is_new and name in simulation.scene.models:
+                simulation.delete(name)
+            if isinstance(error, LinkwrightError):
+                raise
+            reason = (
+                phrase("'{name}' has no place", name=error.name) if isinstance(error, FrameError) else foreign(error)
+            )
+            message = phrase("model '{name}' cannot be simulated: {reason}", name=name, reason=reason)
+            raise LinkwrightError(Diagnostic("SIM140", message)) from error
+        self._tell(simulation.scene.diagnostics[told:])
+        self._load(name, of_model(simulation.world, model, name), namespace)
+        self._changed()
+
+    def delete(self, name: str) -> None:
+        """Take a model out of the world, after its plugins have ended.
+
+        Raises:
+            LinkwrightError: SIM141 there is none of that name.
+        """
+        if name not in self.simulation.scene.models:
+            raise LinkwrightError(Diagnostic("SIM141", phrase("there is no model '{name}'", name=name)))
+        self._end(self._plugins.pop(name, []))
+        self.simulation.delete(name)
+        self._changed()
+
+    def reset(self) -> None:
+        """Begin anew: everything is where it was, at time 0, and random numbers are the same again."""
+        self.simulation.reset()
+        for plugin in self._running():
+            plugin.reset()
+        for function in self.on_reset:
+            function()
+
+    def advance(self, duration: int) -> None:
+        """Do what was asked for, let simulated time pass, and publish everything here and now.
+
+        Args:
+            duration: nanoseconds.
+
+        Raises:
+            UnstableError: something is no number any more.
+        """
+        self.exchange.work()
+        try:
+            self.simulation.advance(duration)
+        finally:
+            self.exchange.deliver()
+
+    def close(self) -> None:
+        """End all plugins."""
+        self._end(self._running())
+        self._plugins.clear()
+
+    def _running(self) -> list[SimulatedPlugin[object]]:
+        return [plugin for plugins in self._plugins.values() for plugin in plugins]
+
+    def _end(self, plugins: list[SimulatedPlugin[object]]) -> None:
+        for plugin in reversed(plugins):
+            if not is_shared(plugin.place):
+                self._node_names.discard(plugin.node.name)
+            plugin.close()
+
+    def _changed(self) -> None:
+        for function in self.on_change:
+            function()
+
+    # --- plugins ------------------------------------------------------------------------------------------------------
+
+    def _load(self, owner: str, places: Iterable[PluginPlace], namespace: str) -> None:
+        running = self._plugins[owner] = []
+        unknown: dict[str, None] = {}
+        for place in places:
+            with self._telling():
+                found = self._class(place)
+                if found is None:
+                    unknown |= dict.fromkeys(_kinds(place))
+                else:
+                    running.append(self._started(found, place, namespace))
+        new = [each for each in unknown if each not in self._told]
+        self._told.update(new)
+        if new:
+            names = joined(new)
+            self.node.get_logger().info(phrase("plugins and sensors that are not simulated: {names}", names=names))
+
+    def _class(self, place: PluginPlace) -> PluginClass | None:
+        if place.plugin is None:
+            assert place.sensor is not None
+            return sensor_class(place.sensor.sensor.type)
+        return plugin_class(place.plugin.filename)
+
+    def _started(self, kind: PluginClass, place: PluginPlace, namespace: str) -> SimulatedPlugin[object]:
+        parameters, findings = parameters_from(
+            kind.PARAMETERS, place.plugin.element if place.plugin else None, kind.IGNORED
+        )
+        self._tell(findings)
+        node = self._node(place, namespace)
+        plugin = kind(place, node, parameters, self)
+        try:
+            plugin.start()
+        except BaseException:
+            plugin.close()
+            self._node_names.discard(node.name)
+            raise
+        return plugin
+
+    def _node(self, place: PluginPlace, namespace: str) -> PluginNode:
+        """The node of a plugin: that of the simulator for those of gz and for sensors without a plugin."""
+        if is_shared(place):
+            return PluginNode(self.node, self.exchange, owned=False, qos={}, usual=self._usual)
+        described = node_of(place.name, place.element, namespace)
+        full_name = described.full_name
+        if full_name in self._node_names:
+            message = phrase(
+                "plugin '{plugin}' is not loaded: another one is the node '{name}'", plugin=place.name, name=full_name
+            )
+            hint = phrase("give it another name, or a namespace in <ros>")
+            span, source = (place.element.span(), place.element.source) if place.element else (None, None)
+            raise LinkwrightError(Diagnostic("SIM135", message, span, hint=hint, source=source))
+        node = Node(
+            self.node.graph,
+            described.name,
+            namespace=described.namespace,
+            parameters={"use_sim_time": True, **described.parameters},
+            remappings=described.remappings,
+        )
+        self._node_names.add(full_name)
+        return PluginNode(node, self.exchange, owned=True, qos=described.qos, usual=None)
+
+    @contextmanager
+    def _telling(self) -> Iterator[None]:
+        """Log what one plugin has that is wrong; the others go on."""
+        try:
+            yield
+        except LinkwrightError as error:
+            self._tell(error.diagnostics)
+
+    def _tell(self, findings: Iterable[Diagnostic]) -> None:
+        """Log what is wrong, each thing once."""
+        for each in findings:
+            text = f"{each.span}: {each.message}" if each.span else str(each.message)
+            if text in self._told:
+                continue
+            self._told.add(text)
+            logger = self.node.get_logger()
+            line = f"{text} ({each.hint})" if each.hint else text
+            (logger.error if each.severity is Severity.ERROR else logger.warning)(line)
+
+
+def is_shared(place: PluginPlace) -> bool:
+    """Whether a plugin or sensor is no node of its own."""
+    return place.plugin is None or is_of_gz(place.plugin.filename)
+
+
+def _kinds(place: PluginPlace) -> list[str]:
+    """How an unknown plugin or sensor is called; nothing for what the simulation does by itself."""
+    if place.plugin is None:
+        return [] if place.sensor is None else [place.sensor.sensor.type]
+    return [] if needs_nothing(place.plugin.filename) else [place.plugin.filename]

@@ -1,0 +1,192 @@
+"""Plugins: how they are found, what they are given, which nodes they are, and what is told when something is wrong."""
+
+from __future__ import annotations
+
+from contextlib import asynccontextmanager
+from dataclasses import dataclass
+
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph import Graph, LogRecord
+from linkwright.sdf.text import parse_as_gazebo
+from linkwright.simulation.plugins.parameters import parameter, parameters_from
+from linkwright.simulation.plugins.registry import is_of_gz, library_name, needs_nothing
+from linkwright.simulation.plugins.ros_element import node_of
+from linkwright.simulation.server.server import SimulationServer
+from linkwright.testing import Recording
+from tests.simulation.worlds import GROUND, box, mbot, model, simulated
+
+SECOND = 1_000_000_000
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Table:
+    joint: tuple[str, ...] = parameter(aliases=("jointName",))
+    rate: float = parameter(10.0, aliases=("updateRate",))
+    count: int = 3
+    sent: bool = False
+
+
+def _element(text: str):
+    document, _ = parse_as_gazebo(f"<plugin>{text}</plugin>".encode(), "robot.sdf")
+    return document.root
+
+
+@pytest.mark.parametrize(
+    ("filename", "name"),
+    [
+        ("libgazebo_ros_diff_drive.so", "gazebo_ros_diff_drive"),
+        ("gazebo_ros_diff_drive", "gazebo_ros_diff_drive"),
+        ("/opt/ros/humble/lib/libgazebo_ros_camera.so", "gazebo_ros_camera"),
+        ("gz-sim-diff-drive-system", "gz-sim-diff-drive-system"),
+        ("gz-sim8-diff-drive-system", "gz-sim-diff-drive-system"),
+        ("libignition-gazebo6-diff-drive-system.so.6.0.0", "gz-sim-diff-drive-system"),
+        ("ignition-gazebo-diff-drive-system", "gz-sim-diff-drive-system"),
+    ],
+)
+def test_all_spellings_of_a_library_are_one(filename, name):
+    assert library_name(filename) == name
+
+
+def test_systems_that_are_built_in_need_nothing():
+    assert needs_nothing("libignition-gazebo-physics-system.so")
+    assert needs_nothing("libgazebo_ros_factory.so")
+    assert not needs_nothing("gz-sim-diff-drive-system")
+    assert is_of_gz("gz-sim7-diff-drive-system")
+    assert not is_of_gz("libgazebo_ros_camera.so")
+
+
+def test_parameters_come_by_their_types_and_old_names():
+    given = "<jointName>a</jointName><jointName>b</jointName><updateRate>5</updateRate><sent>1</sent><ros/>"
+    parameters, findings = parameters_from(_Table, _element(given))
+    assert (parameters, findings) == (_Table(joint=("a", "b"), rate=5.0, sent=True), [])
+
+
+def test_a_parameter_that_is_unknown_or_unreadable_is_told_of():
+    parameters, findings = parameters_from(_Table, _element("<joint>a</joint>\n<rat>1</rat>\n<count>many</count>"))
+    assert parameters == _Table(joint=("a",))
+    assert [(each.code, str(each.span)) for each in findings] == [
+        ("SIM131", "robot.sdf:3:1"),
+        ("SIM130", "robot.sdf:2:1"),
+    ]
+    assert "rate" in str(findings[1].hint)
+
+
+def test_a_parameter_without_default_must_be_there():
+    with pytest.raises(LinkwrightError, match="lacks 'joint'"):
+        parameters_from(_Table, _element("<rate>1</rate>"))
+
+
+def test_a_plugin_is_the_node_that_ros_says():
+    ros = (
+        "<ros><namespace>robots/one</namespace><remapping>odom:=odometry</remapping><argument>~/out:=scan</argument>"
+        '<parameter name="gain" type="double">2</parameter></ros>'
+    )
+    node = node_of("drive", _element(ros), "/spawned")
+    assert node.full_name == "/robots/one/drive"
+    assert node.remappings == [("~/out", "scan"), ("odom", "odometry")]
+    assert node.parameters == {"gain": 2.0}
+
+
+def test_a_plugin_that_names_no_namespace_has_that_of_its_robot():
+    assert node_of("drive-1", _element(""), "/spawned").full_name == "/spawned/drive_1"
+    assert node_of("drive", _element("<robotNamespace>/old</robotNamespace>"), "").full_name == "/old/drive"
+
+
+@asynccontextmanager
+async def served(*parts: str):
+    """A simulation of a world of models on a graph, and what it logs."""
+    log: list[LogRecord] = []
+    graph = Graph(on_log=log.append)
+    server = SimulationServer(simulated(*parts), graph.create_node("gazebo"))
+    server.start()
+    yield server, graph, log
+    server.close()
+    await graph.close()
+
+
+def robot(*plugins: str, name: str = "mbot") -> str:
+    """mbot with plugins."""
+    text = mbot().replace('name="mbot"', f'name="{name}"')
+    return text.replace("</model>", "".join(plugins) + "</model>")
+
+
+def joint_states(name: str = "joints", more: str = "") -> str:
+    """A plugin of Gazebo classic."""
+    return (
+        f'<plugin name="{name}" filename="libgazebo_ros_joint_state_publisher.so"><joint_name>left_joint</joint_name>'
+        f"<joint_name>right_joint</joint_name><update_rate>10</update_rate>{more}</plugin>"
+    )
+
+
+async def test_what_was_published_until_then_is_there_when_time_has_passed():
+    async with served(GROUND, robot(joint_states())) as (server, graph, log):
+        recording = Recording(graph, server.node, "/joint_states")
+        server.advance(SECOND)
+        await graph.settle()
+        assert len(recording) == 10
+        assert [(each.header.stamp.sec, each.header.stamp.nanosec) for each in recording][-1] == (1, 0)
+        assert recording.last.name == ["left_joint", "right_joint"]
+        assert not log
+        assert ("joints", "/") in graph.get_node_names_and_namespaces()
+
+
+async def test_the_second_of_two_nodes_of_one_name_is_not_loaded():
+    async with served(GROUND, robot(joint_states()), robot(joint_states(), name="two")) as (server, _, log):
+        assert [len(server.plugins(name)) for name in ("mbot", "two")] == [1, 0]
+        assert [each.text for each in log if "another one is the node '/joints'" in each.text]
+
+
+async def test_what_is_not_simulated_is_listed_once():
+    unknown = '<plugin name="a" filename="libvacuum.so"/>'
+    known = '<plugin name="b" filename="gz-sim-physics-system"/>'
+    async with served(robot(unknown, known), robot(unknown, name="two")) as (_, __, log):
+        assert [each.text for each in log] == ["plugins and sensors that are not simulated: libvacuum.so"]
+
+
+async def test_a_model_that_goes_takes_its_nodes_along():
+    async with served(GROUND, robot(joint_states())) as (server, graph, log):
+        server.delete("mbot")
+        assert ("joints", "/") not in graph.get_node_names_and_namespaces()
+        server.advance(SECOND)
+        server.spawn(model(robot(joint_states())), "mbot")
+        assert ("joints", "/") in graph.get_node_names_and_namespaces()
+        assert not log
+
+
+async def test_a_model_that_cannot_be_placed_leaves_the_world_as_it_is():
+    lost = '<model name="lost"><link name="a"><pose relative_to="nowhere">0 0 0 0 0 0</pose></link></model>'
+    async with served(GROUND, box("one", "0 0 5 0 0 0")) as (server, _, __):
+        server.advance(SECOND // 10)
+        with pytest.raises(LinkwrightError, match="'nowhere' has no place"):
+            server.spawn(model(lost), "lost")
+        with pytest.raises(LinkwrightError, match="already a model 'one'"):
+            server.spawn(model(box("one", "0 0 5 0 0 0")), "one")
+        server.advance(SECOND // 10)
+        assert list(server.simulation.scene.models) == ["ground", "one"]
+
+
+async def test_joint_states_of_gz_have_all_joints_under_the_name_of_gz():
+    plugin = '<plugin name="gz::sim::systems::JointStatePublisher" filename="gz-sim-joint-state-publisher-system"/>'
+    async with served(GROUND, robot(plugin)) as (server, graph, _):
+        recording = Recording(graph, server.node, "/world/test/model/mbot/joint_state")
+        server.advance(SECOND // 100)
+        await graph.settle()
+        assert len(recording) == 10
+        assert recording.last.name == ["left_joint", "right_joint"]
+
+
+async def test_a_magnetometer_feels_the_field_in_its_axes():
+    sensor = (
+        '<sensor name="compass" type="magnetometer"><pose>0 0 0 0 0 1.5707963267948966</pose><topic>mag</topic>'
+        "<update_rate>10</update_rate></sensor>"
+    )
+    text = box("one", "0 0 5 0 0 0").replace("</link>", sensor + "</link>")
+    async with served("<magnetic_field>1 2 3</magnetic_field>", text) as (server, graph, _):
+        recording = Recording(graph, server.node, "/mag")
+        server.advance(SECOND // 10)
+        await graph.settle()
+        field = recording.last.magnetic_field
+        assert (field.x, field.y, field.z) == pytest.approx((2.0, -1.0, 3.0))
+        assert recording.last.header.frame_id == "one/link/compass"
