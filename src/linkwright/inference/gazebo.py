@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
-from math import ceil
 
 from linkwright.inference.model import Drive
 from linkwright.urdf import Robot
@@ -29,8 +28,12 @@ _ACCELERATION = 1.0
 _FRICTION = "0.0"
 """That of a caster: a ball that turns about one axis only slides where it would roll."""
 
-_GRIP = 0.5 * 9.81
-"""The torque of a wheel in N m for each kg of the robot and m of radius: two wheels can use all the grip there is."""
+_GRAVITY = 9.81
+_SPEED = 1.0
+"""What a wheel's motor turns the wheel with against the damping of its joint, in m/s at the rim."""
+_SCRUBBING = 4.0
+"""How many times the torque that makes wheels slip motors have where a robot turns by slipping; measured: with
+less they stall."""
 
 _RATE = "50"
 
@@ -87,16 +90,17 @@ def slippery(link: str) -> Element:
     return element
 
 
-def drive_plugin(drive: Drive, base_frame: str, mass: float) -> Element:
+def drive_plugin(robot: Robot, drive: Drive, base_frame: str, mass: float) -> Element:
     """The plugin that drives wheels, in its ``<gazebo>``.
 
     Args:
+        robot: the robot.
         drive: of any kind but `joints`.
         base_frame: the child frame of odometry.
         mass: of the robot in kg.
     """
     makers = {"differential": _diff_drive, "skid": _diff_drive, "mecanum": _planar_move, "ackermann": _ackermann}
-    name, filename, parameters = makers[drive.kind](drive, mass)
+    name, filename, parameters = makers[drive.kind](drive, _torque(robot, drive, mass))
     odometry = [
         ("odometry_frame", "odom"),
         ("robot_base_frame", base_frame),
@@ -127,7 +131,7 @@ def joint_controllers(joints: Iterable[str]) -> Element:
     )
 
 
-def _diff_drive(drive: Drive, mass: float) -> tuple[str, str, list[tuple[str, str]]]:
+def _diff_drive(drive: Drive, torque: float) -> tuple[str, str, list[tuple[str, str]]]:
     count = len(drive.left)
     pairs = [("num_wheel_pairs", str(count))] if count > 1 else []
     separations = [abs(a.center[1] - b.center[1]) for a, b in zip(drive.left, drive.right, strict=True)]
@@ -139,7 +143,7 @@ def _diff_drive(drive: Drive, mass: float) -> tuple[str, str, list[tuple[str, st
         *(("right_joint", wheel.joint) for wheel in drive.right),
         *(("wheel_separation", number(each)) for each in separations),
         *(("wheel_diameter", number(each)) for each in diameters),
-        ("max_wheel_torque", number(_torque(drive, mass))),
+        ("max_wheel_torque", f"{torque:.3g}"),
         ("max_wheel_acceleration", number(_ACCELERATION)),
         ("odometry_source", "0"),
         ("publish_wheel_tf", "false"),
@@ -147,12 +151,13 @@ def _diff_drive(drive: Drive, mass: float) -> tuple[str, str, list[tuple[str, st
     return "diff_drive", "libgazebo_ros_diff_drive.so", parameters
 
 
-def _planar_move(_drive: Drive, _mass: float) -> tuple[str, str, list[tuple[str, str]]]:
+def _planar_move(_drive: Drive, _torque: float) -> tuple[str, str, list[tuple[str, str]]]:
     return "planar_move", "libgazebo_ros_planar_move.so", [("update_rate", _RATE), ("publish_rate", _RATE)]
 
 
-def _ackermann(drive: Drive, mass: float) -> tuple[str, str, list[tuple[str, str]]]:
+def _ackermann(drive: Drive, torque: float) -> tuple[str, str, list[tuple[str, str]]]:
     left, right = drive.steered
+    gains = f"{10.0 * torque:.3g} 0 {0.1 * torque:.3g}"
     parameters = [
         ("update_rate", _RATE),
         ("front_left_joint", left.joint),
@@ -163,18 +168,22 @@ def _ackermann(drive: Drive, mass: float) -> tuple[str, str, list[tuple[str, str
         ("right_steering_joint", right.steering or ""),
         ("max_steer", "0.6"),
         ("max_speed", "20"),
-        ("left_steering_pid_gain", f"{number(10.0 * mass)} 0 {number(0.1 * mass)}"),
-        ("right_steering_pid_gain", f"{number(10.0 * mass)} 0 {number(0.1 * mass)}"),
-        ("linear_velocity_pid_gain", f"{number(10.0 * mass)} 0 {number(0.1 * mass)}"),
+        ("left_steering_pid_gain", gains),
+        ("right_steering_pid_gain", gains),
+        ("linear_velocity_pid_gain", gains),
         ("publish_wheel_tf", "false"),
         ("publish_distance", "false"),
     ]
     return "ackermann_drive", "libgazebo_ros_ackermann_drive.so", parameters
 
 
-def _torque(drive: Drive, mass: float) -> float:
-    """The greatest torque of a wheel in N m, in whole ones."""
-    return float(max(1, ceil(_GRIP * mass * drive.radius)))
+def _torque(robot: Robot, drive: Drive, mass: float) -> float:
+    """The greatest torque of a wheel in N m: what makes it slip, and what its joint takes."""
+    wheels = (*drive.left, *drive.right)
+    slipping = _GRAVITY * mass * drive.radius / len(wheels)
+    dynamics = [robot.joints[wheel.joint].dynamics for wheel in wheels]
+    resisting = [each.friction + each.damping * _SPEED / drive.radius for each in dynamics if each is not None]
+    return (_SCRUBBING if drive.kind == "skid" else 1.0) * slipping + max(resisting, default=0.0)
 
 
 def number(value: float) -> str:

@@ -130,7 +130,9 @@ class _Inferring:
                 why=self._verdict.reason,
             )
             yield Finding(
-                self._at_root("DRIVE111", message), root, (gazebo.drive_plugin(drive, self._base_frame, mass),)
+                self._at_root("DRIVE111", message),
+                root,
+                (gazebo.drive_plugin(self._robot, drive, self._base_frame, mass),),
             )
             yield from self._slippery()
             yield from self._unsupported(drive)

@@ -1,0 +1,101 @@
+"""A robot of visuals only drives by what was inferred: its physics, without plugins and nodes."""
+
+from __future__ import annotations
+
+from math import atan2, pi
+
+import pytest
+
+from linkwright.geometry.single import Transform
+from linkwright.inference import Drive
+from linkwright.inference.applying import completed
+from linkwright.sdf.from_urdf import model_from_robot
+from linkwright.simulation.simulation import Motor, Simulation
+from linkwright.urdf import read
+from tests.inference.test_robots import CASES, read_and_inferred
+from tests.simulation.worlds import GROUND, simulated
+
+SECOND = 1_000_000_000
+ROBOTS = {case[0]: case[1] for case in CASES}
+MOTOR = (20.0, 1.5)
+"""Gain in N m s/rad, and greatest torque in N m."""
+
+
+def standing(title: str) -> tuple[Simulation, Drive]:
+    """A robot of the page on the ground, and its drive."""
+    document, found = read_and_inferred(ROBOTS[title])
+    robot = read(completed(document, found)).robot
+    assert robot is not None
+    assert found.drive is not None
+    simulation = simulated(GROUND)
+    model = model_from_robot(robot, lump_fixed_joints=True).model
+    simulation.spawn(model, "r", (0.0, 0.0, -found.ground, 0.0, 0.0, 0.0, 1.0))
+    return simulation, found.drive
+
+
+def motors(simulation: Simulation, drive: Drive) -> tuple[list[Motor], list[Motor]]:
+    """Motors on the left and on the right."""
+    left, right = (
+        [simulation.add_velocity_motor(f"r::{wheel.joint}", *MOTOR) for wheel in side]
+        for side in (drive.left, drive.right)
+    )
+    return left, right
+
+
+def driven(simulation: Simulation, sides: tuple[list[Motor], list[Motor]], left: float, right: float) -> None:
+    """Bring the wheels to velocities in rad/s within a second, as a drive does that spares the tyres."""
+    for hundredth in range(1, 101):
+        for motor in sides[0]:
+            motor.target = left * hundredth / 100
+        for motor in sides[1]:
+            motor.target = right * hundredth / 100
+        simulation.advance(SECOND // 100)
+
+
+def yaw(pose: Transform) -> float:
+    """The turn about z in rad of a pose that is upright."""
+    _, _, _, x, y, z, w = pose
+    return atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+
+
+TWO_WHEELS = "Visuals only, two wheels and two balls"
+
+
+def test_a_robot_of_visuals_only_drives_one_metre_straight():
+    simulation, drive = standing(TWO_WHEELS)
+    sides = motors(simulation, drive)
+    driven(simulation, sides, 0.5 / drive.radius, 0.5 / drive.radius)
+    start = simulation.model_pose("r")
+    simulation.advance(2 * SECOND)
+    end = simulation.model_pose("r")
+    assert end[0] - start[0] == pytest.approx(1.0, abs=1e-3)
+    assert end[1] == pytest.approx(0.0, abs=1e-3)
+    assert end[2] == pytest.approx(0.11, abs=1e-3)
+
+
+def test_it_turns_on_the_spot_by_the_distance_of_its_wheels():
+    simulation, drive = standing(TWO_WHEELS)
+    sides = motors(simulation, drive)
+    rate = 1.0 * drive.separation / 2 / drive.radius
+    driven(simulation, sides, -rate, rate)
+    start = yaw(simulation.model_pose("r"))
+    simulation.advance(SECOND)
+    assert (yaw(simulation.model_pose("r")) - start) % (2 * pi) == pytest.approx(1.0, abs=0.01)
+
+
+@pytest.mark.parametrize("title", ["Four wheels", "Axes that point to the right, on one side and as a default"])
+def test_equal_velocities_drive_forward(title):
+    simulation, drive = standing(title)
+    sides = motors(simulation, drive)
+    driven(simulation, sides, 0.3 / drive.radius, 0.3 / drive.radius)
+    x, y = simulation.model_pose("r")[:2]
+    assert x > 0.1
+    assert y == pytest.approx(0.0, abs=1e-3)
+
+
+def test_a_robot_stands_still_on_what_was_inferred():
+    simulation, _ = standing(TWO_WHEELS)
+    simulation.advance(2 * SECOND)
+    x, y, z = simulation.model_pose("r")[:3]
+    assert (x, y) == pytest.approx((0.0, 0.0), abs=1e-4)
+    assert z == pytest.approx(0.11, abs=1e-3)
