@@ -3,6 +3,7 @@ import { describe, expect, it } from "vitest";
 import type { LinkScene, Shape } from "../src/protocol";
 import { TOUCHED } from "../src/scene/layers";
 import { MeshLibrary } from "../src/scene/meshes/mesh-library";
+import { framePose } from "../src/scene/pose";
 import { RobotDrawing } from "../src/scene/robot/robot-drawing";
 import { FrameStore } from "../src/state/frames";
 import { PropertyNode, PropertyRows } from "../src/state/properties";
@@ -19,6 +20,9 @@ function shape(part: Partial<Shape> & Pick<Shape, "kind" | "size">): Shape {
     url: null,
     format: null,
     name: "",
+    repaints: false,
+    submesh: null,
+    outlines: [],
     ...part,
   };
 }
@@ -41,7 +45,7 @@ function robot(links: LinkScene[]): { drawing: RobotDrawing; frames: FrameStore 
 
 function draw({ drawing, frames }: ReturnType<typeof robot>, rows = new PropertyRows([])): Record<string, unknown> {
   drawing.style(rows, false);
-  drawing.place(frames);
+  drawing.place((each, matrix) => framePose(frames, frames.row(each.frame), matrix));
   return drawing.tell() as Record<string, unknown>;
 }
 

@@ -87,6 +87,7 @@ import type {
   ViewClasses,
   ViewState,
 } from "./views-and-tools";
+import type { WorldPoses, WorldScene } from "./worlds";
 
 export * from "./binary";
 export * from "./configuration";
@@ -103,6 +104,7 @@ export * from "./robot";
 export * from "./session";
 export * from "./time";
 export * from "./views-and-tools";
+export * from "./worlds";
 
 export type ServerMessage =
   | Clock
@@ -220,4 +222,6 @@ export type DataContent =
   | PolygonLine
   | PoseMarks
   | RangeCone
-  | Screw;
+  | Screw
+  | WorldPoses
+  | WorldScene;

@@ -3,7 +3,23 @@
 import type { LinkInertia } from "./description";
 import type { Place } from "./displays";
 
-export type ShapeKind = "box" | "cylinder" | "capsule" | "sphere" | "mesh";
+export type ShapeKind =
+  | "box"
+  | "cylinder"
+  | "capsule"
+  | "sphere"
+  | "mesh"
+  | "ellipsoid"
+  | "cone"
+  | "plane"
+  | "polyline"
+  | "heightmap";
+
+/** The part of a mesh file that is drawn, by its name there; `center` moves it to the origin. */
+export interface Submesh {
+  name: string;
+  center: boolean;
+}
 
 /** A shape to draw, posed in its link's frame. */
 export interface Shape {
@@ -16,6 +32,9 @@ export interface Shape {
   url: string | null;
   format: string | null;
   name: string;
+  repaints: boolean;
+  submesh: Submesh | null;
+  outlines: number[][];
 }
 
 /** A link to draw in the frame of its name. */

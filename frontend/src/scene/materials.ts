@@ -20,6 +20,8 @@ export interface Look {
   map: Texture | null;
   vertexColors: boolean;
   doubleSided: boolean;
+  /** Lines and marks in the same plane are seen on it. */
+  behind?: boolean;
 }
 
 /** RViz's material for what has none: RVIZ/ShadedRed. */
@@ -50,7 +52,7 @@ export class MaterialPool {
   private readonly used = new Set<string>();
 
   get(look: Look): Material {
-    const key = [...look.color, look.alpha, look.map?.uuid, look.vertexColors, look.doubleSided].join();
+    const key = [...look.color, look.alpha, look.map?.uuid, look.vertexColors, look.doubleSided, look.behind].join();
     this.used.add(key);
     let material = this.materials.get(key);
     if (!material) {
@@ -63,6 +65,9 @@ export class MaterialPool {
         map: look.map,
         vertexColors: look.vertexColors,
         side: look.doubleSided ? DoubleSide : FrontSide,
+        polygonOffset: look.behind === true,
+        polygonOffsetFactor: 1,
+        polygonOffsetUnits: 1,
       });
       this.materials.set(key, material);
     }

@@ -7,6 +7,7 @@ import type { Drawing, DrawnScene } from "./displays/drawing";
 import { Pacing } from "./displays/pacing";
 import { DRAWINGS } from "./displays/registry";
 import { RobotModelDrawing } from "./displays/robot-model";
+import { WorldDrawing } from "./displays/world";
 import { Flash } from "./flash";
 import { FocalShape } from "./focal-shape";
 import { FrameLoop } from "./frame-loop";
@@ -57,7 +58,7 @@ export class Stage {
     this.matchDisplays();
   }
 
-  /** True once a frame with the robot, its meshes and its transforms was drawn. */
+  /** True once a frame with the robot or world, its meshes and its transforms was drawn. */
   get ready(): boolean {
     return this.robotSettled;
   }
@@ -208,7 +209,7 @@ export class Stage {
       if (pacing.due(now, 1000 * display.rows.number(0, "Update Interval"))) drawing.update();
       settled &&= drawing.settled?.() ?? true;
     }
-    this.robotSettled ||= settled && this.robots().some((robot) => robot.isInPlace);
+    this.robotSettled ||= settled && [...this.robots(), ...this.worlds()].some((each) => each.isInPlace);
     if (settled) this.fitFirst();
     this.marks.update();
     this.outline.set(this.selectedObjects());
@@ -232,6 +233,10 @@ export class Stage {
 
   private robots(): RobotModelDrawing[] {
     return [...this.enabled()].flatMap(([, drawing]) => (drawing instanceof RobotModelDrawing ? [drawing] : []));
+  }
+
+  private worlds(): WorldDrawing[] {
+    return [...this.enabled()].flatMap(([, drawing]) => (drawing instanceof WorldDrawing ? [drawing] : []));
   }
 
   private boundsOfRobots(): Span | null {

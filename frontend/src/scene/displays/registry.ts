@@ -18,6 +18,7 @@ import { RangeDrawing } from "./range";
 import { RobotModelDrawing } from "./robot-model";
 import { ScrewDrawing } from "./screw";
 import { TfDrawing } from "./tf";
+import { WorldDrawing } from "./world";
 
 /** The display classes this page draws, by RViz's names. A new display is one line here and one class. */
 export const DRAWINGS: ReadonlyMap<string, DrawingClass> = new Map<string, DrawingClass>([
@@ -52,4 +53,5 @@ export const DRAWINGS: ReadonlyMap<string, DrawingClass> = new Map<string, Drawi
   ["rviz_default_plugins/Camera", CameraDrawing],
   ["rviz_default_plugins/Image", ImageDrawing],
   ["rviz_default_plugins/Map", MapDrawing],
+  ["linkwright/World", WorldDrawing],
 ]);

@@ -59,7 +59,8 @@ export class RobotModelDrawing implements Drawing {
   update(): void {
     if (this.styleIsOld) this.shown?.style(this.context.display.rows, this.contrast);
     this.styleIsOld = false;
-    this.shown?.place(this.context.session.frames);
+    const { frames } = this.context.session;
+    this.shown?.place((link, matrix) => framePose(frames, frames.row(link.frame), matrix));
   }
 
   settled(): boolean {

@@ -20,6 +20,8 @@ export interface OwnMaterial {
 export interface MeshPart {
   geometry: BufferGeometry;
   materials: readonly (OwnMaterial | null)[];
+  /** What it and the nodes around it are called in the file. */
+  names?: readonly string[];
 }
 
 /** A mesh file as it is drawn: shared by every link that shows it. */
@@ -42,12 +44,19 @@ export function flatten(root: Object3D, isOwn: (material: Material) => boolean):
     const geometry = mesh.geometry.clone().applyMatrix4(mesh.matrixWorld);
     if (!geometry.hasAttribute("normal")) geometry.computeVertexNormals();
     const materials = Array.isArray(mesh.material) ? mesh.material : [mesh.material];
-    parts.push({ geometry, materials: materials.map((material) => (isOwn(material) ? own(material) : null)) });
+    const own = materials.map((material) => (isOwn(material) ? ownMaterial(material) : null));
+    parts.push({ geometry, materials: own, names: namesOf(object) });
   });
   return parts;
 }
 
-function own(material: Material): OwnMaterial {
+function namesOf(object: Object3D): string[] {
+  const names: string[] = [];
+  for (let at: Object3D | null = object; at; at = at.parent) if (at.name !== "") names.push(at.name);
+  return names;
+}
+
+function ownMaterial(material: Material): OwnMaterial {
   const { color, map: texture } = material as Partial<MeshPhongMaterial>;
   // A texture that did not come would be drawn as nothing at all.
   const map = texture?.image ? texture : null;

@@ -5,14 +5,17 @@ import {
   ConeGeometry,
   CylinderGeometry,
   Float32BufferAttribute,
+  PlaneGeometry,
   SphereGeometry,
   type BufferGeometry,
 } from "three";
 import { mergeGeometries } from "three/addons/utils/BufferGeometryUtils.js";
 
-/** Shapes of size one, shared by everything that scales them; cylinder along z. */
+/** Shapes of size one, shared by everything that scales them; cylinder and cone along z. */
 export const unitBox = new BoxGeometry(1, 1, 1);
 export const unitCylinder = new CylinderGeometry(1, 1, 1, 40).rotateX(Math.PI / 2);
+export const unitCone = new ConeGeometry(1, 1, 40).rotateX(Math.PI / 2);
+export const unitPlane = new PlaneGeometry(1, 1);
 export const unitSphere = new SphereGeometry(1, 32, 20).rotateX(Math.PI / 2);
 
 const capsules = new Map<number, BufferGeometry>();

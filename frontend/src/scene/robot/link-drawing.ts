@@ -1,8 +1,6 @@
 import { Group, Matrix4, type Mesh, type Object3D } from "three";
 import type { LinkScene } from "../../protocol";
-import type { FrameStore } from "../../state/frames";
 import type { MaterialPool } from "../materials";
-import { framePose } from "../pose";
 import { LinkTrail } from "./link-trail";
 import { ShapeDrawing, type ShapeTold } from "./shape-drawing";
 import type { SolidKind, Solids } from "./solids";
@@ -25,6 +23,9 @@ const COLLISION_COLOR = [1, 0.55, 0.1] as const;
 const COLLISION_ALPHA = 0.55;
 
 const scratch = new Matrix4();
+
+/** Writes where a link is in the fixed frame into `matrix`; false, and nothing written, where that is not known. */
+export type FindLink = (link: LinkScene, matrix: Matrix4) => boolean;
 
 /** One link: its visuals and collisions in the frame of its name. */
 export class LinkDrawing {
@@ -106,9 +107,9 @@ export class LinkDrawing {
     }
   }
 
-  /** Moves to the frame's pose. Without a transform RViz leaves a link where it was, in white. */
-  place(frames: FrameStore): void {
-    const found = framePose(frames, frames.row(this.link.frame), this.root.matrix);
+  /** Moves to where it is. Without a transform RViz leaves a link where it was, in white. */
+  place(find: FindLink): void {
+    const found = find(this.link, this.root.matrix);
     this.posed ||= found;
     this.root.visible = this.posed;
     this.root.matrixWorldNeedsUpdate = true;

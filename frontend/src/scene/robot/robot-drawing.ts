@@ -1,18 +1,20 @@
 import { Box3, Group, Vector3, type Object3D, type Raycaster } from "three";
 import type { RobotScene } from "../../protocol";
 import type { PropertyRows } from "../../state/properties";
-import type { FrameStore } from "../../state/frames";
 import type { Described, Hit, SelectionBox } from "../picking";
 import { describedPose } from "../described-pose";
 import { MaterialPool } from "../materials";
 import type { MeshLibrary } from "../meshes/mesh-library";
-import { LinkDrawing } from "./link-drawing";
+import { LinkDrawing, type FindLink } from "./link-drawing";
 import { RobotExtras } from "./robot-extras";
 import type { ShapeDrawing } from "./shape-drawing";
 import { Solids, type SolidKind } from "./solids";
 
 /** Told once for each mesh of each link: `error` is null when all of it is drawn. */
 export type MeshReport = (link: string, url: string, error: string | null) => void;
+
+/** What is drawn: of a robot, or of all models of a world. */
+export type DrawnLinks = Pick<RobotScene, "links" | "joints">;
 
 /** One description of a robot, as links. */
 export class RobotDrawing {
@@ -26,7 +28,7 @@ export class RobotDrawing {
   private readonly linkOf = new Map<number, string>();
   private loading: number;
 
-  constructor(scene: RobotScene, meshes: MeshLibrary, report: MeshReport, changed: () => void) {
+  constructor(scene: DrawnLinks, meshes: MeshLibrary, report: MeshReport, changed: () => void) {
     this.links = new Map(scene.links.map((link) => [link.name, new LinkDrawing(link, this.pool, this.root)]));
     for (const link of this.links.values()) this.root.add(link.root);
     this.extras = new RobotExtras(scene, this.root);
@@ -34,7 +36,7 @@ export class RobotDrawing {
     const loads: Promise<void>[] = [];
     for (const link of this.links.values()) {
       for (const shape of [...link.visuals, ...link.collisions]) {
-        if (shape.shape.kind !== "mesh" && shape.shape.texture === null) continue;
+        if (shape.shape.url === null && shape.shape.texture === null) continue;
         loads.push(this.load(link, shape, meshes, report, changed));
       }
     }
@@ -82,10 +84,10 @@ export class RobotDrawing {
     this.extras.style(rows);
   }
 
-  place(frames: FrameStore): void {
+  place(find: FindLink): void {
     const counts = new Map<SolidKind, number>();
     for (const link of this.links.values()) {
-      link.place(frames);
+      link.place(find);
       link.countSolids(counts);
     }
     this.solids.begin(counts);
@@ -115,6 +117,12 @@ export class RobotDrawing {
   describe(name: string): Described | null {
     const link = this.links.get(name);
     return link ? { name: `Link ${name}`, children: describedPose(link.root.matrix) } : null;
+  }
+
+  /** Where the origin of a link is; null before that is known. */
+  placeOf(name: string): Vector3 | null {
+    const pose = this.links.get(name)?.pose;
+    return pose ? new Vector3().setFromMatrixPosition(pose) : null;
   }
 
   /** What is drawn, for tests: the shapes of each link, and what stands beside them. */
@@ -162,7 +170,7 @@ export class RobotDrawing {
     report: MeshReport,
     changed: () => void,
   ): Promise<void> {
-    const { kind, url } = shape.shape;
+    const { url } = shape.shape;
     let error: string | null = null;
     try {
       error = await shape.load(meshes);
@@ -171,7 +179,7 @@ export class RobotDrawing {
       error = reason instanceof Error ? reason.message : String(reason);
     }
     this.loading -= 1;
-    if (kind === "mesh" && url !== null) report(link.link.name, url, error);
+    if (url !== null) report(link.link.name, url, error);
     changed();
   }
 }

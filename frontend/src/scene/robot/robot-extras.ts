@@ -32,7 +32,7 @@ export class RobotExtras {
   private inertias: [string, LinkInertia][] = [];
 
   constructor(
-    private readonly scene: RobotScene,
+    private readonly scene: Pick<RobotScene, "links" | "joints">,
     parent: Object3D,
   ) {
     this.axes = new AxesBatch(parent, AXES_LENGTH, AXES_RADIUS);

@@ -4,8 +4,9 @@ import { TOUCHED } from "../layers";
 import { errorMaterial, loadTexture, OPAQUE_FROM, RVIZ_RED, type Look, type MaterialPool } from "../materials";
 import type { MeshLibrary } from "../meshes/mesh-library";
 import { UNCOLOURED_GREY, type MeshTemplate, type OwnMaterial } from "../meshes/mesh-template";
-import { capsule, unitBox, unitCylinder, unitSphere } from "../objects/geometries";
-import { isSolid, type SolidKind } from "./solids";
+import { extrusion, submesh, terrain } from "../objects/world-geometries";
+import { capsule, unitBox, unitCone, unitCylinder, unitPlane, unitSphere } from "../objects/geometries";
+import { solidKind, type SolidKind } from "./solids";
 
 type Colour = readonly [number, number, number];
 
@@ -36,6 +37,8 @@ export class ShapeDrawing {
   readonly root = new Group();
   private parts: Part[] = [];
   private texture: Texture | null = null;
+  /** Its own, which it must free. */
+  private made: BufferGeometry | null = null;
   private problem: string | null = null;
   private together: Solid | null = null;
 
@@ -70,8 +73,9 @@ export class ShapeDrawing {
    * @throws Error when the mesh cannot be drawn.
    */
   async load(library: MeshLibrary): Promise<string | null> {
-    const { url, format, texture } = this.shape;
-    if (this.shape.kind === "mesh" && url !== null) this.buildMesh(await library.load(url, format ?? ""));
+    const { kind, size, url, format, texture } = this.shape;
+    if (kind === "mesh" && url !== null) this.buildMesh(await library.load(url, format ?? ""));
+    if (kind === "heightmap" && url !== null) this.buildPart(await terrain(library.files.address(url), size));
     const problem = this.problem;
     if (texture === null) return problem;
     try {
@@ -123,6 +127,7 @@ export class ShapeDrawing {
 
   dispose(): void {
     this.texture?.dispose();
+    this.made?.dispose();
   }
 
   private buildPrimitive(): void {
@@ -140,15 +145,40 @@ export class ShapeDrawing {
       case "sphere":
         this.addPart(unitSphere, [null]).scale.setScalar(a);
         break;
+      case "ellipsoid":
+        this.addPart(unitSphere, [null]).scale.set(a, b, c);
+        break;
+      case "cone":
+        this.addPart(unitCone, [null]).scale.set(a, a, b);
+        break;
+      case "plane":
+        this.addPart(unitPlane, [null]).scale.set(a, b, 1);
+        break;
+      case "polyline":
+        this.buildPart(extrusion(this.shape.outlines, a));
+        break;
       case "mesh":
+      case "heightmap":
         break;
     }
     this.freeze();
   }
 
+  /** A part that no other shape shares. */
+  private buildPart(geometry: BufferGeometry): void {
+    this.addPart(geometry, [null]);
+    this.made = geometry;
+    this.freeze();
+  }
+
   private buildMesh(template: MeshTemplate): void {
     const [x = 1, y = 1, z = 1] = this.shape.size;
-    for (const part of template.parts) this.addPart(part.geometry, part.materials).scale.set(x, y, z);
+    const { parts, offset } = submesh(template.parts, this.shape.submesh);
+    for (const part of parts) {
+      const mesh = this.addPart(part.geometry, part.materials);
+      mesh.scale.set(x, y, z);
+      mesh.position.copy(offset).multiply(mesh.scale);
+    }
     this.problem = template.problem;
     this.freeze();
   }
@@ -161,10 +191,10 @@ export class ShapeDrawing {
   }
 
   private asSolid(instead: Colour | null, alpha: number): Solid | null {
-    const { kind } = this.shape;
+    const kind = solidKind(this.shape.kind);
     const [part] = this.parts;
     const look = this.look(null, alpha, instead);
-    if (!isSolid(kind) || !part || look.map || look.alpha < OPAQUE_FROM) return null;
+    if (kind === null || !part || look.map || look.alpha < OPAQUE_FROM) return null;
     return {
       kind,
       matrix: new Matrix4().multiplyMatrices(this.root.matrix, part.mesh.matrix),
@@ -186,8 +216,10 @@ export class ShapeDrawing {
    */
   private look(own: OwnMaterial | null, alpha: number, instead: Colour | null): Look {
     if (instead) return { color: instead, map: null, vertexColors: false, alpha, doubleSided: true };
-    const doubleSided = this.shape.kind === "mesh";
-    if (own) {
+    const { kind, repaints } = this.shape;
+    const doubleSided = kind === "mesh";
+    const behind = kind === "plane";
+    if (own && !repaints) {
       const { color, map, vertexColors } = own;
       return { color, map, vertexColors, alpha: alpha * (this.shape.color?.[3] ?? 1), doubleSided };
     }
@@ -195,6 +227,6 @@ export class ShapeDrawing {
     const bare: readonly number[] = grey ? [UNCOLOURED_GREY, UNCOLOURED_GREY, UNCOLOURED_GREY] : RVIZ_RED;
     // A texture replaces the colour.
     const [r = 0, g = 0, b = 0, a = 1] = this.texture ? [1, 1, 1, 1] : (this.shape.color ?? bare);
-    return { color: [r, g, b], map: this.texture, vertexColors: false, alpha: alpha * a, doubleSided };
+    return { color: [r, g, b], map: this.texture, vertexColors: false, alpha: alpha * a, doubleSided, behind };
   }
 }

@@ -1,18 +1,19 @@
 import type { Matrix4, Object3D } from "three";
 import { CopyBatch } from "../objects/copy-batch";
-import { paint, unitBox, unitCylinder, unitSphere } from "../objects/geometries";
+import { paint, unitBox, unitCone, unitCylinder, unitSphere } from "../objects/geometries";
 
-const GEOMETRIES = { box: unitBox, cylinder: unitCylinder, sphere: unitSphere } as const;
+const GEOMETRIES = { box: unitBox, cylinder: unitCylinder, cone: unitCone, sphere: unitSphere } as const;
 
 /** A kind of shape of which all are drawn in one call. */
 export type SolidKind = keyof typeof GEOMETRIES;
 
-/** Whether shapes of this kind can be drawn together. */
-export function isSolid(kind: string): kind is SolidKind {
-  return kind in GEOMETRIES;
+/** What shapes of a kind are drawn together with; null for those that are not. */
+export function solidKind(kind: string): SolidKind | null {
+  if (kind === "ellipsoid") return "sphere";
+  return kind in GEOMETRIES ? (kind as SolidKind) : null;
 }
 
-/** Draws boxes, cylinders and spheres that hide what is behind them; used as `CopyBatch`: `begin`, `add` each, `end`. */
+/** Draws boxes, cylinders, cones and spheres that hide what is behind them; used as `CopyBatch`: `begin`, `add` each, `end`. */
 export class Solids {
   private readonly batches: ReadonlyMap<SolidKind, CopyBatch>;
 

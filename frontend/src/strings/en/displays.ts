@@ -32,6 +32,7 @@ const about: Readonly<Record<DisplayIcon, string>> = {
   TF: "The frames of tf and how they hang together.",
   Temperature: "Measured temperatures, as coloured points.",
   TwistStamped: "A velocity, as arrows: linear and angular.",
+  World: "A simulated world: all its models, where the simulation has them.",
   Wrench: "A force and a torque, as arrows.",
 };
 

@@ -71,6 +71,10 @@ class FrameHistory:
         found, _ = self._buffer.lookup(fixed_frame, frame, stamp_ns)
         return np.array(found)
 
+    def names(self) -> frozenset[str]:
+        """The frames that transforms named."""
+        return frozenset(self._buffer.frame_names())
+
     def forget(self) -> None:
         """Forget all moving transforms: time begins anew."""
         self._buffer.clear()

@@ -10,7 +10,17 @@ from linkwright.viewer.protocol.description import LinkInertia
 from linkwright.viewer.protocol.displays import Place
 from linkwright.viewer.protocol.message import PageMessage, Record, ServerMessage
 
-ShapeKind = Literal["box", "cylinder", "capsule", "sphere", "mesh"]
+ShapeKind = Literal[
+    "box", "cylinder", "capsule", "sphere", "mesh", "ellipsoid", "cone", "plane", "polyline", "heightmap"
+]
+"""From ``ellipsoid`` on only worlds have them."""
+
+
+class Submesh(Record):
+    """The part of a mesh file that is drawn, by its name there; `center` moves it to the origin."""
+
+    name: str
+    center: bool
 
 
 class Shape(Record):
@@ -18,7 +28,12 @@ class Shape(Record):
 
     `size` is x, y, z for a box; radius, length for a cylinder or capsule (along z); radius for a sphere; scale x, y, z
     for a mesh. `url` and `format` (the file ending, lower case) are set for a mesh. `color` is None where the URDF
-    gives no colour: then a mesh keeps its own materials and another shape is RViz's red.
+    gives no colour: then a mesh keeps its own materials and another shape is RViz's red. With `repaints` colour and
+    texture take the place of the mesh's own.
+
+    Of worlds: `size` is the radii of an ellipsoid; radius, length of a cone (its tip above); x, y of a plane; the
+    height of a polyline, whose `outlines` (x, y, x, y, ...) cut holes into each other; x, y, z of a heightmap, the
+    offset of its middle, and the edge length of its texture; `url` is the image of its heights.
     """
 
     kind: ShapeKind
@@ -30,6 +45,9 @@ class Shape(Record):
     url: str | None = None
     format: str | None = None
     name: str = ""
+    repaints: bool = False
+    submesh: Submesh | None = None
+    outlines: list[list[float]] = field(default_factory=list)
 
 
 class LinkScene(Record):

@@ -48,16 +48,26 @@ _SECRET_OF_KEY = re.compile(r"(/mesh/[A-Za-z0-9_.-]+)~[0-9a-f]{32}(?=/)")
 
 _PACKAGE_URI = re.compile(r"package://([^/%]+)/")
 
+_MODEL_CONFIG = "model.config"
+"""What the folder of a Gazebo model has in it."""
+
 _LOOSE_DEPTH = 2
-"""A mesh outside of any package opens its folder and the folders in that, no more."""
+"""A mesh outside of any package and model opens its folder and the folders in that, no more."""
 
 
 @dataclass(frozen=True, slots=True)
 class ServedFolder:
-    """A folder that pages may read from: a package's, or for `package` None that of a loose mesh."""
+    """A folder that pages may read from: a package's, a model's of Gazebo, or for neither that of a loose mesh.
+
+    Attributes:
+        root: the folder.
+        package: the name of the package, if it is one's.
+        is_model: whether it is a model's, which holds its meshes and textures.
+    """
 
     root: Path
     package: str | None
+    is_model: bool = False
 
     @property
     def key(self) -> str:
@@ -140,7 +150,10 @@ class MeshIndex:
         if named and share and path.is_relative_to(share):
             return ServedFolder(share, named[1])
         package = enclosing_package(path.parent)
-        return ServedFolder(package[1], package[0]) if package else ServedFolder(path.parent, None)
+        if package:
+            return ServedFolder(package[1], package[0])
+        model = next((folder for folder in path.parents if (folder / _MODEL_CONFIG).is_file()), None)
+        return ServedFolder(model, None, is_model=True) if model else ServedFolder(path.parent, None)
 
 
 def without_secrets(text: str) -> str:
@@ -194,7 +207,7 @@ def resolve(folder: ServedFolder, relative: str) -> Path:
         raise FileRefusedError(403, "the path leads out of its folder")
     if PurePosixPath(relative).suffix.lower() not in CONTENT_TYPES:
         raise FileRefusedError(403, "only meshes and images are served")
-    if folder.package is None and len(parts) > _LOOSE_DEPTH:
+    if folder.package is None and not folder.is_model and len(parts) > _LOOSE_DEPTH:
         raise FileRefusedError(403, "too deep below a mesh that is in no package")
     try:
         real = (folder.root / relative).resolve(strict=True)

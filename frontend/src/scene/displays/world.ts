@@ -1,0 +1,123 @@
+import { Box3, Group, Matrix4, type Object3D, type Raycaster, type Vector3 } from "three";
+import type { DisplayData } from "../../connection/data";
+import type { WorldPoses, WorldScene } from "../../protocol";
+import type { Described, Hit, SelectionBox } from "../picking";
+import { dataPose, poseMatrix } from "../pose";
+import { RobotDrawing } from "../robot/robot-drawing";
+import type { Drawing, DrawingContext } from "./drawing";
+
+/** linkwright/World: the links of all models of a simulated world. */
+export class WorldDrawing implements Drawing {
+  readonly root = new Group();
+  private shown: RobotDrawing | null = null;
+  private scene: WorldScene | null = null;
+  private placed: { data: DisplayData; content: WorldPoses } | null = null;
+  private rowOf = new Map<string, number>();
+  private styleIsOld = true;
+  private poseIsOld = true;
+
+  constructor(private readonly context: DrawingContext) {
+    this.root.matrixAutoUpdate = false;
+  }
+
+  dataChanged(data: DisplayData): void {
+    const { content } = data;
+    if (content.kind === "world_scene") this.take(content);
+    else if (content.kind === "world_poses") {
+      this.placed = { data, content };
+      this.poseIsOld = true;
+    }
+  }
+
+  dataForgotten(key: string | null): void {
+    if (key !== null) return;
+    this.shown?.dispose();
+    this.shown = this.scene = this.placed = null;
+  }
+
+  propertiesChanged(): void {
+    this.styleIsOld = true;
+  }
+
+  update(): void {
+    const { shown, context } = this;
+    if (!shown) return;
+    if (this.placed?.data.pose === null) this.poseIsOld = true; // it follows its frame
+    if (this.styleIsOld) shown.style(context.display.rows, context.session.inspect.current.contrast);
+    if (this.styleIsOld || this.poseIsOld) this.place(shown);
+    this.styleIsOld = this.poseIsOld = false;
+  }
+
+  /** Whether something of it has a place. */
+  get isInPlace(): boolean {
+    return this.shown?.isInPlace ?? false;
+  }
+
+  settled(): boolean {
+    return this.shown?.isSettled ?? true;
+  }
+
+  bounds(): Box3 {
+    return this.shown?.bounds() ?? new Box3();
+  }
+
+  pick(ray: Raycaster): Hit | null {
+    return this.shown?.pick(ray) ?? null;
+  }
+
+  pickBox(box: SelectionBox): readonly string[] {
+    return this.shown?.pickBox(box) ?? [];
+  }
+
+  describe(link: string): Described | null {
+    return this.shown?.describe(link) ?? null;
+  }
+
+  objectsOf(link: string): readonly Object3D[] {
+    return this.shown?.objectsOf(link) ?? [];
+  }
+
+  placeOf(link: string): Vector3 | null {
+    return this.shown?.placeOf(link) ?? null;
+  }
+
+  inspect(): object {
+    return { revision: this.scene?.revision ?? 0, ...this.shown?.tell() };
+  }
+
+  dispose(): void {
+    this.shown?.dispose();
+  }
+
+  private place(shown: RobotDrawing): void {
+    const { placed, scene } = this;
+    const world = new Matrix4();
+    const known = placed !== null && placed.content.revision === scene?.revision && dataPose(this.context.session.frames, placed.data, world);
+    if (!known) return;
+    const { poses } = placed.content;
+    shown.place((link, matrix) => {
+      const row = this.rowOf.get(link.name);
+      if (row === undefined) return false;
+      poseMatrix(poses, matrix, row * 7).premultiply(world);
+      return true;
+    });
+  }
+
+  private take(scene: WorldScene): void {
+    const { session, display, meshes, invalidate } = this.context;
+    this.shown?.dispose();
+    this.scene = scene;
+    this.rowOf = new Map(scene.links.map((link, row) => [link.name, row]));
+    this.shown = new RobotDrawing(
+      { links: scene.links, joints: [] },
+      meshes,
+      (link, url, error) => session.connection.send({ type: "mesh_status", display: display.id, link, url, error }),
+      () => {
+        this.styleIsOld = true;
+        invalidate();
+      },
+    );
+    this.root.add(this.shown.root);
+    this.styleIsOld = true;
+  }
+}

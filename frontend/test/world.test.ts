@@ -1,0 +1,67 @@
+import { Box3, BoxGeometry } from "three";
+import { describe, expect, it } from "vitest";
+import type { MeshPart } from "../src/scene/meshes/mesh-template";
+import { extrusion, ground, submesh } from "../src/scene/objects/world-geometries";
+
+const SQUARE = [0, 0, 4, 0, 4, 4, 0, 4];
+const HOLE = [1, 1, 3, 1, 3, 3, 1, 3];
+
+/** Area of what faces up, m2. */
+function top(outlines: number[][]): number {
+  const geometry = extrusion(outlines, 2);
+  const points = geometry.getAttribute("position");
+  let sum = 0;
+  for (let i = 0; i < points.count; i += 3) {
+    if ([0, 1, 2].some((k) => points.getZ(i + k) < 2)) continue;
+    const [ax, ay] = [points.getX(i + 1) - points.getX(i), points.getY(i + 1) - points.getY(i)];
+    const [bx, by] = [points.getX(i + 2) - points.getX(i), points.getY(i + 2) - points.getY(i)];
+    sum += (ax * by - ay * bx) / 2;
+  }
+  return sum;
+}
+
+describe("extrusion", () => {
+  it("raises polygons, and cuts holes of those inside of others", () => {
+    expect(top([SQUARE])).toBeCloseTo(16);
+    expect(top([SQUARE, HOLE])).toBeCloseTo(12);
+    expect(top([HOLE, SQUARE])).toBeCloseTo(12);
+    expect(top([SQUARE, HOLE, [1.5, 1.5, 2.5, 1.5, 2.5, 2.5, 1.5, 2.5]])).toBeCloseTo(13);
+  });
+
+  it("draws nothing of what is no polygon", () => {
+    expect(top([[0, 0, 1, 1]])).toBe(0);
+  });
+});
+
+describe("submesh", () => {
+  const part = (name: string, x: number): MeshPart => ({
+    geometry: new BoxGeometry(1, 1, 1).translate(x, 0, 0),
+    materials: [null],
+    names: [name, "scene"],
+  });
+  const parts = [part("wheel", 2), part("body", 5)];
+
+  it("is all of the mesh, or what has the name", () => {
+    expect(submesh(parts, null).parts).toEqual(parts);
+    expect(submesh(parts, { name: "body", center: false }).parts).toEqual([parts[1]]);
+    expect(submesh(parts, { name: "scene", center: false }).parts).toEqual(parts);
+    expect(() => submesh(parts, { name: "door", center: false })).toThrow("no part 'door'");
+  });
+
+  it("can be moved to the origin", () => {
+    expect(submesh(parts, { name: "body", center: true }).offset.toArray().map(Math.abs)).toEqual([5, 0, 0]);
+  });
+});
+
+describe("ground", () => {
+  it("has the heights of the pixels, the upper row at the greatest y", () => {
+    const pixels = [255, 255, 0, 0].flatMap((grey) => [grey, grey, grey, 255]);
+    const geometry = ground(pixels, 2, 2, [10, 20, 3, 1, 2, 0.5, 5]);
+    geometry.computeBoundingBox();
+    const box = geometry.boundingBox ?? new Box3();
+    expect([...box.min.toArray(), ...box.max.toArray()]).toEqual([-4, -8, 0.5, 6, 12, 3.5]);
+    const points = geometry.getAttribute("position");
+    expect([points.getY(0), points.getZ(0)]).toEqual([12, 3.5]);
+    expect(geometry.getAttribute("uv").getX(1)).toBe(2);
+  });
+});

@@ -1,0 +1,296 @@
+"""linkwright/World: the models of a simulated world, as its description says, where the simulation has them."""
+
+from __future__ import annotations
+
+import asyncio
+from collections import Counter
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity
+from linkwright.geometry.single import compose, invert
+from linkwright.graph import TF_QOS, TransformException
+from linkwright.messages import TFMessage
+from linkwright.sdf.frames import FrameError
+from linkwright.sdf.poses import SEPARATOR, WORLD
+from linkwright.sdf.reader import read
+from linkwright.sdf.text import parse_as_gazebo
+from linkwright.sdf.worlds import World
+from linkwright.viewer.config.rviz_config import DisplayConfig
+from linkwright.viewer.config.schema import Path, PropertySpec, alpha, topic_spec
+from linkwright.viewer.displays.base.display import DisplayHost, Pose
+from linkwright.viewer.displays.base.topic_display import SideTopic, TopicDisplay
+from linkwright.viewer.protocol.displays import StatusLevel
+from linkwright.viewer.protocol.robot import MeshStatus
+from linkwright.viewer.protocol.worlds import WorldPoses, WorldScene
+from linkwright.viewer.web.files import MeshIndex
+from linkwright.viewer.worlds import WorldContent, content_of
+
+_POSES = "Poses Topic"
+_FRAME = "Frame"
+_WORLD = "World"
+_SCENE_KEY, _POSES_KEY = "scene", "poses"
+_MOST_FINDINGS = 5
+
+
+class WorldDisplay(TopicDisplay):
+    """All models of a world, drawn by their visuals, each link where the simulation says that it is.
+
+    The poses are in the frame ``world``. Where neither tf nor the Fixed Frame has that name, the world is placed so
+    that a link of it stands where tf has the frame of the same name: a robot, as a rule.
+    """
+
+    CLASS = "linkwright/World"
+    MESSAGE = "std_msgs/msg/String"
+    TRANSFORMED = False
+    FOLLOWS_TRANSFORMS = True
+    SCHEMA = (
+        topic_spec(
+            default="/world_description",
+            description="The topic that carries the world as SDF, as std_msgs/msg/String.",
+            depth=1,
+            durability="Transient Local",
+        ),
+        PropertySpec(
+            _POSES, "string", "/world_poses", "The topic that carries where links are, as tf2_msgs/msg/TFMessage."
+        ),
+        PropertySpec("Visual Enabled", "bool", True, "Draw what the models look like."),
+        PropertySpec("Collision Enabled", "bool", False, "Draw the shapes that contacts are worked out with."),
+        alpha("Opacity of all models: 0 is invisible."),
+    )
+
+    def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
+        super().__init__(host, identity, config)
+        self._side = SideTopic(host, "tf2_msgs/msg/TFMessage", self._moved)
+        self._reading: asyncio.Task[None] | None = None
+        self._revision = 0
+        self._content = WorldContent()
+        self._rows_of: dict[str, int] = {}
+        self._poses: NDArray[np.float64] = np.empty((0, 7))
+        self._stamp_ns = 0
+        self._anchors: tuple[int, ...] = ()
+        self._placed: tuple[str, Pose | None] = ("", None)
+        self._sent: tuple[Any, ...] = ()
+        self._page_problems: dict[tuple[str, str], str] = {}
+
+    # --- life --------------------------------------------------------------------------------------------------
+
+    def start(self) -> None:
+        """Listen to the poses, too."""
+        super().start()
+        self._follow()
+
+    def stop(self) -> None:
+        """Leave both topics, and withdraw the world's files from pages."""
+        super().stop()
+        self._side.close()
+        self.context.meshes.replace(self.id, {})
+
+    def changed(self, path: Path) -> None:
+        """Follow other topics."""
+        super().changed(path)
+        if path == (_POSES,):
+            self._follow()
+
+    def enabled_changed(self) -> None:
+        """Listen only while the display is enabled."""
+        super().enabled_changed()
+        self._follow()
+
+    def time_changed(self) -> None:
+        """Take what came while time stood still."""
+        super().time_changed()
+        self._side.go_on()
+
+    def time_reset(self) -> None:
+        """The world is what it was: nobody would say it again."""
+
+    def reset(self) -> None:
+        """Show no world until there is another description."""
+        self._cancel()
+        self._content, self._rows_of, self._sent = WorldContent(), {}, ()
+        self._page_problems.clear()
+        self.context.meshes.replace(self.id, {})
+        self.forget()
+
+    def frames_changed(self) -> None:
+        """Place the world anew."""
+        self._show_poses()
+
+    def transforms_came(self) -> None:
+        """Place the world once the frames of its robots are known; from then on its poses lead."""
+        if self._content.links and self._placed[0] != WORLD and self._placed[1] is None:
+            self._show_poses()
+
+    def receive(self, status: MeshStatus) -> None:
+        """Take what a page says about a mesh of the world."""
+        row = self._rows_of.get(status.link)
+        if row is None:
+            return
+        link = self._content.links[row]
+        if not any(shape.url == status.url for shape in (*link.visuals, *link.collisions)):
+            return
+        key = (status.link, status.url)
+        if status.error is None:
+            self._page_problems.pop(key, None)
+        else:
+            name = status.url.partition("?")[0].rpartition("/")[2]
+            self._page_problems[key] = f"Could not load mesh '{name}': {status.error[:500]}"
+        self._tell_problems()
+
+    def _follow(self) -> None:
+        self._side.close()
+        topic = self.properties.text(_POSES).strip()
+        if not self.enabled or not topic:
+            return
+        problem = self._side.listen(topic, TF_QOS)
+        if problem is not None:
+            self.say(_POSES, "error", problem)
+
+    # --- descriptions ------------------------------------------------------------------------------------------
+
+    def take(self, message: Any, pose: Pose | None) -> None:  # noqa: ARG002 - descriptions are in no frame
+        """Read a description; as long as it is read the one before is shown."""
+        self._cancel()
+        self._reading = asyncio.get_running_loop().create_task(self._read(message.data))
+
+    def _cancel(self) -> None:
+        if self._reading is not None:
+            self._reading.cancel()
+            self._reading = None
+
+    async def _read(self, text: str) -> None:
+        index = MeshIndex(self.context.finder)
+        try:
+            world, content = await asyncio.to_thread(_content, text, index)
+        except LinkwrightError as error:
+            self._refuse(error.diagnostics)
+            return
+        except FrameError as error:
+            self.say(_WORLD, "error", f"'{error.name}' cannot be placed")
+            return
+        self.context.meshes.replace(self.id, index.folders)
+        before = {link.name: row for row, link in enumerate(self._content.links)}
+        poses = np.array(content.poses, dtype=np.float64).reshape(-1, 7)
+        for row, link in enumerate(content.links):  # what moves stays where it is until the simulation says more
+            if (old := before.get(link.name)) is not None:
+                poses[row] = self._poses[old]
+        self._revision += 1
+        self._content, self._poses, self._sent = content, poses, ()
+        self._rows_of = {link.name: row for row, link in enumerate(content.links)}
+        self._anchors = _anchors(content)
+        self._page_problems.clear()
+        scene = WorldScene(self._revision, world.name, content.links)
+        self.send(scene, key=_SCENE_KEY)
+        self.say(_WORLD, "ok", f"{len(world.models)} models, {len(content.links)} links")
+        self._tell_problems()
+        self._show_poses()
+
+    def _refuse(self, diagnostics: tuple[Diagnostic, ...]) -> None:
+        errors = [each for each in diagnostics if each.severity is Severity.ERROR][:_MOST_FINDINGS]
+        text = "; ".join(f"{each.span}: {each.message}" if each.span else str(each.message) for each in errors)
+        self.say(_WORLD, "error", text or "The description is not SDF")
+
+    def _tell_problems(self) -> None:
+        problems = [(link, text) for link, texts in self._content.problems.items() for text in texts]
+        problems += [(link, text) for (link, _), text in self._page_problems.items()]
+        self._tell("Files", "error", [f"{link}: {text}" for link, text in problems])
+
+    def _tell(self, name: str, level: StatusLevel, texts: list[str]) -> None:
+        more = len(texts) - _MOST_FINDINGS
+        if texts:
+            self.say(name, level, "; ".join(texts[:_MOST_FINDINGS]) + (f"; and {more} more" if more > 0 else ""))
+        else:
+            self.unsay(name)
+
+    # --- poses -------------------------------------------------------------------------------------------------
+
+    def _moved(self, message: TFMessage) -> None:
+        batch = message.batch
+        rows = [self._rows_of.get(child, -1) for child in batch.children]
+        poses = np.asarray(batch.poses)
+        if not np.isfinite(poses).all():
+            self.say(_POSES, "error", "Message contained invalid floating point values (nans or infs)")
+            return
+        self.unsay(_POSES)
+        # Transforms of this very moment may still be on their way, those of the last poses are there.
+        self._locate()
+        known = [place for place, row in enumerate(rows) if row >= 0]
+        self._poses[[rows[place] for place in known]] = poses[known]
+        self._stamp_ns = batch.stamp_ns
+        self._send_poses()
+
+    def _show_poses(self) -> None:
+        self._locate()
+        self._send_poses()
+
+    def _send_poses(self) -> None:
+        if not self._content.links:
+            return
+        frame, pose = self._placed
+        news = (self._revision, self._poses.tobytes(), frame, None if pose is None else pose.tobytes())
+        if news == self._sent:
+            return
+        self._sent = news
+        content = WorldPoses(self._revision, self._poses.astype(np.float32))
+        self.send(content, key=_POSES_KEY, frame=frame, pose=pose, stamp_ns=self._stamp_ns)
+
+    def _locate(self) -> None:
+        """Find out where the world is, as of the last poses."""
+        if not self._content.links:
+            return
+        frames = self.context.transforms.names()
+        if WORLD in (self.host.frames.fixed_frame, *frames):
+            self._placed = (WORLD, None)
+            self.say(_FRAME, "ok", f"The world is at the frame '{WORLD}'")
+            return
+        for row in self._anchors:
+            frame = _unscoped(self._content.links[row].name)
+            if frame not in frames:
+                continue
+            pose = self._pose_by(row, frame)
+            if pose is not None:
+                self._placed = ("", pose)
+                self.say(_FRAME, "ok", f"tf has no '{WORLD}': the world is where '{frame}' is in both")
+                return
+        if self._placed[1] is None:
+            self._placed = ("", None)
+            self.say(_FRAME, "warn", f"tf has no '{WORLD}' and no frame of a model: the world is at the Fixed Frame")
+
+    def _pose_by(self, row: int, frame: str) -> Pose | None:
+        """Where the world is so that a link of it is where tf has its frame; None where that is not known."""
+        for stamp_ns in (self._stamp_ns, 0):
+            try:
+                found = self.context.transforms.pose(self.host.frames.fixed_frame, frame, stamp_ns)
+            except TransformException:
+                continue
+            return np.array(compose(tuple(found), invert(tuple(self._poses[row]))))
+        return None
+
+
+def _content(text: str, index: MeshIndex) -> tuple[World, WorldContent]:
+    """The world that a text says, and what is drawn of it.
+
+    Raises:
+        LinkwrightError: it is no SDF, or has neither a world nor a model in it.
+        FrameError: something in it cannot be placed.
+    """
+    document, _ = parse_as_gazebo(text, "<world>")
+    reading = read(document)
+    sdf = reading.sdf
+    if sdf is None or not (sdf.worlds or sdf.models):
+        raise LinkwrightError(*reading.diagnostics)
+    world = sdf.worlds[0] if sdf.worlds else World(sdf.models[0].name, models=sdf.models)
+    return world, content_of(world, index)
+
+
+def _unscoped(name: str) -> str:
+    return name.rpartition(SEPARATOR)[2]
+
+
+def _anchors(content: WorldContent) -> tuple[int, ...]:
+    """The links by which the world may be placed: those whose frames no other link shares, in the order of the file."""
+    counts = Counter(_unscoped(link.name) for link in content.links)
+    return tuple(row for row, link in enumerate(content.links) if counts[_unscoped(link.name)] == 1)

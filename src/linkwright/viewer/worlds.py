@@ -1,0 +1,200 @@
+"""A world for the page: what is drawn of the links of all its models, and where they stand at first."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import assert_never
+
+from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere
+from linkwright.geometry.single import Transform, compose, invert, rotation_from_z
+from linkwright.sdf.frames import Frames, PlacedLink, links_of
+from linkwright.sdf.links import Collision, Visual
+from linkwright.sdf.materials import Material
+from linkwright.sdf.poses import SEPARATOR, RawPose
+from linkwright.sdf.shapes import (
+    Cone,
+    Ellipsoid,
+    Empty,
+    Heightmap,
+    Image,
+    Mesh,
+    Plane,
+    Polyline,
+)
+from linkwright.sdf.shapes import Shape as SdfShape
+from linkwright.sdf.worlds import World
+from linkwright.viewer.protocol.robot import LinkScene, Shape, Submesh
+from linkwright.viewer.web.files import IMAGE_TYPES, MESH_TYPES, MeshIndex
+
+_UNCOLOURED = [0.7, 0.7, 0.7, 1.0]
+"""What has no material is grey in Gazebo."""
+_COLLISION = [1.0, 0.55, 0.1, 0.6]
+
+_Place = Callable[[RawPose], Transform]
+"""Where a pose of a link is in its frame."""
+
+
+@dataclass(slots=True)
+class WorldContent:
+    """What is drawn of a world.
+
+    Attributes:
+        links: all links that draw something or move, named as in the poses of the simulation: ``robot::arm::tip``.
+        poses: where each of them stands in the world at first.
+        problems: link -> what is wrong with files that it names.
+    """
+
+    links: list[LinkScene] = field(default_factory=list)
+    poses: list[Transform] = field(default_factory=list)
+    problems: dict[str, list[str]] = field(default_factory=dict)
+
+
+def content_of(world: World, index: MeshIndex) -> WorldContent:
+    """What is drawn of a world.
+
+    Args:
+        world: with its includes resolved.
+        index: finds the files that it names, and keeps which these are.
+
+    Raises:
+        FrameError: something in it cannot be placed.
+    """
+    return _Builder(index).build(world)
+
+
+class _Builder:
+    def __init__(self, index: MeshIndex) -> None:
+        self._index = index
+        self._made = WorldContent()
+
+    def build(self, world: World) -> WorldContent:
+        frames = Frames(world)
+        for model in world.models:
+            inside = frames.inside(model.name)
+            for placed in links_of(model, inside, frames.pose(model.name), model.name):
+                self._link(placed, _inside(inside, placed))
+        return self._made
+
+    def _link(self, placed: PlacedLink, frames: Frames) -> None:
+        link, made = placed.link, self._made
+        base = invert(frames.pose(link.name))
+
+        def pose(raw: RawPose) -> Transform:
+            return compose(base, frames.placed(raw, link.name))
+
+        made.poses.append(placed.pose)
+        made.links.append(
+            LinkScene(
+                name=placed.name,
+                frame=placed.name,
+                parent_joint=None,
+                visuals=list(self._shapes(placed.name, link.visuals, pose)),
+                collisions=list(self._shapes(placed.name, link.collisions, pose)),
+            )
+        )
+
+    def _shapes(self, link: str, parts: Sequence[Visual | Collision], place: _Place) -> Iterator[Shape]:
+        for part in parts:
+            shape = self._shape(link, part, place(part.pose))
+            if shape is not None:
+                yield shape
+
+    def _shape(self, link: str, part: Visual | Collision, pose: Transform) -> Shape | None:
+        shape = Shape(kind="mesh", size=[], position=[], quaternion=[], name=part.name)
+        if isinstance(part, Visual):
+            self._paint(link, shape, part)
+        else:
+            shape.color, shape.repaints = list(_COLLISION), True
+        pose = compose(pose, self._form(link, shape, part.geometry) or (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0))
+        shape.position, shape.quaternion = list(pose[:3]), list(pose[3:])
+        return shape if shape.size else None
+
+    def _form(self, link: str, shape: Shape, geometry: SdfShape) -> Transform | None:
+        """Say what form a shape has; where that stands in its pose, None for right there."""
+        match geometry:
+            case Box():
+                shape.kind, shape.size = "box", list(geometry.size)
+            case Cylinder():
+                shape.kind, shape.size = "cylinder", [geometry.radius, geometry.length]
+            case Capsule():
+                shape.kind, shape.size = "capsule", [geometry.radius, geometry.length]
+            case Sphere():
+                shape.kind, shape.size = "sphere", [geometry.radius]
+            case Ellipsoid():
+                shape.kind, shape.size = "ellipsoid", list(geometry.radii)
+            case Cone():
+                shape.kind, shape.size = "cone", [geometry.radius, geometry.length]
+            case Plane():
+                shape.kind, shape.size = "plane", list(geometry.size)
+                return (0.0, 0.0, 0.0, *rotation_from_z(geometry.normal))
+            case Polyline():
+                self._polygons(shape, (geometry,))
+            case tuple():
+                self._polygons(shape, geometry)
+            case Heightmap():
+                self._terrain(link, shape, geometry)
+            case Mesh():
+                self._mesh(link, shape, geometry)
+            case Image() | Empty():
+                pass
+            case _:
+                assert_never(geometry)
+        return None
+
+    def _polygons(self, shape: Shape, polygons: Sequence[Polyline]) -> None:
+        shape.kind, shape.size = "polyline", [polygons[0].height]
+        shape.outlines = [[number for point in each.points for number in point] for each in polygons]
+
+    def _mesh(self, link: str, shape: Shape, mesh: Mesh) -> None:
+        shape.url = self._located(link, mesh.uri, MESH_TYPES)
+        if shape.url is None:
+            return
+        shape.size = list(mesh.scale)
+        shape.format = mesh.uri.rpartition(".")[2].lower()
+        if mesh.submesh is not None:
+            shape.submesh = Submesh(mesh.submesh.name, mesh.submesh.center)
+
+    def _terrain(self, link: str, shape: Shape, terrain: Heightmap) -> None:
+        shape.url = self._located(link, terrain.uri, IMAGE_TYPES)
+        if shape.url is None:
+            return
+        texture = terrain.textures[0] if terrain.textures else None
+        shape.kind = "heightmap"
+        shape.size = [*terrain.size, *terrain.position, texture.size if texture else 1.0]
+        if texture is not None and texture.diffuse:
+            shape.texture = self._located(link, texture.diffuse, IMAGE_TYPES)
+
+    def _paint(self, link: str, shape: Shape, visual: Visual) -> None:
+        material = visual.material
+        color, image = _look(material) if material else (None, "")
+        shape.repaints = color is not None or image != ""
+        if color is None:
+            color = _UNCOLOURED
+        red, green, blue, alpha = color
+        shape.color = [red, green, blue, alpha * (1.0 - visual.transparency)]
+        if image:
+            shape.texture = self._located(link, image, IMAGE_TYPES)
+
+    def _located(self, link: str, uri: str, types: dict[str, str]) -> str | None:
+        located = self._index.locate(uri, None, types)
+        if located.url is None:
+            problems = self._made.problems.setdefault(link, [])
+            text = f"Could not load '{uri}': {located.problem}"
+            if text not in problems:
+                problems.append(text)
+        return located.url
+
+
+def _inside(frames: Frames, placed: PlacedLink) -> Frames:
+    """The frames of the model that a link is directly in, from those of the outermost."""
+    for name in placed.name.split(SEPARATOR)[1:-1]:
+        frames = frames.inside(name)
+    return frames
+
+
+def _look(material: Material) -> tuple[Sequence[float] | None, str]:
+    """Colour and image of a material: None and nothing where it says none."""
+    workflow = material.pbr and (material.pbr.metal or material.pbr.specular)
+    image = workflow.albedo_map if workflow else ""
+    return material.diffuse or material.ambient, image

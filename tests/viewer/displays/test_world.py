@@ -1,0 +1,189 @@
+"""linkwright/World: the models of a simulated world, where the simulation has them."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from linkwright.graph import DESCRIPTION_QOS, TF_QOS
+from linkwright.messages import String, TFMessage, TransformBatch
+from linkwright.viewer import RvizConfig
+from tests.viewer.contents import contents
+from tests.viewer.scene import IDENTITY, world
+from tests.waiting import eventually
+
+CONFIG = """\
+Visualization Manager:
+  Global Options: {Fixed Frame: FIXED}
+  Displays:
+    - {Class: linkwright/World, Enabled: true}
+"""
+
+WORLD = """\
+<sdf version="1.9"><world name="yard">
+  <model name="ground"><static>true</static><link name="link">
+    <visual name="v"><geometry><plane><normal>0 0 1</normal><size>10 20</size></plane></geometry></visual>
+  </link></model>
+  <model name="robot"><pose>1 2 0 0 0 0</pose>
+    <link name="base"><pose>0 0 0.5 0 0 0</pose>
+      <visual name="body"><pose>0 0 1 0 0 0</pose><transparency>0.5</transparency>
+        <geometry><box><size>1 2 3</size></box></geometry>
+        <material><diffuse>1 0 0 1</diffuse></material></visual>
+      <visual name="ear"><pose relative_to="__model__">0 0 2 0 0 0</pose>
+        <geometry><cone><radius>0.1</radius><length>0.3</length></cone></geometry></visual>
+      <collision name="hull"><geometry><ellipsoid><radii>1 2 3</radii></ellipsoid></geometry></collision>
+    </link>
+    <model name="arm"><pose>0 1 0 0 0 0</pose><link name="tip"/></model>
+  </model>
+</world></sdf>
+"""
+
+
+def config(fixed: str) -> RvizConfig:
+    return RvizConfig.parse(CONFIG.replace("FIXED", fixed))
+
+
+class Simulation:
+    """Says a world, and where its links are."""
+
+    def __init__(self, made) -> None:
+        self.made = made
+        node = made.graph.create_node("simulation")
+        self.description = node.create_publisher(String, "/world_description", DESCRIPTION_QOS)
+        self.poses = node.create_publisher(TFMessage, "/world_poses", TF_QOS)
+
+    async def describe(self, text: str, links: int = 3) -> None:
+        self.description.publish(String(text))
+        await eventually(lambda: links_of(self.made) == links)
+
+    async def move(self, **poses: tuple[float, ...]) -> None:
+        names = tuple(name.replace("__", "::") for name in poses)
+        array = np.array(list(poses.values()), dtype=np.float64).reshape(-1, 7)
+        stamp = self.made.graph.timebase.now_ns()
+        batch = TransformBatch(("world",) * len(names), names, stamp, array)
+        self.poses.publish(TFMessage(batch=batch))
+        await self.made.settle()
+
+
+def sent(made, kind: str):
+    return next((each for each in contents(made.display("World")) if each.fields["kind"] == kind), None)
+
+
+def links_of(made) -> int:
+    scene = sent(made, "world_scene")
+    return len(scene.fields["links"]) if scene else 0
+
+
+def positions(made) -> list[list[float]]:
+    return sent(made, "world_poses").fields["poses"].reshape(-1, 7)[:, :3].round(6).tolist()
+
+
+async def test_links_are_sent_with_their_shapes_in_their_frames_and_where_they_stand():
+    async with world(config("world")) as made:
+        await Simulation(made).describe(WORLD)
+        ground, base, tip = sent(made, "world_scene").fields["links"]
+        assert [each["name"] for each in (ground, base, tip)] == ["ground::link", "robot::base", "robot::arm::tip"]
+        (plane,) = ground["visuals"]
+        assert (plane["kind"], plane["size"], plane["color"]) == ("plane", [10.0, 20.0], [0.7, 0.7, 0.7, 1.0])
+        body, ear = base["visuals"]
+        assert (body["kind"], body["position"], body["color"]) == ("box", [0.0, 0.0, 1.0], [1.0, 0.0, 0.0, 0.5])
+        assert body["repaints"]
+        assert (ear["kind"], ear["size"]) == ("cone", [0.1, 0.3])
+        assert ear["position"] == pytest.approx([0, 0, 1.5])
+        assert [(each["kind"], each["size"]) for each in base["collisions"]] == [("ellipsoid", [1.0, 2.0, 3.0])]
+        assert positions(made) == [[0, 0, 0], [1, 2, 0.5], [1, 3, 0]]
+        assert made.status("World")["World"] == ("ok", "2 models, 3 links")
+
+
+async def test_links_move_by_their_names_and_stay_when_the_world_is_described_anew():
+    async with world(config("world")) as made:
+        simulation = Simulation(made)
+        await simulation.describe(WORLD)
+        await simulation.move(robot__base=(5, 5, 5, 0, 0, 0, 1), nobody__link=(9, 9, 9, 0, 0, 0, 1))
+        assert positions(made) == [[0, 0, 0], [5, 5, 5], [1, 3, 0]]
+        more = WORLD.replace("</world>", '<model name="ball"><link name="link"/></model></world>')
+        await simulation.describe(more, links=4)
+        await eventually(lambda: len(positions(made)) == 4)
+        assert positions(made) == [[0, 0, 0], [5, 5, 5], [1, 3, 0], [0, 0, 0]]
+        assert sent(made, "world_poses").fields["revision"] == sent(made, "world_scene").fields["revision"] == 2
+
+
+async def test_without_a_frame_world_the_world_is_placed_by_a_frame_of_its_robot():
+    async with world(config("odom")) as made:
+        simulation = Simulation(made)
+        await simulation.describe(WORLD)
+        assert made.status("World")["Frame"][0] == "warn"
+        made.move({("odom", "base"): (0, 0, 0.5, *IDENTITY[3:])})
+        await eventually(lambda: sent(made, "world_poses").pose is not None)
+        assert sent(made, "world_poses").pose == pytest.approx([-1, -2, 0, 0, 0, 0, 1])
+        half = math.sqrt(0.5)
+        made.move({("odom", "base"): (3, 0, 0.5, 0, 0, half, half)})
+        await made.settle()
+        await simulation.move(robot__base=(1, 2, 0.5, 0, 0, 0, 1))  # where it was when tf had it there
+        assert made.status("World")["Frame"] == ("ok", "tf has no 'world': the world is where 'base' is in both")
+
+
+async def test_a_frame_world_of_tf_is_the_world():
+    async with world(config("map")) as made:
+        made.move({("map", "world"): (1, 0, 0, *IDENTITY[3:])}, static=True)
+        await Simulation(made).describe(WORLD)
+        await eventually(lambda: sent(made, "world_poses").frame == "world")
+        assert sent(made, "world_poses").pose is None
+
+
+async def test_what_nothing_moves_is_sent_once():
+    async with world(config("world")) as made:
+        simulation = Simulation(made)
+        await simulation.describe(WORLD)
+        await simulation.move(robot__base=(1, 1, 1, 0, 0, 0, 1))
+        display = made.display("World")
+        before = display.data()[-1]
+        await simulation.move(robot__base=(1, 1, 1, 0, 0, 0, 1))
+        assert display.data()[-1] is before
+
+
+LOST = "<link name='l'><pose relative_to='x'/></link>"
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("<sdf", "<world>:1:1: this tag is never finished"),
+        ("<robot name='r'/>", "the root element is <robot>, not <sdf>"),
+        ("<sdf version='1.6'/>", "<sdf> has neither a world nor a model in it"),
+        (f"<sdf version='1.6'><model name='m'>{LOST}</model></sdf>", "'x' cannot be placed"),
+    ],
+)
+async def test_a_text_that_says_no_world_is_told_of_and_the_world_before_stays(text, told):
+    async with world(config("world")) as made:
+        simulation = Simulation(made)
+        await simulation.describe(WORLD)
+        simulation.description.publish(String(text))
+        await eventually(lambda: made.status("World")["World"][0] == "error")
+        assert told in made.status("World")["World"][1]
+        assert links_of(made) == 3
+
+
+async def test_files_of_a_model_are_served_with_its_textures_and_those_that_are_missing_told_of(tmp_path):
+    model = tmp_path / "crate"
+    for name in ("model.config", "meshes/crate.stl", "materials/textures/wood.png", "secret.txt"):
+        (model / name).parent.mkdir(parents=True, exist_ok=True)
+        (model / name).write_bytes(b"x")
+    visual = "<visual name='{}'><geometry><mesh><uri>{}</uri></mesh></geometry></visual>"
+    shapes = visual.format("a", (model / "meshes/crate.stl").as_uri()) + visual.format("b", "file:///nowhere.stl")
+    text = f"<sdf version='1.9'><model name='crate'><link name='link'>{shapes}</link></model></sdf>"
+    async with world(config("world")) as made:
+        await Simulation(made).describe(text, links=1)
+        (link,) = sent(made, "world_scene").fields["links"]
+        (shape,) = link["visuals"]
+        key, relative = shape["url"].partition("?")[0].removeprefix("/mesh/").split("/", 1)
+        meshes = made.viewer.context.meshes
+        assert relative == "meshes/crate.stl"
+        assert meshes.file(key, "materials/textures/wood.png") == model / "materials/textures/wood.png"
+        with pytest.raises(Exception, match="only meshes and images"):
+            meshes.file(key, "secret.txt")
+        level, told = made.status("World")["Files"]
+        assert level == "error"
+        assert "crate::link: Could not load 'file:///nowhere.stl'" in told
