@@ -405,3 +405,16 @@ def test_real_robots(entry, arguments, packages, facts):
             assert len(model.plugins) == written
             assert sum(len(link.visuals) for link in model.links) == sum(facts["visuals"].values())
             assert sum(len(link.collisions) for link in model.links) == sum(facts["collisions"].values())
+
+
+def test_a_link_without_mass_that_is_kept_weighs_nothing_beside_one_that_has_a_mass():
+    mass = '<inertial><mass value="2"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>'
+    text = (
+        f'<robot name="r"><link name="a"/><link name="b">{mass}</link><link name="c"/><link name="d"/>'
+        '<joint name="ab" type="fixed"><parent link="a"/><child link="b"/></joint>'
+        '<joint name="bc" type="fixed"><parent link="b"/><child link="c"/></joint>'
+        '<joint name="bd" type="continuous"><parent link="b"/><child link="d"/></joint></robot>'
+    )
+    a, b, c, d = model_from_robot(examine(text).robot, lump_fixed_joints=False).model.links
+    assert [each.inertial.mass for each in (a, b, c)] == [1e-6, 2.0, 1e-6]
+    assert d.inertial is None

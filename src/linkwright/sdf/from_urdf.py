@@ -25,12 +25,15 @@ from linkwright.sdf.report import SdfReport
 from linkwright.sdf.sensors import Sensor
 from linkwright.urdf import Robot
 from linkwright.urdf import model as urdf
+from linkwright.urdf.bodies import Bodies
 
 _Posed = TypeVar("_Posed", Sensor, Light)
 
 _TYPES = {"revolute": "revolute", "continuous": "revolute", "prismatic": "prismatic", "fixed": "fixed"}
 """Types of joints in URDF, and what they are in SDF; a link of another moves freely there."""
 _LUMP = "_fixed_joint_lump__"
+_FRAME = Inertial(1e-6, inertia=Inertia(1e-9, 1e-9, 1e-9))
+"""The mass of a link that has none and is fixed to one that has: without ``<inertial>`` SDF has 1 kg."""
 _BRIGHTER = 1.25
 """A colour of URDF becomes brighter by this: gz's renderer shows colours darker than RViz does."""
 
@@ -71,6 +74,7 @@ class _Converter:
         self._extensions = extensions
         self._report = report
         self._lumps = lump_fixed_joints
+        self._rigid = Bodies(robot)
 
     def model(self) -> Model:
         bodies = bodies_of(self._robot, self._is_lumped)
@@ -130,7 +134,7 @@ class _Converter:
         return replace(
             said,
             pose=self._pose(body),
-            inertial=_inertial(body.parts),
+            inertial=_inertial(body.parts) or self._weightless(link),
             visuals=(*_visuals(body, told), *said.visuals),
             collisions=(*_collisions(body, told), *said.collisions),
             sensors=(*said.sensors, *sensors),
@@ -139,6 +143,11 @@ class _Converter:
             self_collide=next((each.self_collide for each in (said, *others) if each.self_collide is not None), None),
             element=link.element,
         )
+
+    def _weightless(self, link: urdf.Link) -> Inertial | None:
+        """The mass of a link that has none: next to nothing where others that are fixed to it have one."""
+        rigid = self._rigid.of(link.name)
+        return _FRAME if not self._lumps and rigid is not None and self._rigid.mass(rigid) > 0 else None
 
     def _pose(self, body: Body) -> RawPose:
         """Where a link stands: where its joint does, in the frame of that, or in that of the link above it."""
