@@ -72,9 +72,9 @@ def run_new(arguments: argparse.Namespace) -> int:
 
 
 VERBS = {
-    "list": SubVerb(configure_list, run_list, "list the worlds and models on the search path, with their folders"),
-    "new": SubVerb(configure_new, run_new, "write a small world to begin with: ground, sun, a box, explained"),
-    "check": SubVerb(check.configure, check.run, "check worlds and models: what `linkwright check` says of them"),
+    "list": SubVerb(configure_list, run_list, help="list the worlds and models on the search path, with their folders"),
+    "new": SubVerb(configure_new, run_new, help="write a small world to begin with: ground, sun, a box, explained"),
+    "check": SubVerb(check.configure, check.run, help="check worlds and models: what `linkwright check` says of them"),
 }
 
 
