@@ -55,6 +55,54 @@ def test_a_model_is_found_in_packages(tmp_path):
     assert len(models(found)) == len(addresses)
 
 
+@pytest.mark.parametrize(
+    ("file", "text"),
+    [
+        ("hooks/a.dsv.in", "prepend-non-duplicate;GZ_SIM_RESOURCE_PATH;share/@PROJECT_NAME@/assets\n"),
+        ("hook/a.dsv", "set;X;1\nprepend-non-duplicate;IGN_GAZEBO_RESOURCE_PATH;share/one/assets;extra\n"),
+        (
+            "env-hooks/a.sh.in",
+            'ament_prepend_unique_value GAZEBO_MODEL_PATH "$AMENT_CURRENT_PREFIX/share/one/assets"\n',
+        ),
+        ("package.xml", '<export><gazebo_ros gazebo_media_path="${prefix}/assets"/></export>'),
+    ],
+)
+def test_a_model_is_found_where_a_hook_or_export_of_a_package_says(tmp_path, file, text):
+    files = {"one/package.xml": "<package><name>one</name></package>", "one/assets/box/model.sdf": BOX}
+    written = f"<package><name>one</name>{text}</package>" if file == "package.xml" else text
+    write(tmp_path, {**files, f"one/{file}": written})
+    found = examined(tmp_path, "<include><uri>model://box</uri></include>")
+    assert (models(found), found.diagnostics) == (["box"], ())
+
+
+def test_a_hook_for_the_folder_that_holds_packages_and_one_that_cannot_be_read(tmp_path):
+    hook = "prepend-non-duplicate;GZ_SIM_RESOURCE_PATH;share\n"
+    write(tmp_path, {"one/package.xml": "<package><name>one</name></package>", "one/hooks/a.dsv": hook})
+    (tmp_path / "one/hooks/b.dsv").write_bytes(b"\xff;GZ_SIM_RESOURCE_PATH\x00")
+    (tmp_path / "one/hooks/c.dsv").mkdir()
+    write(tmp_path, {"box/model.sdf": BOX})
+    assert models(examined(tmp_path, "<include><uri>model://box</uri></include>")) == ["box"]
+
+
+def test_a_model_is_found_beside_the_file_that_names_it(tmp_path):
+    write(tmp_path, {"models/box/model.sdf": BOX, "worlds/x": ""})
+    finder = ResourceFinder(PackageFinder(start=tmp_path / "worlds", environment={}), {"HOME": "/nowhere"})
+    for beside in (tmp_path, tmp_path / "worlds", tmp_path / "models", tmp_path / "models/box"):
+        assert finder.model("model://box", beside) == tmp_path / "models/box/model.sdf"
+
+
+def test_a_file_address_without_a_root_is_below_the_search_path(tmp_path):
+    write(tmp_path, {"a/models/box/meshes/m.stl": ""})
+    packages = PackageFinder(start=tmp_path / "b", environment={})
+    mesh = tmp_path / "a/models/box/meshes/m.stl"
+    for folder in ("a", "a/models"):
+        finder = ResourceFinder(packages, {"GAZEBO_RESOURCE_PATH": str(tmp_path / folder)})
+        assert finder.file("file://models/box/meshes/m.stl", Path("/nowhere")) == mesh
+    finder = ResourceFinder(packages, {})
+    assert finder.file("file://models/box/meshes/m.stl", mesh.parents[1]) == mesh
+    assert isinstance(finder.file("file://models/box/meshes/no.stl", mesh.parents[1]), Missing)
+
+
 def test_the_newest_file_that_can_be_read_is_taken(tmp_path):
     config = "<model>{}</model>".format(
         "".join(f'<sdf version="{each}">{each}.sdf</sdf>' for each in ("1.4", "1.12", "1.99", "1.5"))

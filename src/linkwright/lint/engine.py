@@ -111,7 +111,13 @@ def _examine_world(
         described = examine_world(path, arguments=arguments, packages=finder, overlay=overlay)
     except LinkwrightError as error:
         return Checked(path, None, (*trouble, *error.diagnostics), None)
-    kept = [each for each in described.diagnostics if _is_wanted(each, settings)]
+    said = list(described.diagnostics)
+    if described.sdf is not None:
+        from linkwright.lint.worlds import check_sdf
+        from linkwright.sdf.resources import ResourceFinder
+
+        said += check_sdf(described.sdf, ResourceFinder(finder))
+    kept = [each for each in said if _is_wanted(each, settings)]
     found = in_order(_with_severities(kept, settings), str(path))
     return Checked(path, None, (*trouble, *found), None, described.sdf)
 

@@ -31,6 +31,12 @@ _MODEL_FILE = "model.sdf"
 _WORLDS = (".world", ".sdf")
 _SHIPPED = Path(__file__).parent / "models"
 _NEWEST_MINOR = 12
+_HOOK = re.compile(r".+\.(?:dsv|sh)(?:\.in)?").fullmatch
+_HOOKED = re.compile(
+    rf"(?:{'|'.join(SEARCH_VARIABLES)})"
+    r"(?:;|\s+[\"']?\$\{?(?:AMENT|COLCON)_CURRENT_PREFIX\}?/)share(?:/(?P<path>[^\s\"';:]*))?"
+)
+"""``VARIABLE;share/PATH`` and ``VARIABLE "$AMENT_CURRENT_PREFIX/share/PATH"``."""
 _SUN_AND_GROUND = {"sun": "sun", "ground plane": "ground_plane"}
 """Models of Fuel that stand in nearly every world, and ours by which they are replaced."""
 
@@ -48,10 +54,14 @@ class ResourceFinder:
     ``model://NAME/PATH`` is looked for as ``NAME/PATH`` in, one after the other,
 
     1. the folders of `SEARCH_VARIABLES`,
-    2. those that packages export for it in their ``package.xml`` (``<gazebo_ros gazebo_model_path="..."/>``),
+    2. those that packages export for it in their ``package.xml`` (``<gazebo_ros gazebo_model_path="..."/>``), or put
+       into these variables by an environment hook,
     3. the folders that hold packages, so that ``model://PACKAGE/PATH`` works as in gz,
     4. the folder ``models`` of each package,
-    5. our own: ``ground_plane`` and ``sun``.
+    5. our own: ``ground_plane`` and ``sun``,
+    6. the folder of the file that names it and the one around that, and ``models`` in both.
+
+    ``file://PATH`` without a third slash is below one of these, or below the folder around one, as in Gazebo classic.
 
     Nothing is fetched from the network: of addresses on Fuel only what gz has put into its cache is found.
 
@@ -76,9 +86,11 @@ class ResourceFinder:
         if not colon:
             return self._plain(address, beside)
         if scheme == "model":
-            return self._in_folders(address, unquote(rest).lstrip("/"))
+            return self._in_folders(address, unquote(rest).lstrip("/"), beside)
         if scheme in ("http", "https"):
             return self._cached(address)
+        if scheme == "file" and not rest.startswith("/"):
+            return self._below(address, unquote(rest), beside)
         try:
             path = self._packages.resolve(address, beside)
         except LinkwrightError as error:
@@ -134,6 +146,8 @@ class ResourceFinder:
         shares = self._packages.packages()
         for share in shares.values():
             yield from exported_folders(share, "gazebo_model_path")
+            yield from exported_folders(share, "gazebo_media_path")
+            yield from hooked_folders(share)
         for share in shares.values():
             yield share.parent
         for share in shares.values():
@@ -144,10 +158,21 @@ class ResourceFinder:
         places = [Path(path)] if os.path.isabs(path) else [beside / path, *(each / path for each in self._folders)]  # noqa: PTH117
         return next((place for place in places if place.exists()), None) or _no_file(places[0])
 
-    def _in_folders(self, address: str, path: str) -> Path | Missing:
+    def _below(self, address: str, path: str, beside: Path) -> Path | Missing:
+        around = (each.parent for each in self._folders)
+        for folder in (*self._folders, *around, *(beside.absolute() / "x").parents):
+            if (folder / path).exists():
+                return folder / path
+        hint = phrase(
+            "add the folder that '{path}' starts from to {variable}", path=path, variable=SEARCH_VARIABLES[-1]
+        )
+        return Missing(phrase("there is no '{path}' on the search path", path=address), hint)
+
+    def _in_folders(self, address: str, path: str, beside: Path) -> Path | Missing:
         if not path:
             return Missing(phrase("'{uri}' names no model", uri=address), phrase("write model://MODEL"))
-        for folder in self._folders:
+        near = (beside, beside.absolute().parent)
+        for folder in (*self._folders, *near, *(each / "models" for each in near)):
             if (folder / path).exists():
                 return folder / path
         name = path.partition("/")[0]
@@ -223,6 +248,19 @@ def exported_folders(share: Path, attribute: str) -> Iterator[Path]:
             for folder in element.attributes.get(attribute, "").split(":"):
                 if folder:
                     yield Path(os.path.normpath(folder.replace("${prefix}", str(share))))
+
+
+def hooked_folders(share: Path) -> Iterator[Path]:
+    """What the environment hooks of a package, and their templates in its sources, put into `SEARCH_VARIABLES`.
+
+    Source: ``ament_environment_hooks`` and the ``.dsv`` files of ament: ``prepend-non-duplicate;VARIABLE;PATH``.
+    """
+    for file in sorted((*share.glob("*hook*/*.*"), *share.glob("environment/*.dsv"))):
+        if _HOOK(file.name):
+            with suppress(OSError):
+                text = file.read_text(encoding="utf-8", errors="replace").replace("@PROJECT_NAME@", share.name)
+                for found in _HOOKED.finditer(text):
+                    yield Path(os.path.normpath(share.parent / (found["path"] or "")))
 
 
 def _version_in(place: Path, rest: list[str]) -> Path | None:

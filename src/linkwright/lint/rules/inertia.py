@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from linkwright.diagnostics import Diagnostic, Note, Severity, Span, phrase, quoted_names
+from linkwright.lint.finding import Finding
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
@@ -117,12 +118,16 @@ class ZeroMass(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         for link, inertial in links_with_inertial(subject):
             if inertial.mass == 0 and not _is_frame(subject, link):
-                yield self.report(
-                    phrase("the mass of link '{name}' is zero", name=link.name),
-                    part(inertial, "mass"),
-                    "value",
-                    hint=phrase("give its mass in kg, or leave <inertial> out where the link is only a frame"),
-                )
+                yield self.finding(link.name, inertial)
+
+    def finding(self, name: str, inertial: Inertial) -> Finding:
+        """What is said of a mass of zero, of a robot or a world."""
+        return self.report(
+            phrase("the mass of link '{name}' is zero", name=name),
+            part(inertial, "mass"),
+            "value",
+            hint=phrase("give its mass in kg, or leave <inertial> out where the link is only a frame"),
+        )
 
 
 class NegativeMass(Rule):
@@ -152,12 +157,16 @@ class NegativeMass(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         for link, inertial in links_with_inertial(subject):
             if inertial.mass < 0:
-                yield self.report(
-                    phrase("the mass of link '{name}' is negative: {mass:g} kg", name=link.name, mass=inertial.mass),
-                    part(inertial, "mass"),
-                    "value",
-                    hint=phrase("masses are in kg and positive"),
-                )
+                yield self.finding(link.name, inertial)
+
+    def finding(self, name: str, inertial: Inertial) -> Finding:
+        """What is said of a negative mass, of a robot or a world."""
+        return self.report(
+            phrase("the mass of link '{name}' is negative: {mass:g} kg", name=name, mass=inertial.mass),
+            part(inertial, "mass"),
+            "value",
+            hint=phrase("masses are in kg and positive"),
+        )
 
 
 class TinyMass(Rule):

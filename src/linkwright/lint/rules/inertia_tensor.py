@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from linkwright.diagnostics import Diagnostic, Note, phrase
+from linkwright.lint.finding import Finding
 from linkwright.lint.rule import Rule
 from linkwright.lint.rules.inertia import part
 from linkwright.lint.subject import Subject
@@ -17,9 +18,17 @@ class _TensorRule(Rule):
 
     kind = ""
 
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        for link, inertial, flaw in self.flawed(subject):
+            yield self.finding(link.name, inertial, flaw)
+
     def flawed(self, subject: Subject) -> Iterator[tuple[Link, Inertial, Flaw]]:
         """The links whose tensor has the flaw first of all."""
         return (each for each in subject.tensor_flaws if each[2].kind == self.kind)
+
+    def finding(self, name: str, inertial: Inertial, flaw: Flaw) -> Finding:
+        """What is said of a flaw of this kind in the tensor of a link, of a robot or a world."""
+        raise NotImplementedError(self.code)
 
 
 class ZeroInertia(_TensorRule):
@@ -90,15 +99,14 @@ class NonPositiveMoment(_TensorRule):
     holds_for_parts = True
     kind = "diagonal"
 
-    def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        for link, inertial, flaw in self.flawed(subject):
-            what = phrase("zero") if flaw.amount == 0 else phrase("negative: {amount:g}", amount=flaw.amount)
-            yield self.report(
-                phrase("'{attribute}' of link '{name}' is {what}", attribute=flaw.attribute, name=link.name, what=what),
-                part(inertial, "inertia"),
-                flaw.attribute,
-                hint=phrase("ixx, iyy and izz are positive, in kg m2; `linkwright inertia` computes them"),
-            )
+    def finding(self, name: str, inertial: Inertial, flaw: Flaw) -> Finding:
+        what = phrase("zero") if flaw.amount == 0 else phrase("negative: {amount:g}", amount=flaw.amount)
+        return self.report(
+            phrase("'{attribute}' of link '{name}' is {what}", attribute=flaw.attribute, name=name, what=what),
+            part(inertial, "inertia"),
+            flaw.attribute,
+            hint=phrase("ixx, iyy and izz are positive, in kg m2; `linkwright inertia` computes them"),
+        )
 
 
 class ExcessiveProduct(_TensorRule):
@@ -127,22 +135,21 @@ class ExcessiveProduct(_TensorRule):
     holds_for_parts = True
     kind = "product"
 
-    def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        for link, inertial, flaw in self.flawed(subject):
-            assert flaw.attribute is not None
-            value = getattr(inertial, flaw.attribute)
-            yield self.report(
-                phrase(
-                    "'{attribute}' of link '{name}' is larger than its moments allow: {value:g}",
-                    attribute=flaw.attribute,
-                    name=link.name,
-                    value=value,
-                ),
-                part(inertial, "inertia"),
-                flaw.attribute,
-                notes=[Note(phrase("with these moments it is at most {amount:.3g} either way", amount=flaw.amount))],
-                hint=phrase("check the order ixx ixy ixz iyy iyz izz, and that all are in kg m2"),
-            )
+    def finding(self, name: str, inertial: Inertial, flaw: Flaw) -> Finding:
+        assert flaw.attribute is not None
+        value = getattr(inertial, flaw.attribute)
+        return self.report(
+            phrase(
+                "'{attribute}' of link '{name}' is larger than its moments allow: {value:g}",
+                attribute=flaw.attribute,
+                name=name,
+                value=value,
+            ),
+            part(inertial, "inertia"),
+            flaw.attribute,
+            notes=[Note(phrase("with these moments it is at most {amount:.3g} either way", amount=flaw.amount))],
+            hint=phrase("check the order ixx ixy ixz iyy iyz izz, and that all are in kg m2"),
+        )
 
 
 class IndefiniteInertia(_TensorRule):
@@ -169,14 +176,13 @@ class IndefiniteInertia(_TensorRule):
     holds_for_parts = True
     kind = "indefinite"
 
-    def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        for link, inertial, _ in self.flawed(subject):
-            yield self.report(
-                phrase("the inertia tensor of link '{name}' is not positive definite", name=link.name),
-                part(inertial, "inertia"),
-                notes=[_principal_moments(inertial)],
-                hint=phrase("check the signs of the products, and that all components are about the centre of mass"),
-            )
+    def finding(self, name: str, inertial: Inertial, flaw: Flaw) -> Finding:  # noqa: ARG002 - as the others have it
+        return self.report(
+            phrase("the inertia tensor of link '{name}' is not positive definite", name=name),
+            part(inertial, "inertia"),
+            notes=[_principal_moments(inertial)],
+            hint=phrase("check the signs of the products, and that all components are about the centre of mass"),
+        )
 
 
 class TriangleInequality(_TensorRule):
@@ -205,29 +211,26 @@ class TriangleInequality(_TensorRule):
     holds_for_parts = True
     kind = "triangle"
 
-    def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        for link, inertial, flaw in self.flawed(subject):
-            diagonal = not (inertial.ixy or inertial.ixz or inertial.iyz)
-            first, second = (name for name in DIAGONAL if name != flaw.attribute)
+    def finding(self, name: str, inertial: Inertial, flaw: Flaw) -> Finding:
+        diagonal = not (inertial.ixy or inertial.ixz or inertial.iyz)
+        first, second = (each for each in DIAGONAL if each != flaw.attribute)
+        message = phrase("one moment of inertia of link '{name}' is larger than the other two together", name=name)
+        notes = [_principal_moments(inertial)]
+        if diagonal:
+            small = getattr(inertial, first) + getattr(inertial, second)
             message = phrase(
-                "one moment of inertia of link '{name}' is larger than the other two together", name=link.name
+                "'{attribute}' of link '{name}' is larger than the other two moments together",
+                attribute=flaw.attribute,
+                name=name,
             )
-            notes = [_principal_moments(inertial)]
-            if diagonal:
-                small = getattr(inertial, first) + getattr(inertial, second)
-                message = phrase(
-                    "'{attribute}' of link '{name}' is larger than the other two moments together",
-                    attribute=flaw.attribute,
-                    name=link.name,
-                )
-                notes = [Note(phrase("{first} + {second} = {small:g}", first=first, second=second, small=small))]
-            yield self.report(
-                message,
-                part(inertial, "inertia"),
-                flaw.attribute if diagonal else None,
-                notes=notes,
-                hint=phrase("no body has these moments; `linkwright inertia` computes those of the link's shapes"),
-            )
+            notes = [Note(phrase("{first} + {second} = {small:g}", first=first, second=second, small=small))]
+        return self.report(
+            message,
+            part(inertial, "inertia"),
+            flaw.attribute if diagonal else None,
+            notes=notes,
+            hint=phrase("no body has these moments; `linkwright inertia` computes those of the link's shapes"),
+        )
 
 
 def _principal_moments(inertial: Inertial) -> Note:

@@ -1,0 +1,160 @@
+"""What is doubtful in worlds and models that can be read.
+
+What robots are checked for too has the rule, the code and the words that it has there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from math import isfinite
+from pathlib import Path
+
+from linkwright.diagnostics import Diagnostic, Phrase, Severity, phrase
+from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere
+from linkwright.lint.rules.inertia import NegativeMass, ZeroMass
+from linkwright.lint.rules.inertia_tensor import (
+    ExcessiveProduct,
+    IndefiniteInertia,
+    NonPositiveMoment,
+    TriangleInequality,
+)
+from linkwright.lint.tensors import flaw_of
+from linkwright.sdf.links import Collision, Inertial, Link, Visual
+from linkwright.sdf.models import Model
+from linkwright.sdf.report import described
+from linkwright.sdf.resources import Missing, ResourceFinder
+from linkwright.sdf.shapes import Cone, Ellipsoid, Heightmap, Mesh
+from linkwright.sdf.worlds import Sdf
+from linkwright.urdf import model as urdf
+from linkwright.xmltree import Element
+
+_FLAWS = {
+    rule.kind: rule for rule in (NonPositiveMoment(), ExcessiveProduct(), IndefiniteInertia(), TriangleInequality())
+}
+_ZERO_MASS, _NEGATIVE_MASS = ZeroMass(), NegativeMass()
+
+
+def check_sdf(sdf: Sdf, finder: ResourceFinder) -> Iterator[Diagnostic]:
+    """What is doubtful in a file with its includes resolved, each thing once for each place in the files.
+
+    Args:
+        sdf: the file.
+        finder: where meshes are.
+    """
+    told: set[tuple[object, str]] = set()
+    models = [*sdf.models, *(model for world in sdf.worlds for model in world.models)]
+    found = (each for model in models for each in _model(model, static=False))
+    for finding in (*_steps(sdf), *found, *_missing_meshes(models, finder)):
+        key = (finding.span, str(finding.message))
+        if key not in told:
+            told.add(key)
+            yield finding
+
+
+def _steps(sdf: Sdf) -> Iterator[Diagnostic]:
+    for world in sdf.worlds:
+        for physics in world.physics:
+            if not physics.max_step_size > 0 and physics.element is not None:
+                place = physics.element.first("max_step_size") or physics.element
+                message = phrase("the time step is not positive: {step:g} s", step=physics.max_step_size)
+                yield _warning("SDF122", message, place, phrase("0.001 is usual"))
+
+
+def _model(model: Model, *, static: bool) -> Iterator[Diagnostic]:
+    static = static or model.static
+    for link in model.links:
+        if not static and link.inertial is not None and not link.inertial.auto:
+            yield from _inertial(link, link.inertial)
+    for shape in _shapes(replace(model, models=())):
+        yield from _size(shape)
+    for joint in model.joints:
+        for axis, tag in ((joint.axis, "axis"), (joint.axis2, "axis2")):
+            if axis is not None and joint.element is not None and not any(axis.xyz):
+                place = joint.element.first(tag)
+                message = phrase("the axis of {owner} has no direction", owner=described(joint.element))
+                xyz = place.first("xyz") if place is not None else None
+                yield _warning("SDF122", message, xyz or joint.element, phrase("write 0 0 1, or where it points"))
+    for inner in model.models:
+        yield from _model(inner, static=static)
+
+
+def _missing_meshes(models: Iterable[Model], finder: ResourceFinder) -> Iterator[Diagnostic]:
+    """Meshes and heightmaps that are not there, each address once."""
+    known: set[str] = set()
+    for shape in (shape for model in models for shape in _shapes(model)):
+        geometry, element = shape.geometry, shape.element
+        if not isinstance(geometry, Mesh | Heightmap) or element is None or element.source is None:
+            continue
+        if geometry.uri in known:
+            continue
+        known.add(geometry.uri)
+        found = finder.file(geometry.uri, Path(element.source.name).parent)
+        if isinstance(found, Missing):
+            message = phrase(
+                "'{uri}' of {owner} is left out: {reason}",
+                uri=geometry.uri,
+                owner=described(element),
+                reason=found.reason,
+            )
+            place = next(
+                (each for each in element.walk() if each.tag == "uri" and each.text().strip() == geometry.uri), element
+            )
+            yield _warning("SDF162", message, place, found.hint)
+
+
+def _shapes(model: Model) -> Iterator[Visual | Collision]:
+    for link in model.links:
+        yield from link.visuals
+        yield from link.collisions
+    for inner in model.models:
+        yield from _shapes(inner)
+
+
+def _inertial(link: Link, inertial: Inertial) -> Iterator[Diagnostic]:
+    """What robots are told of their masses; what no number is, is left to those who work with it."""
+    tensor = inertial.inertia
+    found = urdf.Inertial(
+        inertial.mass,
+        tensor.ixx,
+        tensor.ixy,
+        tensor.ixz,
+        tensor.iyy,
+        tensor.iyz,
+        tensor.izz,
+        element=inertial.element,
+    )
+    if not all(map(isfinite, (found.mass, found.ixx, found.ixy, found.ixz, found.iyy, found.iyz, found.izz))):
+        message = phrase("the mass or inertia of link '{name}' is no number", name=link.name)
+        yield _warning("SDF122", message, inertial.element, phrase("masses are in kg, moments in kg m2"))
+        return
+    if found.mass <= 0:
+        finding = (_NEGATIVE_MASS if found.mass < 0 else _ZERO_MASS).finding(link.name, found)
+        yield replace(finding, hint=phrase("masses are in kg and positive"))
+    flaw = flaw_of(found)
+    if flaw is not None and flaw.kind in _FLAWS:
+        hint = phrase("a solid box has m (a2 + b2) / 12 about each axis, with a and b its edges across the axis")
+        yield replace(_FLAWS[flaw.kind].finding(link.name, found, flaw), hint=hint)
+
+
+def _size(shape: Visual | Collision) -> Iterator[Diagnostic]:
+    geometry = shape.geometry
+    sizes: tuple[float, ...] = ()
+    if isinstance(geometry, Box):
+        sizes = geometry.size
+    elif isinstance(geometry, Ellipsoid):
+        sizes = geometry.radii
+    elif isinstance(geometry, Cylinder | Cone | Capsule):
+        sizes = (geometry.radius, geometry.length)
+    elif isinstance(geometry, Sphere):
+        sizes = (geometry.radius,)
+    if sizes and not min(sizes) > 0 and shape.element is not None:
+        place = shape.element.first("geometry") or shape.element
+        message = phrase("a size of {owner} is not positive", owner=described(shape.element))
+        yield _warning("SDF122", message, next(place.elements(), place), phrase("sizes are in metres"))
+
+
+def _warning(code: str, message: Phrase, element: Element | None, hint: Phrase | None) -> Diagnostic:
+    span = None if element is None else element.span()
+    source = None if element is None else element.source
+    return Diagnostic(code, message, span, Severity.WARNING, hint=hint, source=source)

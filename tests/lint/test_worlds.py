@@ -1,0 +1,125 @@
+"""What is doubtful in worlds that can be read."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+
+import pytest
+
+from linkwright.lint.engine import examine
+from linkwright.packages import PackageFinder
+
+WORLDS = Path(__file__).parents[3] / "shared" / "worlds"
+MANIFEST = WORLDS / "manifest.json"
+GOOD = "<inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia></inertial>"
+
+
+@pytest.fixture
+def told(tmp_path, monkeypatch):
+    """Code, line, place and message of what is said of models in a world."""
+    monkeypatch.setenv("HOME", str(tmp_path))
+
+    def check(inside):
+        path = tmp_path / "w.world"
+        path.write_text(f'<sdf version="1.9"><world name="w">\n{inside}\n</world></sdf>')
+        found = examine(path).diagnostics
+        return [(each.code, each.span.line, str(each.message)) for each in found]
+
+    return check
+
+
+def link(inertial, more=""):
+    return f'<model name="m">{more}<link name="l">{inertial}</link></model>'
+
+
+def tensor(ixx, iyy, izz, more=""):
+    return f"<inertial><inertia><ixx>{ixx}</ixx><iyy>{iyy}</iyy><izz>{izz}</izz>{more}</inertia></inertial>"
+
+
+@pytest.mark.parametrize(
+    ("inertial", "code", "message"),
+    [
+        ("<inertial><mass>0</mass></inertial>", "LW302", "the mass of link 'l' is zero"),
+        ("<inertial><mass>-2</mass></inertial>", "LW303", "the mass of link 'l' is negative: -2 kg"),
+        (tensor(1, 0, 1), "LW311", "'iyy' of link 'l' is zero"),
+        (tensor(1, 1, 1, "<ixy>0.8</ixy>"), "LW312", "'ixy' of link 'l' is larger than its moments allow: 0.8"),
+        (tensor(1, 1, 3), "LW314", "'izz' of link 'l' is larger than the other two moments together"),
+        (tensor(1, "nan", 1), "SDF122", "the mass or inertia of link 'l' is no number"),
+    ],
+)
+def test_masses_that_no_body_has(told, inertial, code, message):
+    assert told(link(inertial)) == [(code, 2, message)]
+    assert told(link(inertial, "<static>true</static>")) == []
+
+
+def test_an_inertia_that_is_worked_out_is_not_judged(told):
+    assert told(link('<inertial auto="true"><mass>0</mass></inertial>')) == []
+
+
+def test_models_in_static_models_are_static(told):
+    inner = link("<inertial><mass>-2</mass></inertial>")
+    assert told(f'<model name="o"><static>1</static>{inner}</model>') == []
+    assert len(told(f'<model name="o"><link name="a"/>{inner}</model>')) == 1
+
+
+@pytest.mark.parametrize(
+    "shape",
+    [
+        "<box><size>1 0 1</size></box>",
+        "<sphere><radius>-1</radius></sphere>",
+        "<cylinder><radius>1</radius><length>0</length></cylinder>",
+        "<ellipsoid><radii>1 1 0</radii></ellipsoid>",
+    ],
+)
+def test_sizes_that_are_not_positive(told, shape):
+    collision = f'<collision name="c"><geometry>{shape}</geometry></collision>'
+    assert told(link(GOOD + collision)) == [("SDF122", 2, "a size of collision 'c' is not positive")]
+
+
+def test_an_axis_and_a_step_of_zero(told):
+    joint = '<joint name="j" type="revolute"><parent>l</parent><child>k</child><axis><xyz>0 0 0</xyz></axis></joint>'
+    model = f'<model name="m"><link name="l"/><link name="k"/>{joint}</model>'
+    assert told(model) == [("SDF122", 2, "the axis of joint 'j' has no direction")]
+    step = '<physics type="ode"><max_step_size>0</max_step_size></physics>'
+    assert told(step + link(GOOD)) == [("SDF122", 2, "the time step is not positive: 0 s")]
+
+
+def test_a_mesh_that_is_not_there_is_told_of_once(told, tmp_path):
+    visual = '<visual name="v{}"><geometry><mesh>\n<uri>meshes/a.stl</uri></mesh></geometry></visual>'
+    model = link(GOOD + visual.format(1) + visual.format(2))
+    found = told(model)
+    assert [each[:2] for each in found] == [("SDF162", 3)]
+    assert found[0][2].startswith("'meshes/a.stl' of visual 'v1' is left out: ")
+    (tmp_path / "meshes").mkdir()
+    (tmp_path / "meshes/a.stl").touch()
+    assert told(model) == []
+
+
+def test_findings_go_by_the_settings(tmp_path):
+    (tmp_path / "linkwright.toml").write_text('ignore = ["mass-negative", "SDF122"]\n')
+    path = tmp_path / "w.world"
+    model = link(
+        "<inertial><mass>-2</mass></inertial>"
+        '<visual name="v"><geometry><sphere><radius>0</radius></sphere></geometry></visual>'
+    )
+    path.write_text(f'<sdf version="1.9"><world name="w">{model}</world></sdf>')
+    assert examine(path).diagnostics == ()
+
+
+def _items():
+    if not MANIFEST.is_file():
+        return []
+    items = json.loads(MANIFEST.read_text(encoding="utf-8"))["items"]
+    return [pytest.param(each, id=each["name"]) for each in items if each["entry"].endswith((".world", ".sdf"))]
+
+
+@pytest.mark.parametrize("item", _items())
+def test_real_worlds_are_silent_but_for_files_that_are_not_there(item, monkeypatch):
+    path = WORLDS / item["entry"]
+    folders = dict.fromkeys(str(WORLDS / each) for each in item.get("model_paths", ()))
+    monkeypatch.setenv("GAZEBO_MODEL_PATH", os.pathsep.join(folders))
+    monkeypatch.setenv("HOME", "/nowhere")
+    found = examine(path, packages=PackageFinder(start=path.parent, environment={})).diagnostics
+    assert [each for each in found if each.code.startswith("LW") or each.code == "SDF122"] == []
