@@ -1,0 +1,43 @@
+"""Which way pictures are made here: the first that works."""
+
+from __future__ import annotations
+
+import os
+
+from linkwright.simulation.rendering.casting import Caster, EmbreeCaster, MujocoCaster
+from linkwright.simulation.rendering.opengl import BACKENDS, OpenGlRenderer
+from linkwright.simulation.rendering.rays import RayRenderer
+from linkwright.simulation.rendering.renderer import Renderer
+from linkwright.simulation.simulation import Simulation
+
+WAYS = (*BACKENDS, "embree", "mujoco")
+
+
+def make_renderer(simulation: Simulation, way: str = "") -> Renderer:
+    """What makes pictures of a world in this thread.
+
+    Args:
+        simulation: the world.
+        way: one of `WAYS`; by default what the environment variable ``MUJOCO_GL`` names if it is one, else the first
+            that works here.
+
+    Raises:
+        Exception: of any class, where a way is asked for that does not work here.
+    """
+    if way:
+        return _made(simulation, way)
+    asked = os.environ.get("MUJOCO_GL", "").lower()
+    ways = (asked, *WAYS) if asked in BACKENDS else WAYS[2:] if asked in ("off", "disable", "disabled") else WAYS
+    for each in ways:
+        try:
+            return _made(simulation, each)
+        except Exception:  # noqa: BLE001, PERF203, S112 - what is not there fails in many ways
+            continue
+    raise AssertionError("MuJoCo's rays need nothing, and never fail")
+
+
+def _made(simulation: Simulation, way: str) -> Renderer:
+    if way in BACKENDS:
+        return OpenGlRenderer(simulation, way)
+    caster: Caster = EmbreeCaster(simulation) if way == "embree" else MujocoCaster(simulation)
+    return RayRenderer(simulation, caster)

@@ -1,0 +1,79 @@
+"""Lights of worlds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwright.geometry.arrays import Array
+from linkwright.geometry.single import IDENTITY, Transform, compose, rotate
+from linkwright.sdf.frames import FrameError, Frames, transform_of
+from linkwright.sdf.lights import Light
+from linkwright.simulation.simulation import Simulation
+
+_SUN = (-0.5, 0.1, -0.9)
+"""Where the light goes in worlds without any, as Gazebo's sun shines."""
+_REFLECTED = Light("reflected", "directional", diffuse=(0.25, 0.25, 0.25, 1.0), specular=(0.0, 0.0, 0.0, 1.0))
+
+
+@dataclass(frozen=True, slots=True)
+class PlacedLight:
+    """A light in the world.
+
+    Attributes:
+        light: what is said of it.
+        position: in m, shape (3,).
+        direction: where it shines, a unit vector of shape (3,).
+        colour: red, green, blue from 0 to 1, with its intensity: shape (3,).
+    """
+
+    light: Light
+    position: Array
+    direction: Array
+    colour: Array
+
+
+def lights_of(simulation: Simulation, forwards: Array) -> list[PlacedLight]:
+    """The lights of a world and of its links as they stand now; a sun where there is none.
+
+    A faint one comes from the camera, which looks along `forwards`: it takes the place of what other things reflect,
+    and without it all that lies in the shade would be of one colour.
+    """
+    lights = [*_of_world(simulation), *_of_links(simulation)]
+    if not lights:
+        lights = [_placed(Light("sun", "directional", diffuse=(0.8, 0.8, 0.8, 1.0), direction=_SUN), IDENTITY)]
+    return [PlacedLight(_REFLECTED, np.zeros(3), forwards, np.array(_REFLECTED.diffuse[:3])), *lights]
+
+
+def _of_world(simulation: Simulation) -> Iterator[PlacedLight]:
+    frames = Frames(simulation.world)
+    for light in simulation.world.lights:
+        if light.light_on:
+            try:
+                pose = frames.placed(light.pose)
+            except FrameError:
+                continue
+            yield _placed(light, pose)
+
+
+def _of_links(simulation: Simulation) -> Iterator[PlacedLight]:
+    for model in simulation.scene.models.values():
+        for held in model.structure.links:
+            for light in held.link.link.lights:
+                if light.light_on:
+                    pose = compose(simulation.link_pose(held.link.name), transform_of(light.pose.pose))
+                    yield _placed(light, pose)
+
+
+def _placed(light: Light, pose: Transform) -> PlacedLight:
+    direction = np.array(rotate(pose[3:], light.direction))
+    length = float(np.linalg.norm(direction))
+    down = np.array([0.0, 0.0, -1.0])
+    return PlacedLight(
+        light,
+        np.array(pose[:3]),
+        direction / length if length > 0 else down,
+        np.array(light.diffuse[:3]) * light.intensity,
+    )

@@ -1,0 +1,246 @@
+"""Pictures by OpenGL: MuJoCo's classic renderer, off the screen, on EGL or OSMesa.
+
+MuJoCo's defaults (four samples a pixel, shadow maps of 4096 pixels, reflections) take twenty times as long on a
+processor as what is set here.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import threading
+from ctypes.util import find_library
+from importlib import import_module
+from typing import Any
+
+import numpy as np
+
+from linkwright.diagnostics import Phrase, phrase
+from linkwright.geometry.single import Transform
+from linkwright.simulation.library import load_mujoco
+from linkwright.simulation.rendering.lights import PlacedLight, lights_of
+from linkwright.simulation.rendering.optics import Optics
+from linkwright.simulation.rendering.renderer import Picture, Pixels, Wanted, axes_of
+from linkwright.simulation.scene.bodies import VISUAL_GROUP
+from linkwright.simulation.simulation import Simulation
+
+_LIBRARIES = {"cgl": ""} if sys.platform == "darwin" else {"egl": "EGL", "osmesa": "OSMesa"}
+"""The libraries that MuJoCo's backends need."""
+_NAMES = {"egl": "EGL", "osmesa": "OSMesa", "cgl": "CGL"}
+BACKENDS = tuple(_LIBRARIES)
+_LIGHTS = 8
+"""So many lights OpenGL knows at a time."""
+_SPARE_GEOMS = 100
+"""Room in the list of what is drawn beside the geoms of the model."""
+
+
+class OpenGlRenderer:
+    """Makes pictures by OpenGL.
+
+    Its context belongs to the thread that made it.
+
+    Args:
+        simulation: the world.
+        backend: one of `BACKENDS`.
+
+    Raises:
+        Exception: of any class; this way does not work here.
+    """
+
+    def __init__(self, simulation: Simulation, backend: str) -> None:
+        self.way: Phrase = phrase("OpenGL by {backend}", backend=_NAMES[backend])
+        self._simulation = simulation
+        self._mujoco = mujoco = load_mujoco()
+        self._thread = threading.get_ident()
+        self._size = (640, 480)
+        self._gl = _context_class(backend)(*self._size)
+        self._gl.make_current()
+        self._option = mujoco.MjvOption()
+        for groups in (
+            "geomgroup",
+            "sitegroup",
+            "jointgroup",
+            "tendongroup",
+            "actuatorgroup",
+            "flexgroup",
+            "skingroup",
+        ):
+            if hasattr(self._option, groups):
+                getattr(self._option, groups)[:] = 0
+        self._option.geomgroup[VISUAL_GROUP] = 1
+        self._view = mujoco.MjvCamera()
+        self._revision = -1
+        self._drawn: tuple[int, int, float] | None = None
+        self._draw_context: Any = None
+        self._scene: Any = None
+        try:
+            self._renew()
+        except BaseException:
+            self._gl.free()
+            raise
+
+    def render(self, optics: Optics, pose: Transform, wanted: Wanted) -> Picture:
+        """What a camera sees now."""
+        self._gl.make_current()
+        hole = optics.pinhole
+        self._simulation.refresh()
+        self._renew()
+        self._make_room(hole)
+        self._update(hole, pose)
+        colour, depth = self._draw(hole, wanted)
+        geoms = self._draw_geoms(hole) if Wanted.GEOMS in wanted else None
+        if optics.is_pinhole:
+            return Picture(colour, depth, geoms)
+        return Picture(
+            None if colour is None else _warped(colour, optics),
+            None if depth is None else _picked(depth, optics),
+            None if geoms is None else _picked(geoms, optics),
+        )
+
+    def close(self) -> None:
+        """Free the context; only the thread that made it may."""
+        if self._thread == threading.get_ident():
+            self._gl.make_current()
+            if self._draw_context is not None:
+                self._draw_context.free()
+            self._gl.free()
+
+    def _renew(self) -> None:
+        """Send meshes and textures anew after models have come or gone."""
+        simulation, mujoco = self._simulation, self._mujoco
+        if self._revision == simulation.revision:
+            return
+        model = simulation.model
+        model.vis.quality.offsamples = 0
+        model.vis.quality.shadowsize = 0
+        model.vis.global_.offwidth, model.vis.global_.offheight = self._size
+        model.stat.extent = 1.0
+        if self._draw_context is not None:
+            self._draw_context.free()
+        self._draw_context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100.value)
+        mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value, self._draw_context)
+        self._draw_context.readDepthMap = mujoco.mjtDepthMap.mjDEPTH_ZEROFAR
+        self._scene = mujoco.MjvScene(model=model, maxgeom=model.ngeom + _SPARE_GEOMS)
+        flags = mujoco.mjtRndFlag
+        for flag in (flags.mjRND_SHADOW, flags.mjRND_REFLECTION, flags.mjRND_SKYBOX, flags.mjRND_HAZE, flags.mjRND_FOG):
+            self._scene.flags[flag] = 0
+        self._revision, self._drawn = simulation.revision, None
+
+    def _make_room(self, hole: Optics) -> None:
+        width, height = max(self._size[0], hole.width), max(self._size[1], hole.height)
+        if (width, height) != self._size:
+            self._size = width, height
+            self._mujoco.mjr_resizeOffscreen(width, height, self._draw_context)
+
+    def _update(self, hole: Optics, pose: Transform) -> None:
+        simulation, mujoco = self._simulation, self._mujoco
+        now = (simulation.revision, simulation.time, hole.far)
+        if self._drawn != now:
+            simulation.model.vis.map.zfar = hole.far  # how far planes without an end go
+            catches = mujoco.mjtCatBit.mjCAT_ALL.value
+            mujoco.mjv_updateScene(
+                simulation.model, simulation.data, self._option, None, self._view, catches, self._scene
+            )
+            self._drawn = now
+        _, down, forwards = axes_of(pose).T
+        self._set_lights(lights_of(simulation, forwards))
+        scale = hole.near / hole.fy
+        for camera in self._scene.camera:
+            camera.pos[:] = pose[:3]
+            camera.forward[:], camera.up[:] = forwards, -down
+            camera.frustum_near, camera.frustum_far = hole.near, hole.far
+            camera.frustum_top, camera.frustum_bottom = hole.cy * scale, (hole.cy - hole.height) * scale
+            camera.frustum_center = (hole.width / 2 - hole.cx) * scale
+            camera.frustum_width = hole.width / 2 * scale
+
+    def _set_lights(self, lights: list[PlacedLight]) -> None:
+        scene, kinds = self._scene, self._mujoco.mjtLightType
+        scene.nlight = min(len(lights), _LIGHTS)
+        ambient = np.array(self._simulation.world.scene.ambient[:3])
+        for light, placed in zip(scene.lights, lights[:_LIGHTS], strict=False):
+            said = placed.light
+            directional = said.type == "directional"  # a point light is a spot that shines all round
+            light.type = (kinds.mjLIGHT_DIRECTIONAL if directional else kinds.mjLIGHT_SPOT).value
+            light.pos[:], light.dir[:] = placed.position, placed.direction
+            light.attenuation[:] = said.attenuation.constant, said.attenuation.linear, said.attenuation.quadratic
+            if directional:
+                light.attenuation[:] = 1.0, 0.0, 0.0
+            cone = said.spot.outer_angle / 2 if said.type == "spot" and said.spot is not None else np.pi
+            light.cutoff = float(np.degrees(cone)) if cone < np.pi / 2 else 180.0
+            light.exponent = 0.0
+            light.diffuse[:] = placed.colour
+            light.specular[:] = said.specular[:3]
+            light.ambient[:] = ambient
+            ambient = np.zeros(3)
+            light.headlight = light.castshadow = 0
+
+    def _draw(self, hole: Optics, wanted: Wanted) -> tuple[Pixels | None, Pixels | None]:
+        if not wanted & (Wanted.COLOUR | Wanted.DEPTH):
+            return None, None
+        rect = self._mujoco.MjrRect(0, 0, hole.width, hole.height)
+        self._mujoco.mjr_render(rect, self._scene, self._draw_context)
+        colour = np.empty((hole.height, hole.width, 3), np.uint8) if Wanted.COLOUR in wanted else None
+        raw = np.empty((hole.height, hole.width), np.float32)
+        self._mujoco.mjr_readPixels(colour, raw, rect, self._draw_context)
+        nothing = raw <= 0
+        if colour is not None:
+            background = np.clip(np.array(self._simulation.world.scene.background[:3]), 0, 1) * 255
+            colour[nothing] = np.round(background)
+            colour = np.ascontiguousarray(colour[::-1])
+        if Wanted.DEPTH not in wanted:
+            return colour, None
+        near, far = np.float32(hole.near), np.float32(hole.far)
+        depth = far * near / (near + raw * (far - near))
+        depth[nothing] = np.inf
+        return colour, np.ascontiguousarray(depth[::-1])
+
+    def _draw_geoms(self, hole: Optics) -> Pixels:
+        flags, scene = self._mujoco.mjtRndFlag, self._scene
+        rect = self._mujoco.MjrRect(0, 0, hole.width, hole.height)
+        try:
+            scene.flags[flags.mjRND_SEGMENT] = scene.flags[flags.mjRND_IDCOLOR] = 1
+            self._mujoco.mjr_render(rect, scene, self._draw_context)
+        finally:
+            scene.flags[flags.mjRND_SEGMENT] = scene.flags[flags.mjRND_IDCOLOR] = 0
+        colours = np.empty((hole.height, hole.width, 3), np.uint8)
+        self._mujoco.mjr_readPixels(colours, None, rect, self._draw_context)
+        numbers = colours[::-1].astype(np.int32) @ np.array([1, 1 << 8, 1 << 16], dtype=np.int32)
+        known = [(geom.segid + 1, geom.objid) for geom in scene.geoms[: scene.ngeom] if geom.segid >= 0]
+        table = np.full(max((number for number, _ in known), default=0) + 1, -1, dtype=np.int32)
+        for number, geom in known:
+            table[number] = geom
+        named: Pixels = table[np.where(numbers < len(table), numbers, 0)]
+        return named
+
+
+def _context_class(backend: str) -> Any:
+    library = _LIBRARIES[backend]
+    if library and find_library(library) is None:
+        raise OSError(library)
+    before = os.environ.get("PYOPENGL_PLATFORM")
+    try:
+        return import_module(f"mujoco.{backend}").GLContext
+    finally:
+        if before is None:  # what MuJoCo sets is not meant for the programs that this one starts
+            os.environ.pop("PYOPENGL_PLATFORM", None)
+
+
+def _picked(pixels: Pixels, optics: Optics) -> Pixels:
+    """The nearest pixels of a pinhole's picture, as a picture of a lens."""
+    column, row = optics.sources
+    column = np.clip(np.round(column).astype(int), 0, optics.pinhole.width - 1)
+    row = np.clip(np.round(row).astype(int), 0, optics.pinhole.height - 1)
+    picked: Pixels = pixels[row, column].reshape(optics.height, optics.width, *pixels.shape[2:])
+    return picked
+
+
+def _warped(pixels: Pixels, optics: Optics) -> Pixels:
+    """Colours between the pixels of a pinhole's picture, as a picture of a lens."""
+    column = np.clip(optics.sources[0], 0, optics.pinhole.width - 1.001)
+    row = np.clip(optics.sources[1], 0, optics.pinhole.height - 1.001)
+    left, top = column.astype(int), row.astype(int)
+    right, below = (column - left)[:, None], (row - top)[:, None]
+    upper = pixels[top, left] * (1 - right) + pixels[top, left + 1] * right
+    lower = pixels[top + 1, left] * (1 - right) + pixels[top + 1, left + 1] * right
+    mixed: Pixels = np.round(upper * (1 - below) + lower * below)
+    return mixed.astype(np.uint8).reshape(optics.height, optics.width, 3)

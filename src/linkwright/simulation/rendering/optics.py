@@ -1,0 +1,147 @@
+"""How a camera projects: a pinhole, and a lens that distorts.
+
+Source: the model ``plumb_bob`` of camera calibration (Brown, "Decentering distortion of lenses", 1966); axes of
+pictures as REP 103 has them: x to the right, y down, z into the picture.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import tan
+
+import numpy as np
+
+from linkwright.geometry.arrays import Array
+from linkwright.sdf.cameras import Camera, Distortion
+
+_TURNS = 20
+"""How often a distorted point is improved on the way back to the undistorted one."""
+_LARGEST = 2.0
+"""How many times wider than the picture what a distorted one is made of may be."""
+
+
+@dataclass(frozen=True)
+class Optics:
+    """A camera's picture.
+
+    Attributes:
+        width, height: in pixels.
+        fx, fy: focal lengths in pixels.
+        cx, cy: where the optical axis goes through the picture, in pixels from the outer corner of the first pixel,
+            whose middle is at 0.5.
+        near, far: the distances along the optical axis that are seen, in m.
+        distortion: of the lens; None for a perfect one.
+    """
+
+    width: int
+    height: int
+    fx: float
+    fy: float
+    cx: float
+    cy: float
+    near: float
+    far: float
+    distortion: Distortion | None = None
+
+    @cached_property
+    def rays(self) -> Array:
+        """Where each pixel looks, x, y, z with z = 1: shape (height * width, 3)."""
+        across = (np.arange(self.width) + 0.5 - self.cx) / self.fx
+        down = (np.arange(self.height) + 0.5 - self.cy) / self.fy
+        x, y = (each.ravel() for each in np.meshgrid(across, down))
+        if self.distortion is not None:
+            x, y = undistorted(self.distortion, x, y)
+        rays: Array = np.stack([x, y, np.ones_like(x)], axis=-1)
+        return rays
+
+    def directions(self, axes: Array) -> Array:
+        """Where each pixel looks in other axes: shape (height * width, 3), as 32-bit numbers.
+
+        Args:
+            axes: right, down and forwards, as columns.
+        """
+        across, down = self._slopes
+        directions = np.empty((len(across), 3), np.float32)
+        for index, (right, below, forwards) in enumerate(axes.astype(np.float32)):
+            directions[:, index] = across * right + down * below + forwards
+        return directions  # type: ignore[return-value]  # 32 bits are enough here
+
+    @cached_property
+    def _slopes(self) -> tuple[Array, Array]:
+        across, down, _ = np.ascontiguousarray(self.rays.T, dtype=np.float32)
+        return across, down
+
+    @property
+    def is_pinhole(self) -> bool:
+        """Whether a pinhole with square pixels makes this picture."""
+        return self.distortion is None and self.fx == self.fy
+
+    @cached_property
+    def pinhole(self) -> Optics:
+        """A pinhole's picture that has in it what this picture shows."""
+        if self.is_pinhole:
+            return self
+        x, y = self.rays[:, 0], self.rays[:, 1]
+        focal = max(self.fx, self.fy)
+        left, right, top, bottom = (
+            min(focal * reach + 1.0, _LARGEST * size)
+            for reach, size in (
+                (-x.min(), self.width),
+                (x.max(), self.width),
+                (-y.min(), self.height),
+                (y.max(), self.height),
+            )
+        )
+        left, top = float(np.ceil(max(left, 1.0))), float(np.ceil(max(top, 1.0)))
+        width, height = int(left + np.ceil(max(right, 1.0))), int(top + np.ceil(max(bottom, 1.0)))
+        return Optics(width, height, focal, focal, left, top, self.near, self.far)
+
+    @cached_property
+    def sources(self) -> tuple[Array, Array]:
+        """The pixels of `pinhole`, columns and rows as fractions, that the pixels of this picture show."""
+        hole = self.pinhole
+        return self.rays[:, 0] * hole.fx + hole.cx - 0.5, self.rays[:, 1] * hole.fy + hole.cy - 0.5
+
+    def project(self, points: Array) -> Array:
+        """Where points, shape (n, 3) with z > 0, are in the picture: columns and rows in pixels, shape (n, 2)."""
+        x, y = points[:, 0] / points[:, 2], points[:, 1] / points[:, 2]
+        if self.distortion is not None:
+            x, y = distorted(self.distortion, x, y)
+        placed: Array = np.stack([x * self.fx + self.cx, y * self.fy + self.cy], axis=-1)
+        return placed
+
+
+def optics_of(camera: Camera, *, near: float | None = None, far: float | None = None) -> Optics:
+    """The optics of a camera of SDF; `near` and `far` in m stand for those that it says."""
+    width, height = max(camera.image.width, 1), max(camera.image.height, 1)
+    clip = camera.clip
+    nearest = max(clip.near if near is None else near, 1e-3)
+    farthest = max(clip.far if far is None else far, nearest * 2)
+    given, lens = camera.distortion, camera.intrinsics
+    lossy = given is not None and any((given.k1, given.k2, given.k3, given.p1, given.p2))
+    focal = width / (2 * tan(min(max(camera.horizontal_fov, 1e-3), 3.1) / 2))
+    if lens is not None and lens.fx > 0 and lens.fy > 0:
+        place = lens.fx, lens.fy, lens.cx, lens.cy
+    else:
+        place = focal, focal, width / 2, height / 2
+    return Optics(width, height, *place, nearest, farthest, given if lossy else None)
+
+
+def distorted(lens: Distortion, x: Array, y: Array) -> tuple[Array, Array]:
+    """Where a lens puts what a pinhole has at x, y; both at a focal length of 1."""
+    square = x * x + y * y
+    radial = 1 + square * (lens.k1 + square * (lens.k2 + square * lens.k3))
+    across = x * radial + 2 * lens.p1 * x * y + lens.p2 * (square + 2 * x * x)
+    down = y * radial + lens.p1 * (square + 2 * y * y) + 2 * lens.p2 * x * y
+    return across, down
+
+
+def undistorted(lens: Distortion, x: Array, y: Array) -> tuple[Array, Array]:
+    """What a pinhole has where a lens has put x, y: the inverse of `distorted`, by turns that come ever nearer."""
+    across, down = x.copy(), y.copy()
+    for _ in range(_TURNS):
+        there = distorted(lens, across, down)
+        across, down = across + (x - there[0]), down + (y - there[1])
+    wide = (np.abs(across) < 10) & (np.abs(down) < 10)  # also false for what is no number
+    return np.where(wide, across, x), np.where(wide, down, y)

@@ -1,0 +1,115 @@
+"""Pictures by ray casting: one ray a pixel, flat shading, no shadows."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import cos
+from typing import Any
+
+import numpy as np
+
+from linkwright.geometry.arrays import Array
+from linkwright.geometry.single import Transform
+from linkwright.simulation.rendering.casting import Caster, Hits
+from linkwright.simulation.rendering.lights import PlacedLight, lights_of
+from linkwright.simulation.rendering.optics import Optics
+from linkwright.simulation.rendering.renderer import Picture, Wanted, axes_of
+from linkwright.simulation.simulation import Simulation
+
+
+class RayRenderer:
+    """Makes pictures by rays.
+
+    Args:
+        simulation: the world.
+        caster: what casts the rays.
+    """
+
+    def __init__(self, simulation: Simulation, caster: Caster) -> None:
+        self.way = caster.way
+        self._simulation = simulation
+        self._caster = caster
+        self._colours: Any = None
+        self._revision = -1
+
+    def render(self, optics: Optics, pose: Transform, wanted: Wanted) -> Picture:
+        """What a camera sees now."""
+        axes = axes_of(pose)
+        origin, rays = np.array(pose[:3]), optics.directions(axes)
+        hits = self._caster.cast(origin, rays)
+        unseen = ~((hits.distances >= optics.near) & (hits.distances <= optics.far))
+        np.copyto(hits.distances, np.inf, where=unseen)
+        np.copyto(hits.geoms, -1, where=unseen)
+        shape = optics.height, optics.width
+        return Picture(
+            self._shaded(hits, origin, rays, axes[:, 2]).reshape(*shape, 3) if Wanted.COLOUR in wanted else None,
+            hits.distances.reshape(shape) if Wanted.DEPTH in wanted else None,
+            hits.geoms.reshape(shape) if Wanted.GEOMS in wanted else None,
+        )
+
+    def close(self) -> None:
+        """Nothing of the system is held."""
+
+    def _shaded(self, hits: Hits, origin: Array, rays: Any, forwards: Array) -> Any:
+        simulation = self._simulation
+        if self._revision != simulation.revision:
+            self._colours = geom_colours(simulation.model)
+            self._revision = simulation.revision
+        scene = simulation.world.scene
+        turned = np.where(np.einsum("ij,ij->i", hits.normals, rays) > 0, np.float32(-1), np.float32(1))
+        light = np.empty_like(hits.normals)
+        light[:] = scene.ambient[:3]
+        for each in lights_of(simulation, forwards):
+            share = _share(each, hits, turned, origin, rays)
+            for channel, strength in enumerate(each.colour.astype(np.float32)):
+                light[:, channel] += share * strength
+        light *= self._colours.take(hits.geoms, axis=0, mode="wrap")
+        np.minimum(light, 1.0, out=light)
+        light *= 255
+        picture = light.astype(np.uint8)
+        np.copyto(picture, _background(scene.background), where=(hits.geoms < 0)[:, None])
+        return picture
+
+
+def _background(colour: Sequence[float]) -> Any:
+    return np.round(np.clip(np.array(colour[:3]), 0, 1) * 255).astype(np.uint8)
+
+
+def _share(placed: PlacedLight, hits: Hits, turned: Any, origin: Array, rays: Any) -> Any:
+    """The share of a light that surfaces get: shape (n,)."""
+    if placed.light.type == "directional":
+        share = (hits.normals @ -placed.direction.astype(np.float32)) * turned
+        return np.maximum(share, 0, out=share)
+    with np.errstate(invalid="ignore"):  # where nothing is hit
+        away = placed.position.astype(np.float32) - (origin.astype(np.float32) + rays * hits.distances[:, None])
+        distance = np.linalg.norm(away, axis=1)
+        away /= np.maximum(distance, 1e-9)[:, None]
+        fading = placed.light.attenuation
+        share = np.maximum(np.einsum("ij,ij->i", hits.normals, away) * turned, 0)
+        share /= np.maximum(fading.constant + fading.linear * distance + fading.quadratic * distance**2, 1e-3)
+        share[~(distance <= fading.range)] = 0
+        if placed.light.type == "spot" and placed.light.spot is not None:
+            outside = away @ -placed.direction.astype(np.float32) < cos(placed.light.spot.outer_angle / 2)
+            share[outside] = 0
+    return share
+
+
+def geom_colours(model: Any) -> Any:
+    """The colour of each geom, from 0 to 1, with the mean of its texture: shape (geoms, 3), float32."""
+    colours = np.array(model.geom_rgba[:, :3], dtype=np.float64)
+    for geom in np.nonzero(model.geom_matid >= 0)[0]:
+        material = model.geom_matid[geom]
+        colours[geom] = model.mat_rgba[material, :3]
+        for texture in np.atleast_1d(model.mat_texid[material]):
+            if texture >= 0:
+                colours[geom] *= _mean(model, int(texture))
+                break
+    return colours.astype(np.float32)
+
+
+def _mean(model: Any, texture: int) -> Array:
+    """The mean colour of a texture."""
+    first, channels = model.tex_adr[texture], model.tex_nchannel[texture]
+    count = model.tex_width[texture] * model.tex_height[texture] * channels
+    mean: Array = model.tex_data[first : first + count].reshape(-1, channels).mean(axis=0) / 255
+    return mean[:3] if channels >= 3 else np.repeat(mean[:1], 3)

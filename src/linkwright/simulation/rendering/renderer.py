@@ -1,0 +1,67 @@
+"""What makes pictures, whichever way."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Flag, auto
+from typing import Any, Protocol
+
+import numpy as np
+
+from linkwright.diagnostics import Phrase
+from linkwright.geometry.arrays import Array, rotation_matrix
+from linkwright.geometry.single import Transform
+from linkwright.simulation.rendering.optics import Optics
+
+Pixels = np.ndarray[Any, np.dtype[Any]]
+
+_INTO_LINK = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
+"""The axes of pictures in those of links: cameras look along x, with z up."""
+
+
+class Wanted(Flag):
+    """What a picture has to have."""
+
+    COLOUR = auto()
+    DEPTH = auto()
+    GEOMS = auto()
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """What a camera sees; None for what was not asked for.
+
+    Attributes:
+        colour: red, green, blue: shape (height, width, 3), uint8.
+        depth: distance along the optical axis in m, inf where nothing is nearer than `far`: shape (height, width).
+        geoms: the geom of MuJoCo's model, -1 for none: shape (height, width).
+    """
+
+    colour: Pixels | None
+    depth: Pixels | None
+    geoms: Pixels | None
+
+
+class Renderer(Protocol):
+    """Makes pictures of a simulation, in the thread that uses the simulation."""
+
+    way: Phrase
+    """How it does so, for people."""
+
+    def render(self, optics: Optics, pose: Transform, wanted: Wanted) -> Picture:
+        """What a camera sees now.
+
+        Args:
+            optics: how it projects.
+            pose: where it is in the world; it looks along x, with z up.
+            wanted: what is needed.
+        """
+
+    def close(self) -> None:
+        """Free what it has of the system."""
+
+
+def axes_of(pose: Transform) -> Array:
+    """The axes of the picture in the world, as columns: right, down, forwards."""
+    axes: Array = rotation_matrix(np.array(pose[3:])) @ _INTO_LINK
+    return axes

@@ -1,0 +1,96 @@
+"""The geoms of MuJoCo's model as triangles."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from linkwright.geometry.arrays import Array
+from linkwright.simulation.library import load_mujoco
+
+_AROUND = 32
+_ALONG = 16
+"""The sides of what is round."""
+Mesh = tuple[Array, Any]
+"""Corners, shape (n, 3), and triangles of their indices, shape (m, 3)."""
+
+
+def is_endless(model: Any, geom: int) -> bool:
+    """Whether a geom is a plane without an end."""
+    plane = model.geom_type[geom] == load_mujoco().mjtGeom.mjGEOM_PLANE
+    return bool(plane and (model.geom_size[geom, 0] <= 0 or model.geom_size[geom, 1] <= 0))
+
+
+def triangles_of(model: Any, geom: int) -> Mesh | None:
+    """A geom in its own frame; None for one that has no triangles, as a plane without an end."""
+    kinds = load_mujoco().mjtGeom
+    kind, size = model.geom_type[geom], model.geom_size[geom]
+    if kind == kinds.mjGEOM_BOX:
+        return _box(size)
+    if kind == kinds.mjGEOM_SPHERE:
+        return _round(size[[0, 0, 0]], 0.0)
+    if kind == kinds.mjGEOM_ELLIPSOID:
+        return _round(size, 0.0)
+    if kind == kinds.mjGEOM_CAPSULE:
+        return _round(size[[0, 0, 0]], size[1])
+    if kind == kinds.mjGEOM_CYLINDER:
+        return _cylinder(size[0], size[1])
+    if kind == kinds.mjGEOM_MESH:
+        return _mesh(model, model.geom_dataid[geom])
+    if kind == kinds.mjGEOM_HFIELD:
+        return _heights(model, model.geom_dataid[geom])
+    if kind == kinds.mjGEOM_PLANE and not is_endless(model, geom):
+        corners = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]]) * [size[0], size[1], 0]
+        return corners, np.array([[0, 1, 2], [0, 2, 3]])
+    return None
+
+
+def _box(half: Array) -> Mesh:
+    corners = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * half
+    sides = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    return corners, np.array([face for a, b, c, d in sides for face in ((a, b, c), (a, c, d))])
+
+
+def _grid(rows: int, columns: int, *, closed: bool) -> Any:
+    """Triangles between rows of corners; closed, the last column is followed by the first."""
+    row, column = np.meshgrid(np.arange(rows - 1), np.arange(columns if closed else columns - 1), indexing="ij")
+    right = (column + 1) % columns
+    a, b = row * columns + column, row * columns + right
+    c, d = a + columns, b + columns
+    return np.concatenate([np.stack([a, b, d], -1).reshape(-1, 3), np.stack([a, d, c], -1).reshape(-1, 3)])
+
+
+def _round(radii: Array, half: float) -> Mesh:
+    """An ellipsoid, whose upper and lower half are moved apart for a capsule."""
+    up = np.linspace(-np.pi / 2, np.pi / 2, _ALONG)
+    around = np.linspace(0, 2 * np.pi, _AROUND, endpoint=False)
+    rise, turn = np.meshgrid(up, around, indexing="ij")
+    z = np.sin(rise) * radii[2] + np.sign(rise) * half
+    corners = np.stack([np.cos(rise) * np.cos(turn) * radii[0], np.cos(rise) * np.sin(turn) * radii[1], z], -1)
+    return corners.reshape(-1, 3), _grid(_ALONG, _AROUND, closed=True)
+
+
+def _cylinder(radius: float, half: float) -> Mesh:
+    turn = np.linspace(0, 2 * np.pi, _AROUND, endpoint=False)
+    ring = np.stack([np.cos(turn) * radius, np.sin(turn) * radius], -1)
+    rows = [
+        np.column_stack([scale * ring, np.full(_AROUND, z)])
+        for scale, z in ((0, -half), (1, -half), (1, half), (0, half))
+    ]
+    return np.concatenate(rows), _grid(4, _AROUND, closed=True)
+
+
+def _mesh(model: Any, index: int) -> Mesh:
+    vertex, face = model.mesh_vertadr[index], model.mesh_faceadr[index]
+    corners = model.mesh_vert[vertex : vertex + model.mesh_vertnum[index]]
+    return np.array(corners, dtype=np.float64), np.array(model.mesh_face[face : face + model.mesh_facenum[index]])
+
+
+def _heights(model: Any, index: int) -> Mesh:
+    rows, columns = model.hfield_nrow[index], model.hfield_ncol[index]
+    across, along, up, _ = model.hfield_size[index]
+    first = model.hfield_adr[index]
+    heights = model.hfield_data[first : first + rows * columns].reshape(rows, columns) * up
+    y, x = np.meshgrid(np.linspace(-along, along, rows), np.linspace(-across, across, columns), indexing="ij")
+    return np.stack([x, y, heights], -1).reshape(-1, 3), _grid(rows, columns, closed=False)

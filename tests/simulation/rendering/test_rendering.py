@@ -1,0 +1,175 @@
+"""Pictures, whichever way they are made: colours, distances, and where in the picture things are."""
+
+from __future__ import annotations
+
+from math import pi, tan
+
+import numpy as np
+import pytest
+
+from linkwright.geometry.single import IDENTITY
+from linkwright.sdf.cameras import Camera, Clip, Distortion, Intrinsics, Picture
+from linkwright.simulation.rendering.choice import WAYS, make_renderer
+from linkwright.simulation.rendering.optics import Optics, distorted, optics_of, undistorted
+from linkwright.simulation.rendering.renderer import Wanted
+from linkwright.simulation.simulation import Simulation
+from tests.simulation.sensors.rooms import block
+from tests.simulation.worlds import model, simulated
+
+CAMERA = Camera(horizontal_fov=pi / 2, image=Picture(160, 120), clip=Clip(0.05, 50.0))
+LENS = Distortion(-0.25, 0.12, -0.01, 0.001, -0.002)
+FLOOR = """
+<model name="floor"><static>true</static><link name="link"><visual name="visual">
+  <geometry><plane><normal>0 0 1</normal></plane></geometry>
+</visual></link></model>"""
+
+
+@pytest.fixture(params=WAYS)
+def make(request: pytest.FixtureRequest):
+    """Makes a renderer one way; the ways that the system lacks are left out."""
+    made = []
+
+    def renderer(simulation: Simulation):
+        try:
+            each = make_renderer(simulation, request.param)
+        except Exception as error:  # noqa: BLE001 - a library that is not there fails in many ways
+            pytest.skip(f"no {request.param} here: {error}")
+        made.append(each)
+        return each
+
+    yield renderer
+    for each in made:
+        each.close()
+
+
+def test_walls_are_as_far_as_they_are(make):
+    simulation = simulated(block("wall", "3.5 0 0 0 0 0", "1 20 20"), block("box", "2 0.5 0 0 0 0", "0.5 0.5 0.5"))
+    depth = make(simulation).render(optics_of(CAMERA), IDENTITY, Wanted.DEPTH).depth
+    assert depth.shape == (120, 160)
+    assert depth.dtype == np.float32
+    assert depth[60, 60] == pytest.approx(1.75, abs=1e-3)
+    assert np.abs(depth[:, 100:] - 3.0).max() < 1e-3
+
+
+def test_the_floor_goes_on_to_the_horizon(make):
+    pose = (0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
+    optics = optics_of(CAMERA)
+    depth = make(simulated(FLOOR)).render(optics, pose, Wanted.DEPTH).depth
+    rows = np.arange(65, 120)
+    expected = optics.fy / (rows + 0.5 - optics.cy)
+    assert depth[65:, 80] == pytest.approx(expected, abs=1e-3)
+    assert np.isinf(depth[:59]).all()
+
+
+def test_what_is_too_near_or_too_far_is_not_seen(make):
+    simulation = simulated(block("near", "0.3 0.1 0 0 0 0", "0.1 0.1 0.1"), block("far", "60 0 0 0 0 0", "1 90 90"))
+    optics = optics_of(CAMERA, near=0.5)
+    picture = make(simulation).render(optics, IDENTITY, Wanted.DEPTH | Wanted.COLOUR)
+    assert np.isinf(picture.depth).all()
+    assert (picture.colour == round(0.7 * 255)).all()
+
+
+def test_colours_are_those_of_the_things(make):
+    simulation = simulated(
+        block("left", "2 1 0 0 0 0", "0.1 1 1", colour="1 0 0 1"),
+        block("right", "2 -1 0 0 0 0", "0.1 1 1", colour="0 1 0 1"),
+    )
+    renderer = make(simulation)
+    colour = renderer.render(optics_of(CAMERA), IDENTITY, Wanted.COLOUR).colour
+    red, green = colour[60, 40].astype(int), colour[60, 120].astype(int)
+    assert red[0] > 50
+    assert red[1] == red[2] == 0
+    assert green[1] > 50
+    assert green[0] == green[2] == 0
+
+
+@pytest.mark.parametrize("point", [(2.0, 0.5, 0.3), (2.0, -1.2, -0.6), (3.0, 2.0, 1.5)])
+def test_things_are_where_a_pinhole_has_them(make, point):
+    x, y, z = point
+    size = 0.2
+    simulation = simulated(block("thing", f"{x} {y} {z} 0 0 0", f"0.001 {size} {size}"))
+    optics = optics_of(CAMERA)
+    geoms = make(simulation).render(optics, IDENTITY, Wanted.GEOMS).geoms
+    rows, columns = np.nonzero(geoms >= 0)
+    assert len(rows) > 10
+    focal = 160 / (2 * tan(pi / 4))
+    near = x - 0.0005
+    assert columns.min() == pytest.approx(80 - focal * (y + size / 2) / near, abs=0.5 + 1e-6)
+    assert columns.max() + 1 == pytest.approx(80 - focal * (y - size / 2) / near, abs=0.5 + 1e-6)
+    assert rows.min() == pytest.approx(60 - focal * (z + size / 2) / near, abs=0.5 + 1e-6)
+    assert rows.max() + 1 == pytest.approx(60 - focal * (z - size / 2) / near, abs=0.5 + 1e-6)
+
+
+def test_a_lens_puts_things_where_its_formula_does(make):
+    size, x, y, z = 0.2, 2.0, 1.2, 0.8
+    simulation = simulated(block("thing", f"{x} {y} {z} 0 0 0", f"0.001 {size} {size}"))
+    optics = optics_of(Camera(horizontal_fov=pi / 2, image=Picture(160, 120), distortion=LENS))
+    geoms = make(simulation).render(optics, IDENTITY, Wanted.GEOMS).geoms
+    rows, columns = np.nonzero(geoms >= 0)
+    (middle,) = optics.project(np.array([[-y, -z, x]]))
+    assert columns.mean() + 0.5 == pytest.approx(middle[0], abs=0.5)
+    assert rows.mean() + 0.5 == pytest.approx(middle[1], abs=0.5)
+
+
+def test_every_shape_is_seen_where_it_ends(make):
+    shapes = (
+        "<sphere><radius>0.5</radius></sphere>",
+        "<cylinder><radius>0.5</radius><length>1</length></cylinder>",
+        "<capsule><radius>0.5</radius><length>1</length></capsule>",
+        "<ellipsoid><radii>0.5 0.4 0.3</radii></ellipsoid>",
+        "<cone><radius>0.5</radius><length>1</length></cone>",
+    )
+    for shape in shapes:
+        text = (
+            '<model name="thing"><static>true</static><pose>2 0 0 0 0 0</pose><link name="link"><visual name="visual">'
+            f"<geometry>{shape}</geometry></visual></link></model>"
+        )
+        depth = make(simulated(text)).render(optics_of(CAMERA), IDENTITY, Wanted.DEPTH).depth
+        assert 1.4 < depth[60, 80] < 2.0, shape
+        assert np.isinf(depth[0, 0]), shape
+
+
+def test_models_that_come_and_move_are_seen(make):
+    simulation = simulated(FLOOR)
+    renderer, optics = make(simulation), optics_of(CAMERA)
+    high = (0.0, 0.0, 5.0, 0.0, 0.0, 0.0, 1.0)
+    assert np.isinf(renderer.render(optics, high, Wanted.DEPTH).depth[60, 80])
+    geometry = "<geometry><box><size>1 1 1</size></box></geometry>"
+    box = model(f'<model name="box"><link name="link"><visual name="v">{geometry}</visual></link></model>')
+    simulation.spawn(box, "box", (3.0, 0.0, 5.0, 0.0, 0.0, 0.0, 1.0))
+    assert renderer.render(optics, high, Wanted.DEPTH).depth[60, 80] == pytest.approx(2.5, abs=1e-3)
+    simulation.advance(10**9)
+    assert np.isinf(renderer.render(optics, high, Wanted.DEPTH).depth[60, 80])
+
+
+def test_all_ways_make_the_same_picture(make):
+    wall = block("wall", "4 0 1 0 0 0", "0.1 3 2", colour="0 0 1 1")
+    simulation = simulated(FLOOR, block("box", "2 0.4 0.3 0 0 0.5", "0.5 0.5 0.6"), wall)
+    pose, optics = (0.0, 0.0, 0.5, 0.0, 0.0, 0.0, 1.0), optics_of(CAMERA)
+    exact = make_renderer(simulation, "mujoco").render(optics, pose, Wanted.COLOUR | Wanted.GEOMS)
+    other = make(simulation).render(optics, pose, Wanted.COLOUR | Wanted.GEOMS)
+    assert (exact.geoms != other.geoms).mean() < 0.01
+    apart = np.abs(exact.colour.astype(int) - other.colour.astype(int)).max(axis=-1)
+    assert np.median(apart) <= 3
+    assert (apart > 20).mean() < 0.02
+
+
+def test_a_lamp_lights_what_is_near(make):
+    lamp = (
+        '<light name="lamp" type="point"><pose>1.5 1 0 0 0 0</pose><attenuation><range>9</range></attenuation></light>'
+    )
+    simulation = simulated(block("one", "2 1 0 0 0 0", "0.1 1 1"), block("other", "2 -1 0 0 0 0", "0.1 1 1"), lamp)
+    colour = make(simulation).render(optics_of(CAMERA), IDENTITY, Wanted.COLOUR).colour
+    assert colour[60, 40, 0] > colour[60, 120, 0] + 20
+
+
+def test_a_distorted_point_comes_back():
+    points = np.linspace(-0.6, 0.6, 13), np.linspace(-0.4, 0.5, 13)
+    assert undistorted(LENS, *distorted(LENS, *points)) == pytest.approx(np.array(points), abs=1e-9)
+
+
+def test_focal_lengths_may_be_given_instead_of_an_angle():
+    optics = optics_of(Camera(image=Picture(640, 480), intrinsics=Intrinsics(500.0, 520.0, 310.0, 250.0)))
+    assert (optics.fx, optics.fy, optics.cx, optics.cy) == (500.0, 520.0, 310.0, 250.0)
+    assert not optics.is_pinhole
+    assert optics_of(CAMERA) == Optics(160, 120, pytest.approx(80.0), pytest.approx(80.0), 80.0, 60.0, 0.05, 50.0)
