@@ -6,6 +6,8 @@ import argparse
 import os
 import shlex
 
+from linkwright.cli.view import add_viewer_options
+
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
@@ -47,27 +49,6 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="only before those of programs whose name matches this regular expression",
     )
     add_viewer_options(parser)
-
-
-def add_viewer_options(parser: argparse.ArgumentParser) -> None:
-    """The options about the page, which `view` has too."""
-    parser.add_argument("--no-open", action="store_true", help="do not open the page in the browser")
-    parser.add_argument("--host", default="127.0.0.1", help="address to serve the page at (default: %(default)s)")
-    parser.add_argument("--port", type=port, help="port to serve the page at (default: 7447, or the next free one)")
-    parser.add_argument(
-        "--foxglove", metavar="PORT", type=port, help="let Foxglove and Lichtblick connect to this port of this machine"
-    )
-
-
-def port(text: str) -> int:
-    """A TCP port as a number.
-
-    Raises:
-        argparse.ArgumentTypeError: when it is none.
-    """
-    if text.isascii() and text.isdigit() and 0 < int(text) < 65536:
-        return int(text)
-    raise argparse.ArgumentTypeError(f"'{text}' is not a port; give a number from 1 to 65535")
 
 
 def run(arguments: argparse.Namespace) -> int:

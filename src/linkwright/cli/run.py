@@ -8,7 +8,7 @@ import shlex
 import subprocess
 import sys
 
-from linkwright.cli.launch import add_viewer_options
+from linkwright.cli.view import add_viewer_options
 from linkwright.diagnostics import foreign, phrase
 
 

@@ -10,7 +10,6 @@ from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from linkwright.diagnostics import LinkwrightError
 from linkwright.hosting.launch_log import LaunchLog, output_destinations
 from linkwright.hosting.node_host import NodeHost
 from linkwright.hosting.plans import VIEWER, HostedPlan, HostOptions
@@ -20,7 +19,6 @@ from linkwright.hosting.xacro_calls import DescriptionError, Descriptions, Xacro
 from linkwright.packages import PackageFinder
 
 if TYPE_CHECKING:
-    from linkwright.urdf import Robot
     from linkwright.viewer import RvizConfig
 
 _PUBLISH_FREQUENCY = 60.0
@@ -88,6 +86,7 @@ class ModelView:
         self.ending = False
         self.visiting = False
         self._call = call
+        self._text: str | None = None
         self._failures: set[object] = set()
         self._tasks: set[asyncio.Task[Any]] = set()
         self._is_over = asyncio.Event()
@@ -126,7 +125,7 @@ class ModelView:
         """Have the model published, as soon as its file is right; returns whether the view goes on."""
         self.visiting = True
         try:
-            text = self.descriptions.expand(self._call)
+            self._text = self.descriptions.expand(self._call)
             self.reload.report(self._call, self.descriptions.warnings_of(self._call))
         except DescriptionError as error:
             self.fail(self._call)
@@ -142,7 +141,7 @@ class ModelView:
             return False
         finally:
             self.visiting = False
-        parameters = {"robot_description": text, "publish_frequency": _PUBLISH_FREQUENCY}
+        parameters = {"robot_description": self._text, "publish_frequency": _PUBLISH_FREQUENCY}
         self._plan("robot_state_publisher", "robot_state_publisher", parameters)
         return True
 
@@ -178,17 +177,10 @@ class ModelView:
         """Grid, RobotModel and TF, with the model's root link as the fixed frame."""
         from linkwright.viewer import RvizConfig, size_of
 
-        robot = self._robot()
+        robot = None if self._text is None else self.descriptions.library.read(self._text).robot
         frame = robot.root if robot is not None else _first_link(self._call.path)
         size = size_of(robot) if robot is not None else None
         return RvizConfig.for_model(frame, size=size, name=str(self._call.path))
-
-    def _robot(self) -> Robot | None:
-        """The model; None of one that is broken."""
-        try:
-            return self.descriptions.library.read(self.descriptions.expand(self._call)).robot
-        except LinkwrightError:
-            return None
 
     # --- what its nodes and signals ask for ---------------------------------------------------------------------
 

@@ -1,0 +1,69 @@
+"""Features that do nothing before a page asks for them; their modules are imported with the first question."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any, ClassVar
+
+from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
+from linkwright.viewer.protocol.export import AskExport
+from linkwright.viewer.protocol.message import PageMessage
+from linkwright.viewer.protocol.monitor import (
+    AimTeleop,
+    AskFields,
+    Drive,
+    DumpParameters,
+    SetParameter,
+    WatchLog,
+    WatchNodeGraph,
+    WatchParameters,
+    WatchSeries,
+    WatchTopics,
+)
+from linkwright.viewer.web.audience import Page
+
+_ANSWERED_BY: dict[type[PageMessage], str] = {
+    AimTeleop: "monitor.teleop:TeleopFeature",
+    AskExport: "export.feature:ExportFeature",
+    AskFields: "monitor.plots:PlotsFeature",
+    Drive: "monitor.teleop:TeleopFeature",
+    DumpParameters: "monitor.parameters:ParametersFeature",
+    SetParameter: "monitor.parameters:ParametersFeature",
+    WatchLog: "monitor.log:LogFeature",
+    WatchNodeGraph: "monitor.node_graph:NodeGraphFeature",
+    WatchParameters: "monitor.parameters:ParametersFeature",
+    WatchSeries: "monitor.plots:PlotsFeature",
+    WatchTopics: "monitor.topics:TopicsFeature",
+}
+"""Module and class, below this package."""
+
+
+class OnDemandFeatures(PageFeature):
+    """The live panels and the export.
+
+    They speak only to pages that have asked, so they are told of questions, of pages that go, and of the end.
+    """
+
+    RECEIVES: ClassVar[tuple[type, ...]] = tuple(_ANSWERED_BY)
+
+    def __init__(self, viewer: FeatureHost) -> None:
+        super().__init__(viewer)
+        self._made: dict[str, PageFeature] = {}
+
+    def receive(self, page: Page, message: Any) -> None:
+        """Hand a question to its feature."""
+        where = _ANSWERED_BY[type(message)]
+        if where not in self._made:
+            module, _, name = where.partition(":")
+            self._made[where] = getattr(import_module(f"{__package__}.{module}"), name)(self.viewer)
+        self._made[where].receive(page, message)
+
+    def page_gone(self, page: Page) -> None:
+        """Have the page forgotten."""
+        for feature in self._made.values():
+            feature.page_gone(page)
+
+    def close(self) -> None:
+        """End them for good."""
+        for feature in self._made.values():
+            feature.close()

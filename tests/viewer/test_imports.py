@@ -1,0 +1,35 @@
+"""What a page has imported when it opens."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+OPENING = """
+import asyncio, sys
+from tests.viewer.scene import page, world
+
+async def main():
+    async with world() as made, page(made.viewer) as client:
+        await client.opened()
+        print(*sys.modules)
+        await client.send("watch_node_graph", watched=True)
+        await client.until("node_graph")
+        print(*sys.modules)
+
+asyncio.run(main())
+"""
+
+
+def test_panels_and_displays_are_imported_when_they_are_asked_for():
+    root = Path(__file__).parents[2]
+    done = subprocess.run([sys.executable, "-c", OPENING], capture_output=True, text=True, cwd=root, check=True)
+    opened, watching = (set(line.split()) for line in done.stdout.splitlines())
+    room = "linkwright.viewer."
+    late = {
+        f"{room}features.monitor.{name}" for name in ("log", "node_graph", "parameters", "plots", "teleop", "topics")
+    }
+    late |= {f"{room}displays.{name}" for name in ("image", "map", "marker", "point_clouds")}
+    assert not opened & {*late, f"{room}features.export.feature"}
+    assert watching & late == {f"{room}features.monitor.node_graph"}
