@@ -202,12 +202,13 @@ class SimulationServer:
         )
         self._tell(findings)
         node = self._node(place, namespace)
+        name = node.name
         plugin = kind(place, node, parameters, self)
         try:
             plugin.start()
         except BaseException:
             plugin.close()
-            self._node_names.discard(node.name)
+            self._node_names.discard(name)
             raise
         return plugin
 

@@ -1,0 +1,278 @@
+"""Differential drive: ``libgazebo_ros_diff_drive.so`` and that of ROS 1 and gz.
+
+Source: gazebo_ros_pkgs for ROS 2 and gz-sim (parameters, topics, defaults, the limiter, odometry). Other than there a
+robot that drives backward has a negative velocity in its odometry.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import cos, inf, sin
+from typing import Any, Generic, TypeVar
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, phrase
+from linkwright.simulation.plugins.odometry import OdometryTopics, PlanarPose, transforms_topic, yaw_of
+from linkwright.simulation.plugins.parameters import parameter
+from linkwright.simulation.plugins.plugin import SimulatedPlugin
+from linkwright.simulation.simulation import NANOSECONDS, Motor
+
+P = TypeVar("P")
+
+_GAIN = 20.0
+"""Torque of a motor in N m for each rad/s that its wheel is too slow."""
+_GZ_TORQUE = 5.0
+"""The greatest torque of a wheel in N m where a plugin of gz names none: gz sets velocities whatever that takes."""
+_GZ_RATE = 100.0
+"""How often a plugin of gz looks at its command in Hz; gz does before each step."""
+_WORLD = 1
+
+
+@dataclass(frozen=True, kw_only=True)
+class ClassicParameters:
+    """Of the plugin of Gazebo classic."""
+
+    left_joint: tuple[str, ...] = parameter(aliases=("leftJoint",))
+    right_joint: tuple[str, ...] = parameter(aliases=("rightJoint",))
+    num_wheel_pairs: int = 1
+    wheel_separation: tuple[float, ...] = parameter((0.34,), aliases=("wheelSeparation",))
+    wheel_diameter: tuple[float, ...] = parameter((0.15,), aliases=("wheelDiameter",))
+    max_wheel_torque: float = parameter(5.0, aliases=("wheelTorque", "torque"))
+    max_wheel_acceleration: float = parameter(0.0, aliases=("wheelAcceleration",))
+    update_rate: float = parameter(100.0, aliases=("updateRate",))
+    command_topic: str = parameter("cmd_vel", aliases=("commandTopic",))
+    odometry_topic: str = parameter("odom", aliases=("odometryTopic",))
+    odometry_frame: str = parameter("odom", aliases=("odometryFrame",))
+    robot_base_frame: str = parameter("base_footprint", aliases=("robotBaseFrame",))
+    odometry_source: str = parameter("1", aliases=("odometrySource",))
+    publish_odom: bool = False
+    publish_odom_tf: bool = parameter(default=False, aliases=("publishTf", "publishOdomTF"))
+    publish_wheel_tf: bool = parameter(default=False, aliases=("publishWheelTF",))
+    covariance_x: float = 1e-5
+    covariance_y: float = 1e-5
+    covariance_yaw: float = 1e-3
+
+
+@dataclass(frozen=True, kw_only=True)
+class GzParameters:
+    """Of the plugin of gz."""
+
+    left_joint: tuple[str, ...] = parameter()
+    right_joint: tuple[str, ...] = parameter()
+    wheel_separation: float = 1.0
+    wheel_radius: float = 0.2
+    odom_publish_frequency: float = 50.0
+    topic: str = ""
+    odom_topic: str = ""
+    tf_topic: str = ""
+    frame_id: str = ""
+    child_frame_id: str = ""
+    min_linear_velocity: float = -inf
+    max_linear_velocity: float = inf
+    min_angular_velocity: float = -inf
+    max_angular_velocity: float = inf
+    max_linear_acceleration: float = inf
+    max_angular_acceleration: float = inf
+
+
+@dataclass(frozen=True, slots=True)
+class _Pair:
+    """Two wheels on one axis: motors, the joints' names in the simulation, distance and radius in m."""
+
+    left: Motor
+    right: Motor
+    joints: tuple[str, str]
+    separation: float
+    radius: float
+
+
+class _DiffDrive(SimulatedPlugin[P], Generic[P]):
+    """Turns a velocity of the robot into those of its wheels, and their turns into a place."""
+
+    _pairs: tuple[_Pair, ...]
+    _topics: OdometryTopics
+
+    def _begin(self) -> None:
+        self._wanted = self._now = (0.0, 0.0)
+        self._place = PlanarPose()
+        self._turned = self._angles()
+
+    def _fit_wheels(
+        self, left: tuple[str, ...], right: tuple[str, ...], sizes: list[tuple[float, float]], torque: float
+    ) -> None:
+        """Give the wheels motors; `sizes` has the distance and the radius of each pair, in m."""
+        if len(left) != len(right):
+            message = phrase(
+                "plugin '{plugin}' has {left} left wheels and {right} right ones",
+                plugin=self.place.name,
+                left=len(left),
+                right=len(right),
+            )
+            raise self._refused(message)
+        if any(not (separation > 0.0 and radius > 0.0) for separation, radius in sizes):
+            raise self._refused(
+                phrase("plugin '{plugin}': distance and size of wheels must be positive", plugin=self.place.name)
+            )
+        pairs = []
+        for names, (separation, radius) in zip(zip(left, right, strict=True), sizes, strict=False):
+            joints = (self.joint(names[0]), self.joint(names[1]))
+            motors = [self.simulation.add_velocity_motor(joint, _GAIN, torque) for joint in joints]
+            pairs.append(_Pair(motors[0], motors[1], joints, separation, radius))
+        self._pairs = tuple(pairs)
+        self._begin()
+
+    def _refused(self, message: Phrase) -> LinkwrightError:
+        element = self.place.element
+        if element is None:
+            return LinkwrightError(Diagnostic("SIM160", message))
+        return LinkwrightError(Diagnostic("SIM160", message, element.span(), source=element.source))
+
+    def _commanded(self, twist: Any) -> None:
+        self._wanted = (float(twist.linear.x), float(twist.angular.z))
+
+    def _turn_wheels(self) -> None:
+        forward, turning = self._now
+        for pair in self._pairs:
+            pair.left.target = (forward - turning * pair.separation / 2.0) / pair.radius
+            pair.right.target = (forward + turning * pair.separation / 2.0) / pair.radius
+
+    def _angles(self) -> tuple[float, float]:
+        left, right = self._pairs[0].joints
+        return self.simulation.joint_state(left)[0], self.simulation.joint_state(right)[0]
+
+    def _speeds(self) -> tuple[float, float]:
+        """How fast the first pair of wheels rolls and turns the robot, in m/s and rad/s."""
+        pair = self._pairs[0]
+        left, right = (self.simulation.joint_state(joint)[1] * pair.radius for joint in pair.joints)
+        return (left + right) / 2.0, (right - left) / pair.separation
+
+    def _measure(self) -> None:
+        """Go on by what the first pair of wheels has turned since."""
+        pair, before, self._turned = self._pairs[0], self._turned, self._angles()
+        left, right = ((new - old) * pair.radius for new, old in zip(self._turned, before, strict=True))
+        self._place.roll(left, right, pair.separation)
+
+    def reset(self) -> None:
+        """Stand still where it began."""
+        self._begin()
+        self._turn_wheels()
+
+
+class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
+    """``libgazebo_ros_diff_drive.so``."""
+
+    PARAMETERS = ClassicParameters
+
+    def start(self) -> None:
+        """Give the wheels motors, and listen."""
+        said, node = self.parameters, self.node
+        count = max(len(said.left_joint), len(said.right_joint))
+        separations, diameters = _as_many(said.wheel_separation, count), _as_many(said.wheel_diameter, count)
+        sizes = [(a, b / 2.0) for a, b in zip(separations, diameters, strict=True)]
+        self._fit_wheels(said.left_joint, said.right_joint, sizes, said.max_wheel_torque)
+        self._wheel_speeds = [(0.0, 0.0)] * len(self._pairs)
+        odometry = node.publisher("nav_msgs/msg/Odometry", said.odometry_topic, 1) if said.publish_odom else None
+        transforms = transforms_topic(node) if said.publish_odom_tf else None
+        covariance = (said.covariance_x, said.covariance_y, said.covariance_yaw)
+        self._topics = OdometryTopics(said.odometry_frame, said.robot_base_frame, odometry, transforms, covariance)
+        node.subscribe("geometry_msgs/msg/Twist", said.command_topic, self._commanded, 1)
+        self.every(said.update_rate, self._update)
+
+    def reset(self) -> None:
+        """Stand still where it began."""
+        self._wheel_speeds = [(0.0, 0.0)] * len(self._pairs)
+        super().reset()
+
+    def _update(self) -> None:
+        self._measure()
+        self._drive()
+        stamp = self.stamp()
+        if self.parameters.odometry_source.strip().lower() in (str(_WORLD), "world"):
+            pose = self.simulation.model_pose(self.place.path)
+            linear, angular = self.simulation.link_velocity(self._first_link())
+            yaw = yaw_of(pose)
+            forward = float(linear[0] * cos(yaw) + linear[1] * sin(yaw))
+            sideways = float(linear[1] * cos(yaw) - linear[0] * sin(yaw))
+            self._topics.publish(stamp, pose, forward, sideways, float(angular[2]))
+        else:
+            forward, turning = self._speeds()
+            self._topics.publish(stamp, self._place.transform, forward, 0.0, turning)
+
+    def _first_link(self) -> str:
+        return self.simulation.scene.models[self.place.path].structure.links[0].link.name
+
+    def _drive(self) -> None:
+        """Bring the wheels nearer to the command, by no more than they may speed up in m/s2 at their rims."""
+        said = self.parameters
+        greatest = inf if said.max_wheel_acceleration <= 0 else said.max_wheel_acceleration * self._interval
+        forward, turning = self._wanted
+        for number, pair in enumerate(self._pairs):
+            wanted = forward - turning * pair.separation / 2.0, forward + turning * pair.separation / 2.0
+            left, right = (
+                _nearer(now, to, greatest) for now, to in zip(self._wheel_speeds[number], wanted, strict=True)
+            )
+            self._wheel_speeds[number] = left, right
+            pair.left.target, pair.right.target = left / pair.radius, right / pair.radius
+
+    @property
+    def _interval(self) -> float:
+        rate = self.parameters.update_rate
+        return 1.0 / rate if rate > 0 else self.simulation.step / NANOSECONDS
+
+
+class GzDiffDrive(_DiffDrive[GzParameters]):
+    """``gz-sim-diff-drive-system``."""
+
+    PARAMETERS = GzParameters
+    IGNORED = (
+        *("min_velocity", "max_velocity", "min_acceleration", "max_acceleration", "min_jerk", "max_jerk"),
+        *("min_linear_acceleration", "min_angular_acceleration", "min_linear_jerk", "max_linear_jerk"),
+        *("min_angular_jerk", "max_angular_jerk"),
+    )
+
+    def start(self) -> None:
+        """Give the wheels motors, and listen."""
+        said, model = self.parameters, self.place.path
+        count = max(len(said.left_joint), len(said.right_joint))
+        sizes = [(said.wheel_separation, said.wheel_radius)] * count
+        self._fit_wheels(said.left_joint, said.right_joint, sizes, _GZ_TORQUE)
+        frame = said.frame_id or f"{model}/odom"
+        child = said.child_frame_id or f"{model}/{self._first_link()}"
+        name = said.odom_topic or f"/model/{model}/odometry"
+        odometry = self.node.publisher("nav_msgs/msg/Odometry", name, usual="/odom")
+        transforms = transforms_topic(self.node, said.tf_topic or f"/model/{model}/tf", "/tf")
+        self._topics = OdometryTopics(frame, child, odometry, transforms)
+        topic = said.topic or f"/model/{model}/cmd_vel"
+        self.node.subscribe("geometry_msgs/msg/Twist", topic, self._commanded, usual="/cmd_vel")
+        self.every(_GZ_RATE, self._drive)
+        self.every(said.odom_publish_frequency, self._publish)
+
+    def _first_link(self) -> str:
+        first = self.simulation.scene.models[self.place.path].structure.links[0].link.name
+        return first.rpartition("::")[2]
+
+    def _drive(self) -> None:
+        self._measure()
+        said = self.parameters
+        forward, turning = self._wanted
+        forward = min(max(forward, said.min_linear_velocity), said.max_linear_velocity)
+        turning = min(max(turning, said.min_angular_velocity), said.max_angular_velocity)
+        self._now = (
+            _nearer(self._now[0], forward, said.max_linear_acceleration / _GZ_RATE),
+            _nearer(self._now[1], turning, said.max_angular_acceleration / _GZ_RATE),
+        )
+        self._turn_wheels()
+
+    def _publish(self) -> None:
+        self._measure()
+        forward, turning = self._speeds()
+        self._topics.publish(self.stamp(), self._place.transform, forward, 0.0, turning)
+
+
+def _nearer(now: float, to: float, greatest: float) -> float:
+    """A value nearer to another one, by no more than the greatest change."""
+    return min(max(to, now - greatest), now + greatest)
+
+
+def _as_many(values: tuple[float, ...], count: int) -> tuple[float, ...]:
+    """As many values as there are pairs; the last holds for the others."""
+    return (*values, *(values[-1:] * count))[:count]

@@ -1,0 +1,95 @@
+"""What drives publish of where they are: odometry, and the transform that says the same."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from math import atan2, cos, sin
+
+from linkwright.geometry.single import Transform, quaternion_from_rpy
+from linkwright.messages import Header, Quaternion, Time, TransformStamped, Vector3, get_message
+from linkwright.messages import Transform as TransformMessage
+from linkwright.simulation.plugins.node import Output, PluginNode
+
+Covariance = tuple[float, float, float]
+"""Of x, y and yaw."""
+
+_UNKNOWN = 1e12
+"""The variance of what a robot on wheels does not measure: z, roll and pitch."""
+
+
+@dataclass(slots=True)
+class PlanarPose:
+    """A place in a plane in m, and a heading in rad."""
+
+    x: float = 0.0
+    y: float = 0.0
+    yaw: float = 0.0
+
+    def roll(self, left: float, right: float, separation: float) -> None:
+        """Go on as wheels do that roll some way each, in m; in the middle of the turn the heading is half of it.
+
+        Source: gazebo_ros_diff_drive, the method of Runge and Kutta of the second order.
+        """
+        turn = (right - left) / separation
+        way = (left + right) / 2.0
+        self.x += way * cos(self.yaw + turn / 2.0)
+        self.y += way * sin(self.yaw + turn / 2.0)
+        self.yaw += turn
+
+    @property
+    def transform(self) -> Transform:
+        """The pose in space."""
+        return (self.x, self.y, 0.0, *quaternion_from_rpy((0.0, 0.0, self.yaw)))
+
+
+def yaw_of(pose: Transform) -> float:
+    """The heading of a pose in space, in rad."""
+    _, _, _, x, y, z, w = pose
+    return atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+
+
+@dataclass(slots=True)
+class OdometryTopics:
+    """Odometry on its topics.
+
+    Attributes:
+        frame: the frame that the robot moves in.
+        child: the robot's frame.
+        odometry: the topic of odometry; None for none.
+        transforms: that of transforms; None for none.
+        covariance: of the pose, and of the velocities.
+    """
+
+    frame: str
+    child: str
+    odometry: Output | None
+    transforms: Output | None
+    covariance: Covariance = (0.0, 0.0, 0.0)
+    _matrix: list[float] = field(init=False)
+
+    def __post_init__(self) -> None:
+        x, y, yaw = self.covariance
+        diagonal = (x, y, _UNKNOWN, _UNKNOWN, _UNKNOWN, yaw) if any(self.covariance) else (0.0,) * 6
+        self._matrix = [diagonal[row] if row == column else 0.0 for row in range(6) for column in range(6)]
+
+    def publish(self, stamp: Time, pose: Transform, forward: float, sideways: float, turning: float) -> None:
+        """Publish where the robot is, and its velocities in its own axes in m/s and rad/s."""
+        x, y, z, *rotation = pose
+        if self.odometry is not None:
+            message = get_message("nav_msgs/msg/Odometry")(header=Header(stamp, self.frame), child_frame_id=self.child)
+            message.pose.pose.position.x, message.pose.pose.position.y, message.pose.pose.position.z = x, y, z
+            message.pose.pose.orientation = Quaternion(*rotation)
+            message.pose.covariance[:] = self._matrix
+            message.twist.twist.linear = Vector3(forward, sideways, 0.0)
+            message.twist.twist.angular = Vector3(0.0, 0.0, turning)
+            message.twist.covariance[:] = self._matrix
+            self.odometry.publish(message)
+        if self.transforms is not None:
+            moved = TransformMessage(Vector3(x, y, z), Quaternion(*rotation))
+            sent = TransformStamped(Header(stamp, self.frame), self.child, moved)
+            self.transforms.publish(get_message("tf2_msgs/msg/TFMessage")(transforms=[sent]))
+
+
+def transforms_topic(node: PluginNode, name: str = "/tf", usual: str = "") -> Output:
+    """A topic of transforms."""
+    return node.publisher("tf2_msgs/msg/TFMessage", name, 100, usual=usual)

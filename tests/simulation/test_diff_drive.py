@@ -1,0 +1,133 @@
+"""Differential drive by the plugins of Gazebo classic and of gz."""
+
+from __future__ import annotations
+
+from math import cos, sin
+
+import pytest
+
+from linkwright.messages import get_message
+from linkwright.simulation.plugins.odometry import PlanarPose, yaw_of
+from linkwright.testing import Recording
+from tests.simulation.test_plugins import SECOND, robot, served
+from tests.simulation.worlds import GROUND
+
+
+def classic(more: str = "", source: int = 0) -> str:
+    """The plugin of Gazebo classic for mbot."""
+    return (
+        '<plugin name="diff_drive" filename="libgazebo_ros_diff_drive.so"><left_joint>left_joint</left_joint>'
+        "<right_joint>right_joint</right_joint><wheel_separation>0.38</wheel_separation>"
+        "<wheel_diameter>0.12</wheel_diameter><max_wheel_torque>5</max_wheel_torque>"
+        f"<max_wheel_acceleration>1</max_wheel_acceleration><odometry_source>{source}</odometry_source>"
+        f"<publish_odom>true</publish_odom><publish_odom_tf>true</publish_odom_tf>{more}</plugin>"
+    )
+
+
+def gz(more: str = "<max_linear_acceleration>1</max_linear_acceleration>") -> str:
+    """The plugin of gz for mbot."""
+    return (
+        '<plugin name="gz::sim::systems::DiffDrive" filename="gz-sim-diff-drive-system">'
+        "<left_joint>left_joint</left_joint><right_joint>right_joint</right_joint>"
+        "<wheel_separation>0.38</wheel_separation><wheel_radius>0.06</wheel_radius>"
+        f"<topic>cmd_vel</topic><odom_topic>odom</odom_topic><tf_topic>tf</tf_topic>{more}</plugin>"
+    )
+
+
+class Driven:
+    """A robot that is told how to drive."""
+
+    def __init__(self, server, graph) -> None:
+        self.server = server
+        self.odometry = Recording(graph, server.node, "/odom")
+        self._graph = graph
+        self._publisher = graph.create_node("driver").create_publisher(
+            get_message("geometry_msgs/msg/Twist"), "/cmd_vel", 10
+        )
+
+    async def drive(self, forward: float, turning: float, seconds: float) -> None:
+        """Tell it a velocity, and let time pass."""
+        twist = get_message("geometry_msgs/msg/Twist")()
+        twist.linear.x, twist.angular.z = forward, turning
+        self._publisher.publish(twist)
+        await self._graph.settle()
+        self.server.advance(round(seconds * SECOND))
+        await self._graph.settle()
+
+    @property
+    def pose(self):
+        """Where it is."""
+        return self.server.simulation.model_pose("mbot")
+
+
+@pytest.mark.parametrize("plugin", [classic(), gz()], ids=["classic", "gz"])
+async def test_it_drives_straight_on_and_knows_how_far(plugin):
+    async with served(GROUND, robot(plugin)) as (server, graph, log):
+        driven = Driven(server, graph)
+        await driven.drive(0.5, 0.0, 1.5)
+        start = driven.pose
+        await driven.drive(0.5, 0.0, 2.0)
+        assert driven.pose[0] - start[0] == pytest.approx(1.0, abs=1e-3)
+        assert driven.pose[1] == pytest.approx(0.0, abs=1e-3)
+        told = driven.odometry.last
+        assert told.pose.pose.position.x == pytest.approx(driven.pose[0], abs=1e-2)
+        assert told.twist.twist.linear.x == pytest.approx(0.5, abs=1e-2)
+        assert not [each for each in log if each.level > 20]
+
+
+@pytest.mark.parametrize("plugin", [classic(), gz()], ids=["classic", "gz"])
+async def test_it_turns_on_the_spot(plugin):
+    async with served(GROUND, robot(plugin)) as (server, graph, _):
+        driven = Driven(server, graph)
+        await driven.drive(0.0, 1.0, 1.0)
+        start = yaw_of(driven.pose)
+        await driven.drive(0.0, 1.0, 1.0)
+        assert yaw_of(driven.pose) - start == pytest.approx(1.0, abs=0.01)
+        assert driven.odometry.last.twist.twist.angular.z == pytest.approx(1.0, abs=0.02)
+
+
+async def test_odometry_of_the_world_says_where_it_is_and_that_it_drives_backward():
+    async with served(GROUND, robot(classic(source=1))) as (server, graph, _):
+        driven = Driven(server, graph)
+        transforms = Recording(graph, server.node, "/tf")
+        await driven.drive(-0.3, 0.0, 2.0)
+        told = driven.odometry.last
+        assert told.pose.pose.position.x == pytest.approx(driven.pose[0], abs=1e-9)
+        assert told.twist.twist.linear.x == pytest.approx(-0.3, abs=1e-2)
+        assert (told.header.frame_id, told.child_frame_id) == ("odom", "base_footprint")
+        assert told.pose.covariance[0] == 1e-5
+        moved = transforms.last.transforms[0]
+        assert moved.transform.translation.x == told.pose.pose.position.x
+        assert (moved.header.frame_id, moved.child_frame_id) == ("odom", "base_footprint")
+
+
+async def test_after_a_reset_it_stands_still_at_the_start():
+    async with served(GROUND, robot(classic())) as (server, graph, _):
+        driven = Driven(server, graph)
+        await driven.drive(0.5, 0.5, 1.0)
+        server.reset()
+        server.advance(SECOND)
+        await graph.settle()
+        assert driven.pose[:2] == pytest.approx((0.0, 0.0), abs=1e-3)
+        assert driven.odometry.last.pose.pose.position.x == pytest.approx(0.0, abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("plugin", "words"),
+    [
+        (classic("<right_joint>front</right_joint>"), "1 left wheels and 2 right ones"),
+        (classic().replace("0.12", "0"), "must be positive"),
+        (classic().replace(">left_joint<", ">left_jiont<"), "no joint 'left_jiont' moves"),
+    ],
+)
+async def test_what_cannot_drive_is_told(plugin, words):
+    async with served(GROUND, robot(plugin)) as (server, _, log):
+        assert server.plugins("mbot") == ()
+        assert any(words in each.text for each in log)
+
+
+def test_wheels_that_roll_differently_go_round():
+    place = PlanarPose()
+    for _ in range(1000):
+        place.roll(0.0009, 0.0011, 0.2)
+    assert (place.x, place.y, place.yaw) == pytest.approx((sin(1.0), 1 - cos(1.0), 1.0), abs=1e-6)
