@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, is_dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -99,8 +99,19 @@ def _as_it_is(world: World) -> World:
 
 def _from_folder(thing: Any, written_in: Path, folder: Path) -> Any:
     """The same with paths that start from a folder in place of the one that they are written in."""
+    return with_addresses(thing, written_in, lambda written, beside: _address(written, beside, folder))
+
+
+def with_addresses(thing: Any, written_in: Path, change: Callable[[str, Path], str]) -> Any:
+    """A part of SDF with other addresses of meshes, textures and the like.
+
+    Args:
+        thing: an object of `linkwright.sdf`, or a tuple of them.
+        written_in: the folder of the file that it stands in, where it does not know it itself.
+        change: what an address becomes, and the folder of the file that it is written in.
+    """
     if isinstance(thing, tuple):
-        return tuple(_from_folder(each, written_in, folder) for each in thing)
+        return tuple(with_addresses(each, written_in, change) for each in thing)
     if not is_dataclass(thing) or isinstance(thing, type):
         return thing
     source = getattr(getattr(thing, "element", None), "source", None)
@@ -112,10 +123,10 @@ def _from_folder(thing: Any, written_in: Path, folder: Path) -> Any:
         value = getattr(thing, field.name)
         if field.name in addresses:
             many = isinstance(value, tuple)
-            moved = tuple(_address(each, written_in, folder) for each in (value if many else (value,)))
+            moved = tuple(change(each, written_in) for each in (value if many else (value,)))
             new = moved if many else moved[0]
         else:
-            new = _from_folder(value, written_in, folder)
+            new = with_addresses(value, written_in, change)
         if new != value:
             changed[field.name] = new
     return replace(thing, **changed) if changed else thing

@@ -9,7 +9,7 @@ import numpy as np
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.geometry.arrays import Array
-from linkwright.geometry.single import IDENTITY, Transform, compose, invert
+from linkwright.geometry.single import IDENTITY, Transform, compose, invert, quaternion_inverse, rotate
 from linkwright.geometry.vectors import Vector3
 from linkwright.sdf.models import Model
 from linkwright.sdf.resources import ResourceFinder
@@ -200,6 +200,18 @@ class Simulation:
         x, y, z, qx, qy, qz, qw = compose(pose, offset)
         joint.qpos[:] = (x, y, z, qw, qx, qy, qz)
         joint.qvel[:] = 0.0
+        self._current = False
+
+    def set_model_velocity(self, name: str, linear: Vector3, angular: Vector3) -> None:
+        """Let a model that moves freely go on with a velocity of its first link: m/s, rad/s, in the axes of the world.
+
+        Raises:
+            KeyError: there is no such model, or it does not move freely.
+        """
+        self.refresh()
+        root, _ = self._root(name)
+        turn = self.link_pose(root)[3:]
+        self.data.joint(f"{root}#free").qvel[:] = (*linear, *rotate(quaternion_inverse(turn), angular))
         self._current = False
 
     def _root(self, name: str) -> tuple[str, Transform]:

@@ -1,0 +1,139 @@
+"""gzserver: the node ``gazebo``, a world that moves, with its plugins, topics and services.
+
+It follows gzserver of Gazebo classic with the libraries of gazebo_ros; for gz it is the server. Its world is simulated
+in a thread of its own, see `linkwright.simulation.server`.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
+from math import inf
+from typing import Any
+
+from linkwright.diagnostics import Diagnostic, Severity
+from linkwright.geometry.single import Transform, quaternion_from_rpy
+from linkwright.graph import Graph
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.sdf.worlds import World, physics_of
+
+_EMPTY = "empty"
+_PARAMETERS: dict[str, Any] = {
+    "world": _EMPTY,
+    "publish_rate": 10.0,
+    "real_time_factor": 0.0,
+    "step": 0.0,
+    "seed": 0,
+    "pause": False,
+    "seconds": 0.0,
+    "usual_names": False,
+    "robot_description": "",
+    "robot_name": "",
+    "robot_pose": [0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    "robot_namespace": "",
+}
+
+
+class Simulator(SingleNode):
+    """The running node.
+
+    Its parameters:
+
+    ``world``
+        the file; the only argument of its command line that is none of ROS's means the same. ``empty``: a plane.
+    ``publish_rate``
+        how often a simulated second ``/clock`` tells the time, in Hz.
+    ``real_time_factor``
+        simulated seconds in a real one; 0 for what the world says, negative for as many as can be.
+    ``step``
+        the time step in s; 0 for that of the world.
+    ``seed``, ``pause``, ``seconds``
+        what random numbers follow from; whether it begins paused; after how many simulated seconds it ends, 0 for
+        never.
+    ``usual_names``
+        whether topics of gz have their usual names too.
+    ``robot_description``, ``robot_name``, ``robot_pose``, ``robot_namespace``
+        a robot that is there from the start: URDF or SDF, and x, y, z in m and roll, pitch, yaw in rad.
+
+    Attributes:
+        finished: gets status 0 when the seconds are over.
+
+    Raises:
+        LinkwrightError: SIM150 there is no such world; SIM101 MuJoCo is missing; what is wrong with world or robot.
+    """
+
+    DEFAULT_NAME = "gazebo"
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        from linkwright.simulation.plugins.node import PluginNode
+        from linkwright.simulation.server.reports import Reports
+        from linkwright.simulation.server.runner import Runner
+        from linkwright.simulation.server.server import ServerOptions, SimulationServer
+        from linkwright.simulation.server.services import Services
+        from linkwright.simulation.server.worlds import load_world
+        from linkwright.simulation.simulation import Simulation
+
+        self._node, words = create_node(graph, options, self.DEFAULT_NAME)
+        loop = asyncio.get_running_loop()
+        self.finished: asyncio.Future[int] = loop.create_future()
+        with starting(self._node):
+            said = {name: self._node.declare_parameter(name, value).value for name, value in _PARAMETERS.items()}
+            world, finder, findings = load_world(words[0] if words else said["world"])
+            self._log(findings)
+            simulation = Simulation(world, finder, step=said["step"] or None)
+            self.server = SimulationServer(simulation, self._node, ServerOptions(said["seed"], said["usual_names"]))
+            self._reports = Reports(self.server, self._node, finder, said["publish_rate"])
+            self.runner = Runner(
+                self.server,
+                factor=_factor(said["real_time_factor"], world),
+                paused=said["pause"],
+                seconds=said["seconds"] or None,
+                watch=lambda: self._reports.watch(lambda: self.runner.real_time_factor),
+                on_state=self._tell_state,
+                on_end=partial(_call_on, loop, self._finish),
+            )
+            own = PluginNode(self._node, self.server.exchange, owned=False, qos={}, usual=None)
+            self.services = Services(self.server, self.runner, own, finder, options.library)
+            self.server.start()
+            if said["robot_description"]:
+                pose = _pose(said["robot_pose"])
+                self.services.spawn(said["robot_description"], said["robot_name"], pose, said["robot_namespace"])
+            self._tell_state()
+            self.server.exchange.deliver()
+            self.runner.start()
+
+    def close(self) -> None:
+        """End it."""
+        self.runner.close()
+        self.server.close()
+        super().close()
+
+    def _finish(self) -> None:
+        if not self.finished.done():
+            self.finished.set_result(0)
+
+    def _tell_state(self) -> None:
+        self._reports.publish_state(paused=self.runner.paused)
+
+    def _log(self, findings: Iterable[Diagnostic]) -> None:
+        """Log what is wrong with the world; warnings are for those who check it."""
+        for each in findings:
+            if each.severity is Severity.ERROR:
+                self._node.get_logger().error(f"{each.span}: {each.message}" if each.span else each.message)
+
+
+def _call_on(loop: asyncio.AbstractEventLoop, function: Callable[[], None]) -> None:
+    loop.call_soon_threadsafe(function)
+
+
+def _factor(said: float, world: World) -> float:
+    if said:
+        return said if said > 0 else inf
+    wanted = physics_of(world).real_time_factor
+    return wanted if wanted > 0 else 1.0
+
+
+def _pose(numbers: Sequence[float]) -> Transform:
+    x, y, z, roll, pitch, yaw = numbers
+    return (x, y, z, *quaternion_from_rpy((roll, pitch, yaw)))

@@ -1,0 +1,75 @@
+"""Texts that programs send to have models put into the world: URDF or SDF."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from linkwright.descriptions import DescriptionLibrary
+from linkwright.diagnostics import Diagnostic, LinkwrightError, has_errors, phrase
+from linkwright.sdf.from_urdf import model_from_robot
+from linkwright.sdf.includes import resolve_includes
+from linkwright.sdf.models import Model
+from linkwright.sdf.reader import read
+from linkwright.sdf.resources import ResourceFinder
+from linkwright.sdf.text import parse_as_gazebo
+
+_NAME = "<the description>"
+
+
+@dataclass(frozen=True, slots=True)
+class Entity:
+    """A model that was sent.
+
+    Attributes:
+        model: the model, with its includes resolved; of a robot every link is kept.
+        diagnostics: what is remarkable about it.
+    """
+
+    model: Model
+    diagnostics: tuple[Diagnostic, ...]
+
+
+def entity_from(text: str, finder: ResourceFinder, library: DescriptionLibrary) -> Entity:
+    """The model in a text.
+
+    Args:
+        text: URDF or SDF; of SDF the first model.
+        finder: where its includes are.
+        library: the robot descriptions that the process has read.
+
+    Raises:
+        LinkwrightError: it is not XML; it is neither; SIM142 there is no model in it; what is wrong in it.
+    """
+    document, warnings = parse_as_gazebo(text, _NAME)
+    if document.root.tag == "robot":
+        reading = library.read(text)
+        if reading.robot is None or not reading.robot.links:
+            raise LinkwrightError(*_errors(reading.diagnostics))
+        converted = model_from_robot(reading.robot, lump_fixed_joints=False)
+        return Entity(converted.model, converted.diagnostics)
+    sdf = read(document)
+    if sdf.sdf is None:
+        raise LinkwrightError(*_errors(sdf.diagnostics))
+    included = resolve_includes(sdf.sdf, Path.cwd() / _NAME, finder)
+    findings = (*warnings, *sdf.diagnostics, *included.diagnostics)
+    if not included.sdf.models:
+        if has_errors(findings):
+            raise LinkwrightError(*_errors(findings))
+        message = phrase("there is no model in it")
+        hint = (
+            phrase("it is to be URDF, or SDF with a <model>")
+            if not sdf.sdf.worlds
+            else phrase("it is a world; only models come into one")
+        )
+        raise LinkwrightError(Diagnostic("SIM142", message, hint=hint))
+    return Entity(included.sdf.models[0], findings)
+
+
+def _errors(findings: tuple[Diagnostic, ...] | list[Diagnostic]) -> list[Diagnostic]:
+    """Those that are errors, or all of them; one at least."""
+    return (
+        [each for each in findings if has_errors([each])]
+        or list(findings)
+        or [Diagnostic("SIM142", phrase("there is no model in it"))]
+    )

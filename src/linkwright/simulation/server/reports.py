@@ -1,0 +1,109 @@
+"""What a simulator tells by itself: time, state, what the world is made of, and where everything is."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from linkwright.descriptions.conversion import with_addresses
+from linkwright.graph import CLOCK_QOS, DurabilityPolicy, Node, QoSProfile
+from linkwright.messages import Header, String, Time, get_message
+from linkwright.messages.tf_message import TFMessage, TransformBatch
+from linkwright.sdf.frames import pose_of
+from linkwright.sdf.poses import WORLD, RawPose
+from linkwright.sdf.resources import Missing, ResourceFinder
+from linkwright.sdf.writer import save
+from linkwright.simulation.plugins.node import Output
+from linkwright.simulation.server.server import SimulationServer
+from linkwright.simulation.simulation import NANOSECONDS
+
+_LATCHED = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+_CLOCK, _STATE = "rosgraph_msgs/msg/Clock", "simulation_interfaces/msg/SimulationState"
+_METRICS = "gazebo_msgs/msg/PerformanceMetrics"
+_POSES_PERIOD, _METRICS_PERIOD = 1 / 30, 0.5
+"""In real seconds."""
+PLAYING, PAUSED = 1, 2
+"""Of SimulationState."""
+
+
+class Reports:
+    """The topics of a simulator; published in the simulation's thread.
+
+    Args:
+        server: the simulation.
+        node: the node of the simulator.
+        finder: where meshes are, whose addresses are told as files.
+        clock_rate: how often a simulated second the time is told.
+    """
+
+    def __init__(self, server: SimulationServer, node: Node, finder: ResourceFinder, clock_rate: float) -> None:
+        self._server = server
+        self._finder = finder
+        self._clock = self._output(node, _CLOCK, "/clock", CLOCK_QOS)
+        self._state = self._output(node, _STATE, "/simulation_state", _LATCHED)
+        self._description = self._output(node, "std_msgs/msg/String", "/world_description", _LATCHED)
+        self._poses = self._output(node, "tf2_msgs/msg/TFMessage", "/world_poses", 10)
+        self._metrics = self._output(node, _METRICS, "/performance_metrics", 10)
+        self._names: tuple[str, ...] = ()
+        self._bodies = np.zeros(0, dtype=int)
+        self._revision = -1
+        self._posed = self._measured = 0.0
+        server.on_change.append(self.publish_description)
+        server.on_reset.append(self._tell_time)
+        server.simulation.call_every(round(NANOSECONDS / clock_rate) if clock_rate > 0 else 0, self._tell_time)
+
+    def publish_state(self, *, paused: bool) -> None:
+        """Tell whether time passes."""
+        self._state.publish(get_message(_STATE)(state=PAUSED if paused else PLAYING))
+
+    def publish_description(self) -> None:
+        """Tell what the world is made of: SDF, with all models where they came in, and files by their addresses."""
+        simulation = self._server.simulation
+        models = tuple(
+            replace(each.model, name=each.name, pose=RawPose(pose_of(each.pose)), placement_frame="")
+            for each in simulation.scene.models.values()
+        )
+        world = with_addresses(replace(simulation.world, models=models), Path.cwd(), self._address)
+        self._description.publish(String(data=save(world)))
+
+    def watch(self, factor: Callable[[], float]) -> None:
+        """Tell where everything is and how fast time passes, as often as is right in real time, to who wants it."""
+        now = time.monotonic()
+        if now - self._posed >= _POSES_PERIOD and self._poses.is_wanted:
+            self._posed = now
+            self.publish_poses()
+        if now - self._measured >= _METRICS_PERIOD and self._metrics.is_wanted:
+            self._measured = now
+            message = get_message(_METRICS)(header=Header(stamp=self._time()), real_time_factor=factor())
+            self._metrics.publish(message)
+
+    def publish_poses(self) -> None:
+        """Tell where every link is that can move: ``robot::link`` in ``world``."""
+        simulation = self._server.simulation
+        simulation.refresh()
+        if self._revision != simulation.revision:
+            self._revision = simulation.revision
+            model = simulation.model
+            self._bodies = np.flatnonzero(model.body_weldid)
+            self._names = tuple(model.body(int(each)).name for each in self._bodies)
+        data, bodies = simulation.data, self._bodies
+        poses = np.hstack([data.xpos[bodies], data.xquat[bodies][:, [1, 2, 3, 0]]])
+        batch = TransformBatch((WORLD,) * len(bodies), self._names, simulation.time, poses)
+        self._poses.publish(TFMessage(batch=batch))
+
+    def _output(self, node: Node, kind: str, topic: str, qos: QoSProfile | int) -> Output:
+        return Output(self._server.exchange, [node.create_publisher(get_message(kind), topic, qos)])
+
+    def _time(self) -> Time:
+        return Time(*divmod(self._server.simulation.time, NANOSECONDS))
+
+    def _tell_time(self) -> None:
+        self._clock.publish(get_message(_CLOCK)(clock=self._time()))
+
+    def _address(self, written: str, beside: Path) -> str:
+        found = self._finder.file(written, beside) if written else Missing
+        return found.as_uri() if isinstance(found, Path) and found.is_absolute() else written

@@ -1,0 +1,170 @@
+"""The thread in which a simulation runs beside the event loop."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from math import inf
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph import run_logged
+from linkwright.simulation.server.server import SimulationServer
+from linkwright.simulation.simulation import NANOSECONDS
+
+_CHUNK = 0.005
+"""Real seconds between two looks at the commands."""
+_LONGEST_CHUNK = 0.05
+"""Simulated seconds that pass at most between them: what is published meanwhile comes all at once."""
+_BEHIND = 0.25
+"""Real seconds that a simulation may be behind; what is more is not made up for."""
+_IDLE = 1 / 30
+"""Real seconds between two looks while nothing moves."""
+_MEASURED = 0.5
+"""Real seconds over which the real-time factor is measured."""
+
+
+class Runner:
+    """Advances a simulation in a thread of its own, as fast as it is asked to.
+
+    Everything but `start` and `close` is called in that thread, by commands of the exchange.
+
+    Args:
+        server: the simulation.
+        factor: how many simulated seconds pass in a real one; infinite for as many as can be.
+        paused: whether it begins paused.
+        seconds: after how many simulated seconds it is done; None for never.
+        watch: called in the thread every now and then, paused or not.
+        on_state: called in the thread when it has been paused or let go on.
+        on_end: called in the thread when the seconds are over.
+
+    Attributes:
+        paused: whether no time passes.
+        real_time_factor: how many simulated seconds passed in a real one lately.
+    """
+
+    def __init__(
+        self,
+        server: SimulationServer,
+        *,
+        factor: float = 1.0,
+        paused: bool = False,
+        seconds: float | None = None,
+        watch: Callable[[], None] = lambda: None,
+        on_state: Callable[[], None] = lambda: None,
+        on_end: Callable[[], None] = lambda: None,
+    ) -> None:
+        self.paused = paused
+        self.real_time_factor = 0.0
+        self._server = server
+        self._factor = factor
+        self._left = None if seconds is None else round(seconds * NANOSECONDS)
+        self._watch, self._on_state, self._on_end = watch, on_state, on_end
+        self._ends = False
+        self._began = (0.0, 0)
+        self._measured = (0.0, 0)
+        self._thread = threading.Thread(target=self._run, name="linkwright-simulation", daemon=True)
+
+    def start(self) -> None:
+        """Begin."""
+        self._thread.start()
+
+    def close(self) -> None:
+        """End the thread; a step that is being made is finished."""
+        self._ends = True
+        self._server.exchange.close()
+        if self._thread.is_alive() and self._thread is not threading.current_thread():
+            self._thread.join()
+
+    def pause(self) -> None:
+        """Let no time pass."""
+        self._set(paused=True)
+
+    def go_on(self) -> None:
+        """Let time pass again."""
+        self._set(paused=False)
+
+    def step(self, count: int) -> None:
+        """Make steps, as fast as can be.
+
+        Raises:
+            UnstableError: something is no number any more.
+        """
+        self._server.simulation.advance(count * self._server.simulation.step)
+        self._resume()
+
+    def _set(self, *, paused: bool) -> None:
+        if paused != self.paused:
+            self.paused = paused
+            self._resume()
+            self._on_state()
+
+    def _resume(self) -> None:
+        """Count real time from now on."""
+        self._began = self._measured = (time.monotonic(), self._server.simulation.time)
+
+    def _run(self) -> None:
+        exchange, dispatcher = self._server.exchange, self._server.node.graph.dispatcher
+        self._resume()
+        while not self._ends:
+            self._safely(exchange.work)
+            wait = _IDLE
+            if not self.paused:
+                self._safely(self._advance)
+                wait = 0.0 if self.paused else self._ahead()
+            self._measure()
+            self._safely(self._watch)
+            exchange.deliver(dispatcher)
+            if wait > 0:
+                exchange.come.wait(wait)
+
+    def _safely(self, work: Callable[[], object]) -> None:
+        """Do something; what goes wrong is logged, and pauses the simulation, which can be reset then."""
+        run_logged(self._server.node.get_logger(), "the simulation", lambda: self._try(work))
+
+    def _try(self, work: Callable[[], object]) -> None:
+        try:
+            work()
+        except LinkwrightError as error:
+            self.pause()
+            finding = error.diagnostics[0]
+            hint = f" ({finding.hint})" if finding.hint else ""
+            self._server.node.get_logger().error(f"{finding.message}{hint}")
+        except BaseException:
+            self.pause()
+            raise
+
+    def _advance(self) -> None:
+        simulation = self._server.simulation
+        real = _CHUNK * (self._factor if self._factor < inf else 1.0)
+        if self._factor == inf:
+            real = _CHUNK * max(self.real_time_factor, 1.0)
+        chunk = max(round(min(real, _LONGEST_CHUNK) * NANOSECONDS), simulation.step)
+        if self._left is not None:
+            chunk = min(chunk, self._left)
+        before = simulation.time
+        simulation.advance(chunk)
+        if self._left is not None:
+            self._left -= simulation.time - before
+            if self._left <= 0:
+                self._left = None
+                self.pause()
+                self._on_end()
+
+    def _ahead(self) -> float:
+        """How many real seconds are to be waited until real time has come as far."""
+        if self._factor == inf:
+            return 0.0
+        real, simulated = self._began
+        now = time.monotonic()
+        ahead = real + (self._server.simulation.time - simulated) / NANOSECONDS / self._factor - now
+        if ahead < -_BEHIND:
+            self._began = now, self._server.simulation.time
+        return ahead
+
+    def _measure(self) -> None:
+        now, simulated = time.monotonic(), self._server.simulation.time
+        passed = now - self._measured[0]
+        if passed >= _MEASURED:
+            self.real_time_factor = max(simulated - self._measured[1], 0) / NANOSECONDS / passed
+            self._measured = now, simulated

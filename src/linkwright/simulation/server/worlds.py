@@ -1,0 +1,55 @@
+"""Finding the world that is to be simulated."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import NamedTuple
+
+from linkwright.descriptions.worlds import examine_world
+from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, has_errors, joined, phrase
+from linkwright.packages import PackageFinder
+from linkwright.sdf.resources import ResourceFinder
+from linkwright.sdf.worlds import World
+
+
+class LoadedWorld(NamedTuple):
+    """A world that was read, with its includes, where its files are, and what is remarkable about it."""
+
+    world: World
+    finder: ResourceFinder
+    diagnostics: tuple[Diagnostic, ...]
+
+
+def load_world(name: str) -> LoadedWorld:
+    """The first world of a file.
+
+    Args:
+        name: the file, or the name of a world on the search path: ``empty``.
+
+    Raises:
+        LinkwrightError: SIM150 there is no such world; SIM151 the file has none; what is wrong with it.
+    """
+    path = Path(name).expanduser()
+    finder = PackageFinder(start=[path.absolute().parent, Path.cwd()])
+    resources = ResourceFinder(finder)
+    if not path.is_file():
+        path = _named(name, resources)
+    description = examine_world(path, packages=finder)
+    if description.sdf is None:
+        raise LinkwrightError(*description.diagnostics)
+    if not description.sdf.worlds:
+        wrong = [each for each in description.diagnostics if has_errors([each])]
+        message = phrase("there is no world in '{path}'", path=str(path))
+        hint = phrase("models are put into one: linkwright sim empty {path}", path=str(path))
+        raise LinkwrightError(*wrong or [Diagnostic("SIM151", message, hint=hint)])
+    return LoadedWorld(description.sdf.worlds[0], resources, description.diagnostics)
+
+
+def _named(name: str, finder: ResourceFinder) -> Path:
+    known = finder.worlds()
+    for spelling in (name, name.partition(".")[0]):
+        if "/" not in name and spelling in known:
+            return known[spelling]
+    message = phrase("there is no world '{name}'", name=name)
+    hint = did_you_mean(name, known) or phrase("give a file, or one of {names}", names=joined(sorted(known)[:8]))
+    raise LinkwrightError(Diagnostic("SIM150", message, hint=hint))

@@ -1,0 +1,80 @@
+"""Forces and torques that act on links for a time (``gazebo_ros_force_system``)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwright.geometry.arrays import Array, rotation_matrix
+from linkwright.geometry.vectors import Vector3
+from linkwright.simulation.simulation import Simulation
+
+
+@dataclass(frozen=True, slots=True)
+class Wrench:
+    """What acts on a link.
+
+    Attributes:
+        force: in N, in the axes of the world.
+        torque: in N m, in the axes of the world.
+        point: where the force acts, in the frame of the link.
+        begin: from which nanosecond of simulated time on.
+        end: until when; None for ever.
+    """
+
+    force: Vector3
+    torque: Vector3
+    point: Vector3
+    begin: int
+    end: int | None
+
+
+class Wrenches:
+    """All that acts on links; several on one link add up.
+
+    Args:
+        simulation: the world.
+    """
+
+    def __init__(self, simulation: Simulation) -> None:
+        self._simulation = simulation
+        self._acting: dict[str, list[Wrench]] = {}
+        self._scheduled = False
+
+    def add(self, link: str, wrench: Wrench) -> None:
+        """Let a wrench act on a link."""
+        self._acting.setdefault(link, []).append(wrench)
+        if not self._scheduled:
+            self._scheduled = True
+            self._simulation.call_every(0, self._act)
+        self._act()
+
+    def clear(self, link: str) -> None:
+        """Let nothing act on a link any more."""
+        if self._acting.pop(link, None) and link in self._simulation.scene.bodies:
+            self._simulation.push(link, (0.0, 0.0, 0.0))
+
+    def _act(self) -> None:
+        now, simulation = self._simulation.time, self._simulation
+        for link, wrenches in tuple(self._acting.items()):
+            left = [each for each in wrenches if each.end is None or now < each.end]
+            self._acting[link] = left
+            if not left or link not in simulation.scene.bodies:
+                del self._acting[link]
+                if link in simulation.scene.bodies:
+                    simulation.push(link, (0.0, 0.0, 0.0))
+                continue
+            force, torque = self._sum(link, [each for each in left if each.begin <= now])
+            simulation.push(link, force.tolist(), torque.tolist())
+
+    def _sum(self, link: str, wrenches: list[Wrench]) -> tuple[Array, Array]:
+        """Force, and torque about the centre of mass."""
+        pose = self._simulation.link_pose(link)
+        turn, centre = rotation_matrix(pose[3:]), self._simulation.data.body(link).xipos
+        force, torque = np.zeros(3), np.zeros(3)
+        for each in wrenches:
+            arm = turn @ np.asarray(each.point) + np.asarray(pose[:3]) - centre
+            force += each.force
+            torque += np.asarray(each.torque) + np.cross(arm, each.force)
+        return force, torque

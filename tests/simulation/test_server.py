@@ -1,0 +1,205 @@
+"""The services and topics of a simulator, and the thread that it runs in."""
+
+from __future__ import annotations
+
+from contextlib import asynccontextmanager
+
+import pytest
+
+from linkwright.graph import CLOCK_QOS, DurabilityPolicy, Graph, QoSProfile
+from linkwright.messages import get_message, get_service
+from linkwright.nodes.options import NodeOptions
+from linkwright.nodes.simulator import Simulator
+from linkwright.sdf.poses import SEPARATOR
+from tests.simulation.test_plugins import joint_states, robot
+from tests.simulation.worlds import box
+from tests.waiting import eventually
+
+LATCHED = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+URDF = """<robot name="crate"><link name="base"><inertial><mass value="1"/>
+<inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial>
+<collision><geometry><box size="1 1 1"/></geometry></collision></link></robot>"""
+
+
+class Simulated:
+    """A simulator in this process, and a node that asks it."""
+
+    def __init__(self, graph: Graph, simulator: Simulator) -> None:
+        self.graph = graph
+        self.simulator = simulator
+        self.node = graph.create_node("asker")
+
+    async def ask(self, kind: str, service_name: str, /, **fields):
+        """Call a service."""
+        service = get_service(kind)
+        return await self.node.create_client(service, service_name).call_async(service.Request(**fields))
+
+    def hear(self, kind: str, topic: str, qos: QoSProfile | int = 100):
+        """The messages of a topic, as they come."""
+        heard: list = []
+        self.node.create_subscription(get_message(kind), topic, heard.append, qos)
+        return heard
+
+
+@asynccontextmanager
+async def simulator(tmp_path, *parts: str, **parameters):
+    """A simulator of a world with a ground and models, which is paused unless it is said otherwise."""
+    path = tmp_path / "a.world"
+    ground = "<include><uri>model://ground_plane</uri></include>"
+    path.write_text(f'<sdf version="1.7"><world name="test">{ground}{"".join(parts)}</world></sdf>')
+    graph = Graph(on_log=lambda record: None)
+    options = {"world": str(path), "pause": True, "real_time_factor": -1.0} | parameters
+    running = Simulator(graph, NodeOptions(parameters=options))
+    try:
+        yield Simulated(graph, running)
+    finally:
+        running.close()
+        await graph.close()
+
+
+async def test_models_come_and_go_by_services(tmp_path):
+    async with simulator(tmp_path) as it:
+        sent = {"name": "one", "xml": URDF, "robot_namespace": ""}
+        pose = get_message("geometry_msgs/msg/Pose")()
+        pose.position.z = 4.0
+        answer = await it.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", initial_pose=pose, **sent)
+        assert (answer.success, answer.status_message) == (True, "SpawnEntity: Successfully spawned entity [one]")
+        answer = await it.ask("gazebo_msgs/srv/GetModelList", "/get_model_list")
+        assert sorted(answer.model_names) == ["ground_plane", "one"]
+        answer = await it.ask("gazebo_msgs/srv/GetEntityState", "/get_entity_state", name="one")
+        assert answer.success
+        assert answer.state.pose.position.z == 4.0
+        answer = await it.ask("gazebo_msgs/srv/DeleteEntity", "/delete_entity", name="one")
+        assert answer.success
+        answer = await it.ask("gazebo_msgs/srv/DeleteEntity", "/delete_entity", name="one")
+        assert (answer.success, answer.status_message) == (False, "there is no model 'one'")
+
+
+@pytest.mark.parametrize(
+    ("xml", "reason"),
+    [
+        (URDF, "there is already a model 'one'"),
+        ("<robot", "<the description>:1:1"),
+        ("<html/>", "the root element is <html>"),
+        ('<sdf version="1.7"><world name="w"/></sdf>', "it is a world"),
+        ('<robot name="a"/>', ""),
+    ],
+)
+async def test_what_cannot_come_is_answered_with_the_reason(tmp_path, xml, reason):
+    async with simulator(tmp_path, box("one", "0 0 1 0 0 0")) as it:
+        answer = await it.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="one", xml=xml)
+        assert not answer.success
+        assert reason in answer.status_message
+        answer = await it.ask("gazebo_msgs/srv/GetModelList", "/get_model_list")
+        assert sorted(answer.model_names) == ["ground_plane", "one"]
+
+
+async def test_time_passes_by_steps_while_it_is_paused(tmp_path):
+    async with simulator(tmp_path, box("one", "0 0 9 0 0 0"), publish_rate=100.0) as it:
+        clock = it.hear("rosgraph_msgs/msg/Clock", "/clock", CLOCK_QOS)
+        answer = await it.ask("simulation_interfaces/srv/StepSimulation", "/step_simulation", steps=25)
+        assert answer.result.result == answer.result.RESULT_OK
+        assert it.simulator.server.simulation.time == 25_000_000
+        await eventually(lambda: bool(clock))
+        assert clock[-1].clock.nanosec == 20_000_000
+        await it.ask("std_srvs/srv/Empty", "/reset_world")
+        assert it.simulator.server.simulation.time == 0
+
+
+async def test_it_runs_beside_the_event_loop_and_ends_after_its_seconds(tmp_path):
+    async with simulator(tmp_path, robot(joint_states()), pause=False, seconds=1.0) as it:
+        states = it.hear("simulation_interfaces/msg/SimulationState", "/simulation_state", LATCHED)
+        heard = it.hear("sensor_msgs/msg/JointState", "/joint_states")
+        await eventually(it.simulator.finished.done)
+        assert it.simulator.server.simulation.time == 1_000_000_000
+        await eventually(lambda: bool(states) and states[-1].state == states[-1].STATE_PAUSED)
+        await eventually(lambda: bool(heard) and heard[-1].header.stamp.sec == 1)
+        answer = await it.ask("simulation_interfaces/srv/StepSimulation", "/step_simulation", steps=1)
+        assert answer.result.result == answer.result.RESULT_OK
+
+
+async def test_a_simulation_that_runs_makes_no_single_steps(tmp_path):
+    async with simulator(tmp_path, pause=False) as it:
+        answer = await it.ask("simulation_interfaces/srv/StepSimulation", "/step_simulation", steps=1)
+        assert answer.result.result == answer.result.RESULT_INCORRECT_STATE
+        await it.ask("std_srvs/srv/Empty", "/pause_physics")
+        assert it.simulator.runner.paused
+        await it.ask("std_srvs/srv/Empty", "/unpause_physics")
+        assert not it.simulator.runner.paused
+
+
+async def test_an_explosion_pauses_it(tmp_path):
+    async with simulator(tmp_path, box("one", "0 0 9 0 0 0"), pause=False) as it:
+        wrench = get_message("geometry_msgs/msg/Wrench")()
+        wrench.force.x = float("inf")
+        duration = get_message("builtin_interfaces/msg/Duration")(sec=-1)
+        answer = await it.ask(
+            "gazebo_msgs/srv/ApplyLinkWrench", "/apply_link_wrench", link_name="link", wrench=wrench, duration=duration
+        )
+        assert not answer.success
+        answer = await it.ask(
+            "gazebo_msgs/srv/ApplyLinkWrench",
+            "/apply_link_wrench",
+            link_name="one::link",
+            wrench=wrench,
+            duration=duration,
+        )
+        assert answer.success
+        await eventually(lambda: it.simulator.runner.paused)
+
+
+async def test_a_wrench_acts_for_its_time(tmp_path):
+    async with simulator(tmp_path, box("one", "0 0 90 0 0 0", mass=2.0)) as it:
+        wrench = get_message("geometry_msgs/msg/Wrench")()
+        wrench.force.x = 4.0
+        duration = get_message("builtin_interfaces/msg/Duration")(nanosec=100_000_000)
+        await it.ask(
+            "gazebo_msgs/srv/ApplyLinkWrench",
+            "/apply_link_wrench",
+            link_name="one::link",
+            wrench=wrench,
+            duration=duration,
+        )
+        await it.ask("simulation_interfaces/srv/StepSimulation", "/step_simulation", steps=200)
+        state = (await it.ask("gazebo_msgs/srv/GetEntityState", "/get_entity_state", name="one")).state
+        assert state.twist.linear.x == pytest.approx(0.2, abs=1e-9)
+
+
+async def test_a_model_is_put_elsewhere_with_a_velocity(tmp_path):
+    async with simulator(tmp_path, box("one", "0 0 9 0 0 0")) as it:
+        state = get_message("gazebo_msgs/msg/EntityState")(name="one")
+        state.pose.position.x, state.pose.orientation.z, state.pose.orientation.w = 3.0, 1.0, 0.0
+        state.twist.linear.x, state.twist.angular.z = 1.0, 2.0
+        assert (await it.ask("gazebo_msgs/srv/SetEntityState", "/set_entity_state", state=state)).success
+        told = (await it.ask("gazebo_msgs/srv/GetEntityState", "/get_entity_state", name="one")).state
+        assert (told.pose.position.x, told.pose.orientation.z) == (3.0, 1.0)
+        assert (told.twist.linear.x, told.twist.angular.z) == pytest.approx((1.0, 2.0))
+        told = (
+            await it.ask(
+                "gazebo_msgs/srv/GetEntityState", "/get_entity_state", name="ground_plane", reference_frame="one"
+            )
+        ).state
+        assert told.pose.position.x == pytest.approx(3.0)
+
+
+async def test_the_world_is_told_to_who_comes_late_with_all_that_came(tmp_path):
+    async with simulator(tmp_path) as it:
+        await it.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="late", xml=URDF)
+        worlds = it.hear("std_msgs/msg/String", "/world_description", LATCHED)
+        await eventually(lambda: bool(worlds) and 'name="late"' in worlds[-1].data)
+        assert 'name="ground_plane"' in worlds[-1].data
+
+
+async def test_poses_are_of_what_can_move_and_sent_to_who_listens(tmp_path):
+    async with simulator(tmp_path, box("one", "1 0 9 0 0 0")) as it:
+        poses = it.hear("tf2_msgs/msg/TFMessage", "/world_poses")
+        await eventually(lambda: bool(poses))
+        [transform] = poses[-1].transforms
+        assert (transform.header.frame_id, transform.child_frame_id) == ("world", f"one{SEPARATOR}link")
+        assert transform.transform.translation.z == pytest.approx(9.0)
+
+
+async def test_a_robot_can_be_there_from_the_start(tmp_path):
+    there = {"robot_description": URDF, "robot_name": "r", "robot_pose": [1.0, 2.0, 0.5, 0.0, 0.0, 0.0]}
+    async with simulator(tmp_path, **there) as it:
+        assert it.simulator.server.simulation.model_pose("r")[:3] == (1.0, 2.0, 0.5)
