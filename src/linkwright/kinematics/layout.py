@@ -1,4 +1,4 @@
-"""A robot laid out for computing: which links move as one body, and the constants between the bodies.
+"""A robot laid out for computing: which links move as one body, the constants between the bodies, who follows whom.
 
 Links joined by fixed joints move as one. So only moving joints matter: each carries a body, whose own frame lies in the
 joint with z along the joint's axis. Then a joint turns its body about z or slides it along z, whatever its axis is:
@@ -9,6 +9,7 @@ joint with z along the joint's axis. Then a joint turns its body about z or slid
 
 from __future__ import annotations
 
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -105,3 +106,43 @@ def _align_z(axis: tuple[float, float, float]) -> Array | None:
     matrix = np.eye(4)
     matrix[:3, :3] = np.column_stack((x, np.cross(z, x), z))
     return matrix
+
+
+@dataclass(frozen=True, slots=True)
+class Following:
+    """Position = factor * position of `leader` + offset; a joint that moves by itself is its own leader."""
+
+    leader: str
+    factor: float = 1.0
+    offset: float = 0.0
+
+
+def resolve_mimics(robot: Robot, moving: Collection[str]) -> tuple[tuple[str, ...], Mapping[str, Following]]:
+    """Follow each chain of mimics to its end.
+
+    Args:
+        robot: the robot.
+        moving: the names of the joints that move.
+
+    Returns:
+        The moving joints that have a position of their own, in the order of the file, and what each moving joint
+        follows. A joint whose chain goes in a circle or to a joint that does not exist moves by itself.
+    """
+    following: dict[str, Following] = {}
+    for name in robot.joints:
+        if name in moving:
+            following[name] = _follow(name, robot)
+    return tuple(name for name, how in following.items() if how.leader == name), following
+
+
+def _follow(name: str, robot: Robot) -> Following:
+    leader, factor, offset = name, 1.0, 0.0
+    seen = {name}
+    while (mimic := robot.joints[leader].mimic) is not None:
+        if mimic.joint in seen or mimic.joint not in robot.joints:
+            return Following(name)
+        seen.add(mimic.joint)
+        leader = mimic.joint
+        offset += factor * mimic.offset
+        factor *= mimic.multiplier
+    return Following(leader, factor, offset)

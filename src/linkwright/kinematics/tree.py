@@ -11,8 +11,7 @@ from numpy.typing import ArrayLike
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, phrase, term
 from linkwright.geometry.arrays import Array
 from linkwright.kinematics.forward import ManyConfigurations, OneConfiguration
-from linkwright.kinematics.layout import MOVING, lay_out
-from linkwright.kinematics.mimic import resolve_mimics
+from linkwright.kinematics.layout import MOVING, lay_out, resolve_mimics
 from linkwright.urdf import Robot
 
 

@@ -89,8 +89,8 @@ class Subject:
         """All joints in file order, those of a refused model as far as they can be read; names may repeat there."""
         if self.robot is not None:
             return tuple(self.robot.joints.values())
+        from linkwright.urdf.elements import read_joint
         from linkwright.urdf.explain import UrdfReport
-        from linkwright.urdf.joints import read_joint
 
         return tuple(read_joint(element, UrdfReport()) for element in self.elements("joint"))
 
@@ -99,9 +99,8 @@ class Subject:
         """All links in file order, those of a refused model as far as they can be read; names may repeat there."""
         if self.robot is not None:
             return tuple(self.robot.links.values())
+        from linkwright.urdf.elements import MaterialTable, read_link
         from linkwright.urdf.explain import UrdfReport
-        from linkwright.urdf.links import read_link
-        from linkwright.urdf.materials import MaterialTable
 
         findings = UrdfReport()
         table = MaterialTable(findings)

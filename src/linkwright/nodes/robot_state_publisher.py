@@ -32,8 +32,7 @@ from linkwright.graph.qos.profile import QoSPolicyKind
 from linkwright.input_files import read_text
 from linkwright.messages import JointState, String, TFMessage
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
-from linkwright.nodes.robot_transforms import MOVING_TYPES, RobotTransforms
-from linkwright.nodes.throttle import JointGroup, Throttle
+from linkwright.nodes.robot_transforms import MOVING_TYPES, JointGroup, RobotTransforms, Throttle
 from linkwright.urdf import Robot
 
 EMPTY_DESCRIPTION = phrase("robot_description parameter must not be empty")

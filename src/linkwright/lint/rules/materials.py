@@ -12,8 +12,8 @@ from linkwright.lint.rule import Rule
 from linkwright.lint.rules.geometry import shapes_of
 from linkwright.lint.subject import Subject
 from linkwright.urdf import Link, Material, Mesh, Visual
+from linkwright.urdf.elements import read_material
 from linkwright.urdf.explain import UrdfReport
-from linkwright.urdf.materials import read_material
 from linkwright.xmltree import Element
 
 _UNSEEN = re.compile(r"invisib|transparen|hidden|unseen|clear|none|null|empty|dummy", re.IGNORECASE)
