@@ -10,7 +10,7 @@ from linkwright.kinematics import KinematicTree
 from linkwright.schema import ElementRule
 from linkwright.urdf import read, save, to_gv, tree_text
 from linkwright.urdf.schema import ROBOT
-from linkwright.urdf.value_types import JOINT_TYPE, JOINT_TYPES, NUMBER, QUATERNION, RGBA, TEXT, VECTOR3, VERSION
+from linkwright.urdf.values import JOINT_TYPE, JOINT_TYPES, NUMBER, QUATERNION, RGBA, TEXT, VECTOR3, VERSION
 from linkwright.xmltree import Document, Element, parse, write
 
 BAD = [

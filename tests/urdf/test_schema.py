@@ -16,8 +16,7 @@ from linkwright.urdf import (
     read,
 )
 from linkwright.urdf.schema import ROBOT, SHAPES
-from linkwright.urdf.value_types import JOINT_TYPE, NUMBER, QUATERNION, RGBA, TEXT, VECTOR3, VERSION
-from linkwright.urdf.values import number, numbers
+from linkwright.urdf.values import JOINT_TYPE, NUMBER, QUATERNION, RGBA, TEXT, VECTOR3, VERSION, number, numbers
 from linkwright.xmltree import Document, Element, parse
 
 VALUES = {

@@ -14,10 +14,9 @@ import pytest
 from linkwright.diagnostics import LinkwrightError
 from linkwright.xacro import expand, sandbox
 from linkwright.xacro.bounded import keys
-from linkwright.xacro.budget import Budget
 from linkwright.xacro.calling import call
 from linkwright.xacro.faults import Fault
-from linkwright.xacro.limits import Limits
+from linkwright.xacro.limits import Budget, Limits
 from linkwright.xacro.refusal import RefusalError
 from linkwright.xacro.symbols import MATHEMATICS, tokenize
 from tests.work import ends

@@ -8,8 +8,17 @@ from linkwright.diagnostics import Phrase, counted, did_you_mean, joined, neares
 from linkwright.schema.report import UNREADABLE
 from linkwright.schema.rules import AttributeRule, ElementRule
 from linkwright.urdf.findings import Findings
-from linkwright.urdf.value_types import COUNTS, JOINT_TYPE, JOINT_TYPES, NUMBER, RGBA, TEXT
-from linkwright.urdf.values import number_hint, numbers, vector_hint
+from linkwright.urdf.values import (
+    COUNTS,
+    JOINT_TYPE,
+    JOINT_TYPES,
+    NUMBER,
+    RGBA,
+    TEXT,
+    number_hint,
+    numbers,
+    vector_hint,
+)
 from linkwright.xmltree import Element
 
 BLACK = (0.0, 0.0, 0.0, 1.0)

@@ -27,7 +27,7 @@ from linkwright.urdf.model import (
     Robot,
     Safety,
 )
-from linkwright.urdf.value_types import JOINT_TYPE, JOINT_TYPES_TEXT, NUMBER, QUATERNION, RGBA, TEXT, VECTOR3, VERSION
+from linkwright.urdf.values import JOINT_TYPE, JOINT_TYPES_TEXT, NUMBER, QUATERNION, RGBA, TEXT, VECTOR3, VERSION
 
 NEWEST_VERSION: Version = (1, 2)
 

@@ -10,8 +10,8 @@ from typing import Any
 
 from linkwright.xacro import sandbox
 from linkwright.xacro.bounded import HASHING, check_codec, keys
-from linkwright.xacro.budget import Budget
 from linkwright.xacro.functions import Function
+from linkwright.xacro.limits import Budget
 from linkwright.xacro.yamldata import YamlDict, YamlList, YamlMapping
 
 _CALL = 2

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from typing import Any, TypeAlias
 
-from linkwright.xacro.budget import LONG
+from linkwright.xacro.limits import LONG
 from linkwright.xmltree import Comment, Element, Node, Text
 
 PREFIX = "xacro:"

@@ -10,9 +10,8 @@ from collections.abc import Iterator
 from typing import Any, Protocol
 
 from linkwright.diagnostics import Phrase, Span, phrase
-from linkwright.xacro.budget import Budget
 from linkwright.xacro.faults import Fault
-from linkwright.xacro.limits import Limits
+from linkwright.xacro.limits import Budget, Limits
 from linkwright.xacro.literals import literal
 from linkwright.xmltree import Element, Text
 

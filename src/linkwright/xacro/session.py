@@ -19,10 +19,9 @@ from linkwright.diagnostics import (
 )
 from linkwright.xacro import sandbox, sources, symbols
 from linkwright.xacro.bounded import keys
-from linkwright.xacro.budget import Budget
 from linkwright.xacro.expression import compile_expression
 from linkwright.xacro.faults import Fault, attribute_part, text_part
-from linkwright.xacro.limits import Limits
+from linkwright.xacro.limits import Budget, Limits
 from linkwright.xacro.origin import Frame, trail
 from linkwright.xacro.refusal import RefusalError
 from linkwright.xacro.sandbox import Module

@@ -8,7 +8,7 @@ from pathlib import PurePath
 from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
-from linkwright.urdf.value_types import TEXT
+from linkwright.urdf.values import TEXT
 from linkwright.xmltree import Text
 
 
