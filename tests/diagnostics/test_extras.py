@@ -12,10 +12,10 @@ from linkwright.bag import BagReader, BagWriter
 from linkwright.cli.tools.programs import main
 from linkwright.diagnostics import LinkwrightError, Severity
 from linkwright.diagnostics.extras import EXTRAS, install_hint, missing_extra
+from linkwright.geometry.mesh_parts import read_parts
 from linkwright.geometry.meshes import read_mesh
 from linkwright.lint.engine import examine
 from linkwright.urdf.diagram import render
-from linkwright.viewer.features.export.meshes import read_parts
 from linkwright.viewer.images import BadImageError
 from linkwright.viewer.images.image_files import file_pixels
 from tests.places import REPOSITORY

@@ -13,8 +13,8 @@ import pytest
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.geometry.mesh_files import BadMeshError, beside
+from linkwright.geometry.mesh_parts import read_parts
 from linkwright.geometry.meshes import read_mesh
-from linkwright.viewer.features.export.meshes import read_parts
 
 CORNERS = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
 TEXT_STL = """solid a

@@ -26,11 +26,13 @@ class PlacedMesh(NamedTuple):
         mesh: the `trimesh.Trimesh`; it has triangles.
         matrix: its frame in that of the file, homogeneous, in the file's unit; shape (4, 4).
         unit: metres for each unit of the file.
+        names: what the file calls the mesh and the place.
     """
 
     mesh: Any
     matrix: Array
     unit: float
+    names: frozenset[str]
 
     @property
     def faces(self) -> NDArray[np.int64]:
@@ -100,7 +102,7 @@ def _parsed(data: bytes, kind: str, **options: Any) -> Iterator[PlacedMesh]:
         mesh = scene.geometry[name]
         if isinstance(mesh, trimesh.Trimesh) and len(mesh.faces):
             unit = _collada_unit(mesh) if kind == "dae" else 1.0
-            yield PlacedMesh(mesh, np.asarray(matrix, dtype=np.float64), unit)
+            yield PlacedMesh(mesh, np.asarray(matrix, dtype=np.float64), unit, frozenset((name, node)))
     scene.__dict__.clear()  # it holds itself in a circle, and with it the bytes of the file
 
 

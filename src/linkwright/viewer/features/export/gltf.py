@@ -17,18 +17,10 @@ from numpy.typing import NDArray
 from linkwright._version import __version__
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, display_path, missing_extra, phrase
 from linkwright.geometry.mesh_files import BadMeshError
+from linkwright.geometry.mesh_parts import UNCOLOURED, MeshPart, OwnLook, read_parts
 from linkwright.geometry.single import normalized
 from linkwright.nodes.robot_transforms import JointMotion
-from linkwright.viewer.features.export.meshes import (
-    UNCOLOURED,
-    MeshPart,
-    OwnLook,
-    box,
-    capsule,
-    cylinder,
-    read_parts,
-    sphere,
-)
+from linkwright.viewer.features.export.shapes import box, capsule, cylinder, sphere
 from linkwright.viewer.features.export.snapshot import FileSet, Snapshot
 from linkwright.viewer.protocol.robot import LinkScene, Shape
 from linkwright.viewer.web.files import FileRefusedError
@@ -137,7 +129,7 @@ def glb_of(snapshot: Snapshot) -> bytes:
     Colours are those that the page shows; glTF counts them linearly.
 
     Raises:
-        LinkwrightError: VIEW204, a mesh cannot be read; VIEW205, a library for it is not installed.
+        LinkwrightError: VIEW204, a mesh cannot be read; INR104, VIEW205, a library for it is not installed.
     """
     return _RobotWriter(snapshot).write()
 

@@ -1,9 +1,8 @@
-"""Triangles with materials: mesh files, by the rules of RViz that the page follows too, and URDF's shapes."""
+"""Mesh files with their look: triangles by material, by the rules of RViz, which the page follows too."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -12,11 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.diagnostics import missing_extra
+from linkwright.geometry.arrays import Array
 from linkwright.geometry.mesh_files import BadMeshError, PlacedMesh, placed_meshes, said_by_parser
-
-Array = NDArray[np.float64]
-_SIDES = 32
-_RINGS = 16
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,68 +32,6 @@ class Triangles:
     normals: Array | None = None
     coordinates: Array | None = None
     colors: Array | None = None
-
-
-def box(size: Sequence[float]) -> Triangles:
-    """Around the origin."""
-    positions, normals, coordinates = [], [], []
-    for axis in range(3):
-        for side in (1.0, -1.0):
-            u, v = np.eye(3)[(axis + 1) % 3], np.eye(3)[(axis + 2) % 3]
-            normal = np.eye(3)[axis] * side
-            for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1)):
-                positions.append(normal + (u * a * side) + v * b)
-                normals.append(normal)
-                coordinates.append(((a + 1) / 2, (1 - b) / 2))
-    quads = np.arange(6)[:, np.newaxis] * 4 + np.array([0, 1, 2, 0, 2, 3])
-    scale = np.asarray(size, dtype=np.float64) / 2
-    return Triangles(np.array(positions) * scale, quads.reshape(-1), np.array(normals), np.array(coordinates))
-
-
-def cylinder(radius: float, length: float) -> Triangles:
-    """Along z, around the origin, with caps."""
-    half = length / 2
-    profile = [(0.0, half, 0, 1), (radius, half, 0, 1), (radius, half, 1, 0), (radius, -half, 1, 0)]
-    profile += [(radius, -half, 0, -1), (0.0, -half, 0, -1)]
-    return _turned(np.array(profile, dtype=np.float64))
-
-
-def sphere(radius: float) -> Triangles:
-    """Around the origin."""
-    angles = np.linspace(np.pi / 2, -np.pi / 2, _RINGS + 1)
-    cosines, sines = np.cos(angles), np.sin(angles)
-    return _turned(np.stack([radius * cosines, radius * sines, cosines, sines], axis=1))
-
-
-def capsule(radius: float, length: float) -> Triangles:
-    """A cylinder along z, around the origin, with half spheres beyond its ends."""
-    angles = np.linspace(np.pi / 2, -np.pi / 2, _RINGS + 1)
-    angles = np.insert(angles, _RINGS // 2, 0.0)
-    shift = np.where(np.arange(_RINGS + 2) <= _RINGS // 2, length / 2, -length / 2)
-    cosines, sines = np.cos(angles), np.sin(angles)
-    return _turned(np.stack([radius * cosines, radius * sines + shift, cosines, sines], axis=1))
-
-
-def _turned(profile: Array) -> Triangles:
-    """The surface that a profile from top to bottom sweeps around z; its rows are r, z and the normal's r, z."""
-    around = np.linspace(0.0, 2 * np.pi, _SIDES + 1)
-    cosines, sines = np.cos(around), np.sin(around)
-    rows, columns = len(profile), _SIDES + 1
-    radius, height, normal_r, normal_z = (column[:, np.newaxis] for column in profile.T)
-    level = np.ones_like(cosines)
-    positions = np.stack([radius * cosines, radius * sines, height * level], axis=2).reshape(-1, 3)
-    normals = np.stack([normal_r * cosines, normal_r * sines, normal_z * level], axis=2).reshape(-1, 3)
-    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
-    u = np.broadcast_to(around / (2 * np.pi), (rows, columns))
-    v = np.broadcast_to(np.linspace(0.0, 1.0, rows)[:, np.newaxis], (rows, columns))
-    row, column = np.meshgrid(np.arange(rows - 1), np.arange(_SIDES), indexing="ij")
-    first = (row * columns + column).reshape(-1)
-    below = first + columns
-    triangles = np.stack([first, below, below + 1, first, below + 1, first + 1], axis=1)
-    corners = positions[triangles.reshape(-1, 3)]
-    areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
-    kept = triangles.reshape(-1, 3)[areas > 1e-9 * max(areas.max(initial=0.0), 1e-300)]
-    return Triangles(positions, kept.reshape(-1), normals / lengths, np.stack([u, v], axis=2).reshape(-1, 2))
 
 
 UNCOLOURED = 0.6
@@ -122,10 +56,21 @@ class OwnLook:
 
 @dataclass(frozen=True, slots=True)
 class MeshPart:
-    """Triangles in the frame of the file, and their material; None where the URDF's applies."""
+    """Triangles in the frame of the file.
+
+    Attributes:
+        triangles: the triangles.
+        own: their material; None where that of the description applies.
+        names: what the file calls them.
+    """
 
     triangles: Triangles
     own: OwnLook | None
+    names: frozenset[str] = frozenset()
+
+    def moved(self, offset: Array) -> MeshPart:
+        """The same elsewhere, by an offset in m, shape (3,)."""
+        return replace(self, triangles=replace(self.triangles, positions=self.triangles.positions + offset))
 
 
 def read_parts(path: Path, *, resolver: Any) -> list[MeshPart]:
@@ -137,13 +82,13 @@ def read_parts(path: Path, *, resolver: Any) -> list[MeshPart]:
 
     Raises:
         BadMeshError: it cannot be read; says why.
-        LinkwrightError: VIEW205, a library for it is not installed.
+        LinkwrightError: INR104 a library for it is not installed.
     """
     kind = path.suffix.lower().removeprefix(".")
     try:
         return _parts(path.read_bytes(), "stl" if kind == "stlb" else kind, resolver)
     except ModuleNotFoundError as error:
-        raise missing_extra("VIEW205", error) from None
+        raise missing_extra("INR104", error) from None
     except BadMeshError:
         raise
     except Exception as error:  # noqa: BLE001 - of a foreign picture or material anything may come
@@ -158,7 +103,7 @@ def _parts(data: bytes, kind: str, resolver: Any) -> list[MeshPart]:
             matrix = np.diag([*[placed.unit] * 3, 1.0]) @ matrix
         elif kind in ("glb", "gltf"):
             matrix = _UPRIGHT @ matrix
-        parts.append(MeshPart(_triangles(placed, matrix, smooth=kind != "stl"), _own(placed.mesh, kind)))
+        parts.append(MeshPart(_triangles(placed, matrix, smooth=kind != "stl"), _own(placed.mesh, kind), placed.names))
     return parts
 
 
