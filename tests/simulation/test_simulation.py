@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import isfinite
+
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
@@ -88,7 +90,16 @@ def test_a_reset_begins_anew():
 
 
 def test_an_explosion_is_said_with_the_link():
-    simulation = simulated(box("one", "0 0 5 0 0 0"))
-    simulation.push("one::link", (0.0, float("inf"), 0.0))
-    with pytest.raises(UnstableError, match="'one::link' first"):
+    simulation = simulated(box("one", "0 0 5 0 0 0"), box("two", "0 3 5 0 0 0"))
+    simulation.advance(10 * MILLISECOND)
+    simulation.push("two::link", (0.0, 1e300, 0.0))
+    with pytest.raises(UnstableError, match="'two::link'"):
+        simulation.advance(NANOSECONDS)
+    assert all(isfinite(each) for name in ("one", "two") for each in simulation.model_pose(name))
+
+
+def test_a_force_that_is_no_number_is_said_with_the_link():
+    simulation = simulated(box("one", "0 0 5 0 0 0"), box("two", "0 3 5 0 0 0"))
+    simulation.push("two::link", (0.0, float("nan"), 0.0))
+    with pytest.raises(UnstableError, match="'two::link'"):
         simulation.advance(NANOSECONDS)

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.single import IDENTITY, Transform, compose, invert, quaternion_inverse, rotate
 from linkwright.geometry.vectors import Vector3
@@ -22,9 +22,14 @@ from linkwright.simulation.schedule import Schedule, Task
 
 NANOSECONDS = 1_000_000_000
 
+_AWAKE = -11
+"""What MuJoCo counts up from for trees of bodies until they may sleep: one more than ``mjMINAWAKE`` below zero."""
+_BEYOND = 1e10
+"""A position or velocity that is no less, in m, rad, m/s or rad/s, is taken for an explosion, as MuJoCo does."""
+
 
 class UnstableError(LinkwrightError):
-    """The simulation has exploded: a position or velocity is no number any more (SIM120)."""
+    """The simulation has exploded: a position or velocity is no number any more, or beyond all bounds (SIM120)."""
 
 
 class Simulation:
@@ -55,8 +60,7 @@ class Simulation:
         self.time = 0
         self.schedule = Schedule()
         self.revision = 0
-        self.model = self.scene.spec.compile()
-        self.data = self._mujoco.MjData(self.model)
+        self.model, self.data = self._made(None)
         self._changed = False
         self._current = False
 
@@ -95,6 +99,22 @@ class Simulation:
         self._changed = True
         return Motor(self, name)
 
+    def keep_awake(self, link: str) -> None:
+        """Never let what a link hangs on fall asleep: of what sleeps no forces are computed, which sensors need.
+
+        Raises:
+            KeyError: there is no such link.
+        """
+        never = self._mujoco.mjtSleepPolicy.mjSLEEP_NEVER
+        self.scene.keep_awake(link, never)
+        if self._changed:
+            return
+        tree = int(self.model.body_treeid[self.model.body(link).id])
+        if tree >= 0:
+            self.model.tree_sleep_policy[tree] = never
+            if self.data.tree_asleep[tree] >= 0:
+                self.data.tree_asleep[self.data.tree_asleep >= 0] = _AWAKE
+
     def changed(self) -> None:
         """Tell that the scene was changed: MuJoCo's model is made anew before it is used next."""
         self._changed = True
@@ -102,7 +122,7 @@ class Simulation:
     def refresh(self) -> None:
         """Bring MuJoCo's model up to the scene, and what depends on positions up to these."""
         if self._changed:
-            self.model, self.data = self.scene.spec.recompile(self.model, self.data)
+            self.model, self.data = self._made((self.model, self.data))
             self._changed, self._current = False, False
             self.revision += 1
         if not self._current:
@@ -112,6 +132,21 @@ class Simulation:
             mujoco.mj_camlight(model, data)
             mujoco.mj_comVel(model, data)
             self._current = True
+
+    def _made(self, before: tuple[Any, Any] | None) -> tuple[Any, Any]:
+        """MuJoCo's model of the scene, with the state that there was before."""
+        self.scene.settle()
+        try:
+            if before is not None:
+                model, data = self.scene.spec.recompile(*before)
+                return model, data
+            model = self.scene.spec.compile()
+            return model, self._mujoco.MjData(model)
+        except (ValueError, self._mujoco.FatalError) as error:
+            said = str(error).removeprefix("Error: ").splitlines()[0]
+            raise LinkwrightError(
+                Diagnostic("SIM104", phrase("MuJoCo cannot take this world: {said}", said=foreign(said)))
+            ) from None
 
     def reset(self) -> None:
         """Put everything back to where it was at the start; time begins anew."""
@@ -143,19 +178,37 @@ class Simulation:
 
     def _make_steps(self, count: int) -> None:
         self.refresh()
+        before = self.data.qpos.copy(), self.data.qvel.copy()
         self._mujoco.mj_step(self.model, self.data, nstep=count)
-        self.time += count * self.step
         self._current = False
-        if not (np.isfinite(self.data.qpos).all() and np.isfinite(self.data.qvel).all()):
-            raise self._unstable()
+        if not self._is_sound():
+            raise self._unstable(before, count)
+        self.time += count * self.step
 
-    def _unstable(self) -> UnstableError:
-        finite = np.isfinite(self.data.qvel)
-        degree = int(np.argmin(finite)) if not finite.all() else 0
-        body = self.model.body(int(self.model.dof_bodyid[degree])).name
-        message = phrase(
-            "the simulation became unstable at {time} s: '{link}' first", time=f"{self.seconds:.3f}", link=body
-        )
+    def _is_sound(self) -> bool:
+        return all(bool((np.abs(state) < _BEYOND).all()) for state in (self.data.qpos, self.data.qvel))
+
+    def _unstable(self, before: tuple[Array, Array], count: int) -> UnstableError:
+        """Go back to where all was well, and step by step to where it fails: what is fastest there is to blame.
+
+        The state is left at the last step at which all was well.
+        """
+        mujoco, model, data = self._mujoco, self.model, self.data
+        for _ in range(count):
+            data.qpos[:], data.qvel[:] = before
+            mujoco.mj_step(model, data)
+            if not self._is_sound():
+                break
+            before = data.qpos.copy(), data.qvel.copy()
+            self.time += self.step
+        forced = ~np.isfinite(data.xfrc_applied).all(axis=1)
+        failed = np.nan_to_num(np.abs(data.qvel), nan=np.inf)
+        degree = int(np.argmax(np.where(failed == failed.max(), np.abs(before[1]), -1.0)))
+        body = int(np.argmax(forced)) if forced.any() else int(model.dof_bodyid[degree])
+        mujoco.mj_resetData(model, data)
+        data.qpos[:], data.qvel[:] = before
+        told = {"time": f"{self.seconds:.3f}", "link": model.body(body).name}
+        message = phrase("the simulation became unstable at {time} s, at the link '{link}'", **told)
         hint = phrase("look at its mass, its inertia and what it overlaps with, or make the time step shorter")
         return UnstableError(Diagnostic("SIM120", message, hint=hint))
 

@@ -28,8 +28,9 @@ def imu(simulation: Simulation, link: str, text: str = "", *, seed: int = 0, ini
 
 def test_an_imu_at_rest_feels_the_reaction_to_gravity():
     simulation = simulated(GROUND, mbot(), gravity="0 0 -9.8")
+    sensor = imu(simulation, "mbot::base_link")
     simulation.advance(NANOSECONDS)
-    measured = imu(simulation, "mbot::base_link").measure()
+    measured = sensor.measure()
     assert measured.linear_acceleration == pytest.approx([0, 0, 9.8], abs=1e-3)
     assert measured.angular_velocity == pytest.approx([0, 0, 0], abs=1e-4)
     assert measured.orientation == pytest.approx([0, 0, 0, 1], abs=1e-4)
@@ -93,8 +94,9 @@ def test_a_bias_wanders_within_its_deviation():
 
 def test_contacts_carry_the_weight_of_what_stands():
     simulation = simulated(GROUND, box("box", "0 0 0.5 0 0 0", mass=2.0))
+    sensor = ContactSensor(Mount(simulation, "box::link"), ["collision"])
     simulation.advance(NANOSECONDS)
-    (contact,) = ContactSensor(Mount(simulation, "box::link"), ["collision"]).measure()
+    (contact,) = sensor.measure()
     assert (contact.collision1, contact.collision2) == ("box::link::collision", "ground::link::collision")
     assert contact.forces.sum(axis=0) == pytest.approx([0, 0, 2 * 9.81], abs=0.05)
     assert contact.torques.sum(axis=0) == pytest.approx([0, 0, 0], abs=0.05)

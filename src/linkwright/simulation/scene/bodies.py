@@ -4,19 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from math import isfinite
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from linkwright.diagnostics import Diagnostic, Phrase, Severity, phrase
 from linkwright.geometry.arrays import rotation_matrix
-from linkwright.geometry.single import Transform, compose, invert, rotate
+from linkwright.geometry.mass import combine
+from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere
+from linkwright.geometry.single import Pose, Transform, compose, invert, rotate
+from linkwright.geometry.solids import shape_properties
 from linkwright.geometry.validity import is_positive_definite
 from linkwright.geometry.vectors import Vector3
-from linkwright.sdf.frames import Frames, transform_of
+from linkwright.sdf.frames import Frames, pose_of, transform_of
 from linkwright.sdf.joints import Axis
-from linkwright.sdf.links import Collision, Inertial, Link, Visual
+from linkwright.sdf.links import Collision, Inertia, Inertial, Link, Visual
 from linkwright.sdf.poses import RawPose
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.scene.meshes import MeshLibrary
@@ -35,6 +37,8 @@ _LEAST_MASS = 1e-6
 _LEAST_INERTIA = 1e-9
 """In kg m2."""
 _USUAL_INERTIAL = Inertial()
+_WATER = 1000.0
+"""The density of what says nothing of its own, in kg/m3."""
 
 
 class BodyWriter:
@@ -45,16 +49,20 @@ class BodyWriter:
 
     Attributes:
         diagnostics: what could not be taken over.
+        unsaid: names of the geoms that touch and of whose friction nothing is said.
     """
 
     def __init__(self, meshes: MeshLibrary) -> None:
+        self.unsaid: set[str] = set()
         self.diagnostics: list[Diagnostic] = []
         self._meshes = meshes
         self._mujoco = load_mujoco()
 
-    def give_mass(self, body: Any, link: Link) -> None:
+    def give_mass(self, body: Any, link: Link, frames: Frames) -> None:
         """Give a body the mass properties of its link; 1 kg and 1 kg m2 where nothing is said, as SDF has it."""
         inertial = link.inertial or _USUAL_INERTIAL
+        if inertial.auto:
+            inertial = _worked_out(link, frames) or _USUAL_INERTIAL
         placed = transform_of(inertial.pose.pose)
         turn = rotation_matrix(placed[3:])
         about = inertial.inertia
@@ -132,7 +140,10 @@ class BodyWriter:
             for geom in self._geoms(body, visual, pose, fixed=fixed, collision=False):
                 geom.group = VISUAL_GROUP
                 geom.contype = geom.conaffinity = 0
-                geom.rgba = _colour(visual)
+                if visual.material is not None:
+                    geom.material = ""
+                if not geom.material:
+                    geom.rgba = _colour(visual)
 
     def add_collisions(self, body: Any, link: Link, frames: Frames, *, fixed: bool) -> None:
         """Add what touches of a link."""
@@ -143,16 +154,19 @@ class BodyWriter:
                 geom.group = COLLISION_GROUP
                 geom.contype, geom.conaffinity = surface.category_bitmask, surface.collide_bitmask
                 apply_surface(geom, surface)
+                if surface.friction is None:
+                    self.unsaid.add(geom.name)
 
     def _geoms(
         self, body: Any, part: Visual | Collision, pose: Transform, *, fixed: bool, collision: bool
     ) -> Iterable[Any]:
         simple = add_shape(body, part.geometry, pose, fixed=fixed)
-        geoms = [simple] if simple is not None else []
-        if simple is None:
-            source = part.element.source if part.element is not None else None
-            beside = Path(source.name).parent if source is not None else Path()
-            geoms = list(self._meshes.add(body, part.geometry, pose, beside, fixed=fixed, collision=collision))
+        if simple is not None:
+            geoms = [simple]
+        elif collision:
+            geoms = self._meshes.collisions(body, part.geometry, pose, part.element, fixed=fixed)
+        else:
+            geoms = self._meshes.visuals(body, part.geometry, pose, part.element)
         for index, geom in enumerate(geoms):
             suffix = f"#{index}" if index else ""
             geom.name = f"{body.name}::{part.name}#{'collision' if collision else 'visual'}{suffix}"
@@ -162,6 +176,23 @@ class BodyWriter:
         span = element.span() if element is not None else None
         source = element.source if element is not None else None
         self.diagnostics.append(Diagnostic(code, message, severity=Severity.WARNING, span=span, source=source))
+
+
+def _worked_out(link: Link, frames: Frames) -> Inertial | None:
+    """The mass properties that the shapes of a link make, by their densities; None where they have no volume."""
+    assert link.inertial is not None
+    parts = []
+    for collision in link.collisions:
+        if isinstance(collision.geometry, Box | Capsule | Cylinder | Sphere):
+            density = collision.density or link.inertial.density or _WATER
+            pose = pose_of(_pose_in_link(frames, link, collision.pose))
+            parts.append(shape_properties(collision.geometry, density).moved(pose))
+    whole = combine(parts)
+    if not whole.mass > 0:
+        return None
+    (ixx, ixy, ixz), (_, iyy, iyz), (_, _, izz) = whole.inertia.tolist()
+    x, y, z = whole.center.tolist()
+    return Inertial(whole.mass, RawPose(Pose((x, y, z))), Inertia(ixx, iyy, izz, ixy, ixz, iyz))
 
 
 def _pose_in_link(frames: Frames, link: Link, raw: RawPose) -> Transform:

@@ -2,82 +2,239 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Hashable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from linkwright.diagnostics import LinkwrightError
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, phrase
 from linkwright.geometry.arrays import Array
-from linkwright.geometry.meshes import TriangleMesh, read_mesh
+from linkwright.geometry.decomposition import convex_pieces, thickened
+from linkwright.geometry.mesh_files import BadMeshError, beside
+from linkwright.geometry.mesh_parts import MeshPart, Triangles, read_parts
+from linkwright.geometry.meshes import read_mesh, unreadable
+from linkwright.geometry.polygon import triangulated
 from linkwright.geometry.single import Transform
 from linkwright.geometry.vectors import Vector3
 from linkwright.sdf.resources import Missing, ResourceFinder
-from linkwright.sdf.shapes import Cone, Mesh, Shape
+from linkwright.sdf.shapes import Cone, Heightmap, Mesh, Polyline, Shape
 from linkwright.simulation.library import load_mujoco
+from linkwright.simulation.scene.heights import read_heights
 from linkwright.simulation.scene.shapes import cone_corners, set_pose
+from linkwright.xmltree import Element
+
+_MOST_PIECES = 300
+"""So many convex pieces a mesh may become; each costs a little in every step."""
+_MOST_HULL_CORNERS = 64
+"""The hull of what moves has no more corners."""
+_UNIT: Vector3 = (1.0, 1.0, 1.0)
 
 
 class MeshLibrary:
-    """Reads the meshes that worlds name, each once.
+    """Reads the meshes that worlds name, each once, and tells once of each that cannot be had.
 
     Args:
         finder: where they are.
 
     Attributes:
         spec: the specification that gets them.
+        diagnostics: what could not be had.
     """
 
     def __init__(self, finder: ResourceFinder) -> None:
         self.spec: Any = None
+        self.diagnostics: list[Diagnostic] = []
         self._finder = finder
-        self._read: dict[Path, TriangleMesh | None] = {}
-        self._assets: dict[tuple[object, ...], str] = {}
+        self._files: dict[tuple[str, Path], Path | None] = {}
+        self._assets: dict[Hashable, list[str]] = {}
+        self._told: set[str] = set()
 
-    def add(
-        self, body: Any, shape: Shape, pose: Transform, beside: Path, *, fixed: bool, collision: bool
-    ) -> Iterator[Any]:
-        """Add a shape to a body that MuJoCo has as meshes only; nothing for a mesh that cannot be had.
+    def collisions(
+        self, body: Any, shape: Shape, pose: Transform, element: Element | None, *, fixed: bool
+    ) -> list[Any]:
+        """Add a shape that touches to a body, as convex pieces; nothing for one that cannot be had.
 
         Args:
             body: the body of the specification.
-            shape: the shape.
+            shape: a mesh, a cone, a polygon, a heightmap.
             pose: where it stands in the frame of the body.
-            beside: the folder of the file that names it.
-            fixed: whether the body never moves.
-            collision: whether it touches or is seen.
+            element: what it was read from.
+            fixed: whether the body never moves; the mesh of one that moves is its hull.
         """
-        del fixed, collision
-        name = None
-        if isinstance(shape, Cone):
-            name = self._asset((shape,), cone_corners(shape), None)
-        elif isinstance(shape, Mesh):
-            name = self._file(shape, beside)
-        if name is not None:
-            geom = body.add_geom(type=load_mujoco().mjtGeom.mjGEOM_MESH, meshname=name)
-            set_pose(geom, pose)
-            yield geom
-
-    def _file(self, shape: Mesh, beside: Path) -> str | None:
-        path = self._finder.file(shape.uri, beside)
-        if isinstance(path, Missing):
-            return None
-        if path not in self._read:
-            try:
-                self._read[path] = read_mesh(path)
-            except LinkwrightError:
-                self._read[path] = None
-        mesh = self._read[path]
-        return None if mesh is None else self._asset((path, shape.scale), mesh.vertices, mesh.faces, shape.scale)
-
-    def _asset(
-        self, key: tuple[object, ...], vertices: Array, faces: Any | None, scale: Vector3 = (1.0, 1.0, 1.0)
-    ) -> str:
+        if isinstance(shape, Heightmap):
+            return self._heightmap(body, shape, pose, element)
+        key = ("collision", shape, self._path(shape, element), fixed)
         if key not in self._assets:
-            name = self._assets[key] = f"mesh{len(self._assets)}"
-            mesh = self.spec.add_mesh(name=name)
-            mesh.uservert = np.asarray(vertices * np.asarray(scale), dtype=np.float32).ravel().tolist()
-            if faces is not None:
-                mesh.userface = np.asarray(faces, dtype=np.int32).ravel().tolist()
-        return self._assets[key]
+            self._assets[key] = [self._hull(corners) for corners in self._pieces(shape, element, fixed=fixed)]
+        return [self._geom(body, pose, name) for name in self._assets[key]]
+
+    def visuals(self, body: Any, shape: Shape, pose: Transform, element: Element | None) -> list[Any]:
+        """Add a shape that is seen to a body, with the materials of its file; see `collisions`."""
+        if isinstance(shape, Heightmap):
+            return self._heightmap(body, shape, pose, element)
+        path = self._path(shape, element)
+        key = ("visual", shape, path)
+        if key not in self._assets:
+            if isinstance(shape, Mesh):
+                self._assets[key] = [] if path is None else list(self._drawn(shape, path, element))
+            else:
+                self._assets[key] = [self._hull(corners) for corners in self._pieces(shape, element, fixed=True)]
+        return [self._geom(body, pose, name) for name in self._assets[key]]
+
+    def _geom(self, body: Any, pose: Transform, mesh: str) -> Any:
+        geom = body.add_geom(type=load_mujoco().mjtGeom.mjGEOM_MESH, meshname=mesh)
+        material = f"{mesh} look"
+        if self.spec.material(material) is not None:
+            geom.material = material
+        set_pose(geom, pose)
+        return geom
+
+    def _pieces(self, shape: Shape, element: Element | None, *, fixed: bool) -> list[Array]:
+        """The corners of convex pieces."""
+        if isinstance(shape, Cone):
+            return [cone_corners(shape)] if min(shape.radius, shape.length) > 0 else []
+        if isinstance(shape, Polyline):
+            return list(_prisms(shape))
+        if isinstance(shape, tuple):
+            return [corners for each in shape for corners in _prisms(each)]
+        path = self._path(shape, element)
+        if not isinstance(shape, Mesh) or path is None:
+            return []
+        try:
+            if shape.submesh is not None:
+                parts = [part.triangles for part in self._parts(shape, path)]
+                vertices, faces = _joined(parts)
+            else:
+                whole = read_mesh(path)
+                vertices, faces = whole.vertices, whole.faces
+        except LinkwrightError as error:
+            self._warn(error.diagnostics[0], element)
+            return []
+        vertices = vertices * np.asarray(shape.scale)
+        if np.prod(shape.scale) < 0:
+            faces = faces[:, ::-1]
+        pieces = convex_pieces(vertices, faces, _MOST_PIECES) if fixed else [vertices[np.unique(faces)]]
+        return [thickened(corners) for corners in pieces]
+
+    def _drawn(self, shape: Mesh, path: Path, element: Element | None) -> Iterator[str]:
+        try:
+            parts = self._parts(shape, path)
+        except LinkwrightError as error:
+            self._warn(error.diagnostics[0], element)
+            return
+        for part in parts:
+            triangles = part.triangles
+            name = f"mesh {len(self.spec.meshes)}"
+            mesh = self.spec.add_mesh(name=name, inertia=load_mujoco().mjtMeshInertia.mjMESH_INERTIA_SHELL)
+            mesh.uservert = _flat(triangles.positions * np.asarray(shape.scale))
+            faces = triangles.indices.reshape(-1, 3)
+            mesh.userface = _flat(faces[:, ::-1] if np.prod(shape.scale) < 0 else faces, np.int32)
+            if triangles.coordinates is not None:
+                mesh.usertexcoord = _flat(triangles.coordinates)
+            self._give_look(name, part)
+            yield name
+
+    def _give_look(self, mesh: str, part: MeshPart) -> None:
+        if part.own is None:
+            return
+        material = self.spec.add_material(name=f"{mesh} look")
+        material.rgba = [*part.own.color, 1.0]
+        if part.own.image is not None and part.triangles.coordinates is not None:
+            mujoco = load_mujoco()
+            texture = self.spec.add_texture(name=material.name, type=mujoco.mjtTexture.mjTEXTURE_2D)
+            texture.file = f"{material.name}.png"
+            self.spec.assets = {**self.spec.assets, texture.file: part.own.image}
+            material.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = texture.name
+
+    def _parts(self, shape: Mesh, path: Path) -> list[MeshPart]:
+        try:
+            parts = read_parts(path, resolver=beside(str(path)))
+        except BadMeshError as error:
+            raise unreadable(path, error.why) from None
+        if shape.submesh is None:
+            return parts
+        wanted = shape.submesh
+        chosen = [part for part in parts if wanted.name in part.names]
+        if wanted.center and chosen:
+            positions = np.concatenate([part.triangles.positions for part in chosen])
+            middle = (positions.min(axis=0) + positions.max(axis=0)) / 2
+            chosen = [part.moved(-middle) for part in chosen]
+        return chosen
+
+    def _hull(self, corners: Array) -> str:
+        name = f"hull {len(self.spec.meshes)}"
+        mesh = self.spec.add_mesh(name=name, maxhullvert=_MOST_HULL_CORNERS)
+        mesh.uservert = _flat(corners)
+        return name
+
+    def _heightmap(self, body: Any, shape: Heightmap, pose: Transform, element: Element | None) -> list[Any]:
+        path = self._path(shape, element)
+        if path is None:
+            return []
+        key = ("heights", shape, path)
+        if key not in self._assets:
+            try:
+                heights = read_heights(path)
+            except LinkwrightError as error:
+                self._warn(error.diagnostics[0], element)
+                self._assets[key] = []
+                return []
+            name = f"heights {len(self.spec.hfields)}"
+            x, y, z = shape.size
+            rows, columns = heights.values.shape
+            span = float(np.ptp(heights.values))
+            field = self.spec.add_hfield(name=name, nrow=rows, ncol=columns)
+            field.size = [x / 2, y / 2, max(span * z, 1e-3), 1.0]
+            field.userdata = _flat(heights.values)
+            self._assets[key] = [name]
+        for name in self._assets[key]:
+            geom = body.add_geom(type=load_mujoco().mjtGeom.mjGEOM_HFIELD, hfieldname=name)
+            px, py, pz = shape.position
+            set_pose(geom, (pose[0] + px, pose[1] + py, pose[2] + pz, *pose[3:]))
+            return [geom]
+        return []
+
+    def _path(self, shape: Shape, element: Element | None) -> Path | None:
+        """The file of a shape; None for a shape without one, or one that is not there, which is told once."""
+        if not isinstance(shape, Mesh | Heightmap):
+            return None
+        source = element.source if element is not None else None
+        folder = Path(source.name).parent if source is not None else Path()
+        key = (shape.uri, folder)
+        if key not in self._files:
+            found = self._finder.file(shape.uri, folder)
+            if isinstance(found, Missing):
+                self._warn(Diagnostic("SIM112", found.reason, hint=found.hint), element)
+                self._files[key] = None
+            else:
+                self._files[key] = found
+        return self._files[key]
+
+    def _warn(self, found: Diagnostic, element: Element | None) -> None:
+        message = phrase("a shape is left out: {reason}", reason=found.message)
+        span = element.span() if element is not None else None
+        source = element.source if element is not None else None
+        if message not in self._told:
+            self._told.add(message)
+            self.diagnostics.append(
+                Diagnostic(found.code, message, severity=Severity.WARNING, span=span, source=source, hint=found.hint)
+            )
+
+
+def _prisms(polyline: Polyline) -> Iterator[Array]:
+    points = np.array(polyline.points, dtype=np.float64).reshape(-1, 2)
+    for triangle in triangulated(polyline.points):
+        base = points[list(triangle)]
+        yield np.concatenate([np.insert(base, 2, height, axis=1) for height in (0.0, polyline.height)])
+
+
+def _joined(parts: Sequence[Triangles]) -> tuple[Array, Any]:
+    counts = np.cumsum([0, *(len(part.positions) for part in parts)])
+    vertices = np.concatenate([np.zeros((0, 3)), *(part.positions for part in parts)])
+    faces = [part.indices.reshape(-1, 3) + count for part, count in zip(parts, counts, strict=False)]
+    return vertices, np.concatenate([np.zeros((0, 3), dtype=np.int64), *faces])
+
+
+def _flat(values: Any, kind: Any = np.float32) -> list[Any]:
+    return list(np.asarray(values, dtype=kind).ravel().tolist())

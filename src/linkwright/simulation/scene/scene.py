@@ -15,14 +15,16 @@ from linkwright.sdf.models import Model
 from linkwright.sdf.poses import SEPARATOR, WORLD
 from linkwright.sdf.worlds import World, gravity_of, physics_of
 from linkwright.simulation.library import load_mujoco
-from linkwright.simulation.scene.bodies import COLLISION_GROUP, BodyWriter, hinge_anchors
+from linkwright.simulation.scene.bodies import SECOND_AXIS, BodyWriter, hinge_anchors
 from linkwright.simulation.scene.meshes import MeshLibrary
 from linkwright.simulation.scene.shapes import set_pose
 from linkwright.simulation.scene.structure import HeldLink, PlacedJoint, Structure, structure_of
-from linkwright.simulation.scene.surfaces import make_wheel
+from linkwright.simulation.scene.wheels import make_rolling, make_sliding
 
 _ANCHORS_APART = 0.1
 """How far from each other in m the two points are that hold the axis of a hinge that closes a loop."""
+_LOOP_STEPS = 4.0
+"""The time constant of what closes a loop, in steps."""
 _ARMATURE = 0.01
 """Inertia in kg m2 that a motor adds to its joint where the integrator knows nothing of the motor's damping."""
 
@@ -75,7 +77,10 @@ class Scene:
         self.spec = mujoco.MjSpec()
         meshes.spec = self.spec
         self._writer = BodyWriter(meshes)
+        self._meshes = meshes
         self._motors = 0
+        self._driven: dict[str, set[str]] = {}
+        self._unsettled: set[str] = set()
         self.spec.modelname = world.name or WORLD
         self.spec.compiler.degree = False
         self.spec.compiler.balanceinertia = True
@@ -92,14 +97,16 @@ class Scene:
         option.gravity = list(gravity_of(world))
         option.cone = self._mujoco.mjtCone.mjCONE_ELLIPTIC
         option.impratio = 10.0
+        option.noslip_iterations = 3  # a wheel that is sped up at once would jump: what slips is pushed off the ground
         self._discrete = hasattr(kinds, "mjINT_DISCRETE")  # since MuJoCo 4
         option.integrator = kinds.mjINT_DISCRETE if self._discrete else kinds.mjINT_EULER
+        option.enableflags |= self._mujoco.mjtEnableBit.mjENBL_SLEEP
         option.disableflags |= self._mujoco.mjtDisableBit.mjDSBL_AUTORESET
 
     @property
     def diagnostics(self) -> list[Diagnostic]:
         """What could not be taken over."""
-        return self._writer.diagnostics
+        return [*self._writer.diagnostics, *self._meshes.diagnostics]
 
     def add(self, model: Model, name: str, pose: Transform) -> SceneModel:
         """Add a model.
@@ -122,6 +129,8 @@ class Scene:
             body = self._add_link(held, poses)
             if body.parent == self.spec.worldbody:
                 added.parts.append(body)
+        for held in structure.links:
+            added.parts += self._mimicry(held.joint, name)
         for joint in structure.loops:
             added.parts += self._closed(joint, poses)
         added.parts += self._strangers(structure)
@@ -134,6 +143,7 @@ class Scene:
             KeyError: there is none of that name.
         """
         model = self.models.pop(name)
+        self._driven.pop(name, None)
         for part in reversed(model.parts):
             self.spec.delete(part)
         for held in model.structure.links:
@@ -156,7 +166,8 @@ class Scene:
         actuator.set_to_velocity(kv=gain)
         if not self._discrete:
             self.spec.joint(joint).armature = _ARMATURE
-        self._let_roll(self.joints[joint])
+        self._unsettled.add(joint.partition(SEPARATOR)[0])
+        self._driven.setdefault(joint.partition(SEPARATOR)[0], set()).add(joint)
         return str(actuator.name)
 
     def _actuator(self, joint: str, limit: float) -> Any:
@@ -169,18 +180,29 @@ class Scene:
         self.models[joint.partition(SEPARATOR)[0]].parts.append(actuator)
         return actuator
 
-    def _let_roll(self, joint: PlacedJoint) -> None:
-        """Make cylinders ellipsoids, which touch the ground in one point as tyres do, and contacts hard."""
-        kinds = self._mujoco.mjtGeom
-        for geom in self.bodies[joint.child].geoms:
-            if geom.group != COLLISION_GROUP or geom.condim == 1:
-                continue
-            if geom.type == kinds.mjGEOM_CYLINDER:
-                radius, half, _ = geom.size
-                geom.type = kinds.mjGEOM_ELLIPSOID
-                geom.size = [radius, radius, half]
-            if geom.type in (kinds.mjGEOM_ELLIPSOID, kinds.mjGEOM_SPHERE):
-                make_wheel(geom, self.step)
+    def keep_awake(self, link: str, never: Any) -> None:
+        """Give the bodies that hang together with a link a policy of sleep; those that stand still need none.
+
+        Raises:
+            KeyError: there is no such link.
+        """
+        body = self.bodies[link]
+        while body.parent != self.spec.worldbody:
+            body = body.parent
+        if body.find_all("joint"):
+            body.sleep = never
+
+    def settle(self) -> None:
+        """Give wheels and casters of models with motors their surfaces, once all motors are there."""
+        for name in self._unsettled & self.models.keys():
+            driven = {self.joints[joint].child: joint for joint in self._driven[name]}
+            for held in self.models[name].structure.links:
+                body = self.bodies[held.link.name]
+                if held.link.name in driven:
+                    make_rolling(self.spec, body, self.spec.joint(driven[held.link.name]), self.step)
+                else:
+                    make_sliding(body, self._writer.unsaid)
+        self._unsettled.clear()
 
     def _add_link(self, held: HeldLink, poses: dict[str, Transform]) -> Any:
         placed = held.link
@@ -192,7 +214,7 @@ class Scene:
         set_pose(body, compose(invert(above), placed.pose))
         fixed = placed.static or (joint is None and link.kinematic)
         if not fixed:
-            self._writer.give_mass(body, link)
+            self._writer.give_mass(body, link, Frames(placed.model))
             body.gravcomp = 0.0 if link.gravity else 1.0
             if joint is None:
                 body.add_freejoint().name = f"{placed.name}#free"
@@ -203,6 +225,23 @@ class Scene:
         self._writer.add_visuals(body, link, frames, fixed=fixed)
         self._writer.add_collisions(body, link, frames, fixed=fixed)
         return body
+
+    def _mimicry(self, joint: PlacedJoint | None, model: str) -> Iterator[Any]:
+        """What makes axes of a joint follow those of others."""
+        if joint is None or joint.name not in self.joints:
+            return
+        for number, (axis, _) in enumerate(joint.axes):
+            if axis.mimic is None:
+                continue
+            owner = joint.name.rpartition(SEPARATOR)[0] or model
+            leader = f"{owner}{SEPARATOR}{axis.mimic.joint}{SECOND_AXIS if axis.mimic.axis == 'axis2' else ''}"
+            if leader.removesuffix(SECOND_AXIS) not in self.joints:
+                continue  # `check` tells
+            equality = self.spec.add_equality(type=self._mujoco.mjtEq.mjEQ_JOINT)
+            equality.name1, equality.name2 = f"{joint.name}{SECOND_AXIS if number else ''}", leader
+            offset = axis.mimic.offset - axis.mimic.multiplier * axis.mimic.reference
+            equality.data[:5] = [offset, axis.mimic.multiplier, 0.0, 0.0, 0.0]
+            yield equality
 
     def _closed(self, joint: PlacedJoint, poses: dict[str, Transform]) -> Iterator[Any]:
         """What holds two links together that others hold already."""
@@ -220,6 +259,7 @@ class Scene:
 
     def _equality(self, kind: Any, ends: tuple[str, str]) -> Any:
         equality = self.spec.add_equality(type=kind, objtype=self._mujoco.mjtObj.mjOBJ_BODY)
+        equality.solref = [_LOOP_STEPS * self.step, 1.0]
         equality.name1, equality.name2 = ends[0], "" if ends[1] == WORLD else ends[1]
         return equality
 

@@ -51,8 +51,18 @@ def friction_of(surface: Surface) -> float:
 def make_slippery(geom: Any) -> None:
     """Let a shape slide without friction and leave the load to others, as casters shall."""
     geom.condim = 1
-    geom.solref = list(_SOFT)
+    make_soft(geom)
     geom.priority = _priority(0.0)
+
+
+def make_soft(geom: Any) -> None:
+    """Let a shape give way a little, so that it does not take the load from wheels beside it."""
+    geom.solref = list(_SOFT)
+
+
+def is_slippery(geom: Any) -> bool:
+    """Whether a shape slides without friction."""
+    return bool(geom.condim == 1)
 
 
 def make_wheel(geom: Any, step: float) -> None:

@@ -31,6 +31,9 @@ class Mount:
     link: str
     offset: Transform = IDENTITY
 
+    def __post_init__(self) -> None:
+        self.simulation.keep_awake(self.link)
+
     @property
     def model(self) -> str:
         """The model that the link is part of."""

@@ -1,0 +1,161 @@
+"""Surfaces as convex pieces, which is what engines of physics let touch."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.geometry.arrays import Array
+from linkwright.geometry.hull import convex_hull
+from linkwright.geometry.polyhedron import Faces, is_closed, merged, polyhedron_properties
+
+THICKNESS = 0.02
+"""How far a face reaches into what is behind it where it becomes a piece of its own, in m."""
+
+_NEARLY_CONVEX = 0.95
+"""A closed surface that fills so much of its hull is taken for its hull."""
+_ONE_PLANE = 1e-4
+"""Two triangles lie in one plane when the cosine between their normals is no further from 1."""
+_MOST_CORNERS = 2000
+"""The hull of more corners is not looked at: it is no box and no wall."""
+
+
+def convex_pieces(vertices: Array, faces: Faces, most: int) -> list[Array]:
+    """A surface that stands still as convex pieces.
+
+    A part that is nearly convex is one piece: its hull. Of another one each flat face, or where that is not convex
+    each triangle, is a plate that reaches `THICKNESS` inwards, so that rooms stay rooms and tables have legs. Where
+    that would be too many pieces, the parts with the most are their hulls.
+
+    Args:
+        vertices: corners in m, shape (vertices, 3).
+        faces: indices of corners, shape (faces, 3), counterclockwise from outside.
+        most: how many pieces there may be.
+
+    Returns:
+        The corners of each piece, shape (corners, 3).
+    """
+    vertices, faces = merged(vertices, faces)
+    if not len(faces):
+        return []
+    parts = [faces[component] for component in _components(faces, len(vertices))]
+    pieces: list[Array] = []
+    concave: list[tuple[Array, list[Array]]] = []
+    for part in parts:
+        corners = vertices[np.unique(part)]
+        if _is_nearly_convex(vertices, part, corners):
+            pieces.append(corners)
+        else:
+            concave.append((corners, _plates(vertices, part, most)))
+    concave.sort(key=lambda each: len(each[1]))
+    left = most - len(pieces) - len(concave)
+    for corners, plates in concave:
+        if len(plates) - 1 <= left:
+            pieces += plates
+            left -= len(plates) - 1
+        else:
+            pieces.append(corners)
+    return pieces
+
+
+def thickened(corners: Array) -> Array:
+    """Corners with those of the same surface a little behind it, where they lie in one plane or nearly so."""
+    middle = corners.mean(axis=0)
+    _, sizes, axes = np.linalg.svd(corners - middle, full_matrices=False)
+    extent = np.ptp((corners - middle) @ axes[2]) if len(corners) > 2 and len(sizes) > 2 else 0.0
+    if len(sizes) > 2 and extent > 1e-3:
+        return corners
+    normal = axes[2] if len(axes) > 2 else np.array([0.0, 0.0, 1.0])
+    return np.concatenate([corners + normal * THICKNESS / 2, corners - normal * THICKNESS / 2])
+
+
+def _components(faces: Faces, count: int) -> list[NDArray[np.int64]]:
+    """The faces of each part that hangs together, as indices of faces."""
+    labels = _joined(faces, count)[faces[:, 0]]
+    order = np.argsort(labels, kind="stable")
+    starts = np.flatnonzero(np.diff(labels[order], prepend=-1))
+    return np.split(order, starts[1:])
+
+
+def _joined(groups: NDArray[np.int64], count: int) -> NDArray[np.int64]:
+    """The least number of each set of numbers that groups (rows) join, for all numbers below a count."""
+    labels = np.arange(count)
+    while True:
+        least = labels[groups].min(axis=1)
+        new = labels.copy()
+        np.minimum.at(new, groups.reshape(-1), np.repeat(least, groups.shape[1]))
+        new = new[new]
+        if np.array_equal(new, labels):
+            return labels
+        labels = new
+
+
+def _is_nearly_convex(vertices: Array, faces: Faces, corners: Array) -> bool:
+    if len(corners) > _MOST_CORNERS or not is_closed(faces):
+        return False
+    hull = convex_hull(corners)
+    if hull is None:
+        return False
+    inside = abs(polyhedron_properties(vertices, faces).mass)
+    return inside >= _NEARLY_CONVEX * polyhedron_properties(corners, hull).mass
+
+
+def _plates(vertices: Array, faces: Faces, most: int) -> list[Array]:
+    """A plate for each flat face, or so many that it is known that there are more than so many."""
+    corners = vertices[faces]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    lengths = np.linalg.norm(normals, axis=1)
+    faces, normals = faces[lengths > 0], normals[lengths > 0] / lengths[lengths > 0, None]
+    plates: list[Array] = []
+    for group in _flat_groups(faces, normals):
+        if len(plates) > most:
+            break
+        ring = vertices[np.unique(faces[group])]
+        triangles = vertices[faces[group]]
+        area = np.linalg.norm(np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]), axis=1)
+        normal = normals[group[0]]
+        whole = _area_of_hull(ring, normal)
+        if area.sum() / 2 >= _NEARLY_CONVEX * whole:
+            plates.append(_plate(ring, normal))
+        else:
+            plates += [_plate(triangle, normal) for triangle in triangles]
+    return plates
+
+
+def _plate(corners: Array, normal: Array) -> Array:
+    return np.concatenate([corners, corners - THICKNESS * normal])
+
+
+def _flat_groups(faces: Faces, normals: Array) -> list[NDArray[np.int64]]:
+    """Triangles that share edges and lie in one plane, as indices."""
+    edges = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
+    owner = np.repeat(np.arange(len(faces)), 3)
+    order = np.lexsort((edges[:, 1], edges[:, 0]))
+    edges, owner = edges[order], owner[order]
+    same = np.flatnonzero((edges[1:] == edges[:-1]).all(axis=1))
+    pairs = np.stack([owner[same], owner[same + 1]], axis=1)
+    flat = (normals[pairs[:, 0]] * normals[pairs[:, 1]]).sum(axis=1) > 1.0 - _ONE_PLANE
+    labels = _joined(pairs[flat], len(faces)) if flat.any() else np.arange(len(faces))
+    order = np.argsort(labels, kind="stable")
+    return np.split(order, np.flatnonzero(np.diff(labels[order], prepend=-1))[1:])
+
+
+def _area_of_hull(points: Array, normal: Array) -> float:
+    """The area of the convex hull of points in one plane (Andrew's monotone chain)."""
+    first = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
+    first /= np.linalg.norm(first)
+    plane = np.stack([points @ first, points @ np.cross(normal, first)], axis=1)
+    ordered = plane[np.lexsort((plane[:, 1], plane[:, 0]))].tolist()
+    ring: list[list[float]] = []
+    for way in (ordered, ordered[::-1]):
+        start = len(ring)
+        for x, y in way:
+            while len(ring) >= start + 2:
+                (ax, ay), (bx, by) = ring[-2], ring[-1]
+                if (bx - ax) * (y - ay) - (by - ay) * (x - ax) > 0:
+                    break
+                ring.pop()
+            ring.append([x, y])
+        ring.pop()
+    x, y = np.array(ring or [[0.0, 0.0]]).T
+    return float(abs(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1))) / 2)

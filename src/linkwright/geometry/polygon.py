@@ -1,0 +1,52 @@
+"""Polygons in a plane as triangles."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+Point = tuple[float, float]
+
+
+def triangulated(points: Sequence[Point]) -> list[tuple[int, int, int]]:
+    """The triangles of a simple polygon, by cutting off ears (Meisters, *Polygons have ears*, 1975).
+
+    Args:
+        points: its corners, either way round; the last is joined to the first, which may be repeated at the end.
+
+    Returns:
+        Indices of corners, counterclockwise. Of a polygon that crosses itself, what could be cut off.
+    """
+    ring = [index for index, point in enumerate(points) if point != points[index - 1]]
+    if _twice_area(points, ring) < 0:
+        ring.reverse()
+    triangles: list[tuple[int, int, int]] = []
+    at = tried = 0
+    while len(ring) >= 3 and tried < len(ring):
+        a, b, c = (ring[(at + step) % len(ring)] for step in range(3))
+        side = _turn(points[a], points[b], points[c])
+        if side > 0 and not any(
+            _inside(points[each], points[a], points[b], points[c]) for each in ring if each not in (a, b, c)
+        ):
+            triangles.append((a, b, c))
+        if side == 0 or (triangles and triangles[-1] == (a, b, c)):
+            ring.remove(b)
+            tried = 0
+        else:
+            at, tried = at + 1, tried + 1
+    return triangles
+
+
+def _twice_area(points: Sequence[Point], ring: Sequence[int]) -> float:
+    return sum(
+        points[a][0] * points[b][1] - points[b][0] * points[a][1]
+        for a, b in zip(ring, [*ring[1:], *ring[:1]], strict=True)
+    )
+
+
+def _turn(a: Point, b: Point, c: Point) -> float:
+    """Twice the area of a triangle, positive counterclockwise."""
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+
+
+def _inside(point: Point, a: Point, b: Point, c: Point) -> bool:
+    return _turn(a, b, point) >= 0 and _turn(b, c, point) >= 0 and _turn(c, a, point) >= 0

@@ -1,0 +1,79 @@
+"""Wheels that motors turn, and the casters that bear the rest of a robot."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from linkwright.geometry.arrays import Array, rotation_matrix
+from linkwright.geometry.single import rotation_from_z
+from linkwright.simulation.library import load_mujoco
+from linkwright.simulation.scene.bodies import COLLISION_GROUP
+from linkwright.simulation.scene.surfaces import is_slippery, make_slippery, make_soft, make_wheel
+
+_ROUND = 0.05
+"""A mesh is a wheel where it reaches equally far from its axis on all sides, up to this share."""
+
+
+def make_rolling(spec: Any, body: Any, joint: Any, step: float) -> None:
+    """Let what touches of a body roll about a joint: in one point, as tyres do, and without slipping.
+
+    Cylinders, and meshes that are round about the axis of the joint, become ellipsoids: the two edges of a cylinder
+    would scrub in turns, and the corners of a mesh would bump.
+
+    Args:
+        spec: the specification.
+        body: the body of it.
+        joint: the joint of the specification that turns the body.
+        step: the time step of the simulation in s.
+    """
+    kinds = load_mujoco().mjtGeom
+    for geom in body.geoms:
+        if geom.group != COLLISION_GROUP or is_slippery(geom):
+            continue
+        if geom.type == kinds.mjGEOM_CYLINDER:
+            radius, half, _ = geom.size
+            geom.type = kinds.mjGEOM_ELLIPSOID
+            geom.size = [radius, radius, half]
+        elif geom.type == kinds.mjGEOM_MESH:
+            _round_mesh(spec, geom, np.array(joint.pos), np.array(joint.axis))
+        if geom.type in (kinds.mjGEOM_ELLIPSOID, kinds.mjGEOM_SPHERE):
+            make_wheel(geom, step)
+
+
+def make_sliding(body: Any, unsaid: set[str]) -> None:
+    """Let the balls of a body that no motor turns leave the load to the wheels.
+
+    Args:
+        body: a body of the specification.
+        unsaid: names of the geoms of whose friction nothing was said: they slide, the others are soft only.
+    """
+    for geom in body.geoms:
+        if geom.group == COLLISION_GROUP and geom.type == load_mujoco().mjtGeom.mjGEOM_SPHERE:
+            if geom.name in unsaid:
+                make_slippery(geom)
+            else:
+                make_soft(geom)
+
+
+def _round_mesh(spec: Any, geom: Any, origin: Array, axis: Array) -> None:
+    """Make a mesh an ellipsoid if it is round about an axis, given in the frame of its body."""
+    w, x, y, z = geom.quat
+    corners = np.array(spec.mesh(geom.meshname).uservert).reshape(-1, 3)
+    corners = corners @ rotation_matrix((x, y, z, w)).T + np.array(geom.pos) - origin
+    axis = axis / np.linalg.norm(axis)
+    along = corners @ axis
+    first = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
+    first /= np.linalg.norm(first)
+    second = np.cross(axis, first)
+    reach = np.concatenate([[side.max(), -side.min()] for side in (corners @ first, corners @ second)])
+    radius = float(np.linalg.norm(corners - along[:, None] * axis, axis=1).max())
+    if not np.allclose(reach, radius, atol=_ROUND * radius):
+        return
+    geom.type = load_mujoco().mjtGeom.mjGEOM_ELLIPSOID
+    geom.meshname = ""
+    geom.size = [radius, radius, max(float(np.ptp(along)) / 2, 1e-3)]
+    geom.pos = list(origin + axis * (along.max() + along.min()) / 2)
+    qx, qy, qz, qw = rotation_from_z((float(axis[0]), float(axis[1]), float(axis[2])))
+    geom.quat = [qw, qx, qy, qz]

@@ -1,0 +1,200 @@
+"""Worlds as specifications of MuJoCo."""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+import pytest
+from PIL import Image
+
+from linkwright.sdf.shapes import Heightmap
+from linkwright.simulation.scene.heights import read_heights
+from linkwright.simulation.scene.meshes import MeshLibrary
+from linkwright.simulation.scene.scene import Scene
+from linkwright.simulation.simulation import NANOSECONDS
+from tests.simulation.worlds import GROUND, box, finder, simulated, world
+
+ROOM = """solid room
+{facets}
+endsolid room
+"""
+
+
+def quad(*corners: tuple[float, float, float]) -> str:
+    """Two triangles."""
+    a, b, c, d = (" ".join(map(str, corner)) for corner in corners)
+    return "".join(
+        f"facet normal 0 0 0\nouter loop\nvertex {p}\nvertex {q}\nvertex {r}\nendloop\nendfacet\n"
+        for p, q, r in ((a, b, c), (a, c, d))
+    )
+
+
+@pytest.fixture
+def room(tmp_path):
+    """A room of 4 m by 4 m without a ceiling, its walls seen from within, as a mesh file."""
+    walls = [
+        quad((2, -2, 0), (2, 2, 0), (2, 2, 1), (2, -2, 1)),
+        quad((-2, 2, 0), (-2, -2, 0), (-2, -2, 1), (-2, 2, 1)),
+        quad((2, 2, 0), (-2, 2, 0), (-2, 2, 1), (2, 2, 1)),
+        quad((-2, -2, 0), (2, -2, 0), (2, -2, 1), (-2, -2, 1)),
+    ]
+    path = tmp_path / "room.stl"
+    path.write_text(ROOM.format(facets="".join(walls)))
+    return path
+
+
+def still(shape: str) -> str:
+    """A model that never moves."""
+    collision = f'<collision name="c">{shape}</collision>'
+    return f'<model name="g"><static>true</static><link name="l">{collision}</link></model>'
+
+
+def mesh_model(path, *, static: bool = True, pose: str = "0 0 0 0 0 0", scale: str = "1 1 1") -> str:
+    shape = f"<geometry><mesh><uri>{path.as_uri()}</uri><scale>{scale}</scale></mesh></geometry>"
+    return (
+        f'<model name="mesh"><static>{str(static).lower()}</static><pose>{pose}</pose><link name="link">'
+        f'<collision name="c">{shape}</collision><visual name="v">{shape}</visual></link></model>'
+    )
+
+
+def test_a_room_of_a_mesh_has_room_inside(room):
+    simulation = simulated(GROUND, mesh_model(room), box("box", "0 0 0.1 0 0 0", "0.2 0.2 0.2"))
+    simulation.push("box::link", (15.0, 0.0, 0.0))
+    simulation.advance(3 * NANOSECONDS)
+    x, y, z, *_ = simulation.model_pose("box")
+    assert 1.5 < x < 1.95
+    assert abs(y) < 0.1
+    assert z > 0.05
+
+
+def test_a_mesh_that_moves_is_its_hull(room):
+    simulation = simulated(GROUND, mesh_model(room, static=False, pose="0 0 1 0 0 0", scale="0.1 0.1 0.1"))
+    assert sum(geom.type == mujoco.mjtGeom.mjGEOM_MESH for geom in simulation.scene.spec.geoms) == 2
+    simulation.advance(NANOSECONDS)
+    assert simulation.model_pose("mesh")[2] == pytest.approx(0.0, abs=2e-3)
+
+
+def test_a_mesh_that_is_not_there_is_told_once(tmp_path):
+    simulation = simulated(GROUND, mesh_model(tmp_path / "none.stl"))
+    (found,) = simulation.scene.diagnostics
+    assert found.code == "SIM112"
+    assert "none.stl" in found.message
+    assert found.span is not None
+    simulation.advance(NANOSECONDS // 10)
+
+
+def test_heights_of_an_image_bear(tmp_path):
+    path = tmp_path / "heights.png"
+    values = np.zeros((33, 33), dtype=np.uint8)
+    values[:, 16:] = 255  # the half where x is positive is high
+    Image.fromarray(values).save(path)
+    shape = (
+        f"<geometry><heightmap><uri>{path.as_uri()}</uri><size>8 8 2</size><pos>0 0 0.5</pos></heightmap></geometry>"
+    )
+    ground = (
+        f'<model name="g"><static>true</static><link name="l"><collision name="c">{shape}</collision></link></model>'
+    )
+    simulation = simulated(ground, box("high", "2 0 4 0 0 0", "0.2 0.2 0.2"), box("low", "-2 0 4 0 0 0", "0.2 0.2 0.2"))
+    simulation.advance(3 * NANOSECONDS)
+    assert simulation.model_pose("high")[2] == pytest.approx(2.6, abs=0.01)
+    assert simulation.model_pose("low")[2] == pytest.approx(0.6, abs=0.01)
+    assert read_heights(path).values.max() == 1.0
+
+
+def test_an_image_that_is_none_is_told(tmp_path):
+    path = tmp_path / "heights.png"
+    path.write_text("no image")
+    library = MeshLibrary(finder())
+    library.spec = mujoco.MjSpec()
+    assert (
+        library.collisions(library.spec.worldbody, Heightmap(path.as_uri()), (0, 0, 0, 0, 0, 0, 1), None, fixed=True)
+        == []
+    )
+    (found,) = library.diagnostics
+    assert found.code == "SIM113"
+
+
+def test_a_polygon_is_raised():
+    shape = (
+        "<geometry><polyline><point>-1 -1</point><point>1 -1</point><point>1 1</point><point>0 0</point>"
+        "<point>-1 1</point><height>0.5</height></polyline></geometry>"
+    )
+    ground = (
+        f'<model name="g"><static>true</static><link name="l"><collision name="c">{shape}</collision></link></model>'
+    )
+    simulation = simulated(
+        GROUND, ground, box("on", "0 -0.5 1 0 0 0", "0.1 0.1 0.1"), box("in", "0 0.6 1 0 0 0", "0.1 0.1 0.1")
+    )
+    simulation.advance(2 * NANOSECONDS)
+    assert simulation.model_pose("on")[2] == pytest.approx(0.55, abs=1e-3)
+    assert simulation.model_pose("in")[2] == pytest.approx(0.05, abs=1e-3)
+
+
+def test_a_mass_can_be_worked_out():
+    model = """<model name="m"><link name="l"><inertial auto="true"><density>500</density></inertial>
+    <collision name="c"><pose>0 0 1 0 0 0</pose><geometry><box><size>1 2 3</size></box></geometry></collision>
+    </link></model>"""
+    body = simulated(model).model.body("m::l")
+    assert body.mass[0] == pytest.approx(3000.0)
+    assert body.ipos == pytest.approx([0, 0, 1])
+    assert sorted(body.inertia) == pytest.approx([250 * 5, 250 * 10, 250 * 13])
+
+
+def test_mass_that_no_body_has_is_told():
+    model = """<model name="m"><link name="l"><inertial><mass>-1</mass><inertia><ixx>-1</ixx></inertia></inertial>
+    </link></model>"""
+    simulation = simulated(model)
+    assert [found.code for found in simulation.scene.diagnostics] == ["SIM110", "SIM111"]
+    simulation.advance(NANOSECONDS)
+
+
+def arm(second: str) -> str:
+    link = "<inertial><mass>1</mass><inertia><ixx>0.1</ixx><iyy>0.1</iyy><izz>0.1</izz></inertia></inertial>"
+    return f"""<model name="arm"><link name="base">{link}</link>
+    <link name="one">{link}</link><link name="two">{link}</link>
+    <joint name="hold" type="fixed"><parent>world</parent><child>base</child></joint>
+    <joint name="a" type="revolute"><parent>base</parent><child>one</child><axis><xyz>0 0 1</xyz></axis></joint>
+    <joint name="b" type="revolute"><parent>base</parent><child>two</child><axis><xyz>0 0 1</xyz>{second}</axis></joint>
+    </model>"""
+
+
+def test_a_joint_follows_another():
+    mimic = '<mimic joint="a"><multiplier>-2</multiplier><offset>0.5</offset><reference>0</reference></mimic>'
+    simulation = simulated(arm(mimic))
+    simulation.push("arm::one", (0.0, 0.0, 0.0), (0.0, 0.0, 0.1))
+    simulation.advance(2 * NANOSECONDS)
+    leader, follower = (simulation.joint_state(f"arm::{name}")[0] for name in ("a", "b"))
+    assert leader > 0.05
+    assert follower == pytest.approx(0.5 - 2 * leader, abs=0.02)
+
+
+def test_links_of_one_model_pass_through_each_other_unless_they_say_otherwise():
+    shape = "<collision name='c'><geometry><box><size>0.2 0.2 0.2</size></box></geometry></collision>"
+    text = f"""<model name="m"><self_collide>{{}}</self_collide><link name="a">{shape}</link>
+    <link name="b"><pose>0 0 0.15 0 0 0</pose>{shape}</link></model>"""
+    apart = {}
+    for said in ("false", "true"):
+        simulation = simulated(text.format(said), gravity="0 0 0")
+        simulation.advance(NANOSECONDS)
+        apart[said] = simulation.link_pose("m::b")[2] - simulation.link_pose("m::a")[2]
+    assert apart["false"] == pytest.approx(0.15)
+    assert apart["true"] > 0.17
+
+
+def test_a_wheel_that_is_a_mesh_rolls_in_one_point(tmp_path):
+    turns = np.linspace(0, 2 * np.pi, 25)[:-1]
+    rim = [(0.1 * np.cos(turn), y, 0.1 * np.sin(turn)) for turn in turns for y in (-0.02, 0.02)]
+    facets = "".join(quad(rim[i], rim[i + 1], rim[(i + 3) % 48], rim[(i + 2) % 48]) for i in range(0, 48, 2))
+    path = tmp_path / "wheel.stl"
+    path.write_text(ROOM.format(facets=facets))
+    text = f"""<model name="m"><link name="base"/><link name="wheel"><collision name="c"><geometry><mesh>
+    <uri>{path.as_uri()}</uri></mesh></geometry></collision></link>
+    <joint name="j" type="continuous"><parent>base</parent><child>wheel</child><axis><xyz>0 1 0</xyz></axis></joint>
+    </model>"""
+    scene = Scene(world(text), MeshLibrary(finder()))
+    scene.add_velocity_motor("m::j", 1.0, 5.0)
+    scene.settle()
+    (geom,) = scene.bodies["m::wheel"].geoms
+    assert geom.type == mujoco.mjtGeom.mjGEOM_ELLIPSOID
+    assert geom.size == pytest.approx([0.1, 0.1, 0.02], rel=1e-4)
+    scene.spec.compile()
