@@ -6,7 +6,12 @@ from linkwright.nodes.options import create_node
 from linkwright.nodes.registry import default_name
 from tests.nodes.stage import joint, robot
 
-ARGUMENTS = {"static_transform_publisher": ["--frame-id", "a", "--child-frame-id", "b"], "tf2_echo": ["a", "b"]}
+ARGUMENTS = {
+    "static_transform_publisher": ["--frame-id", "a", "--child-frame-id", "b"],
+    "tf2_echo": ["a", "b"],
+    "spawn_entity.py": ["-entity", "a", "-topic", "b"],
+    "create": ["-topic", "a"],
+}
 
 
 @pytest.mark.parametrize("executable", EXECUTABLES, ids="/".join)

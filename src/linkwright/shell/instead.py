@@ -15,8 +15,8 @@ _PAGE = phrase(
 _COLCON = phrase("that was ROS 1; build with `colcon build`")
 _ROS2 = phrase("that was ROS 1; the commands of ROS 2 begin with `ros2`, as in `ros2 launch` and `ros2 topic list`")
 _SIMULATION = phrase(
-    "there is no simulation here; `ros2 launch` with --skip-missing runs the rest of a launch file, and "
-    "`linkwright view FILE` moves the robot's joints with sliders"
+    "launch files that start it run here with a simulation of Linkwright's own: "
+    "`ros2 launch gazebo_ros gazebo.launch.py world:=FILE`"
 )
 
 INSTEAD: dict[str, Phrase] = {

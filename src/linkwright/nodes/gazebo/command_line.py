@@ -1,0 +1,105 @@
+"""The command lines of Gazebo's programs, as parameters of the node that stands in for them.
+
+Of the many options that `gazebo`, `gzserver` and `gz sim` take, those mean something here that say which world is
+loaded, whether the simulation begins paused, and what random numbers follow from; and the ROS arguments.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import PurePath
+from typing import Any
+
+_CLASSIC_VALUES = """-s --server-plugin -g --gui-plugin -e --physics -p --play -o --profile -P --property --iters --seed
+--record_path --record_encoding --record_period --record_filter --initial_sim_time --gui-client-plugin"""
+"""Options of gazebo and gzserver that take the next word."""
+_GZ_VALUES = """-z --iterations --gui-config --physics-engine --render-engine --render-engine-server --render-engine-gui
+--seed --record-path --record-topic --playback --network-role --network-secondaries --initial-sim-time --update-rate"""
+"""Options of gz sim that take the next word."""
+_GZ_LEVEL = ("-v", "--verbose")
+"""Options of gz sim that take the next word if it is a number."""
+_ROS_ARGUMENTS = "--ros-args"
+
+
+@dataclass(frozen=True)
+class SimulatorCommand:
+    """What a command line asks for.
+
+    Attributes:
+        package: the node's package.
+        executable: ``gzserver``, or ``gzclient`` for a window alone.
+        parameters: of the node: ``world``, ``pause``, ``seed``.
+        ros_arguments: those that it is given besides, with ``--ros-args``.
+    """
+
+    package: str
+    executable: str
+    parameters: Mapping[str, Any] = field(default_factory=dict)
+    ros_arguments: Sequence[str] = ()
+
+
+def simulator_command(words: Sequence[str]) -> SimulatorCommand | None:
+    """What the command line of a program asks for; None where the program is none of Gazebo's."""
+    program, *rest = words
+    name = PurePath(program).name
+    if name in ("gazebo", "gzserver"):
+        return classic_server(rest)
+    if name == "gzclient":
+        return SimulatorCommand("gazebo_ros", "gzclient")
+    if (name, rest[:1]) in (("gz", ["sim"]), ("ign", ["gazebo"]), ("ign", ["sim"])):
+        return gz_server(rest[1:])
+    return None
+
+
+def classic_server(words: Sequence[str]) -> SimulatorCommand:
+    """What the words after ``gzserver`` or ``gazebo`` ask for."""
+    own, ros = _divided(words)
+    options, others = _read(own, _CLASSIC_VALUES.split())
+    parameters = _seed(options)
+    if others:
+        parameters["world"] = others[0]
+    if "-u" in options or "--pause" in options:
+        parameters["pause"] = True
+    return SimulatorCommand("gazebo_ros", "gzserver", parameters, ros)
+
+
+def gz_server(words: Sequence[str]) -> SimulatorCommand:
+    """What the words after ``gz sim`` ask for: without ``-r`` the simulation begins paused."""
+    own, ros = _divided(words)
+    options, others = _read(own, _GZ_VALUES.split())
+    if "-g" in options:
+        return SimulatorCommand("ros_gz_sim", "gzclient")
+    parameters = _seed(options) | {"pause": "-r" not in options}
+    if others:
+        parameters["world"] = others[0]
+    return SimulatorCommand("ros_gz_sim", "gzserver", parameters, ros)
+
+
+def _divided(words: Sequence[str]) -> tuple[list[str], list[str]]:
+    """The program's own words, and those of ROS."""
+    at = words.index(_ROS_ARGUMENTS) if _ROS_ARGUMENTS in words else len(words)
+    return list(words[:at]), list(words[at:])
+
+
+def _read(words: list[str], with_value: Sequence[str]) -> tuple[dict[str, str], list[str]]:
+    """The options with their values, empty for those without, and the words that are none."""
+    options, others = {}, []
+    rest = [word for word in words if word.strip()]
+    while rest:
+        word = rest.pop(0)
+        name, equals, value = word.partition("=")
+        if not word.startswith("-"):
+            others.append(word)
+        elif word in _GZ_LEVEL and rest and rest[0].isdigit():
+            options[name] = rest.pop(0)
+        elif equals or name not in with_value or not rest:
+            options[name] = value
+        else:
+            options[name] = rest.pop(0)
+    return options, others
+
+
+def _seed(options: Mapping[str, str]) -> dict[str, Any]:
+    seed = options.get("--seed", "")
+    return {"seed": int(seed)} if seed.isdigit() else {}

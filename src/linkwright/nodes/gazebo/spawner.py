@@ -1,0 +1,164 @@
+"""What spawn_entity.py of gazebo_ros and create of ros_gz_sim share: asking for a description, and spawning it."""
+
+from __future__ import annotations
+
+import asyncio
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
+from linkwright.geometry.single import quaternion_from_rpy
+from linkwright.geometry.vectors import Vector3
+from linkwright.graph import DESCRIPTION_QOS, Clock, ClockType, Node
+from linkwright.input_files import read_text
+from linkwright.messages import String, get_service
+from linkwright.nodes.options import SingleNode
+from linkwright.packages import current_finder
+from linkwright.sdf.resources import Missing, ResourceFinder
+
+_SPAWN = "gazebo_msgs/srv/SpawnEntity"
+_LIST = "gazebo_msgs/srv/GetModelList"
+
+
+@dataclass(frozen=True)
+class Entity:
+    """What is to be spawned, and where.
+
+    Attributes:
+        name: of the model in the world.
+        xyz: its position in metres.
+        rpy: its roll, pitch and yaw in radians.
+        namespace: begins the names of what its plugins bring to ROS.
+        reference_frame: what its pose is relative to; the world if empty.
+    """
+
+    name: str
+    xyz: Vector3 = (0.0, 0.0, 0.0)
+    rpy: Vector3 = (0.0, 0.0, 0.0)
+    namespace: str = ""
+    reference_frame: str = ""
+
+
+class EntitySpawner(SingleNode):
+    """A node that spawns one entity and ends; its status is 1 where that was not done.
+
+    Derived classes make `_node`, and call `_prepare` and one of the ways to a description.
+    """
+
+    finished: asyncio.Future[int]
+    _entity: Entity
+
+    def _prepare(
+        self, node: Node, entity: Entity, *, service_namespace: str = "", timeout: float | None = None
+    ) -> None:
+        """Say what is to be spawned.
+
+        Args:
+            node: the node.
+            entity: what to spawn.
+            service_namespace: where the simulator's services are.
+            timeout: seconds to wait for the service at most, on the clock of the machine; None for any time.
+        """
+        self._node = node
+        self._entity = entity
+        self._timeout = timeout
+        self._service_namespace = service_namespace.rstrip("/")
+        self._described = False
+        self.finished = asyncio.get_running_loop().create_future()
+
+    # --- ways to a description ------------------------------------------------------------------------------------
+
+    def _wait_for(self, topic: str) -> None:
+        """Take the description that is published on a topic, or was before."""
+        self._say(f"Waiting for entity xml on {topic}")
+        self._node.create_subscription(String, topic, lambda message: self._spawn(message.data), DESCRIPTION_QOS)
+
+    # --- the request ----------------------------------------------------------------------------------------------
+
+    def _spawn(self, text: str) -> None:
+        """Spawn a description as soon as the simulator is there; only the first one counts."""
+        if self._described:
+            return
+        self._described = True
+        entity = self._entity
+        service = get_service(_SPAWN)
+        request = service.Request(
+            name=entity.name, xml=text, robot_namespace=entity.namespace, reference_frame=entity.reference_frame
+        )
+        position, orientation = request.initial_pose.position, request.initial_pose.orientation
+        position.x, position.y, position.z = entity.xyz
+        orientation.x, orientation.y, orientation.z, orientation.w = quaternion_from_rpy(entity.rpy)
+        self._ask(_SPAWN, "spawn_entity", request, self._answered)
+
+    def _ask(self, kind: str, name: str, request: Any, then: Callable[[Any], None]) -> None:
+        """Call a service of the simulator; what answers is given to a function."""
+        path = f"{self._service_namespace}/{name}"
+        client = self._node.create_client(get_service(kind), path)
+        future = client.call_async(request)  # it waits until there is a server
+        future.add_done_callback(lambda done: then(done.result()))
+        if client.service_is_ready():
+            return
+        wait = "" if self._timeout is None else f", timeout = {self._timeout:g}"
+        self._say(f"Waiting for service {path}{wait}")
+        if self._timeout is None:
+            return
+        steady = Clock(clock_type=ClockType.STEADY_TIME, timebase=self._node.get_clock().timebase)
+
+        def look() -> None:
+            timer.cancel()
+            if not future.done() and not client.service_is_ready():
+                client.remove_pending_request(future)
+                self._fail(f"Service {path} unavailable. Was the simulation started?")
+
+        timer = self._node.create_timer(self._timeout, look, clock=steady)
+
+    def _ask_for_names(self, then: Callable[[list[str]], None]) -> None:
+        """Ask which models the world has."""
+        self._ask(_LIST, "get_model_list", get_service(_LIST).Request(), lambda answer: then(list(answer.model_names)))
+
+    def _answered(self, response: Any) -> None:
+        if not response.success:
+            self._fail(f"Spawning '{self._entity.name}' failed: {response.status_message}")
+            return
+        self._say(f"Spawn status: {response.status_message}")
+        self._spawned()
+
+    def _spawned(self) -> None:
+        """The entity is in the world."""
+        self._end(0)
+
+    def _say(self, text: str) -> None:
+        self._node.get_logger().info(text)
+
+    def _fail(self, text: str) -> None:
+        self._node.get_logger().error(text)
+        self._end(1)
+
+    def _end(self, status: int) -> None:
+        if not self.finished.done():
+            self.finished.set_result(status)
+
+
+def text_at(address: str) -> str:
+    """The description at a path or an address: ``file://``, ``package://``, ``model://``, or of a model on Fuel.
+
+    Raises:
+        LinkwrightError: NODE811, there is none, or it cannot be read.
+    """
+    found = ResourceFinder(current_finder()).model(address, Path.cwd())
+    if isinstance(found, Missing):
+        raise LinkwrightError(Diagnostic("NODE811", found.reason, hint=found.hint))
+    try:
+        return read_text(found)
+    except (OSError, UnicodeDecodeError) as error:
+        reason = foreign(getattr(error, "strerror", None) or error)
+        message = phrase("cannot read '{path}': {reason}", path=found, reason=reason)
+        raise LinkwrightError(Diagnostic("NODE811", message)) from error
+
+
+def text_of_stdin() -> str:
+    """The description that is written to standard input."""
+    return sys.stdin.read()

@@ -1,0 +1,16 @@
+"""What stands in for Gazebo's window: a node that says where the world is to be seen."""
+
+from __future__ import annotations
+
+from linkwright.graph import Graph
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node
+
+
+class Window(SingleNode):
+    """The running node, which does nothing until it is ended: launch files end everything when the window is closed."""
+
+    DEFAULT_NAME = "_gzclient"  # hidden: gzclient is no node
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
+        self._node.get_logger().info("there is no window of Gazebo here: the page in the browser shows the world")
