@@ -9,7 +9,7 @@ from linkwright.packages.ament_functions import (
     get_packages_with_prefixes,
 )
 from linkwright.packages.errors import PackageNotFoundError
-from linkwright.packages.finder import PackageFinder
+from linkwright.packages.finder import PackageFinder, is_substitute
 from linkwright.packages.manifest import MANIFEST, enclosing_package, package_name
 
 __all__ = [
@@ -24,6 +24,7 @@ __all__ = [
     "get_packages_with_prefixes",
     "install_prefix",
     "is_installed",
+    "is_substitute",
     "package_name",
     "use_finder",
 ]

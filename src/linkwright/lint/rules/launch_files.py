@@ -10,6 +10,7 @@ from linkwright.diagnostics import Diagnostic, Phrase, Severity, foreign, neares
 from linkwright.lint.rule import Rule, Scope
 from linkwright.lint.rules.package_manifest import PackageRule
 from linkwright.lint.subject import Subject
+from linkwright.packages import is_substitute
 
 if TYPE_CHECKING:
     from linkwright.lint.package import PackageContext
@@ -164,8 +165,8 @@ class LaunchedFileMissing(Rule):
         if share is None or (share / shared.path).exists() or (own and _is_installed_as(package, shared)):
             return
         name = shared.path.rpartition("/")[2]
-        if not own and share.parent.name != "share":
-            return  # the sources of another package, which may install its files elsewhere
+        if not own and (share.parent.name != "share" or is_substitute(share)):
+            return  # the sources of another package, which may install its files elsewhere, or only a part of it
         if own and any(other.rpartition("/")[2] == name for other in package.files) and _may_move(package):
             return
         message = phrase("the package '{package}' has no file '{path}'", package=shared.package, path=shared.path)

@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
-from linkwright.packages import PackageFinder, install_prefix, is_installed
+from linkwright.packages import PackageFinder, install_prefix, is_installed, is_substitute
 from linkwright.packages.finder import START_VARIABLE
 from linkwright.packages.programs.source_programs import python_root
 
@@ -27,6 +27,8 @@ def workspace_environment(finder: PackageFinder, base: Mapping[str, str]) -> dic
     prefixes: dict[str, None] = {}
     folders: dict[str, None] = {}
     for name, share in finder.packages().items():
+        if is_substitute(share):
+            continue  # programs that look for packages with us find it, and others have no use for it
         prefix = install_prefix(share)
         if not is_installed(share):
             root = python_root(share, name)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import did_you_mean, phrase
 from linkwright.hosting.launch_log import OUTPUT_MODES, output_destinations
+from linkwright.hosting.plans import HostedPlan
 from linkwright.launch.errors.places import error_at
 from linkwright.launch.model import events
 from linkwright.launch.model.action import Action
@@ -341,6 +342,47 @@ class ExecuteProcess(ExecuteLocal):
         from linkwright.launch.model.markup.command_line import parse_command_line
 
         return parse_command_line(cmd, parser)
+
+    def execute(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity] | None:
+        """Start the process; for Gazebo's programs, where they are not installed, our simulation.
+
+        Raises:
+            RuntimeError: LAUNCH141, it was started before.
+            LinkwrightError: LAUNCH141, what cannot be understood of how it is to run.
+        """
+        if not context.is_shutdown:
+            command = [perform_substitutions(context, part) for part in self._description.cmd]
+            if not self._is_simulated(context, command):
+                self._start(context, command)
+        return None
+
+    def _is_simulated(self, context: LaunchContext, command: list[str]) -> bool:
+        """Start our simulation where the command is one of Gazebo's; whether it was."""
+        from linkwright.launch.model.simulators import simulator_of
+
+        try:
+            words = shlex.split(" ".join(command)) if self._shell else command
+        except ValueError:
+            return False
+        simulator = simulator_of(words, context.environment)
+        if simulator is None:
+            return False
+        about = self._description
+        plan = HostedPlan(
+            self,
+            context.session.number_process(about.base_name(context, words)),
+            simulator.package,
+            simulator.executable,
+            None,
+            "/",
+            dict(simulator.parameters),
+            [],
+            list(simulator.ros_arguments),
+            destinations=self._destinations(context),
+        )
+        about.final_name, about.final_cmd = plan.process_name, list(words)
+        context.session.host.plan(plan)
+        return True
 
     @property
     def cmd(self) -> list[list[Substitution]]:

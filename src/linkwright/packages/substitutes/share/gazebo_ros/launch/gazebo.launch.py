@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The simulation and its window, with the arguments of gazebo_ros' file of this name."""
+
+from ament_index_python.packages import get_package_share_path
+from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
+from launch.conditions import IfCondition
+from launch.launch_description_sources import PythonLaunchDescriptionSource
+from launch.substitutions import LaunchConfiguration
+
+from launch import LaunchDescription
+
+
+def generate_launch_description():
+    """Return the server, and what stands in for the window."""
+    folder = get_package_share_path("gazebo_ros") / "launch"
+    return LaunchDescription(
+        [
+            DeclareLaunchArgument("gui", default_value="true", description="Whether there is a window"),
+            DeclareLaunchArgument("server", default_value="true", description="Whether there is a server"),
+            IncludeLaunchDescription(
+                PythonLaunchDescriptionSource(str(folder / "gzserver.launch.py")),
+                condition=IfCondition(LaunchConfiguration("server")),
+            ),
+            IncludeLaunchDescription(
+                PythonLaunchDescriptionSource(str(folder / "gzclient.launch.py")),
+                condition=IfCondition(LaunchConfiguration("gui")),
+            ),
+        ]
+    )

@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The simulation, with the arguments of gazebo_ros' file of this name."""
+
+import shlex
+
+from ament_index_python.packages import get_package_share_path
+from launch.actions import DeclareLaunchArgument, OpaqueFunction, Shutdown
+from launch.conditions import IfCondition
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node
+
+from launch import LaunchDescription
+from linkwright.nodes.gazebo.command_line import classic_server
+
+IGNORED = {
+    "factory": "true",
+    "force_system": "true",
+    "gdb": "false",
+    "help": "false",
+    "init": "true",
+    "initial_sim_time": "",
+    "iters": "",
+    "lockstep": "false",
+    "minimal_comms": "false",
+    "physics": "",
+    "play": "",
+    "profile": "",
+    "record": "false",
+    "record_encoding": "",
+    "record_filter": "",
+    "record_path": "",
+    "record_period": "",
+    "valgrind": "false",
+    "verbose": "false",
+    "version": "false",
+}
+"""Arguments that mean nothing here, and their defaults."""
+
+
+def start_server(context):
+    """Return the server with the command line that gzserver would be given."""
+
+    def value(name):
+        return LaunchConfiguration(name).perform(context)
+
+    words = [value("world")] if value("world") else []
+    words += ["-u"] if value("pause").lower() in ("true", "1") else []
+    words += ["--seed", value("seed")] if value("seed") else []
+    command = classic_server([*words, *shlex.split(value("extra_gazebo_args"))])
+    required = IfCondition(LaunchConfiguration("server_required"))
+    return [
+        Node(
+            package=command.package,
+            executable=command.executable,
+            output="screen",
+            arguments=command.ros_arguments,
+            parameters=[*([value("params_file")] if value("params_file") else []), command.parameters],
+            on_exit=[Shutdown(condition=required)],
+        )
+    ]
+
+
+def generate_launch_description():
+    """Return the arguments, and the server once they are known."""
+    empty = get_package_share_path("gazebo_ros") / "worlds" / "empty.world"
+    declared = {
+        "world": (str(empty), "The world: path of a file"),
+        "pause": ("false", "Whether the simulation begins paused"),
+        "seed": ("", "What random numbers follow from"),
+        "params_file": ("", "Parameters of the server: path of a YAML file"),
+        "extra_gazebo_args": ("", "Further words of the command line"),
+        "server_required": ("false", "Whether all ends with it"),
+        **{name: (default, "Not used") for name, default in IGNORED.items()},
+    }
+    arguments = [
+        DeclareLaunchArgument(name, default_value=default, description=description)
+        for name, (default, description) in declared.items()
+    ]
+    return LaunchDescription([*arguments, OpaqueFunction(function=start_server)])

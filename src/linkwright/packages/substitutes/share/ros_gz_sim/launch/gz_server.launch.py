@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The simulation without a window, with the arguments of ros_gz_sim's file of this name."""
+
+from launch.actions import DeclareLaunchArgument, OpaqueFunction
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node
+
+from launch import LaunchDescription
+
+ARGUMENTS = {
+    "world_sdf_file": ("", "The world: path of a file"),
+    "world_sdf_string": ("", "Not used"),
+    "container_name": ("ros_gz_container", "Not used"),
+    "create_own_container": ("False", "Not used"),
+    "use_composition": ("False", "Not used"),
+}
+
+
+def start(context):
+    """Return the server with the world that was given."""
+    world = LaunchConfiguration("world_sdf_file").perform(context)
+    parameters = {"world": world} if world else {}
+    return [Node(package="ros_gz_sim", executable="gzserver", output="screen", parameters=[parameters])]
+
+
+def generate_launch_description():
+    """Return the arguments, and the server once they are known."""
+    arguments = [
+        DeclareLaunchArgument(name, default_value=default, description=description)
+        for name, (default, description) in ARGUMENTS.items()
+    ]
+    return LaunchDescription([*arguments, OpaqueFunction(function=start)])

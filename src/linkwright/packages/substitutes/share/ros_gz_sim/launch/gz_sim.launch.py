@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The simulation as ``gz sim`` starts it, with the arguments of ros_gz_sim's file of this name."""
+
+import shlex
+
+from launch.actions import DeclareLaunchArgument, OpaqueFunction, Shutdown
+from launch.conditions import IfCondition
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node
+
+from launch import LaunchDescription
+from linkwright.nodes.gazebo.command_line import gz_server
+
+ARGUMENTS = {
+    "gz_args": ("", "What gz sim is told: its command line"),
+    "gz_version": ("", "Not used"),
+    "ign_args": ("", "What gz sim is told, where gz_args is empty"),
+    "ign_version": ("", "Not used"),
+    "debugger": ("false", "Not used"),
+    "on_exit_shutdown": ("false", "Whether all ends with the simulation"),
+}
+
+
+def start(context):
+    """Return the server, or what stands in for the window where that alone is asked for."""
+    given = LaunchConfiguration("gz_args").perform(context) or LaunchConfiguration("ign_args").perform(context)
+    command = gz_server(shlex.split(given))
+    condition = IfCondition(LaunchConfiguration("on_exit_shutdown"))
+    return [
+        Node(
+            package=command.package,
+            executable=command.executable,
+            output="screen",
+            arguments=command.ros_arguments,
+            parameters=[command.parameters],
+            on_exit=[Shutdown(condition=condition)],
+        )
+    ]
+
+
+def generate_launch_description():
+    """Return the arguments, and the server once they are known."""
+    arguments = [
+        DeclareLaunchArgument(name, default_value=default, description=description)
+        for name, (default, description) in ARGUMENTS.items()
+    ]
+    return LaunchDescription([*arguments, OpaqueFunction(function=start)])

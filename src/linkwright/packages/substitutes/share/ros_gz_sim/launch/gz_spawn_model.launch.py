@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A model that is put into the world, with the arguments of ros_gz_sim's file of this name."""
+
+from launch.actions import DeclareLaunchArgument
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node
+
+from launch import LaunchDescription
+
+ARGUMENTS = {
+    "world": ("", "The world's name"),
+    "file": ("", "The model: path of a file, or an address"),
+    "model_string": ("", "The model as text"),
+    "topic": ("", "The topic that the model is published on"),
+    "entity_name": ("", "The model's name"),
+    "allow_renaming": ("False", "Whether it is given another name where that is taken"),
+    "x": ("0.0", "m"),
+    "y": ("0.0", "m"),
+    "z": ("0.0", "m"),
+    "roll": ("0.0", "rad"),
+    "pitch": ("0.0", "rad"),
+    "yaw": ("0.0", "rad"),
+}
+PARAMETERS = {"model_string": "string", "entity_name": "name", "roll": "R", "pitch": "P", "yaw": "Y"}
+"""Arguments whose parameter has another name."""
+
+
+def generate_launch_description():
+    """Return the node that puts it there."""
+    arguments = [
+        DeclareLaunchArgument(name, default_value=default, description=description)
+        for name, (default, description) in ARGUMENTS.items()
+    ]
+    parameters = {PARAMETERS.get(name, name): LaunchConfiguration(name) for name in ARGUMENTS}
+    create = Node(package="ros_gz_sim", executable="create", output="screen", parameters=[parameters])
+    return LaunchDescription([*arguments, create])

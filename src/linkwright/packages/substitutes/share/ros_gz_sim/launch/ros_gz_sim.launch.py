@@ -1,0 +1,16 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The simulation and a bridge, with the arguments of ros_gz_sim's file of this name."""
+
+from ament_index_python.packages import get_package_share_path
+from launch.actions import IncludeLaunchDescription
+from launch.launch_description_sources import PythonLaunchDescriptionSource
+
+from launch import LaunchDescription
+
+FILES = {"ros_gz_sim": "gz_server.launch.py", "ros_gz_bridge": "ros_gz_bridge.launch.py"}
+
+
+def generate_launch_description():
+    """Return both, which declare the arguments."""
+    paths = [get_package_share_path(package) / "launch" / name for package, name in FILES.items()]
+    return LaunchDescription([IncludeLaunchDescription(PythonLaunchDescriptionSource(str(path))) for path in paths])

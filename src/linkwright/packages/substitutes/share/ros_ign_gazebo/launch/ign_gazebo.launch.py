@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The simulation as ``ign gazebo`` starts it, with the arguments of ros_ign_gazebo's file of this name."""
+
+from ament_index_python.packages import get_package_share_path
+from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
+from launch.launch_description_sources import PythonLaunchDescriptionSource
+
+from launch import LaunchDescription
+
+
+def generate_launch_description():
+    """Return the launch of ros_gz_sim, which reads the same arguments."""
+    return LaunchDescription(
+        [
+            DeclareLaunchArgument("ign_args", default_value="", description="What ign gazebo is told"),
+            DeclareLaunchArgument("ign_version", default_value="", description="Not used"),
+            IncludeLaunchDescription(
+                PythonLaunchDescriptionSource(str(get_package_share_path("ros_gz_sim") / "launch" / "gz_sim.launch.py"))
+            ),
+        ]
+    )

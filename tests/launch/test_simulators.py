@@ -1,0 +1,226 @@
+"""Launch files that start Gazebo, as users write them: our packages stand in for those that are not installed."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from linkwright.graph import Graph
+from linkwright.launch.frontend.include import IncludeLaunchDescription
+from linkwright.launch.model.actions.execute import ExecuteProcess
+from linkwright.messages import get_service
+from linkwright.nodes import EXECUTABLES, NodeOptions
+from linkwright.nodes.options import SingleNode, create_node
+from linkwright.packages import PackageFinder, is_substitute
+from tests.places import GAZEBO_PACKAGE
+
+Write = Callable[[str, str], Path]
+WORLD = GAZEBO_PACKAGE / "worlds" / "playground.world"
+
+
+class Server(SingleNode):
+    """Stands in for the simulation: ends as soon as one entity was spawned, or at once."""
+
+    DEFAULT_NAME = "gazebo"
+
+    def __init__(self, graph: Graph, options: NodeOptions, spawned: list[Any] | None) -> None:
+        self._node, self.words = create_node(graph, options, self.DEFAULT_NAME)
+        self.finished: asyncio.Future[int] = asyncio.get_running_loop().create_future()
+        self._spawned = spawned
+        if spawned is None:
+            self.finished.set_result(0)
+        self._node.create_service(get_service("gazebo_msgs/srv/SpawnEntity"), "/spawn_entity", self._spawn)
+
+    def _spawn(self, request: Any, response: Any) -> Any:
+        assert self._spawned is not None
+        self._spawned.append(request)
+        response.success = True
+        self.finished.set_result(0)
+        return response
+
+
+class Simulators:
+    """The servers that a launch started.
+
+    Attributes:
+        started: package, parameters and command line of each.
+        spawned: what they were asked to spawn; None to end at once.
+    """
+
+    def __init__(self) -> None:
+        self.started: list[tuple[str, dict[str, Any], list[str]]] = []
+        self.spawned: list[Any] | None = None
+
+    def entry_point(self, package: str) -> Any:
+        def start(graph: Graph, options: NodeOptions) -> Server:
+            self.started.append((package, options.parameters, options.arguments))
+            return Server(graph, options, self.spawned)
+
+        start.DEFAULT_NAME = Server.DEFAULT_NAME  # type: ignore[attr-defined]
+        return type("EntryPoint", (), {"load": staticmethod(lambda: start), "distribution": "test"})()
+
+
+@pytest.fixture
+def simulators(monkeypatch: pytest.MonkeyPatch) -> Simulators:
+    simulators = Simulators()
+    for package in ("gazebo_ros", "ros_gz_sim"):
+        monkeypatch.setitem(EXECUTABLES.entry_points, (package, "gzserver"), simulators.entry_point(package))
+    monkeypatch.setenv("PATH", "")
+    return simulators
+
+
+def share(package: str) -> Path:
+    return PackageFinder(start=Path("/"), environment={}).share(package)
+
+
+def include(package: str, name: str, **arguments: str) -> IncludeLaunchDescription:
+    return IncludeLaunchDescription(str(share(package) / "launch" / name), launch_arguments=arguments.items())
+
+
+@pytest.mark.parametrize("package", ["gazebo_ros", "ros_gz_sim", "ros_ign_gazebo", "ros_gz_bridge"])
+def test_a_package_that_is_there_comes_before_ours(package: str, write: Write, tmp_path: Path) -> None:
+    assert is_substitute(share(package))
+    write(f"ws/src/{package}/package.xml", f"<package><name>{package}</name></package>")
+    finder = PackageFinder(start=tmp_path / "ws", environment={})
+    assert finder.share(package) == finder.packages()[package] == tmp_path / "ws" / "src" / package
+
+
+async def test_gazebo_launch_py(launch: Callable[..., Any], simulators: Simulators) -> None:
+    arguments = {"world": str(WORLD), "pause": "true", "verbose": "true", "gui": "false", "seed": "3"}
+    launched = await launch(include("gazebo_ros", "gazebo.launch.py", **arguments))
+    assert launched.succeeded, launched.err
+    assert simulators.started == [("gazebo_ros", {"world": str(WORLD), "pause": True, "seed": 3}, [])]
+
+
+async def test_a_world_is_inherited_and_there_is_one_without(
+    launch: Callable[..., Any], simulators: Simulators
+) -> None:
+    await launch(include("gazebo_ros", "gzserver.launch.py"), world=str(WORLD))
+    await launch(include("gazebo_ros", "gazebo.launch.py", gui="false"))
+    worlds = [parameters["world"] for _, parameters, _ in simulators.started]
+    assert worlds == [str(WORLD), str(share("gazebo_ros") / "worlds" / "empty.world")]
+
+
+async def test_without_a_server_there_is_none(launch: Callable[..., Any], simulators: Simulators) -> None:
+    launched = await launch(include("gazebo_ros", "gazebo.launch.py", server="false", gui="false"))
+    assert launched.succeeded
+    assert simulators.started == []
+
+
+async def test_further_words_and_parameter_files(
+    launch: Callable[..., Any], simulators: Simulators, write: Write
+) -> None:
+    path = write("gazebo.yaml", "gazebo:\n  ros__parameters:\n    publish_rate: 50.0\n")
+    extra = f"--ros-args --params-file {path}"
+    await launch(include("gazebo_ros", "gzserver.launch.py", extra_gazebo_args=extra))
+    await launch(include("gazebo_ros", "gzserver.launch.py", params_file=str(path)))
+    (_, _, words), (_, parameters, _) = simulators.started
+    assert words == ["--ros-args", "--params-file", str(path)]
+    assert parameters["publish_rate"] == 50.0
+
+
+async def test_all_ends_with_a_server_that_is_required(launch: Callable[..., Any], simulators: Simulators) -> None:
+    window = include("gazebo_ros", "gzclient.launch.py")
+    launched = await launch(include("gazebo_ros", "gzserver.launch.py", server_required="true"), window)
+    assert launched.succeeded
+    assert "the page in the browser shows the world" in launched.err
+    assert len(simulators.started) == 1
+
+
+@pytest.mark.parametrize(
+    ("package", "name", "arguments"),
+    [
+        ("ros_gz_sim", "gz_sim.launch.py", {"gz_args": f"-r -v 4 {WORLD}"}),
+        ("ros_gz_sim", "gz_sim.launch.py", {"ign_args": f"-r {WORLD}"}),
+        ("ros_ign_gazebo", "ign_gazebo.launch.py", {"ign_args": f"{WORLD} -r"}),
+    ],
+)
+async def test_gz_sim_launch_py(
+    launch: Callable[..., Any], simulators: Simulators, package: str, name: str, arguments: dict[str, str]
+) -> None:
+    launched = await launch(include(package, name, **arguments))
+    assert launched.succeeded, launched.err
+    assert simulators.started == [("ros_gz_sim", {"world": str(WORLD), "pause": False}, [])]
+
+
+async def test_a_second_include_for_the_window_starts_no_second_server(
+    launch: Callable[..., Any], simulators: Simulators
+) -> None:
+    server = include("ros_gz_sim", "gz_sim.launch.py", gz_args=f"-r -s {WORLD}", on_exit_shutdown="true")
+    launched = await launch(include("ros_gz_sim", "gz_sim.launch.py", gz_args="-g"), server)
+    assert launched.succeeded
+    assert len(simulators.started) == 1
+
+
+@pytest.mark.parametrize(
+    ("command", "options"),
+    [
+        (["gazebo", "--verbose", "-s", "libgazebo_ros_factory.so", str(WORLD)], {}),
+        (["gzserver", str(WORLD), "-s", "libgazebo_ros_init.so"], {}),
+        ([f"gzserver {WORLD}"], {"shell": True}),
+    ],
+)
+async def test_commands_of_gazebo(
+    launch: Callable[..., Any], simulators: Simulators, command: list[str], options: dict[str, bool]
+) -> None:
+    action = ExecuteProcess(cmd=command, output="screen", **options)
+    launched = await launch(action)
+    assert launched.succeeded, launched.err
+    assert simulators.started == [("gazebo_ros", {"world": str(WORLD)}, [])]
+    assert action.return_code == 0
+
+
+async def test_gz_sim_as_a_command(launch: Callable[..., Any], simulators: Simulators) -> None:
+    await launch(ExecuteProcess(cmd=["gz", "sim", "-r", str(WORLD)]))
+    assert simulators.started == [("ros_gz_sim", {"world": str(WORLD), "pause": False}, [])]
+
+
+async def test_other_commands_of_gz_are_processes(launch: Callable[..., Any], simulators: Simulators) -> None:
+    launched = await launch(ExecuteProcess(cmd=["gz", "topic", "-l"]))
+    assert not launched.succeeded
+    assert simulators.started == []
+
+
+async def test_a_gazebo_that_is_installed_is_started(
+    launch: Callable[..., Any], simulators: Simulators, write: Write, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    program = write("bin/gzserver", "#!/bin/sh\necho the real one\n")
+    program.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{program.parent}:/bin:/usr/bin")
+    launched = await launch(ExecuteProcess(cmd=["gzserver", "a.world"], output="screen"))
+    assert "the real one" in launched.out
+    assert simulators.started == []
+
+
+@pytest.mark.parametrize(
+    ("name", "parts"),
+    [
+        ("load_mbot_into_gazebo", ()),
+        ("load_mbot_camera_into_gazebo", ("camera_link",)),
+        ("load_mbot_kinect_into_gazebo", ("kinect_link",)),
+        ("load_mbot_laser_into_gazebo", ("laser_link",)),
+        ("load_mbot_into_gz", ()),
+        ("load_mbot_camera_into_gz", ("camera_link",)),
+        ("load_mbot_kinect_into_gz", ("kinect_link",)),
+        ("load_mbot_laser_into_gz", ("laser_link",)),
+    ],
+)
+async def test_the_launch_files_of_the_tutorial_load_the_robot(
+    launch: Callable[..., Any], simulators: Simulators, name: str, parts: tuple[str, ...]
+) -> None:
+    simulators.spawned = []
+    path = str(GAZEBO_PACKAGE / "launch" / f"{name}.launch.py")
+    ends = {"server_required": "true", "on_exit_shutdown": "true"}
+    arguments = {"rviz": "false", "x": "-1.5", "yaw": "3.14"}
+    finder = PackageFinder(start=GAZEBO_PACKAGE, environment={})
+    launched = await launch(IncludeLaunchDescription(path, launch_arguments=arguments.items()), finder=finder, **ends)
+    assert launched.succeeded, launched.err
+    (request,) = simulators.spawned
+    assert (request.name, request.initial_pose.position.x) == ("mbot", -1.5)
+    assert all(part in request.xml for part in parts)
+    ((_, parameters, _),) = simulators.started
+    assert parameters["world"] == str(WORLD)
