@@ -40,6 +40,7 @@ import { JointDrag } from "./scene/joint-drag";
 import { Keyboard } from "./scene/keyboard";
 import type { PanelHost } from "./scene/displays/display-panel";
 import { Stage } from "./scene/stage";
+import { WorldHandling } from "./scene/world-handling";
 import { Toolbox } from "./scene/tools/toolbox";
 import { Door } from "./shell/door";
 import { FileCommands } from "./shell/file-commands";
@@ -145,8 +146,9 @@ function keepCurrent(dock: Dock, session: Session): void {
 function takeTools(stage: Stage, session: Session): Toolbox {
   const toolbox = new Toolbox(stage, session);
   const joints = new JointDrag(stage, session);
+  const worlds = new WorldHandling(stage, session);
   const controls = new Controls(stage, session.view, (event) => {
-    if (!joints.pointer(event)) toolbox.current.pointer(event);
+    if (!joints.pointer(event) && !worlds.pointer(event)) toolbox.current.pointer(event);
   });
   new Keyboard(session, stage, toolbox, controls);
   return toolbox;

@@ -57,6 +57,8 @@ export class KeySheet {
           [words.arrows, words.turn],
           [`Shift ${words.arrows}`, words.move],
           ["+ -", words.zoom],
+          [strings.simulation.dragKeys, strings.simulation.dragModel],
+          [strings.simulation.pushKeys, strings.simulation.pushModel],
         ],
       ],
       [

@@ -8,6 +8,7 @@ import { OrientationSign } from "./orientation-sign";
 import { LineNotice } from "./line-notice";
 import type { Panel } from "./panel";
 import { showSceneMenus } from "./scene-menu";
+import { SimulationBar } from "./simulation-bar";
 import { SelectionCard } from "./selection-card";
 import { Toolbar } from "./toolbar";
 
@@ -33,7 +34,7 @@ export class ScenePanel implements Panel {
       "div",
       { class: "scene-box" },
       this.container,
-      h("div", { class: "overlay" }, h("div", { class: "notices" }, notice.element, banner.element), this.waiting, h("div", { class: "corner" }, new LineNotice(session).element, card.element), inspect.element, sign.element),
+      h("div", { class: "overlay" }, h("div", { class: "notices" }, new SimulationBar(session.simulation).element, notice.element, banner.element), this.waiting, h("div", { class: "corner" }, new LineNotice(session).element, card.element), inspect.element, sign.element),
     );
     showSceneMenus(this.box, session.sceneMenu);
     this.element = h("div", { class: "scene-panel" }, toolbar.element, this.box);

@@ -70,6 +70,15 @@ import type {
 import type { AskPoint, CellGrid, CloudPoints, PointFields } from "./points";
 import type { AskProvenance, LinkProvenance, MeshStatus, RobotScene } from "./robot";
 import type { Hello, Received } from "./session";
+import type {
+  ControlSimulation,
+  DeleteModel,
+  DragModel,
+  PushLink,
+  SimulationNotice,
+  SimulationStatus,
+  SpawnModel,
+} from "./simulation";
 import type { Clock, ResetTime, SetTime, TimeReset, TimeState, WatchClock } from "./time";
 import type {
   AddTool,
@@ -102,6 +111,7 @@ export * from "./monitor";
 export * from "./points";
 export * from "./robot";
 export * from "./session";
+export * from "./simulation";
 export * from "./time";
 export * from "./views-and-tools";
 export * from "./worlds";
@@ -141,6 +151,8 @@ export type ServerMessage =
   | RobotScene
   | SavedViews
   | SeriesStates
+  | SimulationNotice
+  | SimulationStatus
   | TeleopState
   | TimeReset
   | TimeState
@@ -170,6 +182,9 @@ export type PageMessage =
   | AskProvenance
   | CenterJoints
   | ChangeSavedView
+  | ControlSimulation
+  | DeleteModel
+  | DragModel
   | Drive
   | DumpParameters
   | DuplicateDisplays
@@ -182,6 +197,7 @@ export type PageMessage =
   | OpenConfiguration
   | PointChosen
   | PoseChosen
+  | PushLink
   | RandomizeJoints
   | Received
   | Redo
@@ -200,6 +216,7 @@ export type PageMessage =
   | SetTime
   | SetToolProperty
   | ShowPanels
+  | SpawnModel
   | Undo
   | ViewChanged
   | WatchClock

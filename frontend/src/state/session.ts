@@ -14,6 +14,7 @@ import { PoseStore } from "./named-poses";
 import type { SceneMenu } from "./scene-menu";
 import { SelectionState } from "./selection";
 import { Signal } from "./signal";
+import { SimulationState } from "./simulation";
 import { SlowLine } from "./slow-line";
 import { browserStorage } from "./storage";
 import { TimeControlState } from "./time";
@@ -35,6 +36,7 @@ export class Session {
   readonly time: TimeControlState;
   readonly data: DisplayDataStore;
   readonly slowLine: SlowLine;
+  readonly simulation: SimulationState;
   readonly robotChanged = new Signal<RobotScene>();
   readonly diagnosticsChanged = new Signal();
   /** Answers `ask_provenance`. */
@@ -56,6 +58,7 @@ export class Session {
     this.time = new TimeControlState(connection);
     this.data = new DisplayDataStore(connection);
     this.slowLine = new SlowLine(this.data);
+    this.simulation = new SimulationState(connection);
     this.joints = new JointsState(connection);
     this.description = new DescriptionState(connection);
     this.monitor = new MonitorState(connection, browserStorage());

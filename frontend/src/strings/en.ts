@@ -5,6 +5,7 @@ import { description } from "./en/description";
 import { monitor } from "./en/monitor";
 import { tools } from "./en/tools";
 import { sharing } from "./en/sharing";
+import { simulation } from "./en/simulation";
 
 /** Every word of the page that does not come from the server. */
 export const en = {
@@ -20,6 +21,7 @@ export const en = {
   },
   shell,
   sharing,
+  simulation,
   details,
   displays,
   tree: {

@@ -6,6 +6,7 @@ import type { Strings } from "./en";
 import { monitor } from "./zh/monitor";
 import { tools } from "./zh/tools";
 import { sharing } from "./zh/sharing";
+import { simulation } from "./zh/simulation";
 
 /** 简体中文 */
 export const zh: Strings = {
@@ -13,6 +14,7 @@ export const zh: Strings = {
     ...tools.panels, ...monitor.panels, displays: "显示", scene: "三维视图", views: "视角", joints: "关节", diagnostics: "诊断" },
   shell,
   sharing,
+  simulation,
   details,
   displays,
   tree: {

@@ -1,4 +1,4 @@
-import { Box3, Group, Matrix4, type Object3D, type Raycaster, type Vector3 } from "three";
+import { Box3, Group, Matrix4, Vector3, type Object3D, type Raycaster } from "three";
 import type { DisplayData } from "../../connection/data";
 import type { WorldPoses, WorldScene } from "../../protocol";
 import type { Described, Hit, SelectionBox } from "../picking";
@@ -81,6 +81,22 @@ export class WorldDrawing implements Drawing {
     return this.shown?.placeOf(link) ?? null;
   }
 
+  /** Where a link is in the fixed frame; null before that is known. */
+  poseOf(link: string): Matrix4 | null {
+    return this.shown?.poseOf(link) ?? null;
+  }
+
+  /** A direction of the fixed frame in that of the world. */
+  toWorld(direction: Vector3): Vector3 {
+    const length = direction.length();
+    return direction.clone().transformDirection(this.world().invert()).multiplyScalar(length);
+  }
+
+  /** A point of the fixed frame in that of the world, m. */
+  placeInWorld(point: readonly number[]): number[] {
+    return new Vector3().fromArray(point).applyMatrix4(this.world().invert()).toArray();
+  }
+
   inspect(): object {
     return { revision: this.scene?.revision ?? 0, ...this.shown?.tell() };
   }
@@ -101,6 +117,12 @@ export class WorldDrawing implements Drawing {
       poseMatrix(poses, matrix, row * 7).premultiply(world);
       return true;
     });
+  }
+
+  private world(): Matrix4 {
+    const world = new Matrix4();
+    if (this.placed) dataPose(this.context.session.frames, this.placed.data, world);
+    return world;
   }
 
   private take(scene: WorldScene): void {

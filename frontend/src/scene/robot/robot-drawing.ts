@@ -1,4 +1,4 @@
-import { Box3, Group, Vector3, type Object3D, type Raycaster } from "three";
+import { Box3, Group, Vector3, type Matrix4, type Object3D, type Raycaster } from "three";
 import type { RobotScene } from "../../protocol";
 import type { PropertyRows } from "../../state/properties";
 import type { Described, Hit, SelectionBox } from "../picking";
@@ -119,9 +119,14 @@ export class RobotDrawing {
     return link ? { name: `Link ${name}`, children: describedPose(link.root.matrix) } : null;
   }
 
+  /** Where a link is drawn; null before that is known. */
+  poseOf(name: string): Matrix4 | null {
+    return this.links.get(name)?.pose ?? null;
+  }
+
   /** Where the origin of a link is; null before that is known. */
   placeOf(name: string): Vector3 | null {
-    const pose = this.links.get(name)?.pose;
+    const pose = this.poseOf(name);
     return pose ? new Vector3().setFromMatrixPosition(pose) : null;
   }
 

@@ -1,0 +1,118 @@
+import { Matrix4, Plane, Vector3 } from "three";
+import type { Session } from "../state/session";
+import { strings } from "../strings";
+import { WorldDrawing } from "./displays/world";
+import type { Stage } from "./stage";
+import type { ToolEvent } from "./tools/tool";
+
+/** The tools that leave the mouse to what is done to models. */
+const TOOLS = ["rviz_default_plugins/Interact", "rviz_default_plugins/MoveCamera"];
+/** Of one page, at most so often. */
+const PERIOD_MS = 50;
+/** Newtons for each metre that a link is pulled by. */
+const STIFFNESS = 50;
+
+/** What is held: a point of a link in the link's frame, where it was in the fixed frame, and the plane it is dragged in. */
+interface Hold {
+  readonly drawing: WorldDrawing;
+  readonly link: string;
+  readonly point: Vector3;
+  readonly start: Vector3;
+  readonly plane: Plane;
+  readonly pushes: boolean;
+  lastMs: number;
+  offset: Vector3;
+}
+
+/**
+ * What the mouse does to the models of a simulated world: Ctrl moves one along the ground, Ctrl and Shift pull it by a
+ * force, and a click with the right button opens its menu.
+ */
+export class WorldHandling {
+  private hold: Hold | null = null;
+
+  constructor(
+    private readonly stage: Stage,
+    private readonly session: Session,
+  ) {}
+
+  /** False for an event that the tool in hand should have. */
+  pointer(event: ToolEvent): boolean {
+    if (this.hold) {
+      if (event.type === "move" && event.left) this.move(this.hold, event);
+      else if (event.type === "up" && !event.left) this.letGo(this.hold);
+      return true;
+    }
+    const { simulation, tools } = this.session;
+    if (!simulation.present || (tools.current && !TOOLS.includes(tools.current.cls))) return false;
+    if (event.type === "down" && event.button === "left" && event.ctrl) return this.grab(event);
+    if (event.type === "up" && event.button === "right" && event.click) this.openMenu(event);
+    return false;
+  }
+
+  private grab(event: ToolEvent): boolean {
+    const found = this.find(event);
+    const camera = this.stage.viewport.camera;
+    if (!found?.matrix) return false;
+    const { drawing, link, at, matrix } = found;
+    const normal = event.shift ? camera.getWorldDirection(new Vector3()) : new Vector3(0, 0, 1);
+    const plane = new Plane().setFromNormalAndCoplanarPoint(normal, at);
+    const point = at.clone().applyMatrix4(matrix.clone().invert());
+    this.hold = { drawing, link, point, start: at.clone(), plane, pushes: event.shift, lastMs: -Infinity, offset: new Vector3() };
+    this.stage.viewport.canvas.style.cursor = "grabbing";
+    if (!event.shift) this.session.simulation.drag(modelOf(link), [0, 0, 0], true);
+    return true;
+  }
+
+  private move(hold: Hold, event: ToolEvent): void {
+    const to = this.stage.picker.rayAt(event.x, event.y).ray.intersectPlane(hold.plane, new Vector3());
+    if (!to) return;
+    hold.offset = to.sub(hold.start);
+    const now = performance.now();
+    if (now - hold.lastMs < PERIOD_MS) return;
+    hold.lastMs = now;
+    this.send(hold);
+  }
+
+  private letGo(hold: Hold): void {
+    if (!hold.pushes) this.send(hold);
+    this.hold = null;
+    this.stage.viewport.canvas.style.cursor = "default";
+  }
+
+  private send({ drawing, link, point, offset, pushes }: Hold): void {
+    const { simulation } = this.session;
+    const inWorld = drawing.toWorld(offset);
+    if (pushes) simulation.push(link, point.toArray(), inWorld.multiplyScalar(STIFFNESS).toArray());
+    else simulation.drag(modelOf(link), inWorld.toArray(), false);
+  }
+
+  private openMenu(event: ToolEvent): void {
+    const found = this.find(event);
+    const { simulation, view, frames, sceneMenu } = this.session;
+    const words = strings.simulation;
+    const at = found?.at ?? this.stage.picker.groundAt(event.x, event.y);
+    const place = at instanceof Vector3 ? at.toArray() : at;
+    if (!place) return;
+    const choices = [{ label: words.spawnHere, run: () => simulation.spawnAsked.emit(found ? found.drawing.placeInWorld(place) : place) }];
+    if (found) {
+      const model = modelOf(found.link);
+      const frame = found.link.split("::").at(-1) ?? "";
+      if (frames.has(frames.row(frame))) choices.push({ label: words.follow(frame), run: () => view.set("Target Frame", frame) });
+      choices.push({ label: words.remove(model), run: () => simulation.remove(model) });
+    }
+    sceneMenu.emit({ x: event.x, y: event.y, choices });
+  }
+
+  /** The link of a world under the pointer. */
+  private find(event: ToolEvent): { drawing: WorldDrawing; link: string; at: Vector3; matrix: Matrix4 | null } | null {
+    const found = this.stage.picker.at(event.x, event.y);
+    if (!(found?.drawing instanceof WorldDrawing)) return null;
+    const { key, point } = found.hit;
+    return { drawing: found.drawing, link: key, at: point.clone(), matrix: found.drawing.poseOf(key) };
+  }
+}
+
+function modelOf(link: string): string {
+  return link.split("::")[0] ?? link;
+}

@@ -1,0 +1,62 @@
+import type { Connection } from "../connection/connection";
+import type { ControlSimulation, SimulationStatus } from "../protocol";
+import { Signal } from "./signal";
+
+/** The simulation in the graph, if there is one, as the server tells of it. */
+export class SimulationState {
+  readonly changed = new Signal();
+  /** The simulation did not do something; why. */
+  readonly refused = new Signal<string>();
+  /** The user wants to put a model at a place of the world, m. */
+  readonly spawnAsked = new Signal<readonly number[]>();
+  private status: SimulationStatus | null = null;
+
+  constructor(private readonly connection: Connection) {
+    connection.on("simulation_status", (status) => {
+      this.status = status;
+      this.changed.emit();
+    });
+    connection.on("simulation_notice", ({ text }) => this.refused.emit(text));
+  }
+
+  get present(): boolean {
+    return this.status?.present ?? false;
+  }
+
+  get paused(): boolean {
+    return this.status?.paused ?? false;
+  }
+
+  /** Simulated time, s; null before it was told. */
+  get time(): number | null {
+    return this.status?.time ?? null;
+  }
+
+  /** Simulated seconds in a real one. */
+  get factor(): number | null {
+    return this.status?.real_time_factor ?? null;
+  }
+
+  control(action: ControlSimulation["action"]): void {
+    this.connection.send({ type: "control_simulation", action });
+  }
+
+  /** `address` is a path, or begins with package:// or model://. */
+  spawn(address: string, position: readonly number[]): void {
+    this.connection.send({ type: "spawn_model", address, position: [...position] });
+  }
+
+  remove(model: string): void {
+    this.connection.send({ type: "delete_model", model });
+  }
+
+  /** Moves a model by an offset in the world's frame, m, from where it was when the drag began. */
+  drag(model: string, offset: readonly number[], begins: boolean): void {
+    this.connection.send({ type: "drag_model", model, begins, offset: [...offset] });
+  }
+
+  /** Pushes a link for a moment: `force` in the world's frame, N; `point` in the link's, m. */
+  push(link: string, point: readonly number[], force: readonly number[]): void {
+    this.connection.send({ type: "push_link", link, point: [...point], force: [...force] });
+  }
+}

@@ -1,0 +1,22 @@
+/** The simulation: its bar, and what is done to its models. */
+export const simulation = {
+  label: "Simulation",
+  play: "Let the simulation go on",
+  pause: "Pause the simulation",
+  step: "Make one step",
+  reset: "Begin anew: time zero, all models where they were",
+  factorHint: "Simulated seconds in a real one",
+  timeHint: "Simulated time",
+  spawn: "Add a model",
+  spawnTitle: "Add a model to the world",
+  spawnHere: "Add a model here…",
+  address: "File",
+  addressHint: "path, package://… or model://…",
+  position: "Position, m",
+  follow: (frame: string): string => `Follow ${frame} with the view`,
+  remove: (model: string): string => `Remove ${model}`,
+  dragKeys: "Ctrl + drag",
+  dragModel: "Move a model of the simulation",
+  pushKeys: "Ctrl + Shift + drag",
+  pushModel: "Pull a link with a force",
+};

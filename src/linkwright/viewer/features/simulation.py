@@ -1,0 +1,279 @@
+"""The simulation bar, and what pages do to the models of a simulated world: through topics and services alone.
+
+Source of their names: gazebo_ros and simulation_interfaces.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import partial
+from math import isfinite
+from pathlib import Path
+from typing import Any, ClassVar
+
+from linkwright.descriptions import examine, examine_world, is_world
+from linkwright.diagnostics import LinkwrightError, Phrase, phrase
+from linkwright.graph import Client, DurabilityPolicy, QoSProfile
+from linkwright.messages import get_message, get_service
+from linkwright.sdf.resources import ResourceFinder
+from linkwright.sdf.writer import save
+from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
+from linkwright.viewer.protocol.message import ServerMessage
+from linkwright.viewer.protocol.simulation import (
+    ControlSimulation,
+    DeleteModel,
+    DragModel,
+    PushLink,
+    SimulationNotice,
+    SimulationStatus,
+    SpawnModel,
+)
+from linkwright.viewer.web.audience import Page
+
+_STATE = "/simulation_state"
+_LATCHED = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+_PAUSED = 2
+"""Of simulation_interfaces/msg/SimulationState."""
+_PUSH_NS = 50_000_000
+"""How long a push lasts; pages repeat it while the user pulls."""
+
+_ABSENT = SimulationStatus(present=False, paused=False, time=None, real_time_factor=None)
+_EMPTY = "std_srvs/srv/Empty"
+_ACTIONS = {
+    "play": (_EMPTY, "/unpause_physics"),
+    "pause": (_EMPTY, "/pause_physics"),
+    "reset": (_EMPTY, "/reset_simulation"),
+    "step": ("simulation_interfaces/srv/StepSimulation", "/step_simulation"),
+}
+
+
+@dataclass(slots=True)
+class _Drag:
+    """A model that a page moves: where it was, once that is known, and the newest place that nobody was told of."""
+
+    model: str
+    start: Any = None
+    wanted: Sequence[float] | None = None
+    calling: bool = False
+
+
+class SimulationFeature(PageFeature):
+    """Tells pages how a simulation in the graph goes, and asks of it what they want; listens while there are pages."""
+
+    RECEIVES: ClassVar[tuple[type, ...]] = (ControlSimulation, SpawnModel, DeleteModel, DragModel, PushLink)
+
+    def __init__(self, viewer: FeatureHost) -> None:
+        super().__init__(viewer)
+        self._listening = False
+        self._subscriptions: list[Any] = []
+        self._clients: dict[str, Client[Any, Any]] = {}
+        self._status = _ABSENT
+        self._drags: dict[Page, _Drag] = {}
+        self._spawning: set[asyncio.Task[None]] = set()
+
+    def opening(self) -> list[ServerMessage]:
+        """How the simulation goes."""
+        if not self._listening:
+            self._listening = True
+            self.context.graph_changes.listen(self._review)
+            self._review()
+        return [self._status]
+
+    def page_gone(self, page: Page) -> None:
+        """Let go of what it moves, and stop listening after the last page."""
+        self._drags.pop(page, None)
+        if self._listening and len(self.context.pages) == 0:
+            self._stop()
+
+    def close(self) -> None:
+        """End for good."""
+        self._stop()
+        for task in self._spawning:
+            task.cancel()
+
+    def receive(self, page: Page, message: Any) -> None:
+        """Do what a page asks for."""
+        match message:
+            case ControlSimulation(action):
+                kind, name = _ACTIONS[action]
+                fields = {"steps": 1} if action == "step" else {}
+                self._ask(page, kind, name, fields)
+            case SpawnModel(address, position):
+                task = asyncio.get_running_loop().create_task(self._spawn(page, address, position))
+                self._spawning.add(task)
+                task.add_done_callback(self._spawning.discard)
+            case DeleteModel(model):
+                self._ask(page, "gazebo_msgs/srv/DeleteEntity", "/delete_entity", {"name": model})
+            case DragModel():
+                self._drag(page, message)
+            case PushLink():
+                self._push(page, message)
+
+    # --- how it goes -------------------------------------------------------------------------------------------
+
+    def _review(self) -> None:
+        present = bool(self.context.node.get_publishers_info_by_topic(_STATE))
+        if present and not self._subscriptions:
+            node = self.context.node
+            self._subscriptions = [
+                node.create_subscription("simulation_interfaces/msg/SimulationState", _STATE, self._state, _LATCHED),
+                node.create_subscription(
+                    "gazebo_msgs/msg/PerformanceMetrics", "/performance_metrics", self._metrics, 10
+                ),
+            ]
+        elif not present:
+            self._leave()
+        if present != self._status.present:
+            self._tell(SimulationStatus(present, paused=False, time=None, real_time_factor=None))
+
+    def _state(self, message: Any) -> None:
+        now = self._status
+        self._tell(SimulationStatus(True, message.state == _PAUSED, now.time, now.real_time_factor))
+
+    def _metrics(self, message: Any) -> None:
+        stamp = message.header.stamp
+        time = stamp.sec + stamp.nanosec / 1e9
+        factor = message.real_time_factor if isfinite(message.real_time_factor) else None
+        self._tell(SimulationStatus(True, self._status.paused, time, factor))
+
+    def _tell(self, status: SimulationStatus) -> None:
+        if status != self._status:
+            self._status = status
+            self.context.pages.publish(status)
+
+    def _stop(self) -> None:
+        self._listening = False
+        self.context.graph_changes.ignore(self._review)
+        self._leave()
+        self._status = _ABSENT
+
+    def _leave(self) -> None:
+        with suppress(ValueError):  # the node may have been destroyed before
+            for subscription in self._subscriptions:
+                self.context.node.destroy_subscription(subscription)
+            for client in self._clients.values():
+                self.context.node.destroy_client(client)
+        self._subscriptions.clear()
+        self._clients.clear()
+        self._drags.clear()
+
+    # --- what it is asked for ----------------------------------------------------------------------------------
+
+    def _ask(
+        self,
+        page: Page,
+        kind: str,
+        name: str,
+        fields: dict[str, Any],
+        answered: Callable[[Any], None] = lambda _: None,
+    ) -> None:
+        """Call a service; the page is told when there is none, or when it refuses."""
+        client = self._clients.get(name)
+        if client is None:
+            client = self._clients[name] = self.context.node.create_client(get_service(kind), name)
+        if not client.service_is_ready():
+            answered(None)
+            self._refuse(page, phrase("there is no service '{name}'", name=name))
+            return
+        future = client.call_async(client.srv_type.Request(**fields))
+
+        def done(_: Any) -> None:
+            response = future.result()
+            result = getattr(response, "result", None)
+            if getattr(response, "success", True) is False:
+                self._refuse(page, getattr(response, "status_message", "") or phrase("'{name}' failed", name=name))
+            elif result is not None and result.error_message:
+                self._refuse(page, result.error_message)
+            answered(response)
+
+        future.add_done_callback(done)
+
+    def _refuse(self, page: Page, text: str | Phrase) -> None:
+        page.send(SimulationNotice(str(text)))
+
+    async def _spawn(self, page: Page, address: str, position: list[float]) -> None:
+        try:
+            text = await asyncio.to_thread(self._text_of, address.strip())
+        except LinkwrightError as error:
+            found = error.diagnostics[0]
+            self._refuse(page, f"{found.span}: {found.message}" if found.span else found.message)
+            return
+        if text is None:
+            self._refuse(page, phrase("there is no model in '{address}'", address=address))
+            return
+        fields: dict[str, Any] = {"xml": text}
+        if _is_vector(position):
+            fields["initial_pose"] = _pose(position)
+        self._ask(page, "gazebo_msgs/srv/SpawnEntity", "/spawn_entity", fields)
+
+    def _text_of(self, address: str) -> str | None:
+        """The description at an address; None for a world without a model.
+
+        Raises:
+            LinkwrightError: it cannot be found or read.
+        """
+        finder = self.context.finder
+        found = ResourceFinder(finder).model(address, Path.cwd())
+        path = found if isinstance(found, Path) else finder.resolve(address)
+        if not is_world(path.name):
+            return self.context.library.remember(examine(path, packages=finder, xacro=True))
+        sdf = examine_world(path, packages=finder).sdf
+        return save(sdf.models[0]) if sdf is not None and sdf.models else None
+
+    def _drag(self, page: Page, message: DragModel) -> None:
+        if message.begins:
+            drag = self._drags[page] = _Drag(message.model)
+            fields = {"name": message.model, "reference_frame": "world"}
+            self._ask(
+                page, "gazebo_msgs/srv/GetEntityState", "/get_entity_state", fields, partial(self._held, page, drag)
+            )
+        known = self._drags.get(page)
+        if known is not None and known.model == message.model and _is_vector(message.offset):
+            known.wanted = message.offset
+            self._put(page, known)
+
+    def _held(self, page: Page, drag: _Drag, response: Any) -> None:
+        if response is not None and response.success:
+            drag.start = response.state
+            self._put(page, drag)
+
+    def _put(self, page: Page, drag: _Drag) -> None:
+        """Tell the newest place, when the simulation has done what it was told before."""
+        if drag.start is None or drag.wanted is None or drag.calling:
+            return
+        start = drag.start.pose.position
+        drag.calling = True
+        offset, drag.wanted = drag.wanted, None
+        state = type(drag.start)(name=drag.model, reference_frame="world")
+        state.pose = _pose([start.x + offset[0], start.y + offset[1], start.z + offset[2]])
+        state.pose.orientation = drag.start.pose.orientation
+
+        def put(_: Any) -> None:
+            drag.calling = False
+            self._put(page, drag)
+
+        self._ask(page, "gazebo_msgs/srv/SetEntityState", "/set_entity_state", {"state": state}, put)
+
+    def _push(self, page: Page, message: PushLink) -> None:
+        if not (_is_vector(message.point) and _is_vector(message.force)):
+            return
+        wrench = get_message("geometry_msgs/msg/Wrench")()
+        point = get_message("geometry_msgs/msg/Point")(*message.point)
+        wrench.force.x, wrench.force.y, wrench.force.z = message.force
+        fields = {"link_name": message.link, "reference_frame": "world", "reference_point": point, "wrench": wrench}
+        fields["duration"] = get_message("builtin_interfaces/msg/Duration")(0, _PUSH_NS)
+        self._ask(page, "gazebo_msgs/srv/ApplyLinkWrench", "/apply_link_wrench", fields)
+
+
+def _is_vector(numbers: Sequence[float]) -> bool:
+    return len(numbers) == 3 and all(map(isfinite, numbers))
+
+
+def _pose(position: Sequence[float]) -> Any:
+    pose = get_message("geometry_msgs/msg/Pose")()
+    pose.position.x, pose.position.y, pose.position.z = position
+    pose.orientation.w = 1.0
+    return pose

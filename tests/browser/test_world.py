@@ -1,0 +1,111 @@
+"""A simulated world in the page: its models, the bar of the simulation, and what the mouse does to models."""
+
+from __future__ import annotations
+
+from linkwright.graph import DESCRIPTION_QOS, TF_QOS, DurabilityPolicy, QoSProfile
+from linkwright.messages import String, TFMessage, get_message, get_service
+from tests.browser.live import configuration
+from tests.waiting import wait_until
+
+STATE = get_message("simulation_interfaces/msg/SimulationState")
+DISPLAYS = "- {Class: linkwright/World, Enabled: true, Name: World}"
+WORLD = """\
+<sdf version="1.9"><world name="yard">
+  <model name="crate"><link name="link">
+    <visual name="v"><geometry><box><size>4 4 1</size></box></geometry><material><diffuse>1 0 0 1</diffuse></material>
+  </visual></link></model>
+  <model name="hill"><static>true</static><pose>0 0 3 0 0 0</pose><link name="link">
+    <visual name="a"><geometry><cone><radius>1</radius><length>2</length></cone></geometry></visual>
+    <visual name="b"><pose>0 0 3 0 0 0</pose>
+      <geometry><polyline><point>0 0</point><point>2 0</point><point>0 2</point><height>0.5</height></polyline>
+      </geometry></visual></link></model>
+</world></sdf>
+"""
+SERVICES = {
+    "/pause_physics": "std_srvs/srv/Empty",
+    "/delete_entity": "gazebo_msgs/srv/DeleteEntity",
+    "/get_entity_state": "gazebo_msgs/srv/GetEntityState",
+    "/set_entity_state": "gazebo_msgs/srv/SetEntityState",
+}
+
+
+def described(live):
+    viewer = live(configuration(DISPLAYS, distance=12.0).replace("Fixed Frame: base", "Fixed Frame: world"))
+    viewer.publish("/world_description", String(WORLD), DESCRIPTION_QOS)
+    return viewer
+
+
+def moved(viewer, x: float) -> None:
+    transform = get_message("geometry_msgs/msg/TransformStamped")()
+    transform.header.frame_id, transform.child_frame_id = "world", "crate::link"
+    transform.transform.translation.x, transform.transform.rotation.w = x, 1.0
+    viewer.publish("/world_poses", TFMessage(transforms=[transform]), TF_QOS)
+
+
+def bounds(page, link: str, shape: int = 0) -> list[list[float]]:
+    drawn = page.evaluate("() => window.linkwright.displays[0].drawn")
+    box = drawn["links"][link]["visuals"][shape]["bounds"]
+    return [[round(each, 2) for each in box[end]] for end in ("min", "max")]
+
+
+def test_models_are_drawn_and_move(live, open_page):
+    viewer = described(live)
+    page = open_page(viewer)
+    viewer.settle(page)
+    assert bounds(page, "crate::link") == [[-2, -2, -0.5], [2, 2, 0.5]]
+    assert bounds(page, "hill::link") == [[-1, -1, 2], [1, 1, 4]]
+    assert bounds(page, "hill::link", 1) == [[0, 0, 6], [2, 2, 6.5]]
+    moved(viewer, 3.0)
+    viewer.settle(page)
+    assert bounds(page, "crate::link") == [[1, -2, -0.5], [5, 2, 0.5]]
+
+
+def test_the_bar_is_there_with_the_simulation_and_the_mouse_handles_models(live, open_page):
+    viewer = described(live)
+    asked: list[tuple[str, object]] = []
+
+    def answer(name: str, request, response):
+        asked.append((name, request))
+        if hasattr(response, "success"):
+            response.success = True
+        return response
+
+    def begin() -> None:
+        for name, kind in SERVICES.items():
+            viewer.node.create_service(
+                get_service(kind), name, lambda request, response, name=name: answer(name, request, response)
+            )
+
+    def requests(name: str) -> list:
+        return [request for each, request in asked if each == name]
+
+    page = open_page(viewer)
+    assert page.locator(".simulation-bar").is_hidden()
+    viewer.run(begin)
+    viewer.publish("/simulation_state", STATE(state=1), QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL))
+    page.get_by_role("button", name="Pause the simulation").click()
+    wait_until(lambda: requests("/pause_physics"))
+    viewer.publish("/simulation_state", STATE(state=2))
+    page.get_by_role("button", name="Let the simulation go on").wait_for()
+    assert page.get_by_role("button", name="Make one step").is_enabled()
+    viewer.settle(page)
+
+    box = page.locator(".canvas-box canvas").bounding_box()
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    page.mouse.move(x, y)
+    page.keyboard.down("Control")
+    page.mouse.down()
+    page.mouse.move(x + 60, y, steps=4)
+    page.mouse.up()
+    page.keyboard.up("Control")
+    wait_until(lambda: [each for each in requests("/set_entity_state") if abs(each.state.pose.position.y) > 0.1])
+    assert {each.state.name for each in requests("/set_entity_state")} == {"crate"}
+    assert all(each.state.pose.position.z == 0 for each in requests("/set_entity_state"))
+
+    page.mouse.click(x, y, button="right")
+    page.get_by_role("menuitem", name="Remove crate").click()
+    wait_until(lambda: requests("/delete_entity"))
+    assert requests("/delete_entity")[0].name == "crate"
+    page.mouse.click(x, y, button="right")
+    page.get_by_role("menuitem", name="Add a model here").click()
+    assert page.get_by_role("dialog").is_visible()

@@ -1,0 +1,164 @@
+"""The simulation bar, and what pages do to the models of a simulated world."""
+
+from __future__ import annotations
+
+from contextlib import asynccontextmanager
+
+import pytest
+
+from linkwright.graph import DurabilityPolicy, QoSProfile
+from linkwright.messages import Time, get_message, get_service
+from tests.viewer.scene import page, world
+from tests.waiting import eventually
+
+STATE = get_message("simulation_interfaces/msg/SimulationState")
+METRICS = get_message("gazebo_msgs/msg/PerformanceMetrics")
+SERVICES = {
+    "/pause_physics": "std_srvs/srv/Empty",
+    "/unpause_physics": "std_srvs/srv/Empty",
+    "/reset_simulation": "std_srvs/srv/Empty",
+    "/step_simulation": "simulation_interfaces/srv/StepSimulation",
+    "/spawn_entity": "gazebo_msgs/srv/SpawnEntity",
+    "/delete_entity": "gazebo_msgs/srv/DeleteEntity",
+    "/get_entity_state": "gazebo_msgs/srv/GetEntityState",
+    "/set_entity_state": "gazebo_msgs/srv/SetEntityState",
+    "/apply_link_wrench": "gazebo_msgs/srv/ApplyLinkWrench",
+}
+
+
+class Simulation:
+    """The topics and services of a simulator; keeps what it was asked, and says where every model is."""
+
+    def __init__(self, made) -> None:
+        self.made = made
+        self.node = made.graph.create_node("gazebo")
+        latched = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        self.state = self.node.create_publisher(STATE, "/simulation_state", latched)
+        self.metrics = self.node.create_publisher(METRICS, "/performance_metrics", 10)
+        self.asked: list[tuple[str, object]] = []
+        for name, kind in SERVICES.items():
+            self.node.create_service(
+                get_service(kind), name, lambda request, response, name=name: self._take(name, request, response)
+            )
+
+    def _take(self, name: str, request, response):
+        self.asked.append((name, request))
+        if hasattr(response, "success"):
+            response.success = getattr(request, "name", "") != "nobody"
+            if not response.success:
+                response.status_message = "there is no model 'nobody'"
+        if name == "/get_entity_state":
+            response.state.name = request.name
+            response.state.pose.position.x = 1.0
+            response.state.pose.orientation.z = 1.0
+        return response
+
+    async def request(self, name: str, count: int = 1):
+        await eventually(lambda: [each for each, _ in self.asked].count(name) >= count)
+        return [request for each, request in self.asked if each == name][-1]
+
+
+@asynccontextmanager
+async def simulated():
+    async with world() as made:
+        simulation = Simulation(made)
+        simulation.state.publish(STATE(state=1))
+        async with page(made.viewer) as client:
+            await client.until("simulation_status", present=True)
+            yield simulation, client
+
+
+async def test_pages_hear_of_no_simulation_where_there_is_none():
+    async with world() as made, page(made.viewer) as client:
+        assert (await client.opened())["simulation_status"]["present"] is False
+
+
+async def test_pages_hear_whether_time_passes_and_how_fast():
+    async with simulated() as (simulation, client):
+        simulation.state.publish(STATE(state=2))
+        await client.until("simulation_status", paused=True)
+        message = METRICS(real_time_factor=0.5)
+        message.header.stamp = Time(12, 500_000_000)
+        simulation.metrics.publish(message)
+        await client.until("simulation_status", paused=True, time=12.5, real_time_factor=0.5)
+
+
+async def test_a_simulation_that_goes_is_gone_for_pages_too():
+    async with simulated() as (simulation, client):
+        simulation.node.destroy_node()
+        await client.until("simulation_status", present=False)
+
+
+@pytest.mark.parametrize(
+    ("action", "service"),
+    [
+        ("play", "/unpause_physics"),
+        ("pause", "/pause_physics"),
+        ("reset", "/reset_simulation"),
+        ("step", "/step_simulation"),
+    ],
+)
+async def test_buttons_call_services(action, service):
+    async with simulated() as (simulation, client):
+        await client.send("control_simulation", action=action)
+        request = await simulation.request(service)
+        assert getattr(request, "steps", 1) == 1
+
+
+async def test_models_are_put_into_the_world_by_a_path(tmp_path):
+    robot = tmp_path / "box.urdf"
+    robot.write_text("<robot name='box'><link name='base'/></robot>")
+    model = tmp_path / "ball.sdf"
+    model.write_text("<sdf version='1.9'><model name='ball'><static>true</static><link name='l'/></model></sdf>")
+    async with simulated() as (simulation, client):
+        await client.send("spawn_model", address=str(robot), position=[1, 2, 3])
+        request = await simulation.request("/spawn_entity")
+        assert '<robot name="box">' in request.xml
+        assert (request.initial_pose.position.x, request.initial_pose.position.z) == (1.0, 3.0)
+        await client.send("spawn_model", address=str(model), position=[0, 0, 0])
+        request = await simulation.request("/spawn_entity", 2)
+        assert '<model name="ball">' in request.xml
+        assert "<static>true</static>" in request.xml
+        await client.send("spawn_model", address=str(tmp_path / "none.urdf"), position=[0, 0, 0])
+        assert "none.urdf" in (await client.until("simulation_notice"))["text"]
+
+
+async def test_what_the_simulation_refuses_is_told():
+    async with simulated() as (_, client):
+        await client.send("delete_model", model="nobody")
+        assert (await client.until("simulation_notice"))["text"] == "there is no model 'nobody'"
+
+
+async def test_a_service_that_is_not_there_is_told():
+    async with world() as made:
+        node = made.graph.create_node("gazebo")
+        node.create_publisher(STATE, "/simulation_state", 1).publish(STATE(state=1))
+        async with page(made.viewer) as client:
+            await client.until("simulation_status", present=True)
+            await client.send("control_simulation", action="pause")
+            assert (await client.until("simulation_notice"))["text"] == "there is no service '/pause_physics'"
+
+
+async def test_a_model_is_dragged_from_where_it_was():
+    async with simulated() as (simulation, client):
+        await client.send("drag_model", model="crate", begins=True, offset=[0, 0, 0])
+        await simulation.request("/set_entity_state")
+        await client.send("drag_model", model="crate", begins=False, offset=[2, 3, 0])
+        state = (await simulation.request("/set_entity_state", 2)).state
+        assert (state.name, state.reference_frame) == ("crate", "world")
+        position, turn = state.pose.position, state.pose.orientation
+        assert (position.x, position.y, position.z, turn.z) == (3.0, 3.0, 0.0, 1.0)
+        assert [name for name, _ in simulation.asked].count("/get_entity_state") == 1
+
+
+async def test_a_link_is_pushed_at_a_point_for_a_moment():
+    async with simulated() as (simulation, client):
+        await client.send("push_link", link="crate::link", point=[0, 0, 1], force=[5, 0, 0])
+        request = await simulation.request("/apply_link_wrench")
+        assert (request.link_name, request.reference_frame, request.reference_point.z) == ("crate::link", "world", 1.0)
+        assert request.wrench.force.x == 5.0
+        assert 0 < request.duration.nanosec < 1_000_000_000
+        await client.send("push_link", link="crate::link", point=[0, 0], force=[5, 0, 0])
+        await client.send("delete_model", model="crate")
+        await simulation.request("/delete_entity")
+        assert [name for name, _ in simulation.asked].count("/apply_link_wrench") == 1
