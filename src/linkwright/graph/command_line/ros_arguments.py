@@ -10,7 +10,6 @@ from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, joined, phrase
 from linkwright.graph.log.levels import LogLevel, level_named
-from linkwright.graph.parameters.files import parse_value, read_parameter_file
 from linkwright.graph.parameters.rules import ANY_NODE, ParameterRules
 
 BEGIN = "--ros-args"
@@ -135,6 +134,8 @@ def _read_remapping(ros: RosArguments, rule: str) -> None:
 
 
 def _read_parameter(ros: RosArguments, rule: str) -> None:
+    from linkwright.graph.parameters.files import parse_value  # few nodes are given parameters
+
     name, text = _assignment(rule, phrase("a parameter"), phrase("name:=value"))
     pattern = ANY_NODE
     match = _NODE_PREFIX.fullmatch(name)
@@ -144,6 +145,8 @@ def _read_parameter(ros: RosArguments, rule: str) -> None:
 
 
 def _read_parameter_file(ros: RosArguments, path: str) -> None:
+    from linkwright.graph.parameters.files import read_parameter_file
+
     ros.parameters.add(read_parameter_file(Path(path)))
 
 
