@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from linkwright.simulation.sensors.lidar import LidarSensor, angles_of
-from linkwright.simulation.sensors.mount import Mount, generator
+from linkwright.simulation.sensors.mount import Mount
 from linkwright.simulation.simulation import Simulation
 from tests.simulation.sensors.rooms import block, carrier, flat, lidar, on_carrier, room
 from tests.simulation.worlds import GROUND, box, model, simulated
@@ -17,7 +17,7 @@ GAUSSIAN = '<noise type="gaussian"><mean>0</mean><stddev>0.01</stddev></noise>'
 
 
 def look(simulation: Simulation, said, *, visuals: bool = False, seed: int = 0) -> LidarSensor:
-    return LidarSensor(on_carrier(simulation), said, sees_visuals=visuals, generator=generator("lidar", seed))
+    return LidarSensor(on_carrier(simulation), said, sees_visuals=visuals, generator=np.random.default_rng(seed))
 
 
 def in_room(angle: float) -> float:
@@ -80,7 +80,10 @@ ROBOT = """
 def test_a_lidar_sees_its_robot_beyond_the_least_range_and_never_its_own_link(near: float, expected: float):
     simulation = simulated(room(), ROBOT)
     sensor = LidarSensor(
-        Mount(simulation, "robot::laser"), flat(1, 0, 0, near=near), sees_visuals=False, generator=generator("", 0)
+        Mount(simulation, "robot::laser"),
+        flat(1, 0, 0, near=near),
+        sees_visuals=False,
+        generator=np.random.default_rng(0),
     )
     assert sensor.measure().ranges[0, 0] == pytest.approx(expected, abs=1e-9)
 

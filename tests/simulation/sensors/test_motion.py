@@ -13,17 +13,17 @@ from linkwright.simulation.sensors.contact import ContactSensor
 from linkwright.simulation.sensors.earth import AltimeterSensor, Globe, MagnetometerSensor, NavsatSensor
 from linkwright.simulation.sensors.force_torque import ForceTorqueSensor
 from linkwright.simulation.sensors.imu import ImuSensor
-from linkwright.simulation.sensors.mount import Mount, generator
+from linkwright.simulation.sensors.mount import Mount
 from linkwright.simulation.simulation import NANOSECONDS, Simulation
 from tests.simulation.sensors.rooms import sensor
 from tests.simulation.worlds import GROUND, box, mbot, simulated
 
-CHANCE = generator("", 0)
+CHANCE = np.random.default_rng(0)
 
 
 def imu(simulation: Simulation, link: str, text: str = "", *, seed: int = 0, initial: bool = False) -> ImuSensor:
     said = sensor(f"<imu>{text}</imu>", "imu").imu
-    return ImuSensor(Mount(simulation, link), said, generator=generator("imu", seed), initial_reference=initial)
+    return ImuSensor(Mount(simulation, link), said, generator=np.random.default_rng(seed), initial_reference=initial)
 
 
 def test_an_imu_at_rest_feels_the_reaction_to_gravity():

@@ -1,11 +1,10 @@
-"""Where a sensor is fixed, and chance that is the same in every run."""
+"""Where a sensor is fixed, and what it knows of the geoms that it meets."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
-from zlib import crc32
 
 import numpy as np
 
@@ -78,11 +77,6 @@ def accelerations(simulation: Simulation) -> None:
     """Let MuJoCo compute the accelerations of all bodies and the forces between them, as they were in the last step."""
     simulation.refresh()
     load_mujoco().mj_rnePostConstraint(simulation.model, simulation.data)
-
-
-def generator(name: str, seed: int) -> np.random.Generator:
-    """Chance of its own for each sensor: the same for the same name and seed, whatever else there is in the world."""
-    return np.random.default_rng([seed, crc32(name.encode())])
 
 
 def part_of(geom: str) -> str:

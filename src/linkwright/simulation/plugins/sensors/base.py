@@ -1,0 +1,121 @@
+"""What all sensors share: where they are, how often they measure, their frames and topics."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Generic, TypeVar
+
+from linkwright.geometry.arrays import Array
+from linkwright.graph.qos.profile import QoSProfile
+from linkwright.messages import Header, Vector3, get_message
+from linkwright.sdf.poses import SEPARATOR
+from linkwright.simulation.plugins.node import Output
+from linkwright.simulation.plugins.parameters import parameter
+from linkwright.simulation.plugins.plugin import SimulatedPlugin
+from linkwright.simulation.sensors.mount import Mount
+
+P = TypeVar("P")
+SENSOR_QOS = QoSProfile(depth=5)
+"""As gazebo_ros has it: of sensor data the depth, and reliable, so that every subscription fits."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class FrameName:
+    """The parameter that all sensors of Gazebo classic have."""
+
+    frame_name: str = parameter("", aliases=("frameName",))
+
+
+class SensorPlugin(SimulatedPlugin[P], Generic[P]):
+    """A sensor that measures when it is due and somebody listens."""
+
+    def start(self) -> None:
+        """Make what measures, and the topics."""
+        self.make_sensor()
+        self.make_topics()
+        self.every(self.rate, self._measure)
+
+    def reset(self) -> None:
+        """Begin anew, with the same random numbers."""
+        self.make_sensor()
+
+    def make_sensor(self) -> None:
+        """Make what measures."""
+        raise NotImplementedError
+
+    def make_topics(self) -> None:
+        """Make the topics."""
+        raise NotImplementedError
+
+    def is_wanted(self) -> bool:
+        """Whether anybody listens."""
+        raise NotImplementedError
+
+    def measure(self) -> None:
+        """Measure and publish."""
+        raise NotImplementedError
+
+    @property
+    def rate(self) -> float:
+        """Measurements a simulated second."""
+        return self.sensor.sensor.update_rate
+
+    @property
+    def mount(self) -> Mount:
+        """Where it is."""
+        return Mount(self.simulation, self.sensor.link, self.sensor.pose)
+
+    def classic_frame(self) -> str:
+        """The frame of its messages in Gazebo classic: what the plugin says, else the link."""
+        said: str = getattr(self.parameters, "frame_name", "")
+        return said.lstrip("/") or self.sensor.link.rpartition(SEPARATOR)[2]
+
+    def gz_frame(self) -> str:
+        """The frame of its messages in gz: what the sensor says, else its name with those of model and link."""
+        return self.sensor.sensor.frame_id or self.sensor.name.replace(SEPARATOR, "/")
+
+    def gz_topic(self, leaf: str) -> str:
+        """The topic that gz gives a sensor which names none."""
+        model, *inside = self.sensor.name.split(SEPARATOR)
+        holder = "joint" if self.sensor.joint else "link"
+        place = f"/world/{self.place.world.name}/model/{model}/{holder}/{'/'.join(inside[:-1])}"
+        return f"{place}/sensor/{inside[-1]}/{leaf}"
+
+    def gz_output(self, kind: str, leaf: str, usual: str = "") -> Output:
+        """The topic of a sensor of gz: its own name, or the one that gz gives it.
+
+        Args:
+            kind: the type of its messages.
+            leaf: how the name ends that gz gives it.
+            usual: the name that the topic has on robots.
+        """
+        topic = self.sensor.sensor.topic
+        return self.node.publisher(kind, topic or self.gz_topic(leaf), usual="" if topic else usual or f"/{leaf}")
+
+    def message(self, kind: str, frame: str) -> Any:
+        """A new message of a type, with its header."""
+        return get_message(kind)(header=Header(stamp=self.stamp(), frame_id=frame))
+
+    def _measure(self) -> None:
+        if self.is_wanted():
+            self.measure()
+
+
+class OneTopic(SensorPlugin[P], Generic[P]):
+    """A sensor with one topic.
+
+    Attributes:
+        output: the topic, which `make_topics` makes.
+    """
+
+    output: Output
+
+    def is_wanted(self) -> bool:
+        """Whether anybody listens."""
+        return self.output.is_wanted
+
+
+def vector(values: Array) -> Vector3:
+    """Three numbers as a message."""
+    x, y, z = map(float, values)
+    return Vector3(x, y, z)

@@ -1,0 +1,312 @@
+"""Cameras: ``gazebo_ros_camera`` and those of ROS 1; cameras and depth cameras of gz.
+
+Source: gazebo_ros_pkgs for ROS 2 (topics, parameters, encodings, the cloud), for ROS 1 (names), gz-sensors (topics).
+Red and blue of a cloud are where PCL and RViz read them; ``gazebo_ros_camera`` has them the other way round.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import inf
+from typing import Any, Generic, TypeVar
+
+import numpy as np
+
+from linkwright.diagnostics import Phrase, phrase
+from linkwright.geometry.single import Transform, compose
+from linkwright.messages import get_message
+from linkwright.sdf.cameras import Camera
+from linkwright.sdf.frames import transform_of
+from linkwright.simulation.plugins.node import Output
+from linkwright.simulation.plugins.parameters import NoParameters, parameter
+from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, FrameName, SensorPlugin
+from linkwright.simulation.plugins.sensors.clouds import fill_camera_cloud
+from linkwright.simulation.plugins.sensors.pictures import (
+    ENCODINGS,
+    USUAL_ENCODING,
+    PixelNoise,
+    fill_camera_info,
+    fill_depth,
+    fill_picture,
+    limited,
+)
+from linkwright.simulation.rendering.optics import Optics, optics_of
+from linkwright.simulation.rendering.renderer import Picture, Wanted
+from linkwright.simulation.rendering.sharing import shared_renderer
+
+P = TypeVar("P")
+IMAGE, INFO, CLOUD = "sensor_msgs/msg/Image", "sensor_msgs/msg/CameraInfo", "sensor_msgs/msg/PointCloud2"
+_DEPTH_TYPES = ("depth", "depth_camera", "rgbd_camera", "rgbd")
+
+
+@dataclass(frozen=True, slots=True)
+class Eye:
+    """One camera of a sensor.
+
+    Attributes:
+        camera: what is written about it.
+        optics: how it projects.
+        pose: where it is in the frame of the link.
+        noise: on its colours.
+        encoding: of its pictures.
+    """
+
+    camera: Camera
+    optics: Optics
+    pose: Transform
+    noise: PixelNoise
+    encoding: str
+
+
+class CameraPlugin(SensorPlugin[P], Generic[P]):
+    """A sensor that makes pictures."""
+
+    def make_sensor(self) -> None:
+        """Make its cameras."""
+        generator = self.random
+        self.eyes = [self._eye(camera, generator) for camera in self.sensor.sensor.cameras or (Camera(),)]
+
+    def start(self) -> None:
+        """Make cameras and topics."""
+        self._shared = shared_renderer(self.simulation)
+        super().start()
+
+    def stop(self) -> None:
+        """Give the renderer back."""
+        self._shared.release()
+
+    def see(self, eye: Eye, wanted: Wanted) -> Picture:
+        """What one of its cameras sees, with noise on the colours."""
+        pose = compose(self.simulation.link_pose(self.sensor.link), eye.pose)
+        picture = self._shared.render(eye.optics, pose, wanted, self._tell_way)
+        if picture.colour is None:
+            return picture
+        return Picture(eye.noise.apply(picture.colour), picture.depth, picture.geoms)
+
+    def publish_picture(self, output: Output, eye: Eye, picture: Picture, frame: str) -> None:
+        """Publish the colours of a picture."""
+        message = self.message(IMAGE, frame)
+        fill_picture(message, picture.colour, eye.encoding)  # type: ignore[arg-type]  # it was asked for
+        output.publish(message)
+
+    def _eye(self, camera: Camera, generator: np.random.Generator) -> Eye:
+        encoding = ENCODINGS.get(camera.image.format.upper())
+        if encoding is None:
+            encoding = USUAL_ENCODING
+            unknown = phrase("'{format}' is no format of pictures; bgr8 is taken", format=camera.image.format)
+            self.node.logger.warning(unknown)
+        pose = compose(self.sensor.pose, transform_of(camera.pose.pose))
+        return Eye(camera, optics_of(camera), pose, PixelNoise(camera.noise, generator), encoding)
+
+    def _tell_way(self, way: Phrase) -> None:
+        self.node.logger.info(phrase("pictures of cameras are made by {way}", way=way))
+
+
+@dataclass(frozen=True, kw_only=True)
+class CameraParameters(FrameName):
+    """Of ``gazebo_ros_camera``, and of ``gazebo_ros_openni_kinect`` of ROS 1."""
+
+    camera_name: str = parameter("", aliases=("cameraName",))
+    hack_baseline: float = parameter(0.0, aliases=("hackBaseline",))
+    triggered: bool = False
+    cx: float = parameter(0.0, aliases=("Cx",))
+    cy: float = parameter(0.0, aliases=("Cy",))
+    focal_length: float = parameter(0.0, aliases=("focalLength",))
+    min_depth: float = parameter(0.4, aliases=("pointCloudCutoff",))
+    max_depth: float = parameter(inf, aliases=("pointCloudCutoffMax",))
+    update_rate: float = parameter(0.0, aliases=("updateRate",))
+    image_topic_name: str = parameter("image_raw", aliases=("imageTopicName",))
+    camera_info_topic_name: str = parameter("camera_info", aliases=("cameraInfoTopicName",))
+    depth_image_topic_name: str = parameter("depth/image_raw", aliases=("depthImageTopicName",))
+    depth_info_topic_name: str = parameter("depth/camera_info", aliases=("depthImageCameraInfoTopicName",))
+    point_cloud_topic_name: str = parameter("points", aliases=("pointCloudTopicName",))
+
+
+class ClassicCamera(CameraPlugin[CameraParameters]):
+    """``libgazebo_ros_camera.so``, for sensors of type camera, depth and multicamera; and the cameras of ROS 1."""
+
+    PARAMETERS = CameraParameters
+    IGNORED = (
+        "border_crop",
+        "P_cx",
+        "P_cy",
+        "P_fx",
+        "P_fy",
+        "Tx",
+        "Ty",
+        "rectification_matrix",
+        "autoDistortion",
+        "CxPrime",
+        "imageTopicNames",
+        "baseline",
+        "distortionK1",
+        "distortionK2",
+        "distortionK3",
+        "distortionT1",
+        "distortionT2",
+        "distortion_k1",
+        "distortion_k2",
+        "distortion_k3",
+        "distortion_t1",
+        "distortion_t2",
+    )
+
+    def make_topics(self) -> None:
+        """Make the topics of each of its cameras."""
+        given, sensor = self.parameters, self.sensor.sensor
+        name = given.camera_name or sensor.name
+        self._frame = self.classic_frame()
+        several = sensor.type == "multicamera"
+        bases = [f"{name}/{eye.camera.name}" if several else name for eye in self.eyes]
+        self._images = [self._output(IMAGE, base, given.image_topic_name) for base in bases]
+        self._infos = [self._output(INFO, base, given.camera_info_topic_name) for base in bases]
+        self._depths: list[Output] = []
+        if sensor.type in _DEPTH_TYPES:
+            self._depths = [
+                self._output(IMAGE, name, given.depth_image_topic_name),
+                self._output(INFO, name, given.depth_info_topic_name),
+                self._output(CLOUD, name, given.point_cloud_topic_name),
+            ]
+        self._asked = not given.triggered
+        if given.triggered:
+            kind = get_message("std_msgs/msg/Empty")
+            self.node.subscribe(kind, f"{name}/image_trigger", self._trigger)
+
+    def _output(self, kind: str, base: str, topic: str) -> Output:
+        return self.node.publisher(kind, topic if topic.startswith("/") else f"{base}/{topic}", SENSOR_QOS)
+
+    def _trigger(self, _message: Any) -> None:
+        self._asked = True
+
+    @property
+    def rate(self) -> float:
+        """That of the sensor, or of the plugin."""
+        return self.sensor.sensor.update_rate or self.parameters.update_rate
+
+    def is_wanted(self) -> bool:
+        """Whether anybody listens, and a picture was asked for if it has to be."""
+        return self._asked and any(each.is_wanted for each in (*self._images, *self._infos, *self._depths))
+
+    def measure(self) -> None:
+        """Make pictures, each only if somebody looks at it."""
+        self._asked = not self.parameters.triggered
+        for eye, image, info in zip(self.eyes, self._images, self._infos, strict=True):
+            depth, depth_info, cloud = self._depths or (None, None, None)
+            has_cloud = cloud is not None and cloud.is_wanted
+            wanted = Wanted(0)
+            if image.is_wanted or has_cloud:
+                wanted |= Wanted.COLOUR
+            if has_cloud or (depth is not None and depth.is_wanted):
+                wanted |= Wanted.DEPTH
+            picture = self.see(eye, wanted) if wanted else Picture(None, None, None)
+            if image.is_wanted:
+                self.publish_picture(image, eye, picture, self._frame)
+            self._publish_info(info, eye)
+            if depth is not None and depth_info is not None and cloud is not None:
+                self._publish_depth(depth, cloud, eye, picture)
+                self._publish_info(depth_info, eye)
+
+    def _publish_depth(self, depth: Output, cloud: Output, eye: Eye, picture: Picture) -> None:
+        nearest, farthest = self.parameters.min_depth, self.parameters.max_depth
+        if depth.is_wanted and picture.depth is not None:
+            message = self.message(IMAGE, self._frame)
+            fill_depth(message, picture.depth, nearest, farthest)
+            depth.publish(message)
+        if cloud.is_wanted and picture.depth is not None and picture.colour is not None:
+            message = self.message(CLOUD, self._frame)
+            points = points_of(eye.optics, limited(picture.depth, nearest, farthest))
+            fill_camera_cloud(message, points, picture.colour)
+            cloud.publish(message)
+
+    def _publish_info(self, output: Output, eye: Eye) -> None:
+        if not output.is_wanted:
+            return
+        given, optics = self.parameters, eye.optics
+        center = given.cx or (optics.width + 1) / 2, given.cy or (optics.height + 1) / 2
+        message = self.message(INFO, self._frame)
+        fill_camera_info(
+            message, optics, eye.camera.distortion, center=center, focal=given.focal_length,
+            baseline=given.hack_baseline,
+        )  # fmt: skip
+        output.publish(message)
+
+
+def points_of(optics: Optics, depth: Any) -> Any:
+    """What the pixels of a depth picture show: shape (height, width, 3), x to the right, y down, z forwards."""
+    rays = optics.rays.astype(np.float32).reshape(optics.height, optics.width, 3)
+    with np.errstate(invalid="ignore"):  # 0 times infinity
+        return rays * depth[:, :, None]
+
+
+class GzCamera(CameraPlugin[NoParameters]):
+    """``camera``, ``depth_camera`` and ``rgbd_camera`` of gz; the points of the latter two have x forwards."""
+
+    def make_topics(self) -> None:
+        """Make the topics."""
+        kind = self.sensor.sensor.type
+        self._frame = self.gz_frame()
+        camera = self.eyes[0].camera
+        self._optical = camera.optical_frame_id or self._frame
+        self._image = self._depth = self._cloud = None
+        if kind in ("rgbd_camera", "rgbd"):
+            self._image = self._below(IMAGE, "image")
+            self._depth = self._below(IMAGE, "depth_image")
+            self._cloud = self._below(CLOUD, "points")
+        elif kind in _DEPTH_TYPES:
+            self._depth = self.gz_output(IMAGE, "depth_image")
+            topic = self.sensor.sensor.topic or self.gz_topic("depth_image")
+            self._cloud = self.node.publisher(CLOUD, f"{topic}/points")
+        else:
+            self._image = self.gz_output(IMAGE, "image")
+        topic = camera.camera_info_topic or self._info_topic()
+        self._info = self.node.publisher(INFO, topic, usual="" if self.sensor.sensor.topic else "/camera_info")
+
+    def _below(self, kind: str, leaf: str) -> Output:
+        said = self.sensor.sensor.topic
+        return self.node.publisher(
+            kind, f"{said}/{leaf}" if said else self.gz_topic(leaf), usual="" if said else f"/{leaf}"
+        )
+
+    def _info_topic(self) -> str:
+        said = self.sensor.sensor.topic
+        if not said:
+            return self.gz_topic("camera_info")
+        if self._image is not None and self._depth is not None:
+            return f"{said}/camera_info"
+        above, slash, _ = said.rpartition("/")
+        return f"{above}{slash}camera_info"
+
+    def _outputs(self) -> Iterator[Output]:
+        yield from (each for each in (self._image, self._depth, self._cloud, self._info) if each is not None)
+
+    def is_wanted(self) -> bool:
+        """Whether anybody listens."""
+        return any(each.is_wanted for each in self._outputs())
+
+    def measure(self) -> None:
+        """Make a picture, as much of it as somebody looks at."""
+        (eye, *_) = self.eyes
+        wanted = Wanted(0)
+        if any(each is not None and each.is_wanted for each in (self._image, self._cloud)):
+            wanted |= Wanted.COLOUR
+        if any(each is not None and each.is_wanted for each in (self._depth, self._cloud)):
+            wanted |= Wanted.DEPTH
+        picture = self.see(eye, wanted) if wanted else Picture(None, None, None)
+        if self._image is not None and self._image.is_wanted:
+            self.publish_picture(self._image, eye, picture, self._optical)
+        clip = eye.camera.depth_clip or eye.camera.clip
+        if self._depth is not None and self._depth.is_wanted:
+            message = self.message(IMAGE, self._optical)
+            fill_depth(message, picture.depth, clip.near, clip.far)  # type: ignore[arg-type]  # it was asked for
+            self._depth.publish(message)
+        if self._cloud is not None and self._cloud.is_wanted:
+            message = self.message(CLOUD, self._frame)
+            points = points_of(eye.optics, limited(picture.depth, clip.near, clip.far))  # type: ignore[arg-type]
+            forwards = np.stack([points[:, :, 2], -points[:, :, 0], -points[:, :, 1]], axis=-1)
+            fill_camera_cloud(message, forwards, picture.colour)  # type: ignore[arg-type]  # it was asked for
+            self._cloud.publish(message)
+        if self._info.is_wanted:
+            message = self.message(INFO, self._optical)
+            fill_camera_info(message, eye.optics, eye.camera.distortion)
+            self._info.publish(message)

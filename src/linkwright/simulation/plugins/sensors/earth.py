@@ -1,0 +1,93 @@
+"""Where something is on earth: ``gazebo_ros_gps_sensor``, and ``navsat`` and ``magnetometer`` of gz.
+
+Source: gazebo_ros_pkgs for ROS 2 (topics, covariances), gz-sensors (topics).
+"""
+
+from __future__ import annotations
+
+from typing import Any, Generic, TypeVar
+
+import numpy as np
+
+from linkwright.simulation.plugins.parameters import NoParameters
+from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, FrameName, OneTopic, SensorPlugin, vector
+from linkwright.simulation.sensors.earth import Fix, MagnetometerSensor, NavsatSensor
+
+P = TypeVar("P")
+_FIX = "sensor_msgs/msg/NavSatFix"
+_FIELD = "sensor_msgs/msg/MagneticField"
+_DIAGONAL_KNOWN = 2
+
+
+class _Receiver(SensorPlugin[P], Generic[P]):
+    """A satellite receiver with its messages."""
+
+    def make_sensor(self) -> None:
+        """Make the receiver."""
+        place = self.place.world.spherical_coordinates
+        self._receiver = NavsatSensor(self.mount, self.sensor.sensor.navsat, place, self.random)
+
+    def receive(self, frame: str) -> tuple[Fix, Any]:
+        """What it measures, and the message of that."""
+        fix = self._receiver.measure()
+        message = self.message(_FIX, frame)
+        message.latitude, message.longitude, message.altitude = fix.latitude, fix.longitude, fix.altitude
+        message.status.status, message.status.service = 0, 1
+        message.position_covariance = np.diag(self._receiver.position_noise.variances).ravel()
+        message.position_covariance_type = _DIAGONAL_KNOWN
+        return fix, message
+
+
+class ClassicGps(_Receiver[FrameName]):
+    """``libgazebo_ros_gps_sensor.so``: the place, and how fast it goes: east, north, up."""
+
+    PARAMETERS = FrameName
+
+    def make_topics(self) -> None:
+        """Make the topics."""
+        self._fixes = self.node.publisher(_FIX, "~/out", SENSOR_QOS)
+        self._velocities = self.node.publisher("geometry_msgs/msg/Vector3Stamped", "~/vel", SENSOR_QOS)
+
+    def is_wanted(self) -> bool:
+        """Whether anybody listens."""
+        return self._fixes.is_wanted or self._velocities.is_wanted
+
+    def measure(self) -> None:
+        """Measure and publish."""
+        fix, message = self.receive(self.classic_frame())
+        self._fixes.publish(message)
+        velocity = self.message("geometry_msgs/msg/Vector3Stamped", self.classic_frame())
+        velocity.vector = vector(fix.velocity)
+        self._velocities.publish(velocity)
+
+
+class GzNavsat(_Receiver[NoParameters], OneTopic[NoParameters]):
+    """``navsat`` and ``gps`` of gz."""
+
+    def make_topics(self) -> None:
+        """Make the topic."""
+        self.output = self.gz_output(_FIX, "navsat")
+
+    def measure(self) -> None:
+        """Measure and publish."""
+        self.output.publish(self.receive(self.gz_frame())[1])
+
+
+class GzMagnetometer(OneTopic[NoParameters]):
+    """``magnetometer`` of gz, in tesla, as a bridge has it."""
+
+    def make_sensor(self) -> None:
+        """Make the magnetometer."""
+        noise, field = self.sensor.sensor.magnetometer, self.place.world.magnetic_field
+        self._sensor = MagnetometerSensor(self.mount, noise, self.random, field)
+
+    def make_topics(self) -> None:
+        """Make the topic."""
+        self.output = self.gz_output(_FIELD, "magnetometer")
+
+    def measure(self) -> None:
+        """Measure and publish."""
+        message = self.message(_FIELD, self.gz_frame())
+        message.magnetic_field = vector(self._sensor.measure())
+        message.magnetic_field_covariance = np.diag(self._sensor.noise.variances).ravel()
+        self.output.publish(message)

@@ -1,0 +1,78 @@
+"""Forces in joints: ``gazebo_ros_ft_sensor``, and ``force_torque`` of gz.
+
+Source: gazebo_ros_pkgs for ROS 2 (parameters, topic, the frame of the child link), gz-sensors (topic).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from linkwright.geometry.single import compose, invert
+from linkwright.sdf.sensors import ForceTorque
+from linkwright.simulation.plugins.parameters import NoParameters, parameter
+from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, FrameName, OneTopic
+from linkwright.simulation.plugins.sensors.contact import wrench
+from linkwright.simulation.sensors.force_torque import ForceTorqueSensor
+
+_TYPE = "geometry_msgs/msg/WrenchStamped"
+
+
+@dataclass(frozen=True, kw_only=True)
+class ForceTorqueParameters(FrameName):
+    """Of ``gazebo_ros_ft_sensor``."""
+
+    joint_name: str = parameter(aliases=("jointName",))
+    topic_name: str = parameter("wrench", aliases=("topicName",))
+    update_rate: float = parameter(0.0, aliases=("updateRate",))
+
+
+class ClassicForceTorque(OneTopic[ForceTorqueParameters]):
+    """``libgazebo_ros_ft_sensor.so``: what the child link does to its parent, in the frame of the child."""
+
+    PARAMETERS = ForceTorqueParameters
+    IGNORED = ("gaussian_noise", "gaussianNoise")
+
+    @property
+    def rate(self) -> float:
+        """That of the plugin."""
+        return self.parameters.update_rate
+
+    def make_sensor(self) -> None:
+        """Find the joint."""
+        joint = self.joint(self.parameters.joint_name)
+        self._child = self.simulation.scene.joints[joint].child
+        self._sensor = ForceTorqueSensor(self.simulation, joint, ForceTorque(), self.random)
+
+    def make_topics(self) -> None:
+        """Make the topic."""
+        self._frame = self.parameters.frame_name.lstrip("/") or self._child.rpartition("::")[2]
+        self.output = self.node.publisher(_TYPE, self.parameters.topic_name, SENSOR_QOS)
+
+    def measure(self) -> None:
+        """Measure and publish."""
+        message = self.message(_TYPE, self._frame)
+        message.wrench = wrench(*self._sensor.measure())
+        self.output.publish(message)
+
+
+class GzForceTorque(OneTopic[NoParameters]):
+    """``force_torque`` of gz, on a joint."""
+
+    def make_sensor(self) -> None:
+        """Find the joint."""
+        joint = self.joint(self.sensor.joint.rpartition("::")[2])
+        placed = self.simulation.scene.joints[joint]
+        child = self.simulation.link_pose(placed.child)
+        offset = compose(invert(placed.pose), compose(child, self.sensor.pose))
+        self._sensor = ForceTorqueSensor(self.simulation, joint, self.sensor.sensor.force_torque, self.random, offset)
+
+    def make_topics(self) -> None:
+        """Make the topic."""
+        self._frame = self.gz_frame()
+        self.output = self.gz_output(_TYPE, "forcetorque", "/force_torque")
+
+    def measure(self) -> None:
+        """Measure and publish."""
+        message = self.message(_TYPE, self._frame)
+        message.wrench = wrench(*self._sensor.measure())
+        self.output.publish(message)

@@ -1,0 +1,124 @@
+"""IMUs: ``gazebo_ros_imu_sensor``, ``gazebo_ros_imu`` of ROS 1, and ``imu`` of gz.
+
+Source: gazebo_ros_pkgs for ROS 2 (parameters, covariances) and ROS 1 (names), gz-sensors.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Generic, TypeVar
+
+import numpy as np
+
+from linkwright.geometry.single import compose, quaternion_from_rpy
+from linkwright.geometry.vectors import Vector3
+from linkwright.messages import Quaternion
+from linkwright.sdf.noise import Noise, NoiseXyz
+from linkwright.sdf.sensors import Imu
+from linkwright.simulation.plugins.parameters import NoParameters, parameter
+from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, FrameName, OneTopic, vector
+from linkwright.simulation.sensors.imu import ImuSensor
+from linkwright.simulation.sensors.mount import Mount
+
+P = TypeVar("P")
+_TYPE = "sensor_msgs/msg/Imu"
+
+
+class _ImuPlugin(OneTopic[P], Generic[P]):
+    """An IMU with its messages."""
+
+    frame: str
+
+    def make_sensor(self) -> None:
+        """Make the unit."""
+        self.imu = ImuSensor(self.mount, self.sensor.sensor.imu, generator=self.random)
+
+    def measure(self) -> None:
+        """Measure and publish."""
+        measured = self.imu.measure()
+        message = self.message(_TYPE, self.frame)
+        x, y, z, w = map(float, measured.orientation)
+        message.orientation = Quaternion(x, y, z, w)
+        message.angular_velocity = vector(measured.angular_velocity)
+        message.linear_acceleration = vector(measured.linear_acceleration)
+        message.angular_velocity_covariance = np.diag(self.imu.turning_noise.variances).ravel()
+        message.linear_acceleration_covariance = np.diag(self.imu.acceleration_noise.variances).ravel()
+        self.output.publish(message)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ImuParameters(FrameName):
+    """Of ``gazebo_ros_imu_sensor``."""
+
+    initial_orientation_as_reference: bool = parameter(False, aliases=("initialOrientationAsReference",))
+    topic_name: str = parameter("", aliases=("topicName",))
+
+
+class ClassicImu(_ImuPlugin[ImuParameters]):
+    """``libgazebo_ros_imu_sensor.so``."""
+
+    PARAMETERS = ImuParameters
+    IGNORED = ("body_name", "bodyName", "updateRateHZ", "update_rate", "gaussianNoise", "xyzOffset", "rpyOffset")
+
+    def make_sensor(self) -> None:
+        """Make the unit; its orientation may be against that at the start."""
+        initial = self.parameters.initial_orientation_as_reference
+        said = self.sensor.sensor.imu
+        self.imu = ImuSensor(self.mount, said, generator=self.random, initial_reference=initial)
+
+    def make_topics(self) -> None:
+        """Make the topic."""
+        self.frame = self.classic_frame()
+        self.output = self.node.publisher(_TYPE, self.parameters.topic_name or "~/out", SENSOR_QOS)
+
+
+@dataclass(frozen=True, kw_only=True)
+class OldImuParameters(FrameName):
+    """Of ``gazebo_ros_imu``."""
+
+    body_name: str = parameter(aliases=("bodyName",))
+    topic_name: str = parameter("imu", aliases=("topicName",))
+    update_rate: float = parameter(0.0, aliases=("updateRate", "updateRateHZ"))
+    gaussian_noise: float = parameter(0.0, aliases=("gaussianNoise",))
+    xyz_offset: Vector3 = parameter((0.0, 0.0, 0.0), aliases=("xyzOffset", "xyzOffsets"))  # noqa: RUF009 - a field of the table
+    rpy_offset: Vector3 = parameter((0.0, 0.0, 0.0), aliases=("rpyOffset", "rpyOffsets"))  # noqa: RUF009 - a field of the table
+
+
+class OldImu(_ImuPlugin[OldImuParameters]):
+    """``libgazebo_ros_imu.so`` of ROS 1, which stands in a model and names its link."""
+
+    PARAMETERS = OldImuParameters
+    IGNORED = ("serviceName",)
+
+    @property
+    def rate(self) -> float:
+        """That of the plugin."""
+        return self.parameters.update_rate
+
+    @property
+    def mount(self) -> Mount:
+        """The link that the plugin names."""
+        given = self.parameters
+        turned = (0.0, 0.0, 0.0, *quaternion_from_rpy(given.rpy_offset))
+        offset = compose((*given.xyz_offset, 0.0, 0.0, 0.0, 1.0), turned)
+        return Mount(self.simulation, self.link(given.body_name), offset)
+
+    def make_sensor(self) -> None:
+        """Make the unit."""
+        each = Noise("gaussian", stddev=self.parameters.gaussian_noise) if self.parameters.gaussian_noise else Noise()
+        noise = NoiseXyz(each, each, each)
+        self.imu = ImuSensor(self.mount, Imu(noise, noise), generator=self.random)
+
+    def make_topics(self) -> None:
+        """Make the topic."""
+        self.frame = self.parameters.frame_name.lstrip("/") or self.parameters.body_name
+        self.output = self.node.publisher(_TYPE, self.parameters.topic_name, SENSOR_QOS)
+
+
+class GzImu(_ImuPlugin[NoParameters]):
+    """``imu`` of gz."""
+
+    def make_topics(self) -> None:
+        """Make the topic."""
+        self.frame = self.gz_frame()
+        self.output = self.gz_output(_TYPE, "imu")

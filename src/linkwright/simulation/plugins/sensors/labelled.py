@@ -1,0 +1,219 @@
+"""Cameras that know what they see: ``segmentation_camera`` and ``boundingbox_camera`` of gz.
+
+What is seen is named by ``gz-sim-label-system`` with a ``<label>`` in visuals or models; all else is 0, the background.
+
+Source: gz-sensors (topics, what the channels of a map of labels are).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from linkwright.messages import get_message
+from linkwright.sdf.models import Model
+from linkwright.sdf.plugins import Plugin
+from linkwright.sdf.poses import SEPARATOR
+from linkwright.simulation.plugins.node import Output
+from linkwright.simulation.plugins.parameters import NoParameters
+from linkwright.simulation.plugins.registry import library_name
+from linkwright.simulation.plugins.sensors.camera import IMAGE, INFO, CameraPlugin, Eye
+from linkwright.simulation.plugins.sensors.pictures import Pixels, fill_camera_info, fill_picture
+from linkwright.simulation.rendering.renderer import Wanted
+from linkwright.simulation.sensors.mount import GeomTable, part_of
+from linkwright.simulation.simulation import Simulation
+
+_LABEL_SYSTEM = "gz-sim-label-system"
+_DETECTIONS = "vision_msgs/msg/Detection2DArray"
+_FRAME_COLOUR = (0, 255, 0)
+_LABELS = 256
+
+
+class Labels:
+    """The labels of everything in a simulation.
+
+    Args:
+        simulation: the world.
+    """
+
+    def __init__(self, simulation: Simulation) -> None:
+        self._simulation = simulation
+        self._labels = GeomTable(simulation, self._labelled)
+        self._instances = GeomTable(simulation, self._numbered)
+
+    def labels(self, geoms: Pixels) -> Pixels:
+        """The labels of geoms, in an array of the same shape."""
+        labels: Pixels = self._labels.array()[geoms].astype(np.uint8)
+        return labels
+
+    def instances(self, geoms: Pixels) -> Pixels:
+        """Which of the labelled models geoms are part of, from 1 on; 0 without a label."""
+        instances: Pixels = self._instances.array()[geoms].astype(np.uint16)
+        return instances
+
+    def _labelled(self, names: list[str]) -> list[float]:
+        known = dict(self._known())
+        return [float(_longest(known, part_of(name))) for name in names]
+
+    def _numbered(self, names: list[str]) -> list[float]:
+        labels = self._labelled(names)
+        models = [name.partition(SEPARATOR)[0] for name in names]
+        numbers: dict[str, int] = {}
+        for model, label in zip(models, labels, strict=True):
+            if label:
+                numbers.setdefault(model, len(numbers) + 1)
+        return [float(numbers[model]) if label else 0.0 for model, label in zip(models, labels, strict=True)]
+
+    def _known(self) -> Iterator[tuple[str, int]]:
+        """Labels by the names of models and of visuals."""
+        for each in self._simulation.scene.models.values():
+            yield from _labels_in(each.model, each.name)
+
+
+def _labels_in(model: Model, path: str) -> Iterator[tuple[str, int]]:
+    for label in _written(model.plugins):
+        yield path, label
+    for link in model.links:
+        for visual in link.visuals:
+            for label in _written(visual.plugins):
+                yield f"{path}{SEPARATOR}{link.name}{SEPARATOR}{visual.name}#visual", label
+    for inner in model.models:
+        yield from _labels_in(inner, f"{path}{SEPARATOR}{inner.name}")
+
+
+def _written(plugins: tuple[Plugin, ...]) -> Iterator[int]:
+    for plugin in plugins:
+        element = plugin.element.first("label") if plugin.element is not None else None
+        if element is not None and library_name(plugin.filename) == _LABEL_SYSTEM and element.text().strip().isdigit():
+            yield int(element.text()) % _LABELS
+
+
+def _longest(known: dict[str, int], part: str) -> int:
+    """The label of a visual: its own, or that of the nearest model around it."""
+    name = part
+    while name:
+        if name in known:
+            return known[name]
+        name = name.rpartition(SEPARATOR)[0]
+    return 0
+
+
+class _LabellingCamera(CameraPlugin[NoParameters]):
+    """A camera that knows labels."""
+
+    def make_sensor(self) -> None:
+        """Make its camera."""
+        super().make_sensor()
+        self.labels = Labels(self.simulation)
+        self.frame = self.eyes[0].camera.optical_frame_id or self.gz_frame()
+
+    def publish_colours(self, output: Output, colour: Pixels) -> None:
+        """Publish a picture in red, green and blue."""
+        message = self.message(IMAGE, self.frame)
+        fill_picture(message, colour, "rgb8")
+        output.publish(message)
+
+    def publish_info(self, output: Output, eye: Eye) -> None:
+        """Publish what the camera tells of itself."""
+        if output.is_wanted:
+            message = self.message(INFO, self.frame)
+            fill_camera_info(message, eye.optics, eye.camera.distortion)
+            output.publish(message)
+
+
+class GzSegmentation(_LabellingCamera):
+    """``segmentation_camera``: a map of labels, and the same in colours."""
+
+    def make_topics(self) -> None:
+        """Make the topics."""
+        base = self.sensor.sensor.topic or self.gz_topic("segmentation")
+        usual = "" if self.sensor.sensor.topic else "/segmentation"
+        names = {leaf: f"{usual}/{leaf}" if usual else "" for leaf in ("labels_map", "colored_map", "camera_info")}
+        self._maps = self.node.publisher(IMAGE, f"{base}/labels_map", usual=names["labels_map"])
+        self._coloured = self.node.publisher(IMAGE, f"{base}/colored_map", usual=names["colored_map"])
+        self._info = self.node.publisher(INFO, f"{base}/camera_info", usual=names["camera_info"])
+        self._colours = np.random.default_rng(0).integers(40, 256, (_LABELS, 3), dtype=np.uint8)
+        self._colours[0] = 0
+
+    def is_wanted(self) -> bool:
+        """Whether anybody listens."""
+        return any(each.is_wanted for each in (self._maps, self._coloured, self._info))
+
+    def measure(self) -> None:
+        """Make the maps."""
+        (eye, *_) = self.eyes
+        self.publish_info(self._info, eye)
+        if not (self._maps.is_wanted or self._coloured.is_wanted):
+            return
+        geoms = self.see(eye, Wanted.GEOMS).geoms
+        labels, instances = self.labels.labels(geoms), self.labels.instances(geoms)  # type: ignore[arg-type]
+        if eye.camera.segmentation_type in ("instance", "panoptic"):
+            high, low = (instances >> 8).astype(np.uint8), (instances & 0xFF).astype(np.uint8)
+            numbers, coloured = np.stack([low, high, labels], axis=-1), self._colours[(labels + 31 * low) % _LABELS]
+            coloured[labels == 0] = 0
+        else:
+            numbers, coloured = np.stack([labels] * 3, axis=-1), self._colours[labels]
+        if self._maps.is_wanted:
+            self.publish_colours(self._maps, numbers)
+        if self._coloured.is_wanted:
+            self.publish_colours(self._coloured, coloured)
+
+
+class GzBoxes(_LabellingCamera):
+    """``boundingbox_camera``: boxes around what is visible of each labelled model, and a picture with them.
+
+    The types ``full_2d`` and ``3d`` of boxes are those of what is visible, too.
+    """
+
+    def make_topics(self) -> None:
+        """Make the topics."""
+        topic = self.sensor.sensor.topic or self.gz_topic("boundingbox")
+        usual = "" if self.sensor.sensor.topic else "/boundingbox"
+        self._boxes = self.node.publisher(_DETECTIONS, topic, usual=usual)
+        self._pictures = self.node.publisher(IMAGE, f"{topic}_image", usual=f"{usual}_image" if usual else "")
+        above, slash, _ = topic.rpartition("/")
+        self._info = self.node.publisher(INFO, f"{above}{slash}camera_info")
+
+    def is_wanted(self) -> bool:
+        """Whether anybody listens."""
+        return any(each.is_wanted for each in (self._boxes, self._pictures, self._info))
+
+    def measure(self) -> None:
+        """Find the boxes."""
+        (eye, *_) = self.eyes
+        self.publish_info(self._info, eye)
+        if not (self._boxes.is_wanted or self._pictures.is_wanted):
+            return
+        wanted = Wanted.GEOMS | (Wanted.COLOUR if self._pictures.is_wanted else Wanted(0))
+        picture = self.see(eye, wanted)
+        boxes = list(self._outlines(picture.geoms))
+        if self._boxes.is_wanted:
+            message = self.message(_DETECTIONS, self.frame)
+            message.detections = [self._detection(message.header, *box) for box in boxes]
+            self._boxes.publish(message)
+        if picture.colour is not None:
+            colour = picture.colour.copy()
+            for _, left, top, right, bottom in boxes:
+                colour[[top, bottom], left : right + 1] = _FRAME_COLOUR
+                colour[top : bottom + 1, [left, right]] = _FRAME_COLOUR
+            self.publish_colours(self._pictures, colour)
+
+    def _outlines(self, geoms: Any) -> Iterator[tuple[int, int, int, int, int]]:
+        """Label, left, top, right and bottom of each box, in pixels that are inside."""
+        labels, instances = self.labels.labels(geoms), self.labels.instances(geoms)
+        for instance in np.unique(instances[instances > 0]):
+            for label in np.unique(labels[(instances == instance) & (labels > 0)]):
+                rows, columns = np.nonzero((instances == instance) & (labels == label))
+                yield int(label), int(columns.min()), int(rows.min()), int(columns.max()), int(rows.max())
+
+    def _detection(self, header: Any, label: int, left: int, top: int, right: int, bottom: int) -> Any:
+        detection = get_message("vision_msgs/msg/Detection2D")(header=header)
+        result = get_message("vision_msgs/msg/ObjectHypothesisWithPose")()
+        result.hypothesis.class_id, result.hypothesis.score = str(label), 1.0
+        detection.results = [result]
+        box = detection.bbox
+        box.center.position.x, box.center.position.y = (left + right + 1) / 2, (top + bottom + 1) / 2
+        box.size_x, box.size_y = float(right + 1 - left), float(bottom + 1 - top)
+        return detection

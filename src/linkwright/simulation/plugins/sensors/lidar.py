@@ -1,0 +1,184 @@
+"""Lidars and sonars: ``gazebo_ros_ray_sensor``, the lasers of ROS 1, and ``gpu_lidar`` of gz.
+
+Source: gazebo_ros_pkgs for ROS 2 (types of output, the middle row of several, what a Range is made of), for ROS 1
+(names), gz-sensors (topics).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Generic, TypeVar
+
+import numpy as np
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+from linkwright.graph.qos.profile import SENSOR_DATA_QOS
+from linkwright.messages import get_message
+from linkwright.sdf.sensors import Lidar
+from linkwright.simulation.plugins.node import Output
+from linkwright.simulation.plugins.parameters import NoParameters, parameter
+from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, FrameName, OneTopic, SensorPlugin
+from linkwright.simulation.plugins.sensors.clouds import fill_lidar_cloud
+from linkwright.simulation.sensors.lidar import LidarSensor, Scan
+
+P = TypeVar("P")
+_SCAN, _CLOUD = "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/PointCloud2"
+_RADIATIONS = {"ultrasound": 0, "infrared": 1}
+
+
+class _LidarPlugin(SensorPlugin[P], Generic[P]):
+    """A lidar, whatever it publishes."""
+
+    def make_sensor(self) -> None:
+        """Make the lidar."""
+        said = self.sensor.sensor
+        lidar = said.lidar or Lidar()
+        self.lidar = LidarSensor(
+            self.mount, lidar, sees_visuals=said.type not in ("ray", "sonar"), generator=self.random
+        )
+
+    def scan_message(self, frame: str, scan: Scan, least_intensity: float = 0.0) -> Any:
+        """The middle row of what was measured."""
+        lidar, row = self.lidar, self.lidar.vertical.count // 2
+        message = self.message(_SCAN, frame)
+        message.angle_min, message.angle_max = float(lidar.horizontal.first), float(lidar.horizontal.last)
+        message.angle_increment = float(lidar.horizontal.step)
+        message.range_min, message.range_max = float(lidar.range_min), float(lidar.range_max)
+        message.ranges = scan.ranges[row].astype(np.float32)
+        message.intensities = np.maximum(scan.intensities[row], least_intensity).astype(np.float32)
+        return message
+
+    def points(self, scan: Scan) -> Any:
+        """What was measured as points, shape (n, 3), in its frame; what has no distance is not finite."""
+        with np.errstate(invalid="ignore"):  # 0 times infinity
+            return self.lidar.directions * scan.ranges.reshape(-1, 1)
+
+
+class _OneLidar(_LidarPlugin[P], OneTopic[P], Generic[P]):
+    """A lidar with one topic."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class RayParameters(FrameName):
+    """Of ``gazebo_ros_ray_sensor``."""
+
+    output_type: str = "sensor_msgs/PointCloud2"
+    min_intensity: float = 0.0
+    radiation_type: str = "infrared"
+
+
+class ClassicRaySensor(_OneLidar[RayParameters]):
+    """``libgazebo_ros_ray_sensor.so``."""
+
+    PARAMETERS = RayParameters
+
+    def make_topics(self) -> None:
+        """Make the topic of the type that is asked for."""
+        kinds = {
+            "LaserScan": self._scan,
+            "PointCloud2": self._cloud,
+            "PointCloud": self._old_cloud,
+            "Range": self._range,
+        }
+        kind = self.parameters.output_type.rpartition("/")[2]
+        if kind not in kinds:
+            element = self.place.element
+            message = phrase("'{type}' is no type of output of a lidar", type=self.parameters.output_type)
+            hint = phrase("it is sensor_msgs/LaserScan, PointCloud2, PointCloud or Range")
+            span, source = (element.span(), element.source) if element is not None else (None, None)
+            raise LinkwrightError(Diagnostic("SIM150", message, span, hint=hint, source=source))
+        self._frame = self.classic_frame()
+        self._publish = kinds[kind]
+        self.output = self.node.publisher(f"sensor_msgs/msg/{kind}", "~/out", SENSOR_QOS)
+
+    def measure(self) -> None:
+        """Measure and publish."""
+        self.output.publish(self._publish(self.lidar.measure()))
+
+    def _scan(self, scan: Scan) -> Any:
+        return self.scan_message(self._frame, scan, self.parameters.min_intensity)
+
+    def _finite(self, scan: Scan) -> tuple[Any, Any]:
+        points, intensities = self.points(scan), scan.intensities.ravel()
+        kept = np.isfinite(scan.ranges.ravel())
+        return points[kept], np.maximum(intensities[kept], self.parameters.min_intensity)
+
+    def _cloud(self, scan: Scan) -> Any:
+        message = self.message(_CLOUD, self._frame)
+        fill_lidar_cloud(message, *self._finite(scan))
+        return message
+
+    def _old_cloud(self, scan: Scan) -> Any:
+        message = self.message("sensor_msgs/msg/PointCloud", self._frame)
+        points, intensities = self._finite(scan)
+        point, channel = get_message("geometry_msgs/msg/Point32"), get_message("sensor_msgs/msg/ChannelFloat32")
+        message.points = [point(x=float(x), y=float(y), z=float(z)) for x, y, z in points]
+        message.channels = [channel(name="intensity", values=intensities.astype(np.float32))]
+        return message
+
+    def _range(self, scan: Scan) -> Any:
+        message = self.message("sensor_msgs/msg/Range", self._frame)
+        lidar = self.lidar
+        spans = [angles.last - angles.first for angles in (lidar.horizontal, lidar.vertical)]
+        message.radiation_type = _RADIATIONS.get(self.parameters.radiation_type, 1)
+        message.field_of_view = float(max(spans))
+        message.min_range, message.max_range = float(lidar.range_min), float(lidar.range_max)
+        message.range = float(scan.ranges.min())
+        return message
+
+
+@dataclass(frozen=True, kw_only=True)
+class LaserParameters(FrameName):
+    """Of the lasers of ROS 1."""
+
+    topic_name: str = parameter("scan", aliases=("topicName",))
+    update_rate: float = parameter(0.0, aliases=("updateRate", "updateRateHZ"))
+
+
+class OldLaser(_OneLidar[LaserParameters]):
+    """``libgazebo_ros_laser.so`` and ``libgazebo_ros_gpu_laser.so`` of ROS 1."""
+
+    PARAMETERS = LaserParameters
+    IGNORED = ("gaussianNoise", "hokuyoMinIntensity")
+
+    def make_topics(self) -> None:
+        """Make the topic."""
+        self.output = self.node.publisher(_SCAN, self.parameters.topic_name, SENSOR_DATA_QOS.depth)
+
+    @property
+    def rate(self) -> float:
+        """That of the sensor, or of the plugin."""
+        return self.sensor.sensor.update_rate or self.parameters.update_rate
+
+    def measure(self) -> None:
+        """Measure and publish."""
+        self.output.publish(self.scan_message(self.classic_frame(), self.lidar.measure()))
+
+
+class GzLidar(_LidarPlugin[NoParameters]):
+    """``gpu_lidar`` and ``lidar`` of gz: a scan, and beside it the points."""
+
+    _scans: Output
+    _clouds: Output
+
+    def make_topics(self) -> None:
+        """Make the topics."""
+        self._frame = self.gz_frame()
+        self._scans = self.gz_output(_SCAN, "scan")
+        topic = self.sensor.sensor.topic or self.gz_topic("scan")
+        self._clouds = self.node.publisher(
+            _CLOUD, f"{topic}/points", usual="" if self.sensor.sensor.topic else "/scan/points"
+        )
+
+    def is_wanted(self) -> bool:
+        """Whether anybody listens."""
+        return self._scans.is_wanted or self._clouds.is_wanted
+
+    def measure(self) -> None:
+        """Measure and publish."""
+        scan = self.lidar.measure()
+        self._scans.publish(self.scan_message(self._frame, scan))
+        if self._clouds.is_wanted:
+            message = self.message(_CLOUD, self._frame)
+            fill_lidar_cloud(message, self.points(scan), scan.intensities.ravel(), height=self.lidar.vertical.count)
+            self._clouds.publish(message)

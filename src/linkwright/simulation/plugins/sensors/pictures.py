@@ -1,0 +1,130 @@
+"""Pictures as messages: encodings, noise, and what a camera tells of itself.
+
+Source: gazebo_ros_pkgs for ROS 2 (formats, camera_info), REP 118 for depths.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from linkwright.sdf.cameras import Distortion
+from linkwright.sdf.noise import Noise
+from linkwright.simulation.rendering.optics import Optics
+
+Pixels = np.ndarray[Any, np.dtype[Any]]
+
+ENCODINGS = {
+    "L8": "mono8", "L_INT8": "mono8", "L_UINT8": "mono8", "L16": "mono16", "L_INT16": "mono16", "L_UINT16": "mono16",
+    "R8G8B8": "rgb8", "RGB_INT8": "rgb8", "RGB_UINT8": "rgb8", "B8G8R8": "bgr8", "BGR_INT8": "bgr8",
+    "R16G16B16": "rgb16", "RGB_INT16": "rgb16", "RGB_UINT16": "rgb16",
+    "BAYER_RGGB8": "bayer_rggb8", "BAYER_BGGR8": "bayer_bggr8", "BAYER_GBRG8": "bayer_gbrg8",
+    "BAYER_GRBG8": "bayer_grbg8", "BAYER_RGGR8": "bayer_rggb8",
+}  # fmt: skip
+"""The formats of SDF, and what ROS calls them."""
+USUAL_ENCODING = "bgr8"
+"""For formats that are unknown."""
+_GREY = np.array([0.299, 0.587, 0.114], np.float32)
+_PLACES = 1 << 16
+"""Random numbers are drawn once, so many more than a picture needs; each picture takes them from another place on."""
+
+
+class PixelNoise:
+    """Noise on the colours of pictures.
+
+    Args:
+        noise: on each colour, from 0 to 1.
+        generator: where chance comes from.
+    """
+
+    def __init__(self, noise: Noise, generator: np.random.Generator) -> None:
+        self._noise = noise
+        self._generator = generator
+        self._pool: Pixels = np.empty(0, np.int16)
+
+    def apply(self, colour: Pixels) -> Pixels:
+        """A picture with noise on it."""
+        noise = self._noise
+        if noise.type == "none" or not (noise.stddev > 0 or noise.mean):
+            return colour
+        if len(self._pool) < colour.size + _PLACES:
+            drawn = self._generator.normal(noise.mean * 255, noise.stddev * 255, colour.size + _PLACES)
+            self._pool = np.clip(np.round(drawn), -255, 255).astype(np.int16)
+        start = int(self._generator.integers(_PLACES))
+        noisy = self._pool[start : start + colour.size].reshape(colour.shape) + colour
+        return np.clip(noisy, 0, 255, out=noisy).astype(np.uint8)
+
+
+def fill_picture(message: Any, colour: Pixels, encoding: str) -> None:
+    """Put a picture, shape (height, width, 3) in red, green and blue, into an Image in an encoding of `ENCODINGS`."""
+    pixels = colour
+    if encoding.startswith("mono"):
+        pixels = np.round(colour @ _GREY).astype(np.uint8)
+    elif encoding.startswith("bgr"):
+        pixels = colour[:, :, ::-1]
+    elif encoding.startswith("bayer"):
+        pixels = _mosaic(colour, encoding.removeprefix("bayer_")[:4])
+    if encoding.endswith("16"):
+        pixels = pixels.astype("<u2") * 257
+    _fill(message, pixels, encoding)
+
+
+def fill_depth(message: Any, depth: Pixels, nearest: float, farthest: float) -> None:
+    """Put distances in m, shape (height, width), into an Image; -inf for what is too near, inf for what is too far."""
+    _fill(message, limited(depth, nearest, farthest), "32FC1")
+
+
+def limited(depth: Pixels, nearest: float, farthest: float) -> Pixels:
+    """Distances, -inf where they are too short and inf where they are too long."""
+    result: Pixels = np.where(depth >= farthest, np.float32(np.inf), depth).astype(np.float32)
+    result[depth <= nearest] = -np.inf
+    return result
+
+
+def _fill(message: Any, pixels: Pixels, encoding: str) -> None:
+    data = np.ascontiguousarray(pixels)
+    message.height, message.width = data.shape[:2]
+    message.encoding = encoding
+    message.is_bigendian = 0
+    message.step = data.nbytes // data.shape[0]
+    message.data = data.reshape(-1).view(np.uint8)
+
+
+def _mosaic(colour: Pixels, order: str) -> Pixels:
+    """One colour a pixel, in squares of two by two pixels."""
+    mosaic = np.empty(colour.shape[:2], np.uint8)
+    for place, letter in enumerate(order):
+        row, column = divmod(place, 2)
+        mosaic[row::2, column::2] = colour[row::2, column::2, "rgb".index(letter)]
+    return mosaic
+
+
+def fill_camera_info(
+    message: Any,
+    optics: Optics,
+    lens: Distortion | None,
+    *,
+    center: tuple[float, float] | None = None,
+    focal: float = 0.0,
+    baseline: float = 0.0,
+) -> None:
+    """Put what a camera tells of itself into a CameraInfo.
+
+    Args:
+        message: the message.
+        optics: the camera.
+        lens: its distortion.
+        center: where the optical axis is in the picture, in pixels; None for where it is.
+        focal: the focal length in pixels that is told; 0 for the one that it has.
+        baseline: from the left camera of a pair to this one, in m.
+    """
+    lens = lens or Distortion()
+    cx, cy = center if center is not None else (optics.cx, optics.cy)
+    fx, fy = (focal, focal) if focal > 0 else (optics.fx, optics.fy)
+    message.height, message.width = optics.height, optics.width
+    message.distortion_model = "plumb_bob"
+    message.d = [lens.k1, lens.k2, lens.p1, lens.p2, lens.k3]
+    message.k = np.array([fx, 0, cx, 0, fy, cy, 0, 0, 1], dtype=np.float64)
+    message.r = np.eye(3).ravel()
+    message.p = np.array([fx, 0, cx, -fx * baseline, 0, fy, cy, 0, 0, 0, 1, 0], dtype=np.float64)

@@ -1,0 +1,359 @@
+"""What sensors publish: topics, frames and messages of Gazebo classic, of ROS 1 and of gz."""
+
+from __future__ import annotations
+
+from contextlib import asynccontextmanager
+from math import inf, pi, tan
+
+import numpy as np
+import pytest
+
+from linkwright.graph import Graph, LogRecord
+from linkwright.messages import get_message
+from linkwright.simulation.server.server import SimulationServer
+from linkwright.testing import Recording
+from tests.simulation.sensors.rooms import block
+from tests.simulation.worlds import GROUND, box, simulated
+
+SECOND = 1_000_000_000
+WALL = block("wall", "2.5 0 0 0 0 0", "1 20 20")
+RAYS = (
+    "<scan><horizontal><samples>3</samples><min_angle>-1.5707963267948966</min_angle><max_angle>1.5707963267948966"
+    "</max_angle></horizontal></scan><range><min>0.1</min><max>10</max></range>"
+)
+EYE = (
+    f"<camera><horizontal_fov>{pi / 2}</horizontal_fov><image><width>64</width><height>48</height></image>"
+    "<clip><near>0.05</near><far>50</far></clip></camera>"
+)
+
+
+def carrier(*inside: str, link: str = "head", more: str = "") -> str:
+    """A robot that stands still, with what is in its link."""
+    return f'<model name="robot"><static>true</static><link name="{link}">{"".join(inside)}</link>{more}</model>'
+
+
+def sensor(kind: str, text: str, name: str = "eye", rate: float = 10) -> str:
+    return f'<sensor name="{name}" type="{kind}"><update_rate>{rate}</update_rate>{text}</sensor>'
+
+
+def plugin(library: str, text: str = "", name: str = "driver") -> str:
+    return f'<plugin name="{name}" filename="{library}">{text}</plugin>'
+
+
+@asynccontextmanager
+async def served(*parts: str):
+    """A simulation on a graph, and what was logged."""
+    log: list[LogRecord] = []
+    graph = Graph(on_log=log.append)
+    server = SimulationServer(simulated(*parts), graph.create_node("gazebo"))
+    server.start()
+    yield server, graph, log
+    server.close()
+    await graph.close()
+
+
+async def heard(server: SimulationServer, graph: Graph, *topics: str, duration: int = SECOND // 10) -> list:
+    """The last messages of topics after some time."""
+    recordings = [Recording(graph, server.node, topic) for topic in topics]
+    server.advance(duration)
+    await graph.settle()
+    return [recording.last for recording in recordings]
+
+
+async def test_a_laser_of_gazebo_classic_is_a_scan():
+    ros = "<ros><remapping>~/out:=scan</remapping></ros><output_type>sensor_msgs/LaserScan</output_type>"
+    text = carrier(sensor("ray", f"<ray>{RAYS}</ray>" + plugin("libgazebo_ros_ray_sensor.so", ros)))
+    async with served(WALL, text) as (server, graph, log):
+        (scan,) = await heard(server, graph, "/scan")
+        assert (scan.header.stamp.sec, scan.header.stamp.nanosec) == (0, SECOND // 10)
+        assert scan.header.frame_id == "head"
+        assert list(scan.ranges) == [inf, 2.0, inf]
+        assert (scan.angle_min, scan.angle_increment) == (pytest.approx(-pi / 2), pytest.approx(pi / 2))
+        assert (scan.range_min, scan.range_max) == (pytest.approx(0.1), 10.0)
+        assert (scan.time_increment, scan.scan_time) == (0.0, 0.0)
+        assert list(scan.intensities) == [0.0, 0.0, 0.0]
+        assert not log
+
+
+async def test_a_laser_says_nothing_while_nobody_listens():
+    text = carrier(sensor("ray", f"<ray>{RAYS}</ray>" + plugin("libgazebo_ros_ray_sensor.so")))
+    async with served(WALL, text) as (server, graph, _):
+        server.advance(SECOND)
+        recording = Recording(graph, server.node, "/driver/out")
+        server.advance(SECOND)
+        await graph.settle()
+        assert len(recording) == 10
+
+
+@pytest.mark.parametrize("kind", ["PointCloud2", "PointCloud", "Range"])
+async def test_the_other_types_of_a_lasers_output(kind: str):
+    said = plugin(
+        "libgazebo_ros_ray_sensor.so", f"<output_type>sensor_msgs/{kind}</output_type><frame_name>l</frame_name>"
+    )
+    async with served(WALL, carrier(sensor("ray", f"<ray>{RAYS}</ray>" + said))) as (server, graph, _):
+        (message,) = await heard(server, graph, "/driver/out")
+        assert message.header.frame_id == "l"
+        if kind == "Range":
+            assert (message.range, message.field_of_view) == (2.0, pytest.approx(pi))
+        elif kind == "PointCloud":
+            assert [(each.x, each.y, each.z) for each in message.points] == [pytest.approx((2.0, 0.0, 0.0))]
+        else:
+            assert (message.point_step, message.width, message.height, message.is_dense) == (16, 1, 1, True)
+            assert np.frombuffer(bytes(message.data), np.float32) == pytest.approx([2.0, 0.0, 0.0, 0.0], abs=1e-6)
+
+
+async def test_a_type_of_output_that_is_none_is_told_of():
+    said = plugin("libgazebo_ros_ray_sensor.so", "<output_type>sensor_msgs/Imu</output_type>")
+    async with served(carrier(sensor("ray", f"<ray>{RAYS}</ray>" + said))) as (server, _, log):
+        assert server.plugins("robot") == ()
+        assert "no type of output" in str(log[0].text)
+
+
+async def test_a_laser_of_ros_1_has_its_topic_and_frame():
+    said = plugin("libgazebo_ros_laser.so", "<topicName>/laser</topicName><frameName>hokuyo</frameName>")
+    async with served(WALL, carrier(sensor("ray", f"<ray>{RAYS}</ray>" + said))) as (server, graph, log):
+        (scan,) = await heard(server, graph, "/laser")
+        assert (scan.header.frame_id, scan.ranges[1]) == ("hokuyo", 2.0)
+        assert not log
+
+
+async def test_a_lidar_of_gz_has_points_beside_its_scan():
+    text = carrier(sensor("gpu_lidar", f"<topic>lidar</topic><lidar>{RAYS}</lidar>"))
+    async with served(WALL, text) as (server, graph, log):
+        scan, cloud = await heard(server, graph, "/lidar", "/lidar/points")
+        assert scan.header.frame_id == "robot/head/eye"
+        assert list(scan.ranges) == [inf, 2.0, inf]
+        assert (cloud.width, cloud.height, cloud.is_dense) == (3, 1, False)
+        assert not log
+
+
+async def test_a_sensor_of_gz_without_a_topic_has_the_name_of_gz():
+    async with served(WALL, carrier(sensor("gpu_lidar", f"<lidar>{RAYS}</lidar>"))) as (server, graph, _):
+        (scan,) = await heard(server, graph, "/world/test/model/robot/link/head/sensor/eye/scan")
+        assert scan.ranges[1] == 2.0
+
+
+@pytest.mark.parametrize(
+    ("library", "text", "topic"),
+    [("libgazebo_ros_imu_sensor.so", "", "/driver/out"), (None, "<topic>imu</topic>", "/imu")],
+)
+async def test_imus_tell_gravity_and_their_noise(library: str | None, text: str, topic: str):
+    noise = '<angular_velocity><z><noise type="gaussian"><stddev>0.1</stddev></noise></z></angular_velocity>'
+    said = sensor("imu", f"{text}<imu>{noise}</imu>" + (plugin(library) if library else ""), rate=100)
+    async with served(GROUND, box("one", "0 0 0.5 0 0 0").replace("</link>", said + "</link>")) as (server, graph, log):
+        (message,) = await heard(server, graph, topic, duration=SECOND)
+        assert message.linear_acceleration.z == pytest.approx(9.81, abs=1e-3)
+        assert message.angular_velocity_covariance[8] == pytest.approx(0.01)
+        assert message.angular_velocity.z != 0
+        assert not message.orientation_covariance.any()
+        assert message.header.frame_id == ("link" if library else "one/link/eye")
+        assert not log
+
+
+async def test_an_imu_of_ros_1_names_its_link():
+    said = plugin(
+        "libgazebo_ros_imu.so", "<bodyName>link</bodyName><topicName>/imu</topicName><updateRate>10</updateRate>"
+    )
+    async with served(GROUND, box("one", "0 0 0.5 0 0 0").replace("</model>", said + "</model>")) as (
+        server,
+        graph,
+        log,
+    ):
+        (message,) = await heard(server, graph, "/imu", duration=SECOND)
+        assert message.linear_acceleration.z == pytest.approx(9.81, abs=1e-3)
+        assert not log
+
+
+async def test_a_bumper_tells_what_it_touches():
+    said = sensor("contact", "<contact><collision>collision</collision></contact>" + plugin("libgazebo_ros_bumper.so"))
+    async with served(GROUND, box("one", "0 0 0.5 0 0 0").replace("</link>", said + "</link>")) as (server, graph, log):
+        (message,) = await heard(server, graph, "/bumper_states", duration=SECOND)
+        (state,) = message.states
+        assert message.header.frame_id == "world"
+        assert state.collision2_name == "ground::link::collision"
+        assert state.total_wrench.force.z == pytest.approx(9.81, abs=0.05)
+        assert len(state.wrenches) == len(state.depths) == len(state.contact_normals)
+        assert not log
+
+
+EARTH = (
+    "<spherical_coordinates><surface_model>EARTH_WGS84</surface_model><latitude_deg>47.5</latitude_deg>"
+    "<longitude_deg>8.5</longitude_deg><elevation>430</elevation><heading_deg>0</heading_deg></spherical_coordinates>"
+)
+
+
+@pytest.mark.parametrize(("kind", "library", "topic"), [
+    ("gps", "libgazebo_ros_gps_sensor.so", "/driver/out"), ("navsat", None, "/gps/fix"),
+])  # fmt: skip
+async def test_receivers_tell_where_they_are(kind: str, library: str | None, topic: str):
+    said = sensor(kind, plugin(library) if library else "<topic>/gps/fix</topic>")
+    async with served(EARTH, carrier(said)) as (server, graph, log):
+        (fix,) = await heard(server, graph, topic)
+        assert (fix.latitude, fix.longitude, fix.altitude) == pytest.approx((47.5, 8.5, 430.0))
+        assert not log
+
+
+async def test_a_magnetometer_feels_the_field_in_its_axes():
+    said = sensor("magnetometer", f"<pose>0 0 0 0 0 {pi / 2}</pose><topic>mag</topic>")
+    async with served("<magnetic_field>1 2 3</magnetic_field>", carrier(said)) as (server, graph, _):
+        (message,) = await heard(server, graph, "/mag")
+        field = message.magnetic_field
+        assert (field.x, field.y, field.z) == pytest.approx((2.0, -1.0, 3.0))
+
+
+ARM = """
+<model name="arm"><link name="post"><inertial><mass>1</mass></inertial></link>
+  <link name="bob"><pose>1 0 0 0 0 0</pose><inertial><mass>2</mass></inertial></link>
+  <joint name="held" type="fixed"><parent>world</parent><child>post</child></joint>
+  <joint name="wrist" type="revolute"><pose>-1 0 0 0 0 0</pose><parent>post</parent><child>bob</child><axis>
+    <xyz>0 0 1</xyz></axis>{inside}</joint>{more}
+</model>"""
+
+
+async def test_forces_in_a_joint_are_told():
+    classic = plugin("libgazebo_ros_ft_sensor.so", "<joint_name>wrist</joint_name><update_rate>10</update_rate>")
+    gz = sensor("force_torque", "<topic>ft</topic>", name="ft")
+    async with served(ARM.format(inside=gz, more=classic)) as (server, graph, log):
+        one, other = await heard(server, graph, "/wrench", "/ft")
+        assert (one.header.frame_id, other.header.frame_id) == ("bob", "arm/wrist/ft")
+        for message in (one, other):
+            assert message.wrench.force.z == pytest.approx(-2 * 9.81, abs=1e-3)
+            assert message.wrench.torque.y == pytest.approx(2 * 9.81, abs=1e-3)
+        assert not log
+
+
+def picture_of(message) -> np.ndarray:
+    channels = message.step // message.width
+    return np.frombuffer(bytes(message.data), np.uint8).reshape(message.height, message.width, channels)
+
+
+async def test_a_camera_of_gazebo_classic_has_a_picture_and_its_figures():
+    said = "<camera_name>front</camera_name><frame_name>optical</frame_name><hack_baseline>0.07</hack_baseline>"
+    text = carrier(sensor("camera", EYE + plugin("libgazebo_ros_camera.so", said)))
+    async with served(WALL, text) as (server, graph, log):
+        image, info = await heard(server, graph, "/front/image_raw", "/front/camera_info")
+        assert (image.width, image.height, image.encoding, image.step) == (64, 48, "rgb8", 192)
+        assert image.header.frame_id == info.header.frame_id == "optical"
+        red = picture_of(image)[24, 32]
+        assert red[0] > 50
+        assert red[1] == red[2] == 0
+        focal = 64 / (2 * tan(pi / 4))
+        assert list(info.k) == pytest.approx([focal, 0, 32.5, 0, focal, 24.5, 0, 0, 1])
+        assert list(info.p)[3] == pytest.approx(-focal * 0.07)
+        assert (info.distortion_model, list(info.d)) == ("plumb_bob", [0.0] * 5)
+        assert [each.text for each in log if "pictures of cameras are made by" in each.text]
+
+
+@pytest.mark.parametrize(
+    ("written", "encoding", "step"),
+    [("L8", "mono8", 64), ("B8G8R8", "bgr8", 192), ("R16G16B16", "rgb16", 384), ("BAYER_RGGB8", "bayer_rggb8", 64)],
+)
+async def test_formats_are_encodings(written: str, encoding: str, step: int):
+    eye = EYE.replace("</height>", f"</height><format>{written}</format>")
+    async with served(WALL, carrier(sensor("camera", eye + plugin("libgazebo_ros_camera.so")))) as (server, graph, _):
+        (image,) = await heard(server, graph, "/eye/image_raw")
+        assert (image.encoding, image.step, len(image.data)) == (encoding, step, 48 * step)
+
+
+@pytest.mark.parametrize("library", ["libgazebo_ros_camera.so", "libgazebo_ros_openni_kinect.so"])
+async def test_a_depth_camera_measures_along_its_axis(library: str):
+    said = plugin(library, "<camera_name>depth</camera_name><max_depth>3</max_depth>")
+    near = block("near", "0.35 0.2 0 0 0 0", "0.1 0.1 0.1")
+    async with served(WALL, near, carrier(sensor("depth", EYE + said))) as (server, graph, _):
+        depth, cloud = await heard(server, graph, "/depth/depth/image_raw", "/depth/points")
+        metres = np.frombuffer(bytes(depth.data), np.float32).reshape(48, 64)
+        assert (depth.encoding, depth.step) == ("32FC1", 256)
+        assert metres[24, 60] == pytest.approx(2.0, abs=1e-3)
+        assert metres[24, 10] == -inf
+        points = np.frombuffer(bytes(cloud.data), np.float32).reshape(48, 64, 8)
+        assert (cloud.point_step, cloud.height, cloud.width) == (32, 48, 64)
+        assert points[24, 60, :3] == pytest.approx([28.5 / 32 * 2, 0.5 / 32 * 2, 2.0], abs=1e-2)
+        blue, green, red = bytes(cloud.data)[(24 * 64 + 60) * 32 + 16 :][:3]
+        assert red > 50
+        assert green == blue == 0
+
+
+async def test_a_camera_that_is_triggered_waits_for_it():
+    said = plugin("libgazebo_ros_camera.so", "<triggered>true</triggered>")
+    async with served(WALL, carrier(sensor("camera", EYE + said))) as (server, graph, _):
+        recording = Recording(graph, server.node, "/eye/image_raw")
+        server.advance(SECOND)
+        await graph.settle()
+        assert len(recording) == 0
+        trigger = server.node.create_publisher("std_msgs/msg/Empty", "/eye/image_trigger", 1)
+        trigger.publish(get_message("std_msgs/msg/Empty")())
+        await graph.settle()
+        server.advance(SECOND)
+        await graph.settle()
+        assert len(recording) == 1
+
+
+async def test_several_cameras_have_a_topic_each():
+    eyes = EYE.replace("<camera>", '<camera name="left">') + EYE.replace("<camera>", '<camera name="right">')
+    said = plugin("libgazebo_ros_camera.so", "<camera_name>stereo</camera_name>")
+    async with served(WALL, carrier(sensor("multicamera", eyes + said))) as (server, graph, _):
+        left, right = await heard(server, graph, "/stereo/left/image_raw", "/stereo/right/camera_info")
+        assert (left.width, right.width) == (64, 64)
+
+
+async def test_cameras_of_gz_have_their_figures_beside_the_picture():
+    eye = EYE.replace("</camera>", "<optical_frame_id>optical</optical_frame_id></camera>")
+    async with served(WALL, carrier(sensor("camera", f"<topic>front/image</topic>{eye}"))) as (server, graph, _):
+        image, info = await heard(server, graph, "/front/image", "/front/camera_info")
+        assert image.header.frame_id == info.header.frame_id == "optical"
+        assert list(info.k)[2] == 32.0
+
+
+async def test_an_rgbd_camera_of_gz_has_points_with_x_forwards():
+    text = carrier(sensor("rgbd_camera", f"<topic>rgbd</topic>{EYE}"))
+    async with served(WALL, text) as (server, graph, log):
+        image, depth, cloud, info = await heard(
+            server, graph, "/rgbd/image", "/rgbd/depth_image", "/rgbd/points", "/rgbd/camera_info"
+        )
+        assert (image.encoding, depth.encoding, info.width) == ("rgb8", "32FC1", 64)
+        points = np.frombuffer(bytes(cloud.data), np.float32).reshape(48, 64, 8)
+        assert points[24, 60, :3] == pytest.approx([2.0, -28.5 / 32 * 2, -0.5 / 32 * 2], abs=1e-2)
+        assert [each.text for each in log] == [each.text for each in log if "pictures of cameras" in each.text]
+
+
+LABEL = '<plugin filename="gz-sim-label-system" name="gz::sim::systems::Label"><label>{}</label></plugin>'
+
+
+def labelled(name: str, pose: str, label: int) -> str:
+    return block(name, pose, "0.1 0.4 0.4").replace("</visual>", LABEL.format(label) + "</visual>")
+
+
+async def test_labels_are_seen_and_all_else_is_background():
+    world = labelled("cup", "2 0.5 0 0 0 0", 7), labelled("other", "2 -0.5 0 0 0 0", 7), WALL
+    text = carrier(sensor("segmentation_camera", f"<topic>seg</topic>{EYE}"))
+    async with served(*world, text) as (server, graph, _):
+        maps, coloured = await heard(server, graph, "/seg/labels_map", "/seg/colored_map")
+        assert set(picture_of(maps).reshape(-1).tolist()) == {0, 7}
+        assert picture_of(coloured)[24, 24].any()
+        assert not picture_of(coloured)[0, 0].any()
+
+
+async def test_boxes_are_around_what_is_labelled():
+    world = labelled("cup", "1.55 0.5 0 0 0 0", 7), labelled("ball", "1.55 -0.5 0 0 0 0", 9), WALL
+    text = carrier(sensor("boundingbox_camera", f"<topic>boxes</topic>{EYE}"))
+    async with served(*world, text) as (server, graph, _):
+        boxes, image = await heard(server, graph, "/boxes", "/boxes_image")
+        found = {each.results[0].hypothesis.class_id: each.bbox for each in boxes.detections}
+        assert sorted(found) == ["7", "9"]
+        # 1.5 m away and 0.4 m wide, at a focal length of 32 pixels: 8.5 pixels, 10.7 from the middle of the picture.
+        left, right = found["7"], found["9"]
+        assert (left.center.position.x, left.size_x) == (pytest.approx(21.3, abs=1), pytest.approx(8.5, abs=1))
+        assert (right.center.position.x, right.size_y) == (pytest.approx(42.7, abs=1), pytest.approx(8.5, abs=1))
+        assert ((picture_of(image) == (0, 255, 0)).all(axis=-1)).sum() > 20
+
+
+async def test_noise_on_colours_is_the_same_for_the_same_seed():
+    noise = "<noise><type>gaussian</type><mean>0</mean><stddev>0.02</stddev></noise>"
+    text = carrier(sensor("camera", EYE.replace("</camera>", noise + "</camera>") + plugin("libgazebo_ros_camera.so")))
+    seen = []
+    for _ in range(2):
+        async with served(WALL, text) as (server, graph, _log):
+            (image,) = await heard(server, graph, "/eye/image_raw")
+            seen.append(picture_of(image).astype(float))
+    assert (seen[0] == seen[1]).all()
+    assert np.std(seen[0][:, :, 0]) == pytest.approx(0.02 * 255, rel=0.2)
