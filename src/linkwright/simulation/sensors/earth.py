@@ -120,7 +120,7 @@ class NavsatSensor:
             KeyError: its link is gone.
         """
         position = self.position_noise.apply(np.array(self._mount.pose()[:3]))
-        velocity = self._globe.east_north_up(self._mount.velocity()[0])
+        velocity = self._globe.east_north_up(np.array(self._mount.velocity()[0]))
         return Fix(*self._globe.geodetic(position), self.velocity_noise.apply(velocity))
 
 
@@ -147,7 +147,7 @@ class AltimeterSensor:
             KeyError: its link is gone.
         """
         height = np.array(self._mount.pose()[2] - self.reference)
-        velocity = self._mount.velocity()[0][2]
+        velocity = np.array(self._mount.velocity()[0][2])
         return float(self._position_noise.apply(height)), float(self._velocity_noise.apply(velocity))
 
 

@@ -6,8 +6,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linkwright.geometry.arrays import Array, quaternion_inverse, quaternion_multiply, rotate
-from linkwright.geometry.single import quaternion_from_rpy
+from linkwright.geometry.arrays import Array
+from linkwright.geometry.single import (
+    Quaternion,
+    quaternion_from_rpy,
+    quaternion_inverse,
+    quaternion_multiply,
+    rotate,
+)
 from linkwright.sdf.sensors import Imu
 from linkwright.simulation.sensors.mount import Mount
 from linkwright.simulation.sensors.noise import VectorNoise
@@ -54,12 +60,12 @@ class ImuSensor:
         self._measured = mount.simulation.time
         self._reference = self._start(said, initial_reference=initial_reference)
 
-    def _start(self, imu: Imu, *, initial_reference: bool) -> Array:
-        """The reference frame in the world: a quaternion."""
+    def _start(self, imu: Imu, *, initial_reference: bool) -> Quaternion:
+        """The orientation of the reference frame in the world."""
         if initial_reference:
-            return np.array(self._mount.pose()[3:])
+            return self._mount.pose()[3:]
         turns = {"NED": _NED, "NWU": _NWU, "CUSTOM": imu.custom_rpy}
-        return np.array(quaternion_from_rpy(turns.get(imu.localization, (0.0, 0.0, 0.0))))
+        return quaternion_from_rpy(turns.get(imu.localization, (0.0, 0.0, 0.0)))
 
     def measure(self) -> Inertial:
         """What it measures now.
@@ -69,12 +75,12 @@ class ImuSensor:
         """
         simulation = self._mount.simulation
         period, self._measured = (simulation.time - self._measured) * 1e-9, simulation.time
-        orientation = np.array(self._mount.pose()[3:])
+        orientation = self._mount.pose()[3:]
         into = quaternion_inverse(orientation)
         turning = rotate(into, self._mount.velocity()[1])
         felt = rotate(into, self._mount.acceleration())
         return Inertial(
-            quaternion_multiply(quaternion_inverse(self._reference), orientation),
-            self.turning_noise.apply(turning, period),
-            self.acceleration_noise.apply(felt, period),
+            np.array(quaternion_multiply(quaternion_inverse(self._reference), orientation)),
+            self.turning_noise.apply(np.array(turning), period),
+            self.acceleration_noise.apply(np.array(felt), period),
         )

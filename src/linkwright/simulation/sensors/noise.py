@@ -54,7 +54,7 @@ class NoiseSource:
             self._wander(period)
         noisy: Array = values + self._bias + self._wandering
         if noise.stddev > 0 or noise.mean:
-            noisy = noisy + self._generator.normal(noise.mean, abs(noise.stddev), np.shape(values))
+            noisy = noisy + self._generator.normal(noise.mean, abs(noise.stddev), np.shape(values) or None)
         if noise.type == "gaussian_quantized" and noise.precision > 0:
             noisy = np.round(noisy / noise.precision) * noise.precision
         return noisy
@@ -75,12 +75,12 @@ class VectorNoise:
 
     def __init__(self, noise: NoiseXyz, generator: np.random.Generator) -> None:
         self._sources = [NoiseSource(each, generator) for each in (noise.x, noise.y, noise.z)]
-
-    @property
-    def variances(self) -> Array:
+        self.variances: Array = np.array([each.variance for each in self._sources])
         """The squares of the standard deviations: shape (3,)."""
-        return np.array([each.variance for each in self._sources])
 
     def apply(self, vector: Array, period: float = 0.0) -> Array:
         """A vector, shape (3,), with noise on it."""
-        return np.array([float(s.apply(vector[i], period)) for i, s in enumerate(self._sources)])
+        for index, source in enumerate(self._sources):
+            if not source.silent:
+                vector[index] = source.apply(vector[index], period)
+        return vector
