@@ -142,6 +142,14 @@ def test_models_that_come_and_move_are_seen(make):
     assert np.isinf(renderer.render(optics, high, Wanted.DEPTH).depth[60, 80])
 
 
+def test_a_camera_sees_out_of_its_own_housing(make):
+    housing = "<geometry><box><size>0.06 0.06 0.06</size></box></geometry>"
+    eye = f'<model name="eye"><link name="link"><visual name="v">{housing}</visual></link></model>'
+    simulation = simulated(block("wall", "3 0 0 0 0 0", "1 20 20"), eye)
+    depth = make(simulation).render(optics_of(CAMERA), IDENTITY, Wanted.DEPTH).depth
+    assert np.abs(depth - 2.5).max() < 1e-3
+
+
 def test_all_ways_make_the_same_picture(make):
     wall = block("wall", "4 0 1 0 0 0", "0.1 3 2", colour="0 0 1 1")
     simulation = simulated(FLOOR, block("box", "2 0.4 0.3 0 0 0.5", "0.5 0.5 0.6"), wall)

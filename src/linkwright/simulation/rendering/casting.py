@@ -15,6 +15,8 @@ from linkwright.simulation.scene.bodies import VISUAL_GROUP
 from linkwright.simulation.simulation import Simulation
 
 _GROUPS = 6
+_THIN = 1e-6
+"""In m: what is on the surface of a box is in it."""
 
 
 @dataclass(slots=True)
@@ -37,8 +39,14 @@ class Caster(Protocol):
 
     way: Phrase
 
-    def cast(self, origin: Array, rays: Any) -> Hits:
-        """What rays, shape (n, 3), float32, from one point hit, as the world is now."""
+    def cast(self, origin: Array, rays: Any, start: float) -> Hits:
+        """What rays from one point hit, as the world is now.
+
+        Args:
+            origin: the point, in m.
+            rays: where they go, shape (n, 3), float32.
+            start: how far away they begin, in lengths of the ray.
+        """
 
 
 class MujocoCaster:
@@ -52,7 +60,7 @@ class MujocoCaster:
         self._groups = np.zeros(_GROUPS, dtype=np.uint8)
         self._groups[VISUAL_GROUP] = 1
 
-    def cast(self, origin: Array, rays: Any) -> Hits:
+    def cast(self, origin: Array, rays: Any, start: float) -> Hits:
         """What rays hit."""
         simulation = self._simulation
         simulation.refresh()
@@ -65,8 +73,18 @@ class MujocoCaster:
             simulation.model, simulation.data, origin, directions, self._groups, 1, -1, geoms, distances, normals,
             count, self._mujoco.mjMAXVAL,
         )  # fmt: skip
-        near = np.where(geoms >= 0, distances / lengths, np.inf)
-        return Hits(near.astype(np.float32), geoms, normals.reshape(-1, 3).astype(np.float32))
+        sides = normals.reshape(-1, 3)
+        for ray in np.nonzero((geoms >= 0) & (distances < start * lengths))[0]:
+            geoms[ray], distances[ray], sides[ray] = self._beyond(origin, rays[ray], lengths[ray], start)
+        distances = np.where(geoms >= 0, distances / lengths, np.inf)
+        return Hits(distances.astype(np.float32), geoms, sides.astype(np.float32))
+
+    def _beyond(self, origin: Array, ray: Array, length: float, start: float) -> tuple[int, float, Array]:
+        """What one ray hits: the geom, the distance in m, and the normal."""
+        model, data, geom, normal = self._simulation.model, self._simulation.data, np.zeros(1, np.int32), np.zeros(3)
+        begin, along = origin + start * ray, ray / length
+        further = self._mujoco.mj_ray(model, data, begin, along, self._groups, 1, -1, geom, normal)
+        return int(geom[0]), start * length + further, normal
 
 
 class _Triangles:
@@ -97,12 +115,12 @@ class _Triangles:
         across = np.cross(second - first, third - first)
         self._normals = across / np.maximum(np.linalg.norm(across, axis=1), 1e-20)[:, None].astype(np.float32)
 
-    def cast_into(self, hits: Hits, origins: Any, rays: Any) -> None:
-        """Note what is hit nearer than what was hit already."""
+    def cast_into(self, hits: Hits, origins: Any, rays: Any, start: float) -> None:
+        """Note what is hit nearer than what was hit already, by rays that begin at `start`."""
         found = self._tree.run(origins, rays, output=1)
-        triangle = found["primID"]
-        nearer = (triangle >= 0) & (found["tfar"] < hits.distances)
-        np.copyto(hits.distances, found["tfar"], where=nearer)
+        triangle, distances = found["primID"], found["tfar"] + np.float32(start)
+        nearer = (triangle >= 0) & (distances < hits.distances)
+        np.copyto(hits.distances, distances, where=nearer)
         np.copyto(hits.geoms, self._owners.take(triangle, mode="wrap"), where=nearer)
         np.copyto(hits.normals, self._normals.take(triangle, axis=0, mode="wrap"), where=nearer[:, None])
 
@@ -120,50 +138,66 @@ class EmbreeCaster:
         import embreex  # type: ignore[import-not-found, import-untyped, unused-ignore]  # noqa: F401 - whether it is there
 
         self._simulation = simulation
+        self._mujoco = load_mujoco()
         self._revision = -1
-        self._time = -1
         self._standing: _Triangles | None = None
-        self._moving: _Triangles | None = None
+        self._moving: dict[int, Mesh] = {}
         self._planes: list[int] = []
 
-    def cast(self, origin: Array, rays: Any) -> Hits:
+    def cast(self, origin: Array, rays: Any, start: float) -> Hits:
         """What rays hit."""
-        self._update()
-        count = len(rays)
-        hits = Hits(np.full(count, np.inf, np.float32), np.full(count, -1, np.int32), np.zeros((count, 3), np.float32))
-        self._cast_at_planes(hits, origin, rays)
-        origins = np.empty_like(rays)
-        origins[:] = origin
-        for triangles in (self._standing, self._moving):
-            if triangles is not None:
-                triangles.cast_into(hits, origins, rays)
-        return hits
-
-    def _update(self) -> None:
         simulation = self._simulation
         simulation.refresh()
         if self._revision != simulation.revision:
             self._read(simulation.model)
-            if self._standing is not None:
-                self._standing.place(simulation.data)
-        if self._moving is not None and (self._revision, self._time) != (simulation.revision, simulation.time):
-            self._moving.place(simulation.data)
-        self._revision, self._time = simulation.revision, simulation.time
+            self._revision = simulation.revision
+        count = len(rays)
+        hits = Hits(np.full(count, np.inf, np.float32), np.full(count, -1, np.int32), np.zeros((count, 3), np.float32))
+        self._cast_at_planes(hits, origin, rays)
+        origins = rays * np.float32(start)
+        origins += origin.astype(np.float32)
+        if self._standing is not None:
+            self._standing.cast_into(hits, origins, rays, start)
+        seen = self._in_view(origin, rays)
+        if seen:
+            moving = _Triangles({geom: self._moving[geom] for geom in seen})
+            moving.place(simulation.data)
+            moving.cast_into(hits, origins, rays, start)
+        return hits
+
+    def _in_view(self, origin: Array, rays: Any) -> list[int]:
+        """The geoms that move and that rays may hit, without boxes that the point is in: their insides are not seen."""
+        if not self._moving:
+            return []
+        model, data, geoms = self._simulation.model, self._simulation.data, np.array(list(self._moving))
+        axis = rays.mean(axis=0)
+        axis /= max(np.linalg.norm(axis), 1e-9)
+        half = np.arccos(np.clip((rays @ axis / np.sqrt(np.einsum("ij,ij->i", rays, rays))).min(), -1, 1))
+        away = data.geom_xpos[geoms] - origin
+        distances = np.maximum(np.linalg.norm(away, axis=1), 1e-9)
+        reach = np.arcsin(np.minimum(model.geom_rbound[geoms] / distances, 1.0))
+        beside = np.arccos(np.clip(away @ axis / distances, -1, 1))
+        inside = np.einsum("ijk,ij->ik", data.geom_xmat[geoms].reshape(-1, 3, 3), away)
+        around = (np.abs(inside) < model.geom_size[geoms] + _THIN).all(axis=1) & (
+            model.geom_type[geoms] == self._mujoco.mjtGeom.mjGEOM_BOX
+        )
+        touching = (distances < model.geom_rbound[geoms]) | (beside <= half + reach)
+        return [int(geom) for geom in geoms[touching & ~around]]
 
     def _read(self, model: Any) -> None:
         standing: dict[int, Mesh] = {}
-        moving: dict[int, Mesh] = {}
-        self._planes = []
+        self._moving, self._planes = {}, []
         for geom in range(model.ngeom):
             if model.geom_group[geom] != VISUAL_GROUP or is_invisible(model, geom):
                 continue
             if is_endless(model, geom):
                 self._planes.append(geom)
             elif (mesh := triangles_of(model, geom)) is not None:
-                where = standing if model.body_weldid[model.geom_bodyid[geom]] == 0 else moving
+                where = standing if model.body_weldid[model.geom_bodyid[geom]] == 0 else self._moving
                 where[geom] = mesh
         self._standing = _Triangles(standing) if standing else None
-        self._moving = _Triangles(moving) if moving else None
+        if self._standing is not None:
+            self._standing.place(self._simulation.data)
 
     def _cast_at_planes(self, hits: Hits, origin: Array, rays: Any) -> None:
         data = self._simulation.data

@@ -36,7 +36,7 @@ class RayRenderer:
         """What a camera sees now."""
         axes = axes_of(pose)
         origin, rays = np.array(pose[:3]), optics.directions(axes)
-        hits = self._caster.cast(origin, rays)
+        hits = self._caster.cast(origin, rays, optics.near)
         unseen = ~((hits.distances >= optics.near) & (hits.distances <= optics.far))
         np.copyto(hits.distances, np.inf, where=unseen)
         np.copyto(hits.geoms, -1, where=unseen)
