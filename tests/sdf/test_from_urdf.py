@@ -144,6 +144,16 @@ def test_a_material_of_gazebo_is_a_script():
     material = model.links[0].visuals[0].material
     assert material is not None
     assert material.script == MaterialScript(("file://media/materials/scripts/gazebo.material",), "Gazebo/Blue")
+    assert material.diffuse == (0, 0, 1, 1)
+
+
+def test_a_material_of_gazebo_comes_before_the_colour_of_the_visual():
+    visual = f'<visual>{BOX}<material name="m"><color rgba="0.4 0.8 1 0.5"/></material></visual>'
+    for name, diffuse in (("Gazebo/Red", (1, 0, 0, 1)), ("Mine/Red", (0.5, 1.0, 1.0, 0.5))):
+        model = converted(link("a", visual) + f'<gazebo reference="a"><material>{name}</material></gazebo>')
+        material = model.links[0].visuals[0].material
+        assert material is not None
+        assert material.diffuse == pytest.approx(diffuse)
 
 
 def test_words_for_links_and_collisions():

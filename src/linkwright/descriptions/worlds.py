@@ -24,7 +24,8 @@ class WorldDescription:
 
     Attributes:
         path: the file.
-        sdf: what it says, with the included models in the places of their includes; None where it is no SDF.
+        sdf: what it says, with the included models in the places of their includes, and materials with the colours of
+            their scripts; None where it is no SDF.
         diagnostics: everything that is wrong with it and with what it includes.
         files: the files that were read, the main file first.
     """
@@ -64,6 +65,7 @@ def examine_world(
     from linkwright.sdf.reader import read
     from linkwright.sdf.references import check_references
     from linkwright.sdf.resources import ResourceFinder
+    from linkwright.sdf.scripts import with_scripts
 
     path = Path(path)
     finder = (
@@ -76,9 +78,11 @@ def examine_world(
     found = [*remarks, *reading.diagnostics]
     if reading.sdf is None:
         return WorldDescription(path, None, tuple(found), files)
-    included = resolve_includes(reading.sdf, path, ResourceFinder(finder, environment))
+    resources = ResourceFinder(finder, environment)
+    included = resolve_includes(reading.sdf, path, resources)
     found += [*included.diagnostics, *check_references(included.sdf)]
-    return WorldDescription(path, included.sdf, tuple(found), (*files, *included.files))
+    sdf = with_scripts(included.sdf, resources)
+    return WorldDescription(path, sdf, tuple(found), (*files, *included.files))
 
 
 def _document(

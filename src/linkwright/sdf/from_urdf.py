@@ -22,6 +22,7 @@ from linkwright.sdf.materials import Material, Pbr, Workflow
 from linkwright.sdf.models import Frame, Model
 from linkwright.sdf.poses import MODEL, WORLD, RawPose
 from linkwright.sdf.report import SdfReport
+from linkwright.sdf.scripts import gazebo_look, painted
 from linkwright.sdf.sensors import Sensor
 from linkwright.urdf import Robot
 from linkwright.urdf import model as urdf
@@ -280,6 +281,8 @@ def _shape(geometry: urdf.Geometry) -> shapes.Shape:
 
 def _material(written: urdf.Material | None, said: Material | None) -> Material | None:
     """The material of a visual with what ``<gazebo>`` says of it, whose colours come first."""
+    if said is not None and said.script is not None and (look := gazebo_look(said.script.name)) is not None:
+        return painted(said, look)
     if written is None or (said is not None and (said.diffuse or said.ambient)):
         return said
     found = said or Material()
