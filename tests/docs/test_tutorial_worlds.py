@@ -1,0 +1,66 @@
+"""A reader who follows the tutorial's second chapter ends up with a world, and a package that loads mbot into it."""
+
+from __future__ import annotations
+
+import json
+import shlex
+from pathlib import Path
+
+import pytest
+
+from linkwright.cli import main
+from tests.docs.pages import DOCS, blocks
+from tests.robots.workspaces import colcon_build
+
+LANGUAGES = {"en": DOCS / "tutorial-worlds.md", "zh": DOCS / "zh" / "tutorial-worlds.md"}
+
+
+@pytest.fixture(params=LANGUAGES)
+def package(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The package as it is after the last step."""
+    monkeypatch.chdir(tmp_path)
+    git = tmp_path / "gitconfig"
+    git.write_text("[user]\nname = Ada\nemail = ada@linkwright.dev\n", encoding="utf-8")
+    monkeypatch.setenv("GIT_CONFIG_GLOBAL", str(git))
+    page = LANGUAGES[request.param]
+    create = next(line for line in page.read_text("utf-8").splitlines() if line.startswith("linkwright pkg create "))
+    assert main([*shlex.split(create)[1:], "--destination-directory", "src"]) == 0
+    package = tmp_path / "src" / "my_worlds"
+    for block in blocks(page):
+        path = package / block.title.removesuffix(", more")
+        if block.title == "package.xml, more":
+            licence = "  <license>MIT</license>\n"
+            text = path.read_text(encoding="utf-8")
+            assert licence in text
+            path.write_text(text.replace(licence, licence + block.text), encoding="utf-8")
+        elif block.title:
+            path.parent.mkdir(exist_ok=True)
+            path.write_text(block.text, encoding="utf-8")
+    return package
+
+
+def test_nothing_is_found_in_the_world_and_in_the_package(package: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    capsys.readouterr()
+    for path in (package / "worlds" / "yard.world", package):
+        assert main(["check", "--strict", "--format", "json", str(path)]) == 0
+        assert json.loads(capsys.readouterr().out)["diagnostics"] == []
+
+
+def test_the_launch_file_includes_that_of_the_simulation(package: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["launch", str(package / "launch" / "load_mbot.launch.py"), "--show-args"]) == 0
+    printed = capsys.readouterr().out
+    assert all(name in printed for name in ("'world'", "'gui'", "'pause'"))
+
+
+def test_the_languages_show_the_same_files() -> None:
+    english, chinese = ([(each.title, each.text) for each in blocks(page)] for page in LANGUAGES.values())
+    assert english == chinese
+
+
+@pytest.mark.slow
+def test_colcon_installs_everything(package: Path) -> None:
+    workspace = package.parents[1]
+    colcon_build(workspace, package.name)
+    share = workspace / "install" / package.name / "share" / package.name
+    assert (share / "worlds" / "yard.world").is_file()
+    assert (share / "launch" / "load_mbot.launch.py").is_file()
