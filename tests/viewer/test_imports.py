@@ -31,5 +31,5 @@ def test_panels_and_displays_are_imported_when_they_are_asked_for():
         f"{room}features.monitor.{name}" for name in ("log", "node_graph", "parameters", "plots", "teleop", "topics")
     }
     late |= {f"{room}displays.{name}" for name in ("image", "map", "marker", "point_clouds")}
-    assert not opened & {*late, f"{room}features.export.feature"}
+    assert not opened & {*late, f"{room}features.export.feature", "linkwright.sdf.reader", "linkwright.sdf.writer"}
     assert watching & late == {f"{room}features.monitor.node_graph"}

@@ -18,8 +18,6 @@ from linkwright.descriptions import examine, examine_world, is_world
 from linkwright.diagnostics import LinkwrightError, Phrase, phrase
 from linkwright.graph import Client, DurabilityPolicy, QoSProfile
 from linkwright.messages import get_message, get_service
-from linkwright.sdf.resources import ResourceFinder
-from linkwright.sdf.writer import save
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
 from linkwright.viewer.protocol.message import ServerMessage
 from linkwright.viewer.protocol.simulation import (
@@ -215,6 +213,9 @@ class SimulationFeature(PageFeature):
         Raises:
             LinkwrightError: it cannot be found or read.
         """
+        from linkwright.sdf.resources import ResourceFinder  # every page has this feature, and few have a world
+        from linkwright.sdf.writer import save
+
         finder = self.context.finder
         found = ResourceFinder(finder).model(address, Path.cwd())
         path = found if isinstance(found, Path) else finder.resolve(address)
