@@ -221,6 +221,8 @@ class Scene:
             else:
                 self._writer.add_joint(body, joint, placed.pose)
                 self.joints[joint.name] = joint
+        else:
+            body.explicitinertial, body.ipos = True, [0.0, 0.0, 0.0]  # else MuJoCo 3 puts it where its rays miss it
         frames = Frames(placed.model)
         self._writer.add_visuals(body, link, frames, fixed=fixed)
         self._writer.add_collisions(body, link, frames, fixed=fixed)
