@@ -101,8 +101,7 @@ class ModelView:
         self.log.begin()
         try:
             if self._publish():
-                self._plan("joint_state_publisher_gui", "joint_state_publisher_gui")
-                self._plan(*VIEWER, name="viewer", viewer_config=self._viewer_config)
+                self._plan_others()
                 if foxglove is not None:
                     self._plan("foxglove_bridge", "foxglove_bridge", {"port": foxglove})
                 await self.host.start_planned()
@@ -145,6 +144,11 @@ class ModelView:
         self._plan("robot_state_publisher", "robot_state_publisher", parameters)
         return True
 
+    def _plan_others(self) -> None:
+        """Have the nodes started that the model is shown with."""
+        self._plan("joint_state_publisher_gui", "joint_state_publisher_gui")
+        self._plan(*VIEWER, name="viewer", viewer_config=self._viewer_config)
+
     def _publish_repaired(self, _: str) -> None:
         self.reload.unbind(self._call, self._publish_repaired)
         self.mend(self._call)
@@ -159,6 +163,7 @@ class ModelView:
         *,
         name: str | None = None,
         viewer_config: Callable[[], RvizConfig] | None = None,
+        output: str = "log",
     ) -> None:
         plan = HostedPlan(
             self,
@@ -169,7 +174,7 @@ class ModelView:
             "/",
             parameters or {},
             viewer_config=viewer_config,
-            destinations=output_destinations("log"),
+            destinations=output_destinations(output),
         )
         self.host.plan(plan)
 

@@ -1,0 +1,140 @@
+"""A simulated world, with or without a robot, without a launch file."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from linkwright.hosting.launch_log import LaunchLog
+from linkwright.hosting.plans import VIEWER, HostedPlan, HostOptions
+from linkwright.hosting.signals import SignalWatch, run_to_end
+from linkwright.hosting.view import ModelView
+from linkwright.hosting.xacro_calls import XacroCall
+from linkwright.packages import PackageFinder
+
+if TYPE_CHECKING:
+    from linkwright.descriptions import Description
+    from linkwright.viewer import RvizConfig
+
+_SIMULATOR = ("gazebo_ros", "gzserver")
+_CLOCK_RATE = 100.0
+"""Hz of simulated time in which the time is told: transforms are not older than that."""
+_WORLD_DISPLAY, _WORLD_FRAME = "linkwright/World", "world"
+_ODOMETRY_FRAME = re.compile(r"<(odometry_?[fF]rame|odom_frame)>\s*([\w/]+)\s*<")
+_DRIVES = re.compile(r"diff.drive|DiffDrive|skid_steer|planar_move|ackermann|mecanum", re.IGNORECASE)
+
+
+@dataclass(frozen=True, slots=True)
+class SimulatedWorld:
+    """A world, and what is put into it.
+
+    Attributes:
+        world: a file, or the name of a world.
+        path: the file that gives the page its name.
+        description: a robot in URDF; None for none, or for a model in SDF.
+        text: the robot or model, as URDF or SDF; empty for none.
+        name: what it is called in the world.
+        pose: of its frame: x, y, z in m, roll, pitch, yaw in rad.
+        seconds: after how many simulated seconds it ends; 0 for never.
+        rate: simulated seconds in a real one; 0 for what the world says, negative for as many as can be.
+        step: the time step in s; 0 for that of the world.
+        seed: what all random numbers follow from.
+        paused: whether it begins paused.
+        headless: whether there is no page.
+    """
+
+    world: str
+    path: Path
+    description: Description | None = None
+    text: str = ""
+    name: str = ""
+    pose: tuple[float, ...] = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    seconds: float = 0.0
+    rate: float = 0.0
+    step: float = 0.0
+    seed: int = 0
+    paused: bool = False
+    headless: bool = False
+
+    @property
+    def parameters(self) -> dict[str, Any]:
+        """The parameters of the simulator."""
+        robot = {"robot_description": self.text, "robot_name": self.name, "robot_pose": list(self.pose)}
+        return {
+            "world": self.world,
+            "publish_rate": _CLOCK_RATE,
+            "real_time_factor": self.rate,
+            "seconds": self.seconds,
+            "step": self.step,
+            "seed": self.seed,
+            "pause": self.paused,
+            "usual_names": True,
+            **(robot if self.text else {}),
+        }
+
+
+def run_simulated(world: SimulatedWorld, finder: PackageFinder, options: HostOptions, *, foxglove: int | None) -> int:
+    """Simulate a world until the user ends it, or its seconds are over.
+
+    Returns:
+        The exit status, see `linkwright.hosting.signals.run_to_end`.
+    """
+    options = replace(options, title=world.path.name)
+    log = LaunchLog()
+
+    def run(signals: SignalWatch) -> bool:
+        async def show() -> bool:
+            signals.session = view = SimulatedView(world, finder, options, log)
+            return await view.run(foxglove)
+
+        return signals.run(show)
+
+    return run_to_end(run, finder, log)
+
+
+class SimulatedView(ModelView):
+    """A simulated world on the running event loop: simulator, robot_state_publisher of a robot, and the viewer."""
+
+    def __init__(self, world: SimulatedWorld, finder: PackageFinder, options: HostOptions, log: LaunchLog) -> None:
+        super().__init__(XacroCall(world.path, ()), finder, options, log)
+        self._world = world
+
+    def _publish(self) -> bool:
+        """Have the robot published, if it is one."""
+        description = self._world.description
+        if description is not None:
+            self.descriptions.library.remember(description)
+            parameters = {"robot_description": self._world.text, "use_sim_time": True}
+            self._plan("robot_state_publisher", "robot_state_publisher", parameters)
+        return True
+
+    def _plan_others(self) -> None:
+        self._plan(*_SIMULATOR, self._world.parameters, output="screen")
+        if not self._world.headless:
+            self._plan(*VIEWER, name="viewer", viewer_config=self._viewer_config)
+
+    def _viewer_config(self) -> RvizConfig:
+        """The world, and a robot's model and transforms in the frame that it moves in."""
+        from linkwright.viewer import RvizConfig
+
+        config = RvizConfig.for_model(self._fixed_frame(), name=str(self._world.path))
+        config.insert(config.make(_WORLD_DISPLAY, "World"))
+        return config
+
+    def _fixed_frame(self) -> str:
+        description = self._world.description
+        if description is None or description.robot is None:
+            return _WORLD_FRAME
+        named = _ODOMETRY_FRAME.search(self._world.text)
+        if named is not None:
+            return named[2]
+        return "odom" if _DRIVES.search(self._world.text) else description.robot.root or _WORLD_FRAME
+
+    def node_ended(self, plan: HostedPlan, status: int) -> None:
+        """Without the simulator there is nothing to be seen."""
+        if plan.package == _SIMULATOR[0]:
+            if status:
+                self.fail(plan)
+            self.shut_down("the simulation has ended")

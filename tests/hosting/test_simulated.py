@@ -1,0 +1,79 @@
+"""A simulated world without a launch file."""
+
+from __future__ import annotations
+
+import asyncio
+import io
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from linkwright.cli.command import main
+from linkwright.descriptions import examine
+from linkwright.hosting.launch_log import LaunchLog
+from linkwright.hosting.plans import HostOptions
+from linkwright.hosting.simulated import SimulatedView, SimulatedWorld
+from linkwright.packages import PackageFinder
+from linkwright.testing import Recording
+from tests.waiting import eventually
+
+MBOT = Path(__file__).parents[2] / "robots/my_robot_description/urdf/mbot_gazebo.xacro"
+OPTIONS = HostOptions(port=0, open_browser=False, network=False)
+
+
+@pytest.fixture(autouse=True)
+def _logs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "ros_log"))
+    monkeypatch.setenv("LINKWRIGHT_DDS", "0")
+
+
+def in_an_empty_world() -> SimulatedWorld:
+    """mbot in a world without a page, as fast as can be, for two seconds."""
+    description = examine(MBOT)
+    assert description.robot is not None
+    return SimulatedWorld(
+        "empty", MBOT, description, description.text, description.robot.name, seconds=2.0, rate=-1.0, headless=True
+    )
+
+
+async def test_a_robot_tells_where_it_and_its_joints_are_until_its_seconds_are_over():
+    err = io.StringIO()
+    view = SimulatedView(in_an_empty_world(), PackageFinder(start=MBOT.parent), OPTIONS, LaunchLog(io.StringIO(), err))
+    listener = view.host.graph.create_node("listener")
+    heard = {name: Recording(view.host.graph, listener, name) for name in ("/odom", "/joint_states", "/tf", "/clock")}
+    assert await view.run(None), err.getvalue()
+    assert all(len(recording) > 0 for recording in heard.values()), {name: len(each) for name, each in heard.items()}
+    assert heard["/joint_states"].last.header.stamp.sec >= 1
+
+
+async def test_the_page_shows_the_world_in_the_frame_that_the_robot_moves_in():
+    world = replace(in_an_empty_world(), headless=False, seconds=0.0)
+    err = io.StringIO()
+    view = SimulatedView(world, PackageFinder(start=MBOT.parent), OPTIONS, LaunchLog(io.StringIO(), err))
+    running = asyncio.create_task(view.run(None))
+    await eventually(lambda: "gzserver-2]: started" in err.getvalue() or running.done(), what=err.getvalue)
+    config = view._viewer_config()
+    assert config.options.text("Fixed Frame") == "odom"
+    assert [display.cls for display in config.displays][-1] == "linkwright/World"
+    view.interrupt("the test is over")
+    assert await running
+
+
+def test_a_world_that_is_not_there_is_one_error(capsys):
+    assert main(["sim", "emty"]) == 1
+    printed = capsys.readouterr()
+    assert "there is no world 'emty'" in printed.err
+    assert "empty" in printed.err
+
+
+def test_a_model_is_no_world(tmp_path, capsys):
+    (tmp_path / "box.sdf").write_text('<sdf version="1.7"><model name="box"><link name="a"/></model></sdf>')
+    assert main(["sim", str(tmp_path / "box.sdf")]) == 1
+    assert "linkwright sim empty" in capsys.readouterr().err
+
+
+def test_a_robot_that_is_no_xml_is_one_error(tmp_path, capsys):
+    (tmp_path / "robot.urdf").write_text("<robot")
+    assert main(["sim", "empty", str(tmp_path / "robot.urdf"), "--headless"]) == 1
+    assert capsys.readouterr().err.count("error[") == 1
