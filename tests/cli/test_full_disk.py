@@ -170,6 +170,9 @@ QUICK = {
 _MANY = """
 import os, sys
 from linkwright.cli import main
+from linkwright.cli.command import VERBS, parser_for
+for name in VERBS:
+    parser_for(name)  # what verbs import is imported once, not by each process
 failed = []
 for words in {commands!r}:
     child = os.fork()
