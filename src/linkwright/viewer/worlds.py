@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import assert_never
 
 from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere
 from linkwright.geometry.single import Transform, compose, invert, rotation_from_z
@@ -138,8 +137,6 @@ class _Builder:
                 self._mesh(link, shape, geometry)
             case Image() | Empty():
                 pass
-            case _:
-                assert_never(geometry)
         return None
 
     def _polygons(self, shape: Shape, polygons: Sequence[Polyline]) -> None:

@@ -179,7 +179,7 @@ class OpenGlRenderer:
             return None, None
         rect = self._mujoco.MjrRect(0, 0, hole.width, hole.height)
         self._mujoco.mjr_render(rect, self._scene, self._draw_context)
-        colour = np.empty((hole.height, hole.width, 3), np.uint8) if Wanted.COLOUR in wanted else None
+        colour: Pixels | None = np.empty((hole.height, hole.width, 3), np.uint8) if Wanted.COLOUR in wanted else None
         raw = np.empty((hole.height, hole.width), np.float32)
         self._mujoco.mjr_readPixels(colour, raw, rect, self._draw_context)
         nothing = raw <= 0

@@ -49,6 +49,8 @@ class Optics:
         """Where each pixel looks, x, y, z with z = 1: shape (height * width, 3)."""
         across = (np.arange(self.width) + 0.5 - self.cx) / self.fx
         down = (np.arange(self.height) + 0.5 - self.cy) / self.fy
+        x: Array
+        y: Array
         x, y = (each.ravel() for each in np.meshgrid(across, down))
         if self.distortion is not None:
             x, y = undistorted(self.distortion, x, y)

@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from linkwright.descriptions.conversion import with_addresses
 from linkwright.graph import CLOCK_QOS, DurabilityPolicy, Node, QoSProfile
@@ -49,7 +50,7 @@ class Reports:
         self._poses = self._output(node, "tf2_msgs/msg/TFMessage", "/world_poses", 10)
         self._metrics = self._output(node, _METRICS, "/performance_metrics", 10)
         self._names: tuple[str, ...] = ()
-        self._bodies = np.zeros(0, dtype=int)
+        self._bodies: NDArray[np.intp] = np.zeros(0, dtype=np.intp)
         self._revision = -1
         self._posed = self._measured = 0.0
         server.on_change.append(self.publish_description)
