@@ -11,6 +11,7 @@ from linkwright.sdf.frames import Frames, PlacedLink, links_of
 from linkwright.sdf.links import Collision, Visual
 from linkwright.sdf.materials import Material
 from linkwright.sdf.poses import SEPARATOR, RawPose
+from linkwright.sdf.scripts import gazebo_look, painted
 from linkwright.sdf.shapes import (
     Cone,
     Ellipsoid,
@@ -191,7 +192,13 @@ def _inside(frames: Frames, placed: PlacedLink) -> Frames:
 
 
 def _look(material: Material) -> tuple[Sequence[float] | None, str]:
-    """Colour and image of a material: None and nothing where it says none."""
+    """Colour and image of a material: None and nothing where it says none.
+
+    Scripts were read where the world was; of a model that came as a text only Gazebo's own names are known here.
+    """
+    named = gazebo_look(material.script.name) if material.script else None
+    if named is not None:
+        material = painted(material, named)
     workflow = material.pbr and (material.pbr.metal or material.pbr.specular)
     image = workflow.albedo_map if workflow else ""
     return material.diffuse or material.ambient, image

@@ -187,3 +187,13 @@ async def test_files_of_a_model_are_served_with_its_textures_and_those_that_are_
         level, told = made.status("World")["Files"]
         assert level == "error"
         assert "crate::link: Could not load 'file:///nowhere.stl'" in told
+
+
+async def test_materials_of_gazebo_are_known_by_their_names():
+    script = "<material><script><name>Gazebo/Red</name></script></material>"
+    visual = f"<visual name='v'><geometry><sphere><radius>1</radius></sphere></geometry>{script}</visual>"
+    text = f"<sdf version='1.9'><model name='ball'><link name='l'>{visual}</link></model></sdf>"
+    async with world(config("world")) as made:
+        await Simulation(made).describe(text, links=1)
+        (link,) = sent(made, "world_scene").fields["links"]
+        assert link["visuals"][0]["color"] == [1.0, 0.0, 0.0, 1.0]
