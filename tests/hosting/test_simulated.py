@@ -13,7 +13,7 @@ from linkwright.cli.command import main
 from linkwright.descriptions import examine
 from linkwright.hosting.launch_log import LaunchLog
 from linkwright.hosting.plans import HostOptions
-from linkwright.hosting.simulated import SimulatedView, SimulatedWorld
+from linkwright.hosting.simulated import SimulatedView, SimulatedWorld, scan_topics
 from linkwright.packages import PackageFinder
 from linkwright.testing import Recording
 from tests.waiting import eventually
@@ -55,7 +55,8 @@ async def test_the_page_shows_the_world_in_the_frame_that_the_robot_moves_in():
     await eventually(lambda: "gzserver-2]: started" in err.getvalue() or running.done(), what=err.getvalue)
     config = view._viewer_config()
     assert config.options.text("Fixed Frame") == "odom"
-    assert [display.cls for display in config.displays][-1] == "linkwright/World"
+    shown = {display.cls.rpartition("/")[2]: display.checked for display in config.displays}
+    assert shown == {"Grid": True, "RobotModel": False, "TF": False, "World": True}
     view.interrupt("the test is over")
     assert await running
 
@@ -77,3 +78,11 @@ def test_a_robot_that_is_no_xml_is_one_error(tmp_path, capsys):
     (tmp_path / "robot.urdf").write_text("<robot")
     assert main(["sim", "empty", str(tmp_path / "robot.urdf"), "--headless"]) == 1
     assert capsys.readouterr().err.count("error[") == 1
+
+
+def test_scans_are_shown_where_the_description_says_that_they_go():
+    classic = "<sensor name='a' type='ray'><plugin><ros><remapping>~/out:=scan</remapping></ros></plugin></sensor>"
+    newer = '<sensor name="b" type="gpu_lidar"><topic>/front/scan</topic></sensor>'
+    camera = '<sensor name="c" type="camera"><topic>image</topic></sensor>'
+    assert scan_topics(classic + newer + camera + newer) == ["/scan", "/front/scan"]
+    assert scan_topics("") == []

@@ -22,6 +22,11 @@ _SIMULATOR = ("gazebo_ros", "gzserver")
 _CLOCK_RATE = 100.0
 """Hz of simulated time in which the time is told: transforms are not older than that."""
 _WORLD_DISPLAY, _WORLD_FRAME = "linkwright/World", "world"
+_SCAN_DISPLAY = "rviz_default_plugins/LaserScan"
+_DISTANCE = 5.0
+"""Metres from which a robot and what is around it are seen."""
+_LIDAR = re.compile(r"""<sensor\b[^>]*\btype=["'](?:gpu_)?(?:ray|lidar)["'].*?</sensor>""", re.DOTALL)
+_SCAN_TOPIC = re.compile(r"~/out:=\s*([\w/]+)|<topic>\s*([\w/]+)\s*</topic>")
 _ODOMETRY_FRAME = re.compile(r"<(odometry_?[fF]rame|odom_frame)>\s*([\w/]+)\s*<")
 _DRIVES = re.compile(r"diff.drive|DiffDrive|skid_steer|planar_move|ackermann|mecanum", re.IGNORECASE)
 
@@ -75,6 +80,13 @@ class SimulatedWorld:
         }
 
 
+def scan_topics(text: str) -> list[str]:
+    """The topics of the laser scanners that a description names, in its order."""
+    found = (_SCAN_TOPIC.search(each[0]) for each in _LIDAR.finditer(text))
+    topics = (each[1] or each[2] for each in found if each)
+    return list(dict.fromkeys(topic if topic.startswith("/") else f"/{topic}" for topic in topics))
+
+
 def run_simulated(world: SimulatedWorld, finder: PackageFinder, options: HostOptions, *, foxglove: int | None) -> int:
     """Simulate a world until the user ends it, or its seconds are over.
 
@@ -116,11 +128,24 @@ class SimulatedView(ModelView):
             self._plan(*VIEWER, name="viewer", viewer_config=self._viewer_config)
 
     def _viewer_config(self) -> RvizConfig:
-        """The world, and a robot's model and transforms in the frame that it moves in."""
+        """The world with the robot in it, and its scans, in the frame that the robot moves in.
+
+        Model and transforms of the robot are there too, but off: they would draw it a second time.
+        """
         from linkwright.viewer import RvizConfig
 
         config = RvizConfig.for_model(self._fixed_frame(), name=str(self._world.path))
+        for display in config.displays:
+            display.checked = display.cls.endswith("/Grid")
         config.insert(config.make(_WORLD_DISPLAY, "World"))
+        for topic in scan_topics(self._world.text):
+            scan = config.make(_SCAN_DISPLAY, "LaserScan")
+            scan.section.put(("Topic", "Value"), topic, string=True)
+            scan.section.put(("Topic", "Reliability Policy"), "Best Effort", string=True)
+            config.insert(scan)
+        view = config.views.current
+        view.values |= {"Distance": _DISTANCE}
+        config.views.current = view
         return config
 
     def _fixed_frame(self) -> str:
