@@ -49,6 +49,7 @@ WRITING = {
     "export glb": ["export", "out.glb", "r.urdf"],
     "diagram": ["diagram", "r.urdf", "out"],
     "inertia": ["inertia", "r.urdf", "--write"],
+    "drive": ["drive", "r.urdf", "--write"],
     "check": ["check", "r.urdf", "--unsafe-fixes", "--select", "URDF,LW,INR,XAC"],
 }
 

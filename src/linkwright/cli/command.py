@@ -24,6 +24,7 @@ from linkwright.interruption import end_at_once, raise_interrupts
 GROUPS = {
     "descriptions": {
         "view": "show a URDF or xacro file in the browser, with sliders for its joints",
+        "drive": "put a robot into a simulated world and drive it; masses, collisions and wheels are inferred",
         "xacro": "expand a xacro file to URDF, list its arguments, or explain its parts",
         "check": "check URDF and xacro files, and the packages in folders; of one file, print the link tree",
         "explain": "say what a diagnostic code means and what to do, or what an element or attribute of URDF means",
@@ -67,7 +68,7 @@ _IN_ORDER = frozenset({"pkg", "run", "shell"})
 """Verbs whose words are taken in order, beside those with verbs of their own: what follows is another command's.
 Elsewhere options may stand between words (`launch PACKAGE --no-open FILE`)."""
 
-_WITH_A_LOOP = frozenset({"view", "run", "sim", "launch", "bag", *GROUPS["the running graph, as ros2 does"]})
+_WITH_A_LOOP = frozenset({"view", "drive", "run", "sim", "launch", "bag", *GROUPS["the running graph, as ros2 does"]})
 """Verbs that run an event loop or another program, which care for Ctrl-C themselves; before they do there is nothing to
 be cleaned up."""
 

@@ -1,0 +1,170 @@
+"""``linkwright drive``: put a robot into a simulated world and drive it, whatever its description lacks."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from linkwright.assignments import parse_assignments
+from linkwright.cli.endings import say
+from linkwright.cli.view import add_viewer_options
+from linkwright.diagnostics import (
+    Phrase,
+    Severity,
+    counted,
+    display_path,
+    has_errors,
+    joined,
+    phrase,
+    print_diagnostics,
+)
+from linkwright.diagnostics.translation import localized
+
+if TYPE_CHECKING:
+    from linkwright.inference import Inference
+    from linkwright.urdf import Robot
+
+_KINDS = ("differential", "skid", "ackermann", "mecanum", "joints")
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    parser.add_argument("file", metavar="FILE", help="the URDF or xacro file")
+    parser.add_argument(
+        "values", metavar="NAME:=VALUE", nargs="*", default=[], help="values for the file's <xacro:arg>"
+    )
+    parser.add_argument(
+        "--world", metavar="WORLD", default="empty", help="the world: a file or a name (default: a plane)"
+    )
+    parser.add_argument(
+        "--drive",
+        metavar="KIND",
+        choices=_KINDS,
+        help="the kind of drive, where the file does not tell: %(choices)s",
+    )
+    parser.add_argument(
+        "--wheels", metavar="LEFT,RIGHT", help="the joints or links of the driven wheels, where the file does not tell"
+    )
+    parser.add_argument(
+        "--show", action="store_true", help="print what is inferred, with the text that says it, and end"
+    )
+    parser.add_argument(
+        "--write", action="store_true", help="put what is inferred into the file, keep all else in it, and end"
+    )
+    parser.add_argument("--headless", action="store_true", help="without a page")
+    parser.add_argument(
+        "--seconds", metavar="S", type=_seconds, default=0.0, help="end after so many simulated seconds"
+    )
+    parser.add_argument(
+        "--rate",
+        metavar="FACTOR",
+        type=_rate,
+        default=0.0,
+        help="simulated seconds in a real one, or max (default: as the world says)",
+    )
+    add_viewer_options(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Infer what is missing, then drive, print or write; 1 when something is wrong with the description."""
+    from linkwright.descriptions import examine
+    from linkwright.hosting.driven import Drive, run_drive
+    from linkwright.hosting.plans import HostOptions
+    from linkwright.inertia import MeshLibrary
+    from linkwright.inference import infer
+    from linkwright.inference.writing import write_inference
+    from linkwright.packages import PackageFinder
+
+    path = Path(arguments.file).absolute()
+    finder = PackageFinder(start=[path.parent, Path.cwd()])
+    description = examine(arguments.file, arguments=parse_assignments(arguments.values), packages=finder)
+    robot = description.robot
+    if robot is None or not robot.links:
+        print_diagnostics(description.diagnostics, sys.stderr)
+        return 1
+    wheels = [name.strip() for name in (arguments.wheels or "").split(",") if name.strip()]
+    found = infer(robot, MeshLibrary(finder, path.parent), kind=arguments.drive, wheels=wheels)
+    if arguments.show:
+        sys.stdout.write(_listed(found))
+        return 0
+    if arguments.write:
+        written = write_inference(robot, found)
+        for file in written.files:
+            print(localized(phrase("Changed file {file}", file=display_path(file))))
+        print_diagnostics(written.refused, sys.stderr)
+        return 1 if written.refused else 0
+    print_diagnostics([each for each in found.diagnostics if each.severity is not Severity.INFO], sys.stderr)
+    say(localized(_summary(robot, found)))
+    drive = replace(
+        Drive.of(description, found),
+        world=arguments.world,
+        seconds=arguments.seconds,
+        headless=arguments.headless,
+        rate=arguments.rate,
+    )
+    options = HostOptions(arguments.host, arguments.port, not arguments.no_open)
+    return (
+        1
+        if run_drive(drive, finder, options, foxglove=arguments.foxglove)
+        else int(has_errors(description.diagnostics))
+    )
+
+
+def _summary(robot: Robot, found: Inference) -> Phrase:
+    """What was inferred, in a line."""
+    drive = found.drive
+    parts: list[Phrase] = []
+    if drive is not None and drive.left:
+        names = [joined([wheel.joint for wheel in side]) for side in (drive.left, drive.right)]
+        parts.append(phrase("{kind} drive, {left} and {right}", kind=drive.kind, left=names[0], right=names[1]))
+    codes = [each.code for each in found.diagnostics]
+    collisions, masses = codes.count("DRIVE101"), codes.count("DRIVE102") + codes.count("DRIVE103")
+    if collisions:
+        parts.append(counted("collisions of {count} link", "collisions of {count} links", collisions))
+    if masses:
+        parts.append(counted("the mass of {count} link", "masses of {count} links", masses))
+    if not parts:
+        return phrase("'{robot}' is taken as it is", robot=robot.name)
+    return phrase(
+        "inferred for '{robot}': {parts}; `--show` says why, `--write` puts it into the file",
+        robot=robot.name,
+        parts=joined(parts),
+    )
+
+
+def _listed(found: Inference) -> str:
+    """Each inference with its place, its reason and the text that says it."""
+    from linkwright.inference.writing import block
+
+    lines: list[str] = []
+    for finding in found.findings:
+        told = finding.diagnostic
+        place = f"{told.span.file}:{told.span.line}: " if told.span else ""
+        lines.append(f"{place}{told.code} {localized(told.message)}")
+        lines += [f"    {line}" for element in finding.added for line in block(element).splitlines()]
+    return "".join(f"{line}\n" for line in lines)
+
+
+def _seconds(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0.0
+    if not 0.0 < value < 1e9:
+        raise argparse.ArgumentTypeError(f"'{text}' is not a positive number of seconds")
+    return value
+
+
+def _rate(text: str) -> float:
+    if text == "max":
+        return -1.0
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0.0
+    if not 0.0 < value < 1e6:
+        raise argparse.ArgumentTypeError(f"'{text}' is neither a positive number nor max")
+    return value

@@ -1,0 +1,48 @@
+"""`linkwright drive`: what it prints, writes and refuses; the driving itself is tested with `hosting.driven`."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.cli import main
+from tests.hosting.test_driven import MBOT
+
+
+@pytest.fixture
+def file(tmp_path, monkeypatch):
+    """A robot of visuals only in the working directory."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mbot.urdf").write_text(MBOT)
+    return tmp_path / "mbot.urdf"
+
+
+def test_what_is_inferred_is_shown_with_place_reason_and_text(file, capsys):
+    assert main(["drive", "mbot.urdf", "--show"]) == 0
+    printed = capsys.readouterr().out
+    assert "mbot.urdf:2: DRIVE102 link 'base_link' has no mass: it gets 6.03 kg, its shapes at 300 kg/m3\n" in printed
+    assert "        <left_joint>left_wheel_joint</left_joint>\n" in printed
+    assert file.read_text() == MBOT
+
+
+def test_what_is_written_is_all_there_is_to_infer(file, capsys):
+    assert main(["drive", "mbot.urdf", "--write"]) == 0
+    assert "Changed file mbot.urdf" in capsys.readouterr().out
+    assert file.read_text() != MBOT
+    assert main(["drive", "mbot.urdf", "--show"]) == 0
+    assert [line.split()[1] for line in capsys.readouterr().out.splitlines()] == ["DRIVE202"]
+
+
+def test_a_kind_of_drive_that_the_robot_has_not_is_refused(file, capsys):
+    assert main(["drive", "mbot.urdf", "--drive", "ackermann"]) == 1
+    assert "DRIVE211" in capsys.readouterr().err
+
+
+def test_a_file_that_is_no_robot_is_refused(file, capsys):
+    file.write_text("<sdf/>")
+    assert main(["drive", "mbot.urdf"]) == 1
+    assert "URDF" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("words", [["--seconds", "0"], ["--rate", "fast"], ["--drive", "legs"]])
+def test_a_value_that_is_none_is_a_mistake_in_use(file, words):
+    assert main(["drive", str(file), *words]) == 2

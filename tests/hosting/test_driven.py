@@ -1,0 +1,157 @@
+"""Driving a robot of visuals only: the simulator with what was inferred, in this process."""
+
+from __future__ import annotations
+
+import io
+from contextlib import asynccontextmanager
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from linkwright.descriptions import DescriptionLibrary, examine
+from linkwright.graph import Graph
+from linkwright.hosting.driven import Drive, DrivenModel
+from linkwright.hosting.launch_log import LaunchLog
+from linkwright.hosting.plans import HostOptions
+from linkwright.inertia import MeshLibrary
+from linkwright.inference import infer
+from linkwright.messages import get_message
+from linkwright.packages import PackageFinder
+from linkwright.simulation.plugins.odometry import yaw_of
+from linkwright.simulation.server.entities import entity_from
+from linkwright.simulation.server.server import ServerOptions, SimulationServer
+from linkwright.simulation.server.worlds import load_world
+from linkwright.simulation.simulation import Simulation
+
+MBOT = """<robot name="mbot">
+  <link name="base_link"><visual><geometry><cylinder radius="0.2" length="0.16"/></geometry></visual></link>
+  <link name="left_wheel_link">
+    <visual><origin rpy="1.5707 0 0"/><geometry><cylinder radius="0.06" length="0.025"/></geometry></visual>
+  </link>
+  <link name="right_wheel_link">
+    <visual><origin rpy="1.5707 0 0"/><geometry><cylinder radius="0.06" length="0.025"/></geometry></visual>
+  </link>
+  <link name="front_caster_link"><visual><geometry><sphere radius="0.015"/></geometry></visual></link>
+  <link name="back_caster_link"><visual><geometry><sphere radius="0.015"/></geometry></visual></link>
+  <joint name="left_wheel_joint" type="continuous">
+    <origin xyz="0 0.19 -0.05"/><parent link="base_link"/><child link="left_wheel_link"/><axis xyz="0 1 0"/>
+  </joint>
+  <joint name="right_wheel_joint" type="continuous">
+    <origin xyz="0 -0.19 -0.05"/><parent link="base_link"/><child link="right_wheel_link"/><axis xyz="0 1 0"/>
+  </joint>
+  <joint name="front_caster_joint" type="continuous">
+    <origin xyz="0.18 0 -0.095"/><parent link="base_link"/><child link="front_caster_link"/><axis xyz="0 1 0"/>
+  </joint>
+  <joint name="back_caster_joint" type="continuous">
+    <origin xyz="-0.18 0 -0.095"/><parent link="base_link"/><child link="back_caster_link"/><axis xyz="0 1 0"/>
+  </joint>
+</robot>
+"""
+"""The measures of the tutorial's first robot: visuals, and nothing that a simulator asks for."""
+
+SECOND = 1_000_000_000
+SHARED = Path(__file__).parents[3] / "shared" / "tutorial" / "my_robot_description" / "urdf" / "mbot_base.urdf"
+
+
+class Driven:
+    """A robot that is driven in a simulation, which stands still but for `drive`."""
+
+    def __init__(self, graph: Graph, server: SimulationServer) -> None:
+        self._graph = graph
+        self._server = server
+        kind = get_message("geometry_msgs/msg/Twist")
+        self._publisher = graph.create_node("driver").create_publisher(kind, "/cmd_vel", 10)
+        self.odometry: list = []
+        listener = graph.create_node("listener")
+        listener.create_subscription(get_message("nav_msgs/msg/Odometry"), "/odom", self.odometry.append, 10)
+
+    async def drive(self, forward: float, turning: float, seconds: float) -> None:
+        """Tell it a velocity, and let time pass."""
+        twist = get_message("geometry_msgs/msg/Twist")()
+        twist.linear.x, twist.angular.z = forward, turning
+        self._publisher.publish(twist)
+        await self._graph.settle()
+        self._server.advance(round(seconds * SECOND))
+        await self._graph.settle()
+
+    @property
+    def pose(self):
+        """Where it is in the world."""
+        return self._server.simulation.model_pose("mbot")
+
+
+def drive_of(path: Path) -> Drive:
+    """What `linkwright drive` makes of a file."""
+    description = examine(path)
+    assert description.robot is not None
+    found = infer(description.robot, MeshLibrary(PackageFinder(start=path.parent), path.parent))
+    return replace(Drive.of(description, found), headless=True)
+
+
+@asynccontextmanager
+async def driven(path: Path):
+    """The robot of a file on a plane; time passes when the test says so."""
+    drive = drive_of(path)
+    loaded = load_world(drive.world)
+    graph = Graph(on_log=lambda record: None)
+    simulation = Simulation(loaded.world, loaded.finder)
+    server = SimulationServer(simulation, graph.create_node("gazebo"), ServerOptions(usual_names=True))
+    server.start()
+    model = entity_from(drive.text, loaded.finder, DescriptionLibrary()).model
+    server.spawn(model, drive.name, (0.0, 0.0, drive.height, 0.0, 0.0, 0.0, 1.0))
+    try:
+        yield Driven(graph, server)
+    finally:
+        server.close()
+        await graph.close()
+
+
+def files(folder: Path) -> list[Path]:
+    """Robots of visuals only: our own, and the tutorial's where it is there."""
+    path = folder / "mbot_base.urdf"
+    path.write_text(MBOT)
+    return [path, *([SHARED] if SHARED.exists() else [])]
+
+
+async def test_it_drives_one_metre_straight_and_then_turns(tmp_path):
+    for path in files(tmp_path):
+        await _drives_one_metre_straight_and_then_turns(path)
+
+
+async def _drives_one_metre_straight_and_then_turns(path: Path) -> None:
+    async with driven(path) as mbot:
+        await mbot.drive(0.5, 0.0, 1.5)
+        start = mbot.pose
+        assert start[2] == pytest.approx(0.11, abs=1e-3)
+        await mbot.drive(0.5, 0.0, 2.0)
+        end = mbot.pose
+        assert end[0] - start[0] == pytest.approx(1.0, abs=1e-3)
+        assert end[1] == pytest.approx(0.0, abs=1e-3)
+        await mbot.drive(0.0, 1.0, 2.0)
+        heading = yaw_of(mbot.pose)
+        await mbot.drive(0.0, 1.0, 1.0)
+        assert yaw_of(mbot.pose) - heading == pytest.approx(1.0, abs=0.01)
+        assert mbot.odometry[-1].child_frame_id == "base_link"
+
+
+async def test_it_ends_when_its_simulated_seconds_are_over(tmp_path, monkeypatch):
+    monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "ros_log"))
+    path = files(tmp_path)[0]
+    drive = replace(drive_of(path), seconds=0.5, rate=-1.0)
+    out, err = io.StringIO(), io.StringIO()
+    options = HostOptions(port=0, open_browser=False, network=False)
+    model = DrivenModel(drive, PackageFinder(start=path.parent, environment={}), options, LaunchLog(out, err))
+    assert await model.run(None)
+    assert "[gzserver-2]: has finished cleanly" in err.getvalue()
+
+
+async def test_a_world_that_is_not_there_is_an_error(tmp_path, monkeypatch):
+    monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "ros_log"))
+    path = files(tmp_path)[0]
+    out, err = io.StringIO(), io.StringIO()
+    options = HostOptions(port=0, open_browser=False, network=False)
+    drive = replace(drive_of(path), world="nowhere.world")
+    model = DrivenModel(drive, PackageFinder(start=path.parent, environment={}), options, LaunchLog(out, err))
+    assert not await model.run(None)
+    assert "there is no world 'nowhere.world'" in err.getvalue()
