@@ -76,8 +76,8 @@ class MujocoCaster:
         sides = normals.reshape(-1, 3)
         for ray in np.nonzero((geoms >= 0) & (distances < start * lengths))[0]:
             geoms[ray], distances[ray], sides[ray] = self._beyond(origin, rays[ray], lengths[ray], start)
-        distances = np.where(geoms >= 0, distances / lengths, np.inf)
-        return Hits(distances.astype(np.float32), geoms, sides.astype(np.float32))
+        reached = np.where(geoms >= 0, distances / lengths, np.inf)
+        return Hits(reached.astype(np.float32), geoms, sides.astype(np.float32))
 
     def _beyond(self, origin: Array, ray: Array, length: float, start: float) -> tuple[int, float, Array]:
         """What one ray hits: the geom, the distance in m, and the normal."""
