@@ -9,12 +9,12 @@ import numpy as np
 
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.geometry.arrays import Array
+from linkwright.simulation.casting import GROUPS
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.rendering.triangles import Mesh, is_endless, triangles_of
 from linkwright.simulation.scene.bodies import VISUAL_GROUP
 from linkwright.simulation.simulation import Simulation
 
-_GROUPS = 6
 _THIN = 1e-6
 """In m: what is on the surface of a box is in it."""
 
@@ -57,7 +57,7 @@ class MujocoCaster:
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
         self._mujoco = load_mujoco()
-        self._groups = np.zeros(_GROUPS, dtype=np.uint8)
+        self._groups = np.zeros(GROUPS, dtype=np.uint8)
         self._groups[VISUAL_GROUP] = 1
 
     def cast(self, origin: Array, rays: Any, start: float) -> Hits:

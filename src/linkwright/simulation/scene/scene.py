@@ -25,8 +25,6 @@ _ANCHORS_APART = 0.1
 """How far from each other in m the two points are that hold the axis of a hinge that closes a loop."""
 _LOOP_STEPS = 4.0
 """The time constant of what closes a loop, in steps."""
-_ARMATURE = 0.01
-"""Inertia in kg m2 that a motor adds to its joint where the integrator knows nothing of the motor's damping."""
 
 
 @dataclass(slots=True)
@@ -92,14 +90,13 @@ class Scene:
 
     def _set_options(self, world: World) -> None:
         """What measurements of wheels, casters and rest have shown to be right: decision 0042."""
-        kinds, option = self._mujoco.mjtIntegrator, self.spec.option
+        option = self.spec.option
         option.timestep = self.step
         option.gravity = list(gravity_of(world))
         option.cone = self._mujoco.mjtCone.mjCONE_ELLIPTIC
         option.impratio = 10.0
         option.noslip_iterations = 3  # a wheel that is sped up at once would jump: what slips is pushed off the ground
-        self._discrete = hasattr(kinds, "mjINT_DISCRETE")  # since MuJoCo 4
-        option.integrator = kinds.mjINT_DISCRETE if self._discrete else kinds.mjINT_EULER
+        option.integrator = self._mujoco.mjtIntegrator.mjINT_DISCRETE
         option.enableflags |= self._mujoco.mjtEnableBit.mjENBL_SLEEP
         option.disableflags |= self._mujoco.mjtDisableBit.mjDSBL_AUTORESET
 
@@ -164,8 +161,6 @@ class Scene:
         """
         actuator = self._actuator(joint, limit)
         actuator.set_to_velocity(kv=gain)
-        if not self._discrete:
-            self.spec.joint(joint).armature = _ARMATURE
         self._unsettled.add(joint.partition(SEPARATOR)[0])
         self._driven.setdefault(joint.partition(SEPARATOR)[0], set()).add(joint)
         return str(actuator.name)

@@ -15,13 +15,12 @@ import numpy as np
 
 from linkwright.geometry.arrays import Array, rotation_matrix
 from linkwright.sdf.sensors import Lidar, Sweep
+from linkwright.simulation.casting import GROUPS, cast
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.scene.bodies import COLLISION_GROUP, VISUAL_GROUP
 from linkwright.simulation.sensors.mount import GeomTable, Mount, part_of, parts_of
 from linkwright.simulation.sensors.noise import NoiseSource
 
-_GROUPS = 6
-"""How many groups of geoms MuJoCo has."""
 _A_LITTLE = 1e-9
 """In m: what a ray is moved on by in order not to hit the same surface again."""
 _SURFACES = 64
@@ -89,7 +88,7 @@ class LidarSensor:
         self._simulation = mount.simulation
         self._mujoco = load_mujoco()
         self._noise = NoiseSource(lidar.noise, generator)
-        self._groups = np.zeros(_GROUPS, dtype=np.uint8)
+        self._groups = np.zeros(GROUPS, dtype=np.uint8)
         self._groups[VISUAL_GROUP if sees_visuals else COLLISION_GROUP] = 1
         self._retro = GeomTable(self._simulation, self._retros)
         self._own = GeomTable(self._simulation, self._owned)
@@ -122,14 +121,11 @@ class LidarSensor:
     def _cast(self) -> tuple[Array, Any]:
         simulation, pose = self._simulation, self._mount.pose()
         rays = np.ascontiguousarray(self.directions @ rotation_matrix(pose[3:]).T)
-        count = len(rays)
-        ranges, geoms = np.empty(count), np.empty(count, dtype=np.int32)
         reach = self.range_max if isfinite(self.range_max) else self._mujoco.mjMAXVAL
         origin, body = np.array(pose[:3]), self._mount.body
-        self._mujoco.mj_multiRay(
-            simulation.model, simulation.data, origin, rays.ravel(), self._groups, 1, body, geoms, ranges, None, count,
-            reach,
-        )  # fmt: skip
+        ranges, geoms = cast(
+            simulation.model, simulation.data, origin, rays, self._groups, apart_from=body, reach=reach
+        )
         own = self._own.array()
         for ray in np.nonzero((geoms >= 0) & (ranges < self.range_min) & (own[geoms] > 0))[0]:
             ranges[ray], geoms[ray] = self._beyond(origin, rays[ray], body, float(ranges[ray]), own)

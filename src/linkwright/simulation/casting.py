@@ -1,0 +1,60 @@
+"""Rays of MuJoCo: what is hit first, and how far away that is."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from linkwright.geometry.arrays import Array
+from linkwright.simulation.library import load_mujoco
+
+GROUPS = 6
+"""How many groups of geoms MuJoCo has."""
+_SOUND = 4
+"""Before this version, rays that are cast together miss bodies whose centre of mass is not their origin."""
+
+
+def cast(
+    model: Any,
+    data: Any,
+    origin: Array,
+    rays: Array,
+    groups: Any,
+    *,
+    apart_from: int,
+    reach: float,
+    normals: Any = None,
+) -> tuple[Array, Any]:
+    """What rays from one point hit first.
+
+    Args:
+        model: MuJoCo's model.
+        data: its state.
+        origin: where they begin, shape (3,), in m.
+        rays: their directions, of length 1, shape (rays, 3).
+        groups: which groups of geoms they see, shape (GROUPS,).
+        apart_from: a body whose geoms they pass through; -1 for none.
+        reach: how far they see at most, in m.
+        normals: gets the normals of what was hit, shape (rays, 3), where they are wanted.
+
+    Returns:
+        Distances in m, negative for nothing, and the geoms, -1 for none; each of shape (rays,).
+    """
+    mujoco = load_mujoco()
+    count = len(rays)
+    distances, geoms = np.empty(count), np.empty(count, dtype=np.int32)
+    if int(mujoco.__version__.partition(".")[0]) >= _SOUND:
+        flat = None if normals is None else normals.reshape(-1)
+        mujoco.mj_multiRay(
+            model, data, origin, rays.reshape(-1), groups, 1, apart_from, geoms, distances, flat, count, reach
+        )
+    else:
+        for index in range(count):
+            normal = None if normals is None else normals[index]
+            distances[index] = mujoco.mj_ray(
+                model, data, origin, rays[index], groups, 1, apart_from, geoms[index : index + 1], normal
+            )
+    beyond = distances > reach
+    distances[beyond], geoms[beyond] = -1.0, -1
+    return distances, geoms

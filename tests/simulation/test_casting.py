@@ -1,0 +1,42 @@
+"""Rays of MuJoCo."""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+import pytest
+
+from linkwright.simulation.casting import GROUPS, cast
+from tests.simulation.worlds import simulated
+
+
+def test_bodies_whose_mass_is_elsewhere_are_hit():
+    chance = np.random.default_rng(1)
+    models = []
+    for index in range(6):
+        pose = " ".join(map(str, chance.uniform(-3, 3, 6)))
+        size = " ".join(map(str, chance.uniform(0.2, 1.2, 3)))
+        mass = "<inertial><pose>0.3 -0.2 0.1 0.4 0.5 0.6</pose><mass>1</mass></inertial>"
+        shape = f"<geometry><box><size>{size}</size></box></geometry>"
+        models.append(
+            f'<model name="m{index}"><pose>{pose}</pose><link name="l">{mass}<collision name="c">{shape}</collision>'
+            "</link></model>"
+        )
+    simulation = simulated(*models)
+    simulation.refresh()
+    rays = chance.normal(size=(720, 3))
+    rays /= np.linalg.norm(rays, axis=1)[:, None]
+    groups, origin = np.ones(GROUPS, dtype=np.uint8), np.zeros(3)
+    normals = np.zeros((720, 3))
+    distances, geoms = cast(
+        simulation.model, simulation.data, origin, rays, groups, apart_from=-1, reach=3.0, normals=normals
+    )
+    hit = np.zeros(1, dtype=np.int32)
+    alone = np.array(
+        [mujoco.mj_ray(simulation.model, simulation.data, origin, ray, groups, 1, -1, hit) for ray in rays]
+    )
+    near = (alone >= 0) & (alone <= 3.0)
+    assert near.sum() > 30
+    assert distances[near] == pytest.approx(alone[near])
+    assert (geoms[~near] == -1).all()
+    assert np.linalg.norm(normals[near], axis=1) == pytest.approx(np.ones(near.sum()))
