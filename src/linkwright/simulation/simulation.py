@@ -237,6 +237,18 @@ class Simulation:
         root, offset = self._root(name)
         return compose(self.link_pose(root), invert(offset))
 
+    def moves_freely(self, name: str) -> bool:
+        """Whether a model is fixed neither to the world nor to another one.
+
+        Raises:
+            KeyError: there is no such model.
+        """
+        self.refresh()
+        root = self.model.body(self._root(name)[0])
+        if root.jntnum[0] != 1:
+            return False
+        return bool(self.model.jnt_type[root.jntadr[0]] == self._mujoco.mjtJoint.mjJNT_FREE)
+
     def set_model_pose(self, name: str, pose: Transform) -> None:
         """Put a model elsewhere; it stands still there.
 
@@ -244,11 +256,9 @@ class Simulation:
             KeyError: there is no such model.
             LinkwrightError: SIM103 it cannot be moved, as it is fixed to the world.
         """
-        self.refresh()
-        root, offset = self._root(name)
-        free = self.model.body(root)
-        if free.jntnum[0] != 1 or self.model.jnt_type[free.jntadr[0]] != self._mujoco.mjtJoint.mjJNT_FREE:
+        if not self.moves_freely(name):
             raise LinkwrightError(Diagnostic("SIM103", phrase("'{name}' is fixed to the world", name=name)))
+        root, offset = self._root(name)
         joint = self.data.joint(f"{root}#free")
         x, y, z, qx, qy, qz, qw = compose(pose, offset)
         joint.qpos[:] = (x, y, z, qw, qx, qy, qz)

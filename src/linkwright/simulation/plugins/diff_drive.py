@@ -7,11 +7,12 @@ robot that drives backward has a negative velocity in its odometry.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import cos, inf, sin
-from typing import Any, Generic, TypeVar
+from math import inf
+from typing import Any, ClassVar, Generic, TypeVar
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, phrase
-from linkwright.simulation.plugins.odometry import OdometryTopics, PlanarPose, transforms_topic, yaw_of
+from linkwright.diagnostics import phrase
+from linkwright.sdf.poses import SEPARATOR
+from linkwright.simulation.plugins.odometry import OdometryTopics, PlanarPose, planar_velocity, transforms_topic
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 from linkwright.simulation.simulation import NANOSECONDS, Motor
@@ -107,9 +108,9 @@ class _DiffDrive(SimulatedPlugin[P], Generic[P]):
                 left=len(left),
                 right=len(right),
             )
-            raise self._refused(message)
+            raise self.refused(message)
         if any(not (separation > 0.0 and radius > 0.0) for separation, radius in sizes):
-            raise self._refused(
+            raise self.refused(
                 phrase("plugin '{plugin}': distance and size of wheels must be positive", plugin=self.place.name)
             )
         pairs = []
@@ -119,12 +120,6 @@ class _DiffDrive(SimulatedPlugin[P], Generic[P]):
             pairs.append(_Pair(motors[0], motors[1], joints, separation, radius))
         self._pairs = tuple(pairs)
         self._begin()
-
-    def _refused(self, message: Phrase) -> LinkwrightError:
-        element = self.place.element
-        if element is None:
-            return LinkwrightError(Diagnostic("SIM160", message))
-        return LinkwrightError(Diagnostic("SIM160", message, element.span(), source=element.source))
 
     def _commanded(self, twist: Any) -> None:
         self._wanted = (float(twist.linear.x), float(twist.angular.z))
@@ -160,7 +155,7 @@ class _DiffDrive(SimulatedPlugin[P], Generic[P]):
 class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
     """``libgazebo_ros_diff_drive.so``."""
 
-    PARAMETERS = ClassicParameters
+    PARAMETERS: ClassVar[type[Any]] = ClassicParameters
 
     def start(self) -> None:
         """Give the wheels motors, and listen."""
@@ -188,17 +183,10 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
         stamp = self.stamp()
         if self.parameters.odometry_source.strip().lower() in (str(_WORLD), "world"):
             pose = self.simulation.model_pose(self.place.path)
-            linear, angular = self.simulation.link_velocity(self._first_link())
-            yaw = yaw_of(pose)
-            forward = float(linear[0] * cos(yaw) + linear[1] * sin(yaw))
-            sideways = float(linear[1] * cos(yaw) - linear[0] * sin(yaw))
-            self._topics.publish(stamp, pose, forward, sideways, float(angular[2]))
+            self._topics.publish(stamp, pose, *planar_velocity(pose, *self.simulation.link_velocity(self.first_link)))
         else:
             forward, turning = self._speeds()
             self._topics.publish(stamp, self._place.transform, forward, 0.0, turning)
-
-    def _first_link(self) -> str:
-        return self.simulation.scene.models[self.place.path].structure.links[0].link.name
 
     def _drive(self) -> None:
         """Bring the wheels nearer to the command, by no more than they may speed up in m/s2 at their rims."""
@@ -236,7 +224,7 @@ class GzDiffDrive(_DiffDrive[GzParameters]):
         sizes = [(said.wheel_separation, said.wheel_radius)] * count
         self._fit_wheels(said.left_joint, said.right_joint, sizes, _GZ_TORQUE)
         frame = said.frame_id or f"{model}/odom"
-        child = said.child_frame_id or f"{model}/{self._first_link()}"
+        child = said.child_frame_id or f"{model}/{self.first_link.rpartition(SEPARATOR)[2]}"
         name = said.odom_topic or f"/model/{model}/odometry"
         odometry = self.node.publisher("nav_msgs/msg/Odometry", name, usual="/odom")
         transforms = transforms_topic(self.node, said.tf_topic or f"/model/{model}/tf", "/tf")
@@ -245,10 +233,6 @@ class GzDiffDrive(_DiffDrive[GzParameters]):
         self.node.subscribe("geometry_msgs/msg/Twist", topic, self._commanded, usual="/cmd_vel")
         self.every(_GZ_RATE, self._drive)
         self.every(said.odom_publish_frequency, self._publish)
-
-    def _first_link(self) -> str:
-        first = self.simulation.scene.models[self.place.path].structure.links[0].link.name
-        return first.rpartition("::")[2]
 
     def _drive(self) -> None:
         self._measure()

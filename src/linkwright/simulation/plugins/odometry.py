@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from math import atan2, cos, sin
+from typing import Any
 
+from linkwright.geometry.arrays import Array
 from linkwright.geometry.single import Transform, quaternion_from_rpy
 from linkwright.messages import Header, Quaternion, Time, TransformStamped, Vector3, get_message
 from linkwright.messages import Transform as TransformMessage
@@ -48,6 +50,14 @@ def yaw_of(pose: Transform) -> float:
     return atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
 
 
+def planar_velocity(pose: Transform, linear: Array, angular: Array) -> tuple[float, float, float]:
+    """Velocities forward and to the left in m/s and around z in rad/s, of those in the axes of the world."""
+    yaw = yaw_of(pose)
+    forward = float(linear[0] * cos(yaw) + linear[1] * sin(yaw))
+    sideways = float(linear[1] * cos(yaw) - linear[0] * sin(yaw))
+    return forward, sideways, float(angular[2])
+
+
 @dataclass(slots=True)
 class OdometryTopics:
     """Odometry on its topics.
@@ -85,9 +95,14 @@ class OdometryTopics:
             message.twist.covariance[:] = self._matrix
             self.odometry.publish(message)
         if self.transforms is not None:
-            moved = TransformMessage(Vector3(x, y, z), Quaternion(*rotation))
-            sent = TransformStamped(Header(stamp, self.frame), self.child, moved)
-            self.transforms.publish(get_message("tf2_msgs/msg/TFMessage")(transforms=[sent]))
+            self.transforms.publish(transform_message(Header(stamp, self.frame), self.child, pose))
+
+
+def transform_message(header: Header, child: str, pose: Transform) -> Any:
+    """A message for topics of transforms that says where one frame is."""
+    x, y, z, *rotation = pose
+    sent = TransformStamped(header, child, TransformMessage(Vector3(x, y, z), Quaternion(*rotation)))
+    return get_message("tf2_msgs/msg/TFMessage")(transforms=[sent])
 
 
 def transforms_topic(node: PluginNode, name: str = "/tf", usual: str = "") -> Output:

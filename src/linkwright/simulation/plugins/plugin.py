@@ -32,7 +32,7 @@ from typing import Any, ClassVar, Generic, Protocol, TypeVar
 
 import numpy as np
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, phrase
 from linkwright.geometry.single import Transform
 from linkwright.messages import Time
 from linkwright.sdf.models import Model
@@ -183,6 +183,19 @@ class SimulatedPlugin(Generic[P]):
             LinkwrightError: SIM134 there is none.
         """
         return self._found(name, self.simulation.scene.joints, "SIM134")
+
+    @property
+    def first_link(self) -> str:
+        """The name in the simulation of the first link of its model: the model moves with it."""
+        top, _, _ = self.place.path.partition(SEPARATOR)
+        return self.simulation.scene.models[top].structure.links[0].link.name
+
+    def refused(self, message: Phrase) -> LinkwrightError:
+        """What `start` raises where parameters fit neither each other nor the model (SIM160)."""
+        element = self.place.element
+        if element is None:
+            return LinkwrightError(Diagnostic("SIM160", message))
+        return LinkwrightError(Diagnostic("SIM160", message, element.span(), source=element.source))
 
     def close(self) -> None:
         """End it, whatever it does."""

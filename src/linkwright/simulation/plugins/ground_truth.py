@@ -1,0 +1,163 @@
+"""Where a robot really is: ``libgazebo_ros_p3d.so``, and the publisher of odometry of gz.
+
+Source: gazebo_ros_pkgs and gz-sim (parameters, topics, frames, defaults).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from linkwright.geometry.arrays import Array
+from linkwright.geometry.single import (
+    Transform,
+    compose,
+    invert,
+    quaternion_from_rpy,
+    quaternion_inverse,
+    quaternion_multiply,
+    rotate,
+)
+from linkwright.geometry.vectors import Vector3
+from linkwright.messages import Header, Quaternion, get_message
+from linkwright.messages import Vector3 as VectorMessage
+from linkwright.simulation.plugins.odometry import planar_velocity, transform_message, transforms_topic
+from linkwright.simulation.plugins.parameters import parameter
+from linkwright.simulation.plugins.plugin import SimulatedPlugin
+
+_WORLD = ("world", "/world", "map", "/map")
+
+
+@dataclass(frozen=True, kw_only=True)
+class ClassicPoseParameters:
+    """Of the plugin of Gazebo classic."""
+
+    body_name: str = parameter(aliases=("bodyName",))
+    frame_name: str = parameter("world", aliases=("frameName",))
+    topic_name: str = parameter("odom", aliases=("topicName",))
+    xyz_offset: Vector3 = parameter((0.0, 0.0, 0.0), aliases=("xyz_offsets", "xyzOffset", "xyzOffsets"))  # noqa: RUF009 - a field of the table
+    rpy_offset: Vector3 = parameter((0.0, 0.0, 0.0), aliases=("rpy_offsets", "rpyOffset", "rpyOffsets"))  # noqa: RUF009 - a field of the table
+    gaussian_noise: float = parameter(0.0, aliases=("gaussianNoise",))
+    update_rate: float = parameter(0.0, aliases=("updateRate",))
+
+
+@dataclass(frozen=True, kw_only=True)
+class GzOdometryParameters:
+    """Of the plugin of gz."""
+
+    odom_frame: str = ""
+    robot_base_frame: str = ""
+    odom_publish_frequency: float = 50.0
+    odom_topic: str = ""
+    odom_covariance_topic: str = ""
+    tf_topic: str = ""
+    dimensions: int = 2
+    xyz_offset: Vector3 = (0.0, 0.0, 0.0)
+    rpy_offset: Vector3 = (0.0, 0.0, 0.0)
+    gaussian_noise: float = 0.0
+
+
+class ClassicPose(SimulatedPlugin[ClassicPoseParameters]):
+    """``libgazebo_ros_p3d.so``: a link in the world or in the frame of another link.
+
+    Velocities are in the axes of the world, or of that other link; gazebo_ros_p3d turns those the wrong way.
+    """
+
+    PARAMETERS = ClassicPoseParameters
+
+    def start(self) -> None:
+        """Find the links."""
+        said = self.parameters
+        self._link = self.link(said.body_name)
+        self._reference = "" if said.frame_name in _WORLD else self.link(said.frame_name)
+        self._turn = quaternion_from_rpy(said.rpy_offset)
+        self._random = self.random
+        self._output = self.node.publisher("nav_msgs/msg/Odometry", said.topic_name, 1)
+        self.every(said.update_rate, self._publish)
+
+    def reset(self) -> None:
+        """Begin anew with the noise."""
+        self._random = self.random
+
+    def _publish(self) -> None:
+        if not self._output.is_wanted:
+            return
+        said, simulation = self.parameters, self.simulation
+        pose, (linear, angular) = simulation.link_pose(self._link), simulation.link_velocity(self._link)
+        if self._reference:
+            frame, (moving, turning) = simulation.link_pose(self._reference), simulation.link_velocity(self._reference)
+            pose = compose(invert(frame), pose)
+            linear, angular = _turned_back(frame, linear - moving), _turned_back(frame, angular - turning)
+        x, y, z = (a + b for a, b in zip(pose[:3], said.xyz_offset, strict=True))
+        moved = (x, y, z, *quaternion_multiply(self._turn, pose[3:]))
+        linear, angular = _with_noise(self._random, said.gaussian_noise, linear, angular)
+        header = Header(self.stamp(), said.frame_name)
+        message = _odometry(header, said.body_name, moved, linear, angular, said.gaussian_noise**2)
+        self._output.publish(message)
+
+
+class GzOdometry(SimulatedPlugin[GzOdometryParameters]):
+    """``gz-sim-odometry-publisher-system``: a model in the world, with velocities in its own axes."""
+
+    PARAMETERS = GzOdometryParameters
+
+    def start(self) -> None:
+        """Make the topics."""
+        said, model, node = self.parameters, self.place.path, self.node
+        self._child = said.robot_base_frame or f"{model}/base_footprint"
+        self._frame = said.odom_frame or f"{model}/odom"
+        self._offset: Transform = (*said.xyz_offset, *quaternion_from_rpy(said.rpy_offset))
+        self._random = self.random
+        topic = said.odom_topic or f"/model/{model}/odometry"
+        uncertain = said.odom_covariance_topic or f"/model/{model}/odometry_with_covariance"
+        self._odometry = node.publisher("nav_msgs/msg/Odometry", topic, usual="/odom")
+        self._uncertain = node.publisher("nav_msgs/msg/Odometry", uncertain)
+        self._transforms = transforms_topic(node, said.tf_topic or f"/model/{model}/pose", "/tf")
+        self.every(said.odom_publish_frequency, self._publish)
+
+    def reset(self) -> None:
+        """Begin anew with the noise."""
+        self._random = self.random
+
+    def _publish(self) -> None:
+        said, simulation = self.parameters, self.simulation
+        pose = compose(simulation.model_pose(self.place.path), self._offset)
+        linear, angular = simulation.link_velocity(self.first_link)
+        if said.dimensions == 3:
+            linear, angular = _turned_back(pose, linear), _turned_back(pose, angular)
+        else:
+            forward, sideways, turning = planar_velocity(pose, linear, angular)
+            linear, angular = np.array((forward, sideways, 0.0)), np.array((0.0, 0.0, turning))
+            pose = (pose[0], pose[1], 0.0, *pose[3:])
+        linear, angular = _with_noise(self._random, said.gaussian_noise, linear, angular)
+        header = Header(self.stamp(), self._frame)
+        self._odometry.publish(_odometry(header, self._child, pose, linear, angular, 0.0))
+        self._uncertain.publish(_odometry(header, self._child, pose, linear, angular, said.gaussian_noise**2))
+        self._transforms.publish(transform_message(header, self._child, pose))
+
+
+def _turned_back(frame: Transform, vector: Array) -> Array:
+    """A vector in the axes of the world in those of a frame."""
+    x, y, z = vector
+    return np.array(rotate(quaternion_inverse(frame[3:]), (float(x), float(y), float(z))))
+
+
+def _with_noise(random: np.random.Generator, deviation: float, linear: Array, angular: Array) -> tuple[Array, Array]:
+    if deviation <= 0.0:
+        return linear, angular
+    return linear + random.normal(0.0, deviation, 3), angular + random.normal(0.0, deviation, 3)
+
+
+def _odometry(header: Header, child: str, pose: Transform, linear: Array, angular: Array, variance: float) -> Any:
+    """Odometry with the same variance of all that is measured."""
+    message = get_message("nav_msgs/msg/Odometry")(header=header, child_frame_id=child)
+    x, y, z, *rotation = pose
+    message.pose.pose.position.x, message.pose.pose.position.y, message.pose.pose.position.z = x, y, z
+    message.pose.pose.orientation = Quaternion(*rotation)
+    message.twist.twist.linear = VectorMessage(*linear.tolist())
+    message.twist.twist.angular = VectorMessage(*angular.tolist())
+    for part in (message.pose, message.twist):
+        part.covariance[::7] = [variance] * 6
+    return message

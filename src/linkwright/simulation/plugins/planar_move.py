@@ -1,0 +1,81 @@
+"""Moving in a plane, as on mecanum wheels: ``libgazebo_ros_planar_move.so``, with the names of ROS 1 too.
+
+Source: gazebo_ros_pkgs (parameters, topics, defaults). Other than there the velocity holds after each step, so that
+wheels that grip slow the robot down hardly at all, and the robot falls and tilts as it would by itself.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import cos, sin
+from typing import Any
+
+from linkwright.diagnostics import phrase
+from linkwright.simulation.plugins.odometry import OdometryTopics, planar_velocity, transforms_topic, yaw_of
+from linkwright.simulation.plugins.parameters import parameter
+from linkwright.simulation.plugins.plugin import SimulatedPlugin
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlanarMoveParameters:
+    """Of the plugin of Gazebo classic."""
+
+    publish_rate: float = parameter(20.0, aliases=("odometryRate",))
+    command_topic: str = parameter("cmd_vel", aliases=("commandTopic",))
+    odometry_topic: str = parameter("odom", aliases=("odometryTopic",))
+    odometry_frame: str = parameter("odom", aliases=("odometryFrame",))
+    robot_base_frame: str = parameter("base_footprint", aliases=("robotBaseFrame",))
+    publish_odom: bool = True
+    publish_odom_tf: bool = True
+    covariance_x: float = 1e-5
+    covariance_y: float = 1e-5
+    covariance_yaw: float = 1e-3
+
+
+class PlanarMove(SimulatedPlugin[PlanarMoveParameters]):
+    """``libgazebo_ros_planar_move.so``."""
+
+    PARAMETERS = PlanarMoveParameters
+    IGNORED = ("update_rate",)
+
+    def start(self) -> None:
+        """Listen, and hold the velocity.
+
+        Raises:
+            LinkwrightError: SIM160 the model is fixed to the world.
+        """
+        said, node, simulation = self.parameters, self.node, self.simulation
+        self._link = self.first_link
+        if not simulation.moves_freely(self.place.path):
+            raise self.refused(
+                phrase("plugin '{plugin}' cannot move a model that is fixed to the world", plugin=self.place.name)
+            )
+        simulation.keep_awake(self._link)
+        self._wanted = (0.0, 0.0, 0.0)
+        odometry = node.publisher("nav_msgs/msg/Odometry", said.odometry_topic, 1) if said.publish_odom else None
+        transforms = transforms_topic(node) if said.publish_odom_tf else None
+        covariance = (said.covariance_x, said.covariance_y, said.covariance_yaw)
+        self._topics = OdometryTopics(said.odometry_frame, said.robot_base_frame, odometry, transforms, covariance)
+        node.subscribe("geometry_msgs/msg/Twist", said.command_topic, self._commanded, 1)
+        self.every(0.0, self._move)
+        if odometry is not None or transforms is not None:
+            self.every(said.publish_rate, self._publish)
+
+    def _commanded(self, twist: Any) -> None:
+        self._wanted = (float(twist.linear.x), float(twist.linear.y), float(twist.angular.z))
+
+    def _move(self) -> None:
+        """Set the velocities in the plane; those that lead out of it stay."""
+        forward, sideways, turning = self._wanted
+        yaw = yaw_of(self.simulation.model_pose(self.place.path))
+        linear, angular = self.simulation.link_velocity(self._link)
+        along = (forward * cos(yaw) - sideways * sin(yaw), forward * sin(yaw) + sideways * cos(yaw), float(linear[2]))
+        self.simulation.set_model_velocity(self.place.path, along, (float(angular[0]), float(angular[1]), turning))
+
+    def _publish(self) -> None:
+        pose = self.simulation.model_pose(self.place.path)
+        self._topics.publish(self.stamp(), pose, *planar_velocity(pose, *self.simulation.link_velocity(self._link)))
+
+    def reset(self) -> None:
+        """Stand still."""
+        self._wanted = (0.0, 0.0, 0.0)

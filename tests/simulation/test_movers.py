@@ -1,0 +1,136 @@
+"""Plugins that move whole robots: in a plane, by skid steering; and those that say where a robot really is."""
+
+from __future__ import annotations
+
+from math import pi
+
+import pytest
+
+from linkwright.messages import get_message
+from linkwright.simulation.plugins.odometry import yaw_of
+from linkwright.testing import Recording
+from tests.simulation.test_plugins import SECOND, robot, served
+from tests.simulation.worlds import GROUND, box
+
+GRIPLESS = "<surface><friction><ode><mu>0</mu><mu2>0</mu2></ode></friction></surface>"
+
+
+async def drive(server, graph, forward=0.0, sideways=0.0, turning=0.0, seconds=1.0) -> None:
+    """Send a command, and let time pass."""
+    twist = get_message("geometry_msgs/msg/Twist")()
+    twist.linear.x, twist.linear.y, twist.angular.z = forward, sideways, turning
+    node = graph.create_node("driver")
+    node.create_publisher(get_message("geometry_msgs/msg/Twist"), "/cmd_vel", 10).publish(twist)
+    await graph.settle()
+    server.advance(round(seconds * SECOND))
+    await graph.settle()
+    node.destroy_node()
+
+
+def moving_box(plugin: str, pose: str = "0 0 0.1 0 0 0") -> str:
+    """A box on the ground with a plugin."""
+    return box("mbot", pose, "0.4 0.4 0.2", 5.0, GRIPLESS).replace("</model>", f"{plugin}</model>")
+
+
+def planar(more: str = "") -> str:
+    """The plugin of Gazebo classic."""
+    return f'<plugin name="move" filename="libgazebo_ros_planar_move.so">{more}</plugin>'
+
+
+async def test_planar_move_goes_any_way_and_tells_it_in_the_axes_of_the_robot():
+    async with served(GROUND, moving_box(planar(), f"0 0 0.1 0 0 {pi / 2}")) as (server, graph, log):
+        odometry, transforms = (Recording(graph, server.node, each) for each in ("/odom", "/tf"))
+        await drive(server, graph, 0.5, 0.25)
+        x, y, _, *_ = server.simulation.model_pose("mbot")
+        assert (x, y) == pytest.approx((-0.25, 0.5), abs=2e-3)
+        told = odometry.last
+        assert len(odometry) == len(transforms) == 20
+        assert (told.header.frame_id, told.child_frame_id) == ("odom", "base_footprint")
+        assert (told.pose.pose.position.x, told.pose.pose.position.y) == pytest.approx((x, y))
+        assert (told.twist.twist.linear.x, told.twist.twist.linear.y) == pytest.approx((0.5, 0.25), abs=1e-3)
+        await drive(server, graph, turning=1.0)
+        assert yaw_of(server.simulation.model_pose("mbot")) == pytest.approx(pi / 2 + 1.0, abs=2e-3)
+        assert not log
+
+
+async def test_planar_move_of_wheels_that_grip_is_hardly_slower_and_starts_anew_after_a_reset():
+    async with served(GROUND, robot(planar("<update_rate>50</update_rate>"))) as (server, graph, log):
+        await drive(server, graph, sideways=0.5)
+        assert server.simulation.model_pose("mbot")[1] == pytest.approx(0.5, abs=0.03)
+        server.reset()
+        server.advance(SECOND)
+        assert server.simulation.model_pose("mbot")[:2] == pytest.approx((0.0, 0.0), abs=1e-3)
+        assert not log
+
+
+async def test_planar_move_of_a_model_that_stands_fast_is_told_of():
+    text = moving_box(planar()).replace("<link", "<static>true</static><link", 1)
+    async with served(GROUND, text) as (server, _, log):
+        server.advance(SECOND // 10)
+        assert not server.plugins("mbot")
+        assert [each.text for each in log if "fixed to the world" in each.text]
+
+
+async def test_skid_steering_has_the_names_of_ros_1():
+    plugin = (
+        '<plugin name="skid" filename="libgazebo_ros_skid_steer_drive.so"><leftFrontJoint>left_joint</leftFrontJoint>'
+        "<leftRearJoint>left_joint</leftRearJoint><rightFrontJoint>right_joint</rightFrontJoint>"
+        "<rightRearJoint>right_joint</rightRearJoint><wheelSeparation>0.38</wheelSeparation>"
+        "<wheelDiameter>0.12</wheelDiameter><broadcastTF>false</broadcastTF></plugin>"
+    )
+    async with served(GROUND, robot(plugin)) as (server, graph, log):
+        odometry, transforms = (Recording(graph, server.node, each) for each in ("/odom", "/tf"))
+        await drive(server, graph, 0.5, seconds=1.0)
+        begin = server.simulation.model_pose("mbot")[0]
+        await drive(server, graph, 0.5, seconds=1.0)
+        assert server.simulation.model_pose("mbot")[0] - begin == pytest.approx(0.5, abs=0.01)
+        assert odometry.last.twist.twist.linear.x == pytest.approx(0.5, abs=0.01)
+        assert len(transforms) == 0
+        assert not log
+
+
+async def test_p3d_tells_where_a_link_is_in_the_world_or_in_the_frame_of_another():
+    def p3d(name: str, more: str) -> str:
+        return (
+            f'<plugin name="{name}" filename="libgazebo_ros_p3d.so"><ros><remapping>odom:={name}</remapping></ros>'
+            f"<body_name>left_wheel</body_name>{more}<update_rate>10</update_rate></plugin>"
+        )
+
+    plugins = [p3d("truth", "<xyz_offset>0 0 1</xyz_offset>"), p3d("inside", "<frame_name>base_link</frame_name>")]
+    async with served(GROUND, robot(*plugins, planar())) as (server, graph, log):
+        truth, inside = (Recording(graph, server.node, each) for each in ("/truth", "/inside"))
+        await drive(server, graph, 0.5)
+        link = server.simulation.link_pose("mbot::left_wheel")
+        told = truth.last
+        assert (told.header.frame_id, told.child_frame_id, len(truth)) == ("world", "left_wheel", 10)
+        position = told.pose.pose.position
+        assert (position.x, position.y, position.z) == pytest.approx((link[0], link[1], link[2] + 1.0), abs=1e-3)
+        assert told.twist.twist.linear.x == pytest.approx(0.5, abs=0.02)
+        position = inside.last.pose.pose.position
+        assert (position.x, position.y, position.z) == pytest.approx((0.0, 0.19, -0.05), abs=1e-3)
+        assert inside.last.header.frame_id == "base_link"
+        assert inside.last.twist.twist.linear.x == pytest.approx(0.0, abs=1e-3)
+        assert not log
+
+
+@pytest.mark.parametrize("dimensions", [2, 3])
+async def test_odometry_of_gz_is_where_the_model_is(dimensions):
+    plugin = (
+        '<plugin name="gz::sim::systems::OdometryPublisher" filename="gz-sim-odometry-publisher-system">'
+        f"<odom_frame>odom</odom_frame><dimensions>{dimensions}</dimensions></plugin>"
+    )
+    async with served(GROUND, moving_box(plugin + planar("<publish_odom_tf>0</publish_odom_tf>"))) as (
+        server,
+        graph,
+        log,
+    ):
+        topics = ("/model/mbot/odometry", "/model/mbot/odometry_with_covariance", "/model/mbot/pose")
+        odometry, uncertain, transforms = (Recording(graph, server.node, each) for each in topics)
+        await drive(server, graph, 0.5)
+        told = odometry.last
+        assert len(odometry) == len(uncertain) == len(transforms) == 50
+        assert (told.header.frame_id, told.child_frame_id) == ("odom", "mbot/base_footprint")
+        assert told.pose.pose.position.x == pytest.approx(0.5, abs=2e-3)
+        assert told.pose.pose.position.z == pytest.approx(0.1 if dimensions == 3 else 0.0, abs=1e-3)
+        assert told.twist.twist.linear.x == pytest.approx(0.5, abs=1e-3)
+        assert not log
