@@ -86,7 +86,7 @@ class ClassicRaySensor(_OneLidar[RayParameters]):
             message = phrase("'{type}' is no type of output of a lidar", type=self.parameters.output_type)
             hint = phrase("it is sensor_msgs/LaserScan, PointCloud2, PointCloud or Range")
             span, source = (element.span(), element.source) if element is not None else (None, None)
-            raise LinkwrightError(Diagnostic("SIM150", message, span, hint=hint, source=source))
+            raise LinkwrightError(Diagnostic("SIM137", message, span, hint=hint, source=source))
         self._frame = self.classic_frame()
         self._publish = kinds[kind]
         self.output = self.node.publisher(f"sensor_msgs/msg/{kind}", "~/out", SENSOR_QOS)
