@@ -1,4 +1,4 @@
-"""`linkwright drive`: what it prints, writes and refuses; the driving itself is tested with `hosting.driven`."""
+"""`linkwright drive`: what it prints, writes and refuses; the driving itself is tested with `hosting.simulated`."""
 
 from __future__ import annotations
 
@@ -46,3 +46,8 @@ def test_a_file_that_is_no_robot_is_refused(file, capsys):
 @pytest.mark.parametrize("words", [["--seconds", "0"], ["--rate", "fast"], ["--drive", "legs"]])
 def test_a_value_that_is_none_is_a_mistake_in_use(file, words):
     assert main(["drive", str(file), *words]) == 2
+
+
+def test_what_ends_it_is_the_exit_status(file, monkeypatch):
+    monkeypatch.setattr("linkwright.hosting.simulated.run_simulated", lambda *_, **__: 130)
+    assert main(["drive", "mbot.urdf", "--headless"]) == 130

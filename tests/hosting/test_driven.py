@@ -11,9 +11,9 @@ import pytest
 
 from linkwright.descriptions import DescriptionLibrary, examine
 from linkwright.graph import Graph
-from linkwright.hosting.driven import Drive, DrivenModel
 from linkwright.hosting.launch_log import LaunchLog
 from linkwright.hosting.plans import HostOptions
+from linkwright.hosting.simulated import SimulatedView, SimulatedWorld
 from linkwright.inertia import MeshLibrary
 from linkwright.inference import infer
 from linkwright.messages import get_message
@@ -81,12 +81,12 @@ class Driven:
         return self._server.simulation.model_pose("mbot")
 
 
-def drive_of(path: Path) -> Drive:
+def drive_of(path: Path) -> SimulatedWorld:
     """What `linkwright drive` makes of a file."""
     description = examine(path)
     assert description.robot is not None
     found = infer(description.robot, MeshLibrary(PackageFinder(start=path.parent), path.parent))
-    return replace(Drive.of(description, found), headless=True)
+    return replace(SimulatedWorld.of("empty", description, found), headless=True)
 
 
 @asynccontextmanager
@@ -99,7 +99,7 @@ async def driven(path: Path):
     server = SimulationServer(simulation, graph.create_node("gazebo"), ServerOptions(usual_names=True))
     server.start()
     model = entity_from(drive.text, loaded.finder, DescriptionLibrary()).model
-    server.spawn(model, drive.name, (0.0, 0.0, drive.height, 0.0, 0.0, 0.0, 1.0))
+    server.spawn(model, drive.name, (*drive.pose, 1.0))
     try:
         yield Driven(graph, server)
     finally:
@@ -141,7 +141,7 @@ async def test_it_ends_when_its_simulated_seconds_are_over(tmp_path, monkeypatch
     drive = replace(drive_of(path), seconds=0.5, rate=-1.0)
     out, err = io.StringIO(), io.StringIO()
     options = HostOptions(port=0, open_browser=False, network=False)
-    model = DrivenModel(drive, PackageFinder(start=path.parent, environment={}), options, LaunchLog(out, err))
+    model = SimulatedView(drive, PackageFinder(start=path.parent, environment={}), options, LaunchLog(out, err))
     assert await model.run(None)
     assert "[gzserver-2]: has finished cleanly" in err.getvalue()
 
@@ -152,6 +152,6 @@ async def test_a_world_that_is_not_there_is_an_error(tmp_path, monkeypatch):
     out, err = io.StringIO(), io.StringIO()
     options = HostOptions(port=0, open_browser=False, network=False)
     drive = replace(drive_of(path), world="nowhere.world")
-    model = DrivenModel(drive, PackageFinder(start=path.parent, environment={}), options, LaunchLog(out, err))
+    model = SimulatedView(drive, PackageFinder(start=path.parent, environment={}), options, LaunchLog(out, err))
     assert not await model.run(None)
     assert "there is no world 'nowhere.world'" in err.getvalue()

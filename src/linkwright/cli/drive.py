@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from linkwright.assignments import parse_assignments
 from linkwright.cli.endings import say
+from linkwright.cli.simulation_options import add_simulation_options
 from linkwright.cli.view import add_viewer_options
 from linkwright.diagnostics import (
     Phrase,
@@ -54,25 +55,15 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--write", action="store_true", help="put what is inferred into the file, keep all else in it, and end"
     )
-    parser.add_argument("--headless", action="store_true", help="without a page")
-    parser.add_argument(
-        "--seconds", metavar="S", type=_seconds, default=0.0, help="end after so many simulated seconds"
-    )
-    parser.add_argument(
-        "--rate",
-        metavar="FACTOR",
-        type=_rate,
-        default=0.0,
-        help="simulated seconds in a real one, or max (default: as the world says)",
-    )
+    add_simulation_options(parser)
     add_viewer_options(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Infer what is missing, then drive, print or write; 1 when something is wrong with the description."""
     from linkwright.descriptions import examine
-    from linkwright.hosting.driven import Drive, run_drive
     from linkwright.hosting.plans import HostOptions
+    from linkwright.hosting.simulated import SimulatedWorld, run_simulated
     from linkwright.inertia import MeshLibrary
     from linkwright.inference import infer
     from linkwright.inference.writing import write_inference
@@ -98,19 +89,15 @@ def run(arguments: argparse.Namespace) -> int:
         return 1 if written.refused else 0
     print_diagnostics([each for each in found.diagnostics if each.severity is not Severity.INFO], sys.stderr)
     say(localized(_summary(robot, found)))
-    drive = replace(
-        Drive.of(description, found),
-        world=arguments.world,
+    world = replace(
+        SimulatedWorld.of(arguments.world, description, found),
         seconds=arguments.seconds,
         headless=arguments.headless,
         rate=arguments.rate,
     )
     options = HostOptions(arguments.host, arguments.port, not arguments.no_open)
-    return (
-        1
-        if run_drive(drive, finder, options, foxglove=arguments.foxglove)
-        else int(has_errors(description.diagnostics))
-    )
+    status = run_simulated(world, finder, options, foxglove=arguments.foxglove)
+    return status or int(has_errors(description.diagnostics))
 
 
 def _summary(robot: Robot, found: Inference) -> Phrase:
@@ -146,25 +133,3 @@ def _listed(found: Inference) -> str:
         lines.append(f"{place}{told.code} {localized(told.message)}")
         lines += [f"    {line}" for element in finding.added for line in block(element).splitlines()]
     return "".join(f"{line}\n" for line in lines)
-
-
-def _seconds(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = 0.0
-    if not 0.0 < value < 1e9:
-        raise argparse.ArgumentTypeError(f"'{text}' is not a positive number of seconds")
-    return value
-
-
-def _rate(text: str) -> float:
-    if text == "max":
-        return -1.0
-    try:
-        value = float(text)
-    except ValueError:
-        value = 0.0
-    if not 0.0 < value < 1e6:
-        raise argparse.ArgumentTypeError(f"'{text}' is neither a positive number nor max")
-    return value

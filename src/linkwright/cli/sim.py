@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from linkwright.assignments import parse_assignments
+from linkwright.cli.simulation_options import add_simulation_options, positive
 from linkwright.cli.view import add_viewer_options
 from linkwright.diagnostics import Diagnostic, has_errors, phrase, print_diagnostics
 
@@ -27,18 +28,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-y", metavar="M", type=float, default=0.0, help="the same along y")
     parser.add_argument("-z", metavar="M", type=float, default=0.0, help="the same upwards")
     parser.add_argument("-Y", metavar="RAD", type=float, default=0.0, help="how far the robot is turned (rad)")
-    parser.add_argument("--headless", action="store_true", help="without a page")
-    parser.add_argument(
-        "--seconds", metavar="S", type=_positive, default=0.0, help="end after so many simulated seconds"
-    )
-    parser.add_argument(
-        "--rate",
-        metavar="FACTOR",
-        type=_rate,
-        default=0.0,
-        help="simulated seconds in a real one, or max (default: as the world says)",
-    )
-    parser.add_argument("--step", metavar="S", type=_positive, default=0.0, help="the time step (default: the world's)")
+    add_simulation_options(parser)
+    parser.add_argument("--step", metavar="S", type=positive, default=0.0, help="the time step (default: the world's)")
     parser.add_argument("--seed", metavar="N", type=int, default=0, help="what noise follows from (default: 0)")
     parser.add_argument("--pause", action="store_true", help="begin paused")
     add_viewer_options(parser)
@@ -103,25 +94,3 @@ def _with_robot(world: SimulatedWorld, finder: PackageFinder, values: dict[str, 
 def _no_model(path: Path) -> Diagnostic:
     message = phrase("there is no model in '{path}'", path=str(path))
     return Diagnostic("CLI331", message, hint=phrase("the robot is to be URDF, xacro, or SDF with a <model>"))
-
-
-def _positive(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = 0.0
-    if not 0.0 < value < 1e9:
-        raise argparse.ArgumentTypeError(f"'{text}' is not a positive number of seconds")
-    return value
-
-
-def _rate(text: str) -> float:
-    if text == "max":
-        return -1.0
-    try:
-        value = float(text)
-    except ValueError:
-        value = 0.0
-    if not 0.0 < value < 1e6:
-        raise argparse.ArgumentTypeError(f"'{text}' is neither a positive number nor max")
-    return value

@@ -12,10 +12,13 @@ from linkwright.hosting.plans import VIEWER, HostedPlan, HostOptions
 from linkwright.hosting.signals import SignalWatch, run_to_end
 from linkwright.hosting.view import ModelView
 from linkwright.hosting.xacro_calls import XacroCall
+from linkwright.inference.applying import completed
 from linkwright.packages import PackageFinder
+from linkwright.xmltree import write
 
 if TYPE_CHECKING:
     from linkwright.descriptions import Description
+    from linkwright.inference import Inference
     from linkwright.viewer import RvizConfig
 
 _SIMULATOR = ("gazebo_ros", "gzserver")
@@ -39,7 +42,7 @@ class SimulatedWorld:
         world: a file, or the name of a world.
         path: the file that gives the page its name.
         description: a robot in URDF; None for none, or for a model in SDF.
-        text: the robot or model, as URDF or SDF; empty for none.
+        text: the robot or model as it is simulated, as URDF or SDF; empty for none.
         name: what it is called in the world.
         pose: of its frame: x, y, z in m, roll, pitch, yaw in rad.
         seconds: after how many simulated seconds it ends; 0 for never.
@@ -62,6 +65,15 @@ class SimulatedWorld:
     seed: int = 0
     paused: bool = False
     headless: bool = False
+
+    @classmethod
+    def of(cls, world: str, description: Description, found: Inference) -> SimulatedWorld:
+        """A robot with all that was inferred about it, standing on the ground of a world."""
+        assert description.robot is not None, "something was inferred about it"
+        text = write(completed(description.document, found))
+        pose = (0.0, 0.0, -found.ground, 0.0, 0.0, 0.0)
+        path = Path(description.name).absolute()
+        return cls(world, path, description, text, description.robot.name, pose)
 
     @property
     def parameters(self) -> dict[str, Any]:
@@ -117,7 +129,7 @@ class SimulatedView(ModelView):
         """Have the robot published, if it is one."""
         description = self._world.description
         if description is not None:
-            self.descriptions.library.remember(description)
+            self.descriptions.library.remember(description, self._world.text)
             parameters = {"robot_description": self._world.text, "use_sim_time": True}
             self._plan("robot_state_publisher", "robot_state_publisher", parameters)
         return True
