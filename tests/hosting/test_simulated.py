@@ -14,6 +14,7 @@ from linkwright.descriptions import examine
 from linkwright.hosting.launch_log import LaunchLog
 from linkwright.hosting.plans import HostOptions
 from linkwright.hosting.simulated import SimulatedView, SimulatedWorld, scan_topics
+from linkwright.messages import get_service
 from linkwright.packages import PackageFinder
 from linkwright.testing import Recording
 from tests.waiting import eventually
@@ -57,6 +58,10 @@ async def test_the_page_shows_the_world_in_the_frame_that_the_robot_moves_in():
     assert config.options.text("Fixed Frame") == "odom"
     shown = {display.cls.rpartition("/")[2]: display.checked for display in config.displays}
     assert shown == {"Grid": True, "RobotModel": False, "TF": False, "World": True}
+    listener = view.host.graph.create_node("listener")
+    asked = listener.create_client(get_service("rcl_interfaces/srv/GetParameters"), "/viewer/get_parameters")
+    answer = await asked.call_async(asked.srv_type.Request(names=["use_sim_time"]))
+    assert answer.values[0].bool_value, "what it heard before a reset would be newer than all that comes"
     view.interrupt("the test is over")
     assert await running
 
