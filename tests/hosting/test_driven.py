@@ -23,6 +23,7 @@ from linkwright.simulation.server.entities import entity_from
 from linkwright.simulation.server.server import ServerOptions, SimulationServer
 from linkwright.simulation.server.worlds import load_world
 from linkwright.simulation.simulation import Simulation
+from linkwright.testing import Recording
 
 MBOT = """<robot name="mbot">
   <link name="base_link"><visual><geometry><cylinder radius="0.2" length="0.16"/></geometry></visual></link>
@@ -142,7 +143,9 @@ async def test_it_ends_when_its_simulated_seconds_are_over(tmp_path, monkeypatch
     out, err = io.StringIO(), io.StringIO()
     options = HostOptions(port=0, open_browser=False, network=False)
     model = SimulatedView(drive, PackageFinder(start=path.parent, environment={}), options, LaunchLog(out, err))
+    heard = Recording(model.host.graph, model.host.graph.create_node("listener"), "/odom")
     assert await model.run(None)
+    assert heard.last.child_frame_id == "base_link", "what was inferred is what is simulated"
     assert "[gzserver-2]: has finished cleanly" in err.getvalue()
 
 

@@ -129,7 +129,7 @@ class SimulatedView(ModelView):
         """Have the robot published, if it is one."""
         description = self._world.description
         if description is not None:
-            self.descriptions.library.remember(description, self._world.text)
+            self.descriptions.library.remember(description)
             parameters = {"robot_description": self._world.text, "use_sim_time": True}
             self._plan("robot_state_publisher", "robot_state_publisher", parameters)
         return True
