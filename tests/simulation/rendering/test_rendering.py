@@ -61,6 +61,27 @@ def test_the_floor_goes_on_to_the_horizon(make):
     assert np.isinf(depth[:59]).all()
 
 
+def test_the_floor_is_where_it_is_whatever_shines_on_it(make):
+    pose, optics = (0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0), optics_of(CAMERA)
+    lamp = '<light name="lamp" type="point"><pose>3 0 2 0 0 0</pose><diffuse>1 1 1 1</diffuse></light>'
+    under_the_sun = make(simulated(FLOOR)).render(optics, pose, Wanted.DEPTH | Wanted.GEOMS)
+    under_a_lamp = make(simulated(FLOOR, lamp)).render(optics, pose, Wanted.DEPTH | Wanted.GEOMS)
+    assert under_a_lamp.depth[65:] == pytest.approx(under_the_sun.depth[65:], abs=1e-3)
+    assert (under_a_lamp.geoms[65:] == under_the_sun.geoms[65:]).all()
+
+
+def test_a_floor_is_not_seen_from_below(make):
+    picture = make(simulated(FLOOR)).render(optics_of(CAMERA), (0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 1.0), Wanted.DEPTH)
+    assert np.isinf(picture.depth).all()
+
+
+@pytest.mark.parametrize("place", ["2 2.2 0", "2 -2.2 0", "2 0 1.7", "2 0 -1.7"])
+def test_what_reaches_into_the_picture_is_seen(make, place):
+    simulation = simulated(block("thing", f"{place} 0 0 0", "0.9 0.9 0.9"))
+    geoms = make(simulation).render(optics_of(CAMERA), IDENTITY, Wanted.GEOMS).geoms
+    assert (geoms >= 0).any()
+
+
 def test_what_is_too_near_or_too_far_is_not_seen(make):
     simulation = simulated(block("near", "0.3 0.1 0 0 0 0", "0.1 0.1 0.1"), block("far", "60 0 0 0 0 0", "1 90 90"))
     optics = optics_of(CAMERA, near=0.5)

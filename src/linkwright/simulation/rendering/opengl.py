@@ -16,12 +16,14 @@ from typing import Any
 import numpy as np
 
 from linkwright.diagnostics import Phrase, phrase
+from linkwright.geometry.arrays import Array
 from linkwright.geometry.single import Transform
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.rendering.lights import PlacedLight, lights_of
 from linkwright.simulation.rendering.optics import Optics
 from linkwright.simulation.rendering.renderer import Picture, Pixels, Wanted, axes_of
-from linkwright.simulation.scene.bodies import VISUAL_GROUP
+from linkwright.simulation.rendering.triangles import is_endless
+from linkwright.simulation.scene.bodies import COLLISION_GROUP, VISUAL_GROUP
 from linkwright.simulation.simulation import Simulation
 
 _LIBRARIES = {"cgl": ""} if sys.platform == "darwin" else {"egl": "EGL", "osmesa": "OSMesa"}
@@ -30,6 +32,10 @@ _NAMES = {"egl": "EGL", "osmesa": "OSMesa", "cgl": "CGL"}
 BACKENDS = tuple(_LIBRARIES)
 _LIGHTS = 8
 """So many lights OpenGL knows at a time."""
+_FARTHER = 4.0
+"""How far the ground is drawn, in farthest distances of the camera: its edges are not in the picture."""
+_ROUNDING = 1e-6
+"""The share of its size that a geom may be beside of what is seen by rounding alone."""
 _SPARE_GEOMS = 100
 """Room in the list of what is drawn beside the geoms of the model."""
 
@@ -70,7 +76,7 @@ class OpenGlRenderer:
         self._option.geomgroup[VISUAL_GROUP] = 1
         self._view = mujoco.MjvCamera()
         self._revision = -1
-        self._drawn: tuple[int, int, float] | None = None
+        self._endless: frozenset[int] = frozenset()
         self._draw_context: Any = None
         self._scene: Any = None
         try:
@@ -124,7 +130,10 @@ class OpenGlRenderer:
         flags = mujoco.mjtRndFlag
         for flag in (flags.mjRND_SHADOW, flags.mjRND_REFLECTION, flags.mjRND_SKYBOX, flags.mjRND_HAZE, flags.mjRND_FOG):
             self._scene.flags[flag] = 0
-        self._revision, self._drawn = simulation.revision, None
+        self._endless = frozenset(
+            geom for geom in range(model.ngeom) if is_endless(model, geom) and not _is_textured(model, geom)
+        )
+        self._revision = simulation.revision
 
     def _make_room(self, hole: Optics) -> None:
         width, height = max(self._size[0], hole.width), max(self._size[1], hole.height)
@@ -134,16 +143,20 @@ class OpenGlRenderer:
 
     def _update(self, hole: Optics, pose: Transform) -> None:
         simulation, mujoco = self._simulation, self._mujoco
-        now = (simulation.revision, simulation.time, hole.far)
-        if self._drawn != now:
-            simulation.model.vis.map.zfar = hole.far  # how far planes without an end go
-            catches = mujoco.mjtCatBit.mjCAT_ALL.value
-            mujoco.mjv_updateScene(
-                simulation.model, simulation.data, self._option, None, self._view, catches, self._scene
-            )
-            self._drawn = now
-        _, down, forwards = axes_of(pose).T
-        self._set_lights(lights_of(simulation, forwards))
+        model, axes = simulation.model, axes_of(pose)
+        model.vis.map.zfar = hole.far  # how far planes without an end go
+        groups = model.geom_group.copy()
+        model.geom_group[_beside(simulation, hole, np.array(pose[:3]), axes)] = COLLISION_GROUP
+        catches = mujoco.mjtCatBit.mjCAT_ALL.value
+        try:
+            mujoco.mjv_updateScene(model, simulation.data, self._option, None, self._view, catches, self._scene)
+        finally:
+            model.geom_group[:] = groups
+        lights = lights_of(simulation, axes[:, 2])
+        if all(each.light.type == "directional" for each in lights):
+            self._flatten_planes(hole, np.array(pose[:3]))
+        _, down, forwards = axes.T
+        self._set_lights(lights)
         scale = hole.near / hole.fy
         for camera in self._scene.camera:
             camera.pos[:] = pose[:3]
@@ -152,6 +165,25 @@ class OpenGlRenderer:
             camera.frustum_top, camera.frustum_bottom = hole.cy * scale, (hole.cy - hole.height) * scale
             camera.frustum_center = (hole.width / 2 - hole.cx) * scale
             camera.frustum_width = hole.width / 2 * scale
+
+    def _flatten_planes(self, hole: Optics, origin: Array) -> None:
+        """Draw planes without an end, seen from above, as the tops of boxes: MuJoCo's have 40 000 squares each.
+
+        That is for light which is not the same everywhere, and for textures.
+        """
+        kinds, data, left = self._mujoco.mjtGeom, self._simulation.data, len(self._endless)
+        for geom in self._scene.geoms[: self._scene.ngeom]:
+            if not left:
+                break
+            if geom.objid not in self._endless:
+                continue
+            left -= 1
+            normal = data.geom_xmat[geom.objid].reshape(3, 3)[:, 2]
+            above = float((origin - data.geom_xpos[geom.objid]) @ normal)
+            if above > 0:
+                geom.type = kinds.mjGEOM_BOX.value
+                geom.size[:] = _FARTHER * hole.far, _FARTHER * hole.far, 1.0
+                geom.pos[:] = origin - (above + 1.0) * normal
 
     def _set_lights(self, lights: list[PlacedLight]) -> None:
         scene, kinds = self._scene, self._mujoco.mjtLightType
@@ -185,7 +217,8 @@ class OpenGlRenderer:
         nothing = raw <= 0
         if colour is not None:
             background = np.clip(np.array(self._simulation.world.scene.background[:3]), 0, 1) * 255
-            colour[nothing] = np.round(background)
+            for channel, shade in enumerate(np.round(background).astype(np.uint8)):
+                np.copyto(colour[:, :, channel], shade, where=nothing)  # a tenth of the time of all three at once
             colour = np.ascontiguousarray(colour[::-1])
         if Wanted.DEPTH not in wanted:
             return colour, None
@@ -211,6 +244,25 @@ class OpenGlRenderer:
             table[number] = geom
         named: Pixels = table[np.where(numbers < len(table), numbers, 0)]
         return named
+
+
+def _beside(simulation: Simulation, hole: Optics, origin: Array, axes: Array) -> Any:
+    """Which geoms are not in the picture, shape (geoms,): OpenGL would compute each of their corners."""
+    right, down, ahead = ((simulation.data.geom_xpos - origin) @ axes).T
+    reach = simulation.model.geom_rbound * (1 + _ROUNDING)
+    outside = (ahead < hole.near - reach) | (ahead > hole.far + reach)
+    sides = ((right, hole.cx, hole.width), (down, hole.cy, hole.height))
+    for along, center, size in sides:
+        for sign, pixels in ((-1.0, center), (1.0, size - center)):
+            slope = pixels / hole.fy
+            outside |= sign * along - slope * ahead > reach * np.hypot(1.0, slope)
+    endless = reach == 0
+    return outside & ~endless
+
+
+def _is_textured(model: Any, geom: int) -> bool:
+    material = int(model.geom_matid[geom])
+    return material >= 0 and bool((np.atleast_1d(model.mat_texid[material]) >= 0).any())
 
 
 def _context_class(backend: str) -> Any:
