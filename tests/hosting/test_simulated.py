@@ -13,7 +13,8 @@ from linkwright.cli.command import main
 from linkwright.descriptions import examine
 from linkwright.hosting.launch_log import LaunchLog
 from linkwright.hosting.plans import HostOptions
-from linkwright.hosting.simulated import SimulatedView, SimulatedWorld, scan_topics
+from linkwright.hosting.sensor_topics import image_topics, scan_topics
+from linkwright.hosting.simulated import SimulatedView, SimulatedWorld
 from linkwright.messages import get_service
 from linkwright.packages import PackageFinder
 from linkwright.testing import Recording
@@ -57,7 +58,7 @@ async def test_the_page_shows_the_world_in_the_frame_that_the_robot_moves_in():
     config = view._viewer_config()
     assert config.options.text("Fixed Frame") == "odom"
     shown = {display.cls.rpartition("/")[2]: display.checked for display in config.displays}
-    assert shown == {"Grid": True, "RobotModel": False, "TF": False, "World": True}
+    assert shown == {"Grid": True, "RobotModel": False, "TF": False, "World": True, "Odometry": False}
     listener = view.host.graph.create_node("listener")
     asked = listener.create_client(get_service("rcl_interfaces/srv/GetParameters"), "/viewer/get_parameters")
     answer = await asked.call_async(asked.srv_type.Request(names=["use_sim_time"]))
@@ -91,3 +92,32 @@ def test_scans_are_shown_where_the_description_says_that_they_go():
     camera = '<sensor name="c" type="camera"><topic>image</topic></sensor>'
     assert scan_topics(classic + newer + camera + newer) == ["/scan", "/front/scan"]
     assert scan_topics("") == []
+
+
+async def test_scans_and_pictures_are_shown_and_those_of_a_second_camera_are_off():
+    camera = "<sensor name='{}' type='camera'><topic>{}</topic></sensor>"
+    scan = "<sensor name='a' type='ray'><plugin><ros><remapping>~/out:=scan</remapping></ros></plugin></sensor>"
+    text = f"{scan}{camera.format('b', 'left')}{camera.format('c', 'right')}"
+    world = replace(in_an_empty_world(), text=text)
+    view = SimulatedView(world, PackageFinder(start=MBOT.parent), OPTIONS, LaunchLog(io.StringIO(), io.StringIO()))
+    shown = [
+        (display.name, display.section.text("Topic", "Value"), display.checked)
+        for display in view._viewer_config().displays
+    ]
+    assert shown[4:] == [("LaserScan", "/scan", True), ("Image", "/left", True), ("Image", "/right", False)]
+    await view.host.close()
+
+
+def test_pictures_are_shown_where_the_description_says_that_they_go():
+    classic = "<sensor name='eye' type='camera'><plugin filename='libgazebo_ros_camera.so'>{}</plugin></sensor>"
+    assert image_topics(classic.format("")) == ["/eye/image_raw"]
+    assert image_topics(classic.format("<cameraName>left</cameraName><imageTopicName>rgb</imageTopicName>")) == [
+        "/left/rgb"
+    ]
+    moved = "<ros><namespace>mbot</namespace><remapping>eye/image_raw:={}</remapping></ros>"
+    assert image_topics(classic.format(moved.format("seen"))) == ["/mbot/seen"]
+    assert image_topics(classic.format(moved.format("/seen"))) == ["/seen"]
+    newer = '<sensor type="{}" name="b">{}</sensor>'
+    assert image_topics(newer.format("camera", "") + newer.format("gpu_lidar", "<topic>scan</topic>")) == ["/image"]
+    assert image_topics(newer.format("rgbd_camera", "<topic>front</topic>")) == ["/front/image"]
+    assert image_topics(newer.format("depth_camera", "")) == ["/depth_image"]

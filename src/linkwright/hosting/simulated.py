@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from linkwright.hosting.launch_log import LaunchLog
 from linkwright.hosting.plans import VIEWER, HostedPlan, HostOptions
+from linkwright.hosting.sensor_topics import image_topics, scan_topics
 from linkwright.hosting.signals import SignalWatch, run_to_end
 from linkwright.hosting.view import ModelView
 from linkwright.hosting.xacro_calls import XacroCall
@@ -25,11 +26,10 @@ _SIMULATOR = ("gazebo_ros", "gzserver")
 _CLOCK_RATE = 100.0
 """Hz of simulated time in which the time is told: transforms are not older than that."""
 _WORLD_DISPLAY, _WORLD_FRAME = "linkwright/World", "world"
-_SCAN_DISPLAY = "rviz_default_plugins/LaserScan"
+_SCAN_DISPLAY, _IMAGE_DISPLAY = "rviz_default_plugins/LaserScan", "rviz_default_plugins/Image"
+_ODOMETRY_DISPLAY, _ODOMETRY_TOPIC = "rviz_default_plugins/Odometry", "/odom"
 _DISTANCE = 5.0
 """Metres from which a robot and what is around it are seen."""
-_LIDAR = re.compile(r"""<sensor\b[^>]*\btype=["'](?:gpu_)?(?:ray|lidar)["'].*?</sensor>""", re.DOTALL)
-_SCAN_TOPIC = re.compile(r"~/out:=\s*([\w/]+)|<topic>\s*([\w/]+)\s*</topic>")
 _ODOMETRY_FRAME = re.compile(r"<(odometry_?[fF]rame|odom_frame)>\s*([\w/]+)\s*<")
 _DRIVES = re.compile(r"diff.drive|DiffDrive|skid_steer|planar_move|ackermann|mecanum", re.IGNORECASE)
 
@@ -92,13 +92,6 @@ class SimulatedWorld:
         }
 
 
-def scan_topics(text: str) -> list[str]:
-    """The topics of the laser scanners that a description names, in its order."""
-    found = (_SCAN_TOPIC.search(each[0]) for each in _LIDAR.finditer(text))
-    topics = (each[1] or each[2] for each in found if each)
-    return list(dict.fromkeys(topic if topic.startswith("/") else f"/{topic}" for topic in topics))
-
-
 def run_simulated(world: SimulatedWorld, finder: PackageFinder, options: HostOptions, *, foxglove: int | None) -> int:
     """Simulate a world until the user ends it, or its seconds are over.
 
@@ -140,9 +133,10 @@ class SimulatedView(ModelView):
             self._plan(*VIEWER, {"use_sim_time": True}, name="viewer", viewer_config=self._viewer_config)
 
     def _viewer_config(self) -> RvizConfig:
-        """The world with the robot in it, and its scans, in the frame that the robot moves in.
+        """The world with the robot in it, its scans and pictures, in the frame that the robot moves in.
 
-        Model and transforms of the robot are there too, but off: they would draw it a second time.
+        Model and transforms of the robot are there too, but off: they would draw it a second time. Pictures cost time
+        to make, so that only the first camera's are shown; odometry would cover the robot with arrows.
         """
         from linkwright.viewer import RvizConfig
 
@@ -150,11 +144,21 @@ class SimulatedView(ModelView):
         for display in config.displays:
             display.checked = display.cls.endswith("/Grid")
         config.insert(config.make(_WORLD_DISPLAY, "World"))
-        for topic in scan_topics(self._world.text):
-            scan = config.make(_SCAN_DISPLAY, "LaserScan")
-            scan.section.put(("Topic", "Value"), topic, string=True)
-            scan.section.put(("Topic", "Reliability Policy"), "Best Effort", string=True)
-            config.insert(scan)
+
+        def add(cls: str, topic: str, *, checked: bool = True) -> None:
+            display = config.make(cls, cls.rpartition("/")[2])
+            display.section.put(("Topic", "Value"), topic, string=True)
+            display.section.put(("Topic", "Reliability Policy"), "Best Effort", string=True)
+            config.insert(display)
+            display.checked = checked
+
+        text = self._world.text
+        for topic in scan_topics(text):
+            add(_SCAN_DISPLAY, topic)
+        for number, topic in enumerate(image_topics(text)):
+            add(_IMAGE_DISPLAY, topic, checked=number == 0)
+        if _DRIVES.search(text):
+            add(_ODOMETRY_DISPLAY, _ODOMETRY_TOPIC, checked=False)
         view = config.views.current
         view.values |= {"Distance": _DISTANCE}
         config.views.current = view

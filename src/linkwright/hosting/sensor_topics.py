@@ -1,0 +1,55 @@
+"""The topics that scans and pictures of a simulated robot have, by the text of its description."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+
+_LIDAR = re.compile(r"""<sensor\b[^>]*\btype=["'](?:gpu_)?(?:ray|lidar)["'].*?</sensor>""", re.DOTALL)
+_SCAN_TOPIC = re.compile(r"~/out:=\s*([\w/]+)|<topic>\s*([\w/]+)\s*</topic>")
+_CAMERA = re.compile(
+    r"""<sensor\b(?=[^>]*\btype=["'](camera|wideanglecamera|depth|depth_camera|rgbd|rgbd_camera)["'])[^>]*?\bname=["']([\w/]+)["'].*?</sensor>""",
+    re.DOTALL,
+)
+_CLASSIC = re.compile(r"""\bfilename=["'](?:lib)?gazebo_ros""")
+_NAMESPACE = re.compile(r"<namespace>\s*([\w/]+)\s*</namespace>")
+_CAMERA_NAME = re.compile(r"<camera_?[nN]ame>\s*([\w/]+)\s*<")
+_IMAGE_NAME = re.compile(r"<image_?[tT]opic_?[nN]ame>\s*([\w/]+)\s*<")
+_REMAPPING = re.compile(r"<remapping>\s*([\w/]+)\s*:=\s*([\w/]+)\s*</remapping>")
+_TOPIC = re.compile(r"<topic>\s*([\w/]+)\s*</topic>")
+
+
+def scan_topics(text: str) -> list[str]:
+    """The topics of the laser scanners that a description names, in its order."""
+    found = (_SCAN_TOPIC.search(each[0]) for each in _LIDAR.finditer(text))
+    return _distinct(each[1] or each[2] for each in found if each)
+
+
+def image_topics(text: str) -> list[str]:
+    """The topics of the cameras of a description, in its order.
+
+    Those of gz that name no topic have the usual ones, ``/image`` and ``/depth_image``, as in ``linkwright sim``.
+    """
+    return _distinct(_image_topic(each[0], each[1], each[2]) for each in _CAMERA.finditer(text))
+
+
+def _image_topic(sensor: str, kind: str, name: str) -> str:
+    if not _CLASSIC.search(sensor):
+        topic = _TOPIC.search(sensor)
+        if topic is None:
+            return "depth_image" if kind.startswith("depth") else "image"
+        return f"{topic[1]}/image" if kind.startswith("rgbd") else topic[1]
+    image = _first(_IMAGE_NAME, sensor, "image_raw")
+    topic_name = image if image.startswith("/") else f"{_first(_CAMERA_NAME, sensor, name)}/{image}"
+    topic_name = dict(_REMAPPING.findall(sensor)).get(topic_name, topic_name)
+    return topic_name if topic_name.startswith("/") else f"{_first(_NAMESPACE, sensor, '')}/{topic_name}"
+
+
+def _first(pattern: re.Pattern[str], text: str, otherwise: str) -> str:
+    found = pattern.search(text)
+    return found[1] if found else otherwise
+
+
+def _distinct(topics: Iterable[str]) -> list[str]:
+    """Each once, from the root."""
+    return list(dict.fromkeys(f"/{topic.strip('/')}" for topic in topics))
