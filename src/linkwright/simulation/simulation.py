@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from math import inf, isfinite
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,8 @@ NANOSECONDS = 1_000_000_000
 
 _AWAKE = -11
 """What MuJoCo counts up from for trees of bodies until they may sleep: one more than ``mjMINAWAKE`` below zero."""
+_SERVO_SPEED = 2.0
+"""How fast a servo moves in rad/s or m/s where nothing says it."""
 _BEYOND = 1e10
 """A position or velocity that is no less, in m, rad, m/s or rad/s, is taken for an explosion, as MuJoCo does."""
 
@@ -98,6 +101,22 @@ class Simulation:
         name = self.scene.add_velocity_motor(joint, gain, limit)
         self._changed = True
         return Motor(self, name)
+
+    def let_roll(self, joint: str) -> None:
+        """Let the wheel that a joint holds roll without slipping, as those that motors turn do."""
+        self.scene.let_roll(joint)
+        self._changed = True
+
+    def add_servo(self, joint: str, speed: float = inf) -> Servo:
+        """Hold a joint of one axis where it is told to be.
+
+        Args:
+            joint: the name of the joint.
+            speed: how fast it may move in rad/s (m/s), if its own limit allows that; 2 where neither says it.
+        """
+        name = self.scene.add_servo(joint)
+        self._changed = True
+        return Servo(self, joint, name, speed)
 
     def keep_awake(self, link: str) -> None:
         """Never let what a link hangs on fall asleep: of what sleeps no forces are computed, which sensors need.
@@ -300,6 +319,11 @@ class Simulation:
         joint.qpos[0], joint.qvel[0] = position, 0.0
         self._current = False
 
+    def push_joint(self, name: str, force: float) -> None:
+        """Let a torque in N m (a force in N) act on a joint of one axis, until it is set anew."""
+        self.refresh()
+        self.data.joint(name).qfrc_applied[0] = force
+
     def push(
         self, link: str, force: Vector3 | Sequence[float], torque: Vector3 | Sequence[float] = (0.0, 0.0, 0.0)
     ) -> None:
@@ -330,3 +354,45 @@ class Motor:
     def _actuator(self) -> Any:
         self._simulation.refresh()
         return self._simulation.data.actuator(self._name)
+
+
+class Servo:
+    """Holds a joint of one axis in a position, and moves it to others.
+
+    Args:
+        simulation: the simulation.
+        joint: the name of the joint.
+        name: that of the constraint.
+        speed: how fast it may move in rad/s (m/s).
+    """
+
+    def __init__(self, simulation: Simulation, joint: str, name: str, speed: float) -> None:
+        self._simulation = simulation
+        self._joint = joint
+        self._name = name
+        limit = simulation.scene.joints[joint].axes[0][0].limit.velocity
+        speed = min(speed, limit) if isfinite(limit) and limit > 0.0 else speed
+        self._speed = speed if isfinite(speed) else _SERVO_SPEED
+        self.restart()
+
+    def restart(self) -> None:
+        """Hold it where it is."""
+        self._position = self._simulation.joint_state(self._joint)[0]
+        self._hold()
+
+    def move(self, target: float, seconds: float) -> None:
+        """Go on to a position within the joint's limits, in rad (m), for so many seconds."""
+        model = self._simulation.model
+        joint = model.joint(self._joint)
+        if model.jnt_limited[joint.id]:
+            lower, upper = model.jnt_range[joint.id]
+            target = min(max(target, float(lower)), float(upper))
+        way = self._speed * seconds
+        self._position = min(max(target, self._position - way), self._position + way)
+        self._hold()
+
+    def _hold(self) -> None:
+        self._simulation.refresh()
+        model = self._simulation.model
+        start = model.qpos0[model.joint(self._joint).qposadr[0]]
+        model.eq_data[model.equality(self._name).id, 0] = self._position - start

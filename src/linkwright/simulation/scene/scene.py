@@ -25,6 +25,8 @@ _ANCHORS_APART = 0.1
 """How far from each other in m the two points are that hold the axis of a hinge that closes a loop."""
 _LOOP_STEPS = 4.0
 """The time constant of what closes a loop, in steps."""
+_SERVO_TIME = 0.02
+"""How long a servo takes to bring its joint near to where it shall be, in s."""
 
 
 @dataclass(slots=True)
@@ -161,9 +163,28 @@ class Scene:
         """
         actuator = self._actuator(joint, limit)
         actuator.set_to_velocity(kv=gain)
-        self._unsettled.add(joint.partition(SEPARATOR)[0])
-        self._driven.setdefault(joint.partition(SEPARATOR)[0], set()).add(joint)
+        self.let_roll(joint)
         return str(actuator.name)
+
+    def let_roll(self, joint: str) -> None:
+        """Let the wheel that a joint holds roll without slipping."""
+        model = joint.partition(SEPARATOR)[0]
+        self._unsettled.add(model)
+        self._driven.setdefault(model, set()).add(joint)
+
+    def add_servo(self, joint: str) -> str:
+        """Hold a joint of one axis where it is told to be; what pulls at it makes no difference.
+
+        Returns:
+            The name of MuJoCo's constraint, the first of whose data is the position less that of the start.
+        """
+        self._motors += 1
+        equality = self.spec.add_equality(type=self._mujoco.mjtEq.mjEQ_JOINT, name=f"{joint}#servo{self._motors}")
+        equality.name1 = joint
+        equality.data[:5] = 0.0
+        equality.solref, equality.solimp[:2] = [_SERVO_TIME, 1.0], [0.99, 0.999]
+        self.models[joint.partition(SEPARATOR)[0]].parts.append(equality)
+        return str(equality.name)
 
     def _actuator(self, joint: str, limit: float) -> Any:
         self._motors += 1

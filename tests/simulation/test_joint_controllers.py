@@ -1,0 +1,100 @@
+"""Joints that controllers of gz hold, move and turn."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.messages import get_message
+from tests.simulation.test_plugins import SECOND, served
+
+GRAVITY_PULLS = 1.0 * 9.81 * 0.5
+"""The torque of gravity on the arm below in N m."""
+
+
+def arm(plugin: str, limit: str = "<lower>-2</lower><upper>2</upper>") -> str:
+    """An arm of 1 kg, level, that hangs on the world by a joint; its centre is 0.5 m before the joint."""
+    inertia = "<ixx>0.01</ixx><iyy>0.1</iyy><izz>0.1</izz>"
+    return (
+        '<model name="arm"><pose>0 0 2 0 0 0</pose><link name="link"><inertial><pose>0.5 0 0 0 0 0</pose>'
+        f"<mass>1</mass><inertia>{inertia}</inertia></inertial></link>"
+        '<joint name="shoulder" type="revolute"><parent>world</parent><child>link</child><axis><xyz>0 1 0</xyz>'
+        f"<limit>{limit}</limit></axis></joint>{plugin}</model>"
+    )
+
+
+def position(more: str) -> str:
+    """The controller of positions."""
+    return (
+        '<plugin name="gz::sim::systems::JointPositionController" filename="gz-sim-joint-position-controller-system">'
+        f"<joint_name>shoulder</joint_name>{more}</plugin>"
+    )
+
+
+def velocity(more: str = "") -> str:
+    """The controller of velocities."""
+    return (
+        '<plugin name="gz::sim::systems::JointController" filename="gz-sim-joint-controller-system">'
+        f"<joint_name>shoulder</joint_name>{more}</plugin>"
+    )
+
+
+async def command(graph, server, topic: str, value: float, seconds: float) -> None:
+    """Send a command, and let time pass."""
+    node = graph.create_node("commander")
+    node.create_publisher("std_msgs/msg/Float64", topic, 10).publish(get_message("std_msgs/msg/Float64")(data=value))
+    await graph.settle()
+    server.advance(round(seconds * SECOND))
+    node.destroy_node()
+
+
+async def test_a_joint_is_held_whatever_pulls_and_moves_no_faster_than_its_limit():
+    text = arm(position("<use_velocity_commands>true</use_velocity_commands>"), "<velocity>0.5</velocity>")
+    async with served(text) as (server, graph, log):
+        server.advance(SECOND)
+        assert server.simulation.joint_state("arm::shoulder")[0] == pytest.approx(0.0, abs=2e-3)
+        await command(graph, server, "/model/arm/joint/shoulder/_0/cmd_pos", 1.0, 1.0)
+        place, speed = server.simulation.joint_state("arm::shoulder")
+        assert (place, speed) == pytest.approx((0.5, 0.5), abs=0.03)
+        server.advance(2 * SECOND)
+        place, speed = server.simulation.joint_state("arm::shoulder")
+        assert (place, speed) == pytest.approx((1.0, 0.0), abs=2e-3)
+        assert not log
+
+
+async def test_a_joint_goes_no_farther_than_its_limits_and_is_held_at_the_start_after_a_reset():
+    text = arm(position("<use_velocity_commands>1</use_velocity_commands><topic>/reach</topic>"))
+    async with served(text) as (server, graph, log):
+        await command(graph, server, "/reach", 5.0, 3.0)
+        assert server.simulation.joint_state("arm::shoulder")[0] == pytest.approx(2.0, abs=2e-3)
+        server.reset()
+        server.advance(SECOND)
+        assert server.simulation.joint_state("arm::shoulder")[0] == pytest.approx(0.0, abs=2e-3)
+        assert not log
+
+
+async def test_gains_push_a_joint_and_gravity_bends_what_no_sum_of_errors_straightens():
+    gains = "<p_gain>100</p_gain><i_gain>0</i_gain><d_gain>20</d_gain>"
+    async with served(arm(position(gains))) as (server, _, log):
+        server.advance(5 * SECOND)
+        place, speed = server.simulation.joint_state("arm::shoulder")
+        assert 100.0 * place == pytest.approx(GRAVITY_PULLS, rel=0.01)
+        assert speed == pytest.approx(0.0, abs=1e-4)
+        assert not log
+
+
+@pytest.mark.parametrize(
+    "more",
+    ["", "<use_force_commands>true</use_force_commands><p_gain>50</p_gain><i_gain>200</i_gain><i_max>50</i_max>"],
+)
+async def test_a_joint_turns_as_fast_as_it_is_told(more):
+    text = arm(velocity(more), "<lower>-1e16</lower><upper>1e16</upper>").replace("0 1 0", "0 0 1")
+    async with served(text) as (server, graph, log):
+        await command(graph, server, "/model/arm/joint/shoulder/cmd_vel", 1.5, 3.0)
+        assert server.simulation.joint_state("arm::shoulder")[1] == pytest.approx(1.5, abs=0.01)
+        assert not log
+
+
+async def test_a_second_axis_is_refused():
+    async with served(arm(position("<joint_index>1</joint_index>"))) as (server, _, log):
+        assert not server.plugins("arm")
+        assert [each.text for each in log if "only the first axis" in each.text]
