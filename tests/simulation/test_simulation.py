@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import isfinite
 
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.simulation.simulation import NANOSECONDS, UnstableError
-from tests.simulation.worlds import GROUND, box, mbot, model, simulated
+from linkwright.simulation.simulation import NANOSECONDS, Simulation, UnstableError
+from tests.simulation.worlds import GROUND, box, finder, mbot, model, simulated, world
 
 MILLISECOND = NANOSECONDS // 1000
 
@@ -103,3 +104,15 @@ def test_a_force_that_is_no_number_is_said_with_the_link():
     simulation.push("two::link", (0.0, float("nan"), 0.0))
     with pytest.raises(UnstableError, match="'two::link'"):
         simulation.advance(NANOSECONDS)
+
+
+def test_a_second_model_of_a_name_is_left_out():
+    first, second = (world(box("one", f"0 0 {height} 0 0 0")) for height in (5, 9))
+    simulation = Simulation(replace(first, models=first.models + second.models), finder())
+    assert simulation.model_pose("one")[2] == 5.0
+
+
+def test_more_links_than_can_be_simulated_are_refused(monkeypatch):
+    monkeypatch.setattr("linkwright.simulation.simulation._MOST_LINKS", 3)
+    with pytest.raises(LinkwrightError, match="a world of 4 links is more than can be simulated"):
+        simulated(*(box(f"box{index}", f"{index} 0 5 0 0 0") for index in range(4)))

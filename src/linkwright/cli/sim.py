@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from linkwright.assignments import parse_assignments
 from linkwright.cli.simulation_options import add_simulation_options, positive
 from linkwright.cli.view import add_viewer_options
-from linkwright.diagnostics import Diagnostic, has_errors, phrase, print_diagnostics
+from linkwright.diagnostics import Diagnostic, phrase, print_diagnostics
 
 if TYPE_CHECKING:
     from linkwright.hosting.simulated import SimulatedWorld
@@ -44,9 +44,7 @@ def run(arguments: argparse.Namespace) -> int:
     from linkwright.simulation.server.worlds import load_world
 
     load_mujoco()
-    loaded = load_world(arguments.world)  # said at once, and not in the middle of a log
-    if has_errors(loaded.diagnostics):
-        print_diagnostics([each for each in loaded.diagnostics if has_errors([each])], sys.stderr)
+    load_world(arguments.world)  # a world that cannot be had is said at once, and not in the middle of a log
     path = Path(arguments.robot or arguments.world).absolute()
     finder = PackageFinder(start=[path.parent, Path.cwd()])
     world = SimulatedWorld(

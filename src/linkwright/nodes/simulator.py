@@ -80,7 +80,7 @@ class Simulator(SingleNode):
         with starting(self._node):
             said = {name: self._node.declare_parameter(name, value).value for name, value in _PARAMETERS.items()}
             world, finder, findings = load_world(words[0] if words else said["world"])
-            self._log(findings)
+            self._log(each for each in findings if each.severity is Severity.ERROR)
             simulation = Simulation(world, finder, step=said["step"] or None)
             self.server = SimulationServer(simulation, self._node, ServerOptions(said["seed"], said["usual_names"]))
             self._reports = Reports(self.server, self._node, finder, said["publish_rate"])
@@ -117,10 +117,16 @@ class Simulator(SingleNode):
         self._reports.publish_state(paused=self.runner.paused)
 
     def _log(self, findings: Iterable[Diagnostic]) -> None:
-        """Log what is wrong with the world; warnings are for those who check it."""
+        """Log what is wrong with the world, and what of it is left out."""
+        logger = self._node.get_logger()
         for each in findings:
+            place = f"{each.span}: " if each.span else ""
+            hint = f" ({each.hint})" if each.hint else ""
+            text = f"{place}{each.message}{hint}"
             if each.severity is Severity.ERROR:
-                self._node.get_logger().error(f"{each.span}: {each.message}" if each.span else each.message)
+                logger.error(text)
+            else:
+                logger.warning(text)
 
 
 def _call_on(loop: asyncio.AbstractEventLoop, function: Callable[[], None]) -> None:

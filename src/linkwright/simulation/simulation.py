@@ -23,6 +23,9 @@ from linkwright.simulation.schedule import Schedule, Task
 
 NANOSECONDS = 1_000_000_000
 
+_MANY_LINKS, _MOST_LINKS = 1000, 10_000
+"""From how many links on MuJoCo is given memory for all pairs of them, and how many there may be."""
+_BYTES_A_PAIR, _BYTES = 3, 1 << 28
 _AWAKE = -11
 """What MuJoCo counts up from for trees of bodies until they may sleep: one more than ``mjMINAWAKE`` below zero."""
 _SERVO_SPEED = 2.0
@@ -155,6 +158,13 @@ class Simulation:
     def _made(self, before: tuple[Any, Any] | None) -> tuple[Any, Any]:
         """MuJoCo's model of the scene, with the state that there was before."""
         self.scene.settle()
+        count = len(self.scene.bodies)
+        if count > _MOST_LINKS:
+            message = phrase("a world of {count} links is more than can be simulated", count=count)
+            hint = phrase("at most {most}; shapes that never move may be in one link", most=_MOST_LINKS)
+            raise LinkwrightError(Diagnostic("SIM105", message, hint=hint))
+        if count > _MANY_LINKS:
+            self.scene.spec.memory = _BYTES_A_PAIR * count * count + _BYTES
         try:
             if before is not None:
                 model, data = self.scene.spec.recompile(*before)
@@ -198,7 +208,11 @@ class Simulation:
     def _make_steps(self, count: int) -> None:
         self.refresh()
         before = self.data.qpos.copy(), self.data.qvel.copy()
-        self._mujoco.mj_step(self.model, self.data, nstep=count)
+        try:
+            self._mujoco.mj_step(self.model, self.data, nstep=count)
+        except self._mujoco.FatalError as error:
+            said = str(error).splitlines()[0]
+            raise LinkwrightError(Diagnostic("SIM121", phrase("MuJoCo gave up: {said}", said=foreign(said)))) from None
         self._current = False
         if not self._is_sound():
             raise self._unstable(before, count)

@@ -88,7 +88,8 @@ class Scene:
         self._set_options(world)
         frames = Frames(world)
         for model in world.models:
-            self.add(model, model.name, frames.pose(model.name))
+            if model.name not in self.models:  # `check` tells of a second one
+                self.add(model, model.name, frames.pose(model.name))
 
     def _set_options(self, world: World) -> None:
         """What measurements of wheels, casters and rest have shown to be right: decision 0042."""
