@@ -67,6 +67,8 @@ class Simulation:
         self.schedule = Schedule()
         self.revision = 0
         self.model, self.data = self._made(None)
+        self._bodies: dict[str, int] = {}
+        self._joints: dict[str, tuple[int, int]] = {}
         self._changed = False
         self._current = False
 
@@ -145,6 +147,7 @@ class Simulation:
         """Bring MuJoCo's model up to the scene, and what depends on positions up to these."""
         if self._changed:
             self.model, self.data = self._made((self.model, self.data))
+            self._bodies, self._joints = {}, {}
             self._changed, self._current = False, False
             self.revision += 1
         if not self._current:
@@ -245,23 +248,31 @@ class Simulation:
         hint = phrase("look at its mass, its inertia and what it overlaps with, or make the time step shorter")
         return UnstableError(Diagnostic("SIM120", message, hint=hint))
 
+    def body(self, name: str) -> int:
+        """The number of a link in MuJoCo's model of this moment.
+
+        Raises:
+            KeyError: there is no such link.
+        """
+        self.refresh()
+        if name not in self._bodies:
+            self._bodies[name] = int(self.model.body(name).id)
+        return self._bodies[name]
+
     def link_pose(self, name: str) -> Transform:
         """Where the frame of a link is in the world.
 
         Raises:
             KeyError: there is no such link.
         """
-        self.refresh()
-        body = self.data.body(name)
-        x, y, z = body.xpos
-        qw, qx, qy, qz = body.xquat
-        return float(x), float(y), float(z), float(qx), float(qy), float(qz), float(qw)
+        body, data = self.body(name), self.data
+        x, y, z = data.xpos[body].tolist()
+        qw, qx, qy, qz = data.xquat[body].tolist()
+        return x, y, z, qx, qy, qz, qw
 
     def link_velocity(self, name: str) -> tuple[Array, Array]:
         """The linear velocity of the origin of a link in m/s and its angular one in rad/s, in the axes of the world."""
-        self.refresh()
-        result = np.zeros(6)
-        body = self.model.body(name).id
+        body, result = self.body(name), np.zeros(6)
         self._mujoco.mj_objectVelocity(self.model, self.data, self._mujoco.mjtObj.mjOBJ_XBODY, body, result, 0)
         return result[3:], result[:3]
 
@@ -323,8 +334,11 @@ class Simulation:
             KeyError: there is no such joint, or it does not move.
         """
         self.refresh()
-        joint = self.data.joint(name)
-        return float(joint.qpos[0]), float(joint.qvel[0])
+        if name not in self._joints:
+            joint = self.model.joint(name)
+            self._joints[name] = int(joint.qposadr[0]), int(joint.dofadr[0])
+        position, velocity = self._joints[name]
+        return float(self.data.qpos[position]), float(self.data.qvel[velocity])
 
     def set_joint_position(self, name: str, position: float) -> None:
         """Put a joint of one axis somewhere; it stands still there."""
@@ -355,19 +369,28 @@ class Motor:
     def __init__(self, simulation: Simulation, name: str) -> None:
         self._simulation = simulation
         self._name = name
+        self._revision = -1
+        self._number = -1
 
     @property
     def target(self) -> float:
         """The velocity that it is to hold, in rad/s (m/s)."""
-        return float(self._actuator().ctrl[0])
+        number = self._actuator()
+        return float(self._simulation.data.ctrl[number])
 
     @target.setter
     def target(self, velocity: float) -> None:
-        self._actuator().ctrl[0] = velocity
+        number = self._actuator()
+        self._simulation.data.ctrl[number] = velocity
 
-    def _actuator(self) -> Any:
-        self._simulation.refresh()
-        return self._simulation.data.actuator(self._name)
+    def _actuator(self) -> int:
+        """The number of the actuator in MuJoCo's model of this moment."""
+        simulation = self._simulation
+        simulation.refresh()
+        if self._revision != simulation.revision:
+            self._number = int(simulation.model.actuator(self._name).id)
+            self._revision = simulation.revision
+        return self._number
 
 
 class Servo:

@@ -6,6 +6,8 @@ from dataclasses import dataclass, field
 from math import atan2, cos, sin
 from typing import Any
 
+import numpy as np
+
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.single import Transform, quaternion_from_rpy
 from linkwright.messages import Header, Quaternion, Time, TransformStamped, Vector3, get_message
@@ -75,24 +77,26 @@ class OdometryTopics:
     odometry: Output | None
     transforms: Output | None
     covariance: Covariance = (0.0, 0.0, 0.0)
-    _matrix: list[float] = field(init=False)
+    _matrix: Array = field(init=False)
 
     def __post_init__(self) -> None:
         x, y, yaw = self.covariance
         diagonal = (x, y, _UNKNOWN, _UNKNOWN, _UNKNOWN, yaw) if any(self.covariance) else (0.0,) * 6
-        self._matrix = [diagonal[row] if row == column else 0.0 for row in range(6) for column in range(6)]
+        self._matrix = np.diag(diagonal).astype(np.float64).ravel()
 
     def publish(self, stamp: Time, pose: Transform, forward: float, sideways: float, turning: float) -> None:
         """Publish where the robot is, and its velocities in its own axes in m/s and rad/s."""
         x, y, z, *rotation = pose
         if self.odometry is not None:
-            message = get_message("nav_msgs/msg/Odometry")(header=Header(stamp, self.frame), child_frame_id=self.child)
-            message.pose.pose.position.x, message.pose.pose.position.y, message.pose.pose.position.z = x, y, z
-            message.pose.pose.orientation = Quaternion(*rotation)
-            message.pose.covariance[:] = self._matrix
-            message.twist.twist.linear = Vector3(forward, sideways, 0.0)
-            message.twist.twist.angular = Vector3(0.0, 0.0, turning)
-            message.twist.covariance[:] = self._matrix
+            point = get_message("geometry_msgs/msg/Point")(x, y, z)
+            place = get_message("geometry_msgs/msg/Pose")(point, Quaternion(*rotation))
+            speed = get_message("geometry_msgs/msg/Twist")(Vector3(forward, sideways, 0.0), Vector3(0.0, 0.0, turning))
+            message = get_message("nav_msgs/msg/Odometry")(
+                Header(stamp, self.frame),
+                self.child,
+                get_message("geometry_msgs/msg/PoseWithCovariance")(place, self._matrix),
+                get_message("geometry_msgs/msg/TwistWithCovariance")(speed, self._matrix),
+            )
             self.odometry.publish(message)
         if self.transforms is not None:
             self.transforms.publish(transform_message(Header(stamp, self.frame), self.child, pose))

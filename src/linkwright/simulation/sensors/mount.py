@@ -42,8 +42,7 @@ class Mount:
     @property
     def body(self) -> int:
         """The number of the link in MuJoCo's model of this moment."""
-        self.simulation.refresh()
-        return int(self.simulation.model.body(self.link).id)
+        return self.simulation.body(self.link)
 
     def pose(self) -> Transform:
         """Where the sensor is in the world.
@@ -57,7 +56,14 @@ class Mount:
         """The velocity of the sensor in m/s and its angular one in rad/s, in the axes of the world."""
         linear, angular = self.simulation.link_velocity(self.link)
         turning = _three(angular)
+        if self._is_at_origin:
+            return _three(linear), turning
         return _sum(_three(linear), _cross(turning, self._arm())), turning
+
+    @property
+    def _is_at_origin(self) -> bool:
+        """Whether it moves as the origin of its link does."""
+        return self.offset[:3] == IDENTITY[:3]
 
     def _arm(self) -> Vector3:
         """From the origin of the link to the sensor, in the axes of the world."""
@@ -69,14 +75,16 @@ class Mount:
         simulation, mujoco, result = self.simulation, load_mujoco(), np.zeros(6)
         kind = mujoco.mjtObj.mjOBJ_XBODY
         mujoco.mj_objectAcceleration(simulation.model, simulation.data, kind, self.body, result, 0)
+        if self._is_at_origin:
+            return _three(result[3:])
         arm, turning = self._arm(), _three(simulation.link_velocity(self.link)[1])
         changing = _cross(_three(result[:3]), arm)
         return _sum(_sum(_three(result[3:]), changing), _cross(turning, _cross(turning, arm)))
 
 
 def _three(values: Array) -> Vector3:
-    x, y, z = values
-    return float(x), float(y), float(z)
+    x, y, z = values.tolist()
+    return x, y, z
 
 
 def _sum(one: Vector3, other: Vector3) -> Vector3:

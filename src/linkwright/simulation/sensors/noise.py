@@ -40,6 +40,17 @@ class NoiseSource:
         """Whether it changes nothing."""
         return self._noise.type == "none"
 
+    @property
+    def white(self) -> bool:
+        """Whether it adds Gaussian noise with a constant offset, and nothing else."""
+        noise = self._noise
+        return noise.type == "gaussian" and not noise.dynamic_bias_stddev and noise.stddev > 0
+
+    @property
+    def offset(self) -> float:
+        """What it adds to all values: the bias, and the mean."""
+        return 0.0 if self.silent else float(self._bias + self._noise.mean)
+
     def apply(self, values: Array, period: float = 0.0) -> Array:
         """Values with noise on them.
 
@@ -77,9 +88,18 @@ class VectorNoise:
         self._sources = [NoiseSource(each, generator) for each in (noise.x, noise.y, noise.z)]
         self.variances: Array = np.array([each.variance for each in self._sources])
         """The squares of the standard deviations: shape (3,)."""
+        self.covariance: Array = np.diag(self.variances).ravel()
+        """The matrix of covariances, row by row: shape (9,)."""
+        self._generator = generator
+        self._white = all(each.white for each in self._sources)
+        self._offsets: Array = np.array([each.offset for each in self._sources])
+        self._deviations: Array = np.sqrt(self.variances)
 
     def apply(self, vector: Array, period: float = 0.0) -> Array:
         """A vector, shape (3,), with noise on it."""
+        if self._white:  # all at once, as it is asked for often
+            noisy: Array = vector + (self._offsets + self._deviations * self._generator.standard_normal(3))
+            return noisy
         for index, source in enumerate(self._sources):
             if not source.silent:
                 vector[index] = source.apply(vector[index], period)

@@ -117,5 +117,5 @@ class OneTopic(SensorPlugin[P], Generic[P]):
 
 def vector(values: Array) -> Vector3:
     """Three numbers as a message."""
-    x, y, z = map(float, values)
+    x, y, z = values.tolist()
     return Vector3(x, y, z)

@@ -7,8 +7,6 @@ from __future__ import annotations
 
 from typing import Any, Generic, TypeVar
 
-import numpy as np
-
 from linkwright.simulation.plugins.parameters import NoParameters
 from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, FrameName, OneTopic, SensorPlugin, vector
 from linkwright.simulation.sensors.earth import Fix, MagnetometerSensor, NavsatSensor
@@ -33,7 +31,7 @@ class _Receiver(SensorPlugin[P], Generic[P]):
         message = self.message(_FIX, frame)
         message.latitude, message.longitude, message.altitude = fix.latitude, fix.longitude, fix.altitude
         message.status.status, message.status.service = 0, 1
-        message.position_covariance = np.diag(self._receiver.position_noise.variances).ravel()
+        message.position_covariance = self._receiver.position_noise.covariance.copy()
         message.position_covariance_type = _DIAGONAL_KNOWN
         return fix, message
 
@@ -89,5 +87,5 @@ class GzMagnetometer(OneTopic[NoParameters]):
         """Measure and publish."""
         message = self.message(_FIELD, self.gz_frame())
         message.magnetic_field = vector(self._sensor.measure())
-        message.magnetic_field_covariance = np.diag(self._sensor.noise.variances).ravel()
+        message.magnetic_field_covariance = self._sensor.noise.covariance.copy()
         self.output.publish(message)

@@ -8,8 +8,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
-import numpy as np
-
 from linkwright.geometry.single import compose, quaternion_from_rpy
 from linkwright.geometry.vectors import Vector3
 from linkwright.messages import Quaternion
@@ -37,12 +35,12 @@ class _ImuPlugin(OneTopic[P], Generic[P]):
         """Measure and publish."""
         measured = self.imu.measure()
         message = self.message(_TYPE, self.frame)
-        x, y, z, w = map(float, measured.orientation)
+        x, y, z, w = measured.orientation.tolist()
         message.orientation = Quaternion(x, y, z, w)
         message.angular_velocity = vector(measured.angular_velocity)
         message.linear_acceleration = vector(measured.linear_acceleration)
-        message.angular_velocity_covariance = np.diag(self.imu.turning_noise.variances).ravel()
-        message.linear_acceleration_covariance = np.diag(self.imu.acceleration_noise.variances).ravel()
+        message.angular_velocity_covariance = self.imu.turning_noise.covariance.copy()
+        message.linear_acceleration_covariance = self.imu.acceleration_noise.covariance.copy()
         self.output.publish(message)
 
 
