@@ -12,30 +12,34 @@ class BareDock implements Arrangement {
   readonly kept = new Map<string, readonly PanelId[]>();
   file: string | null = null;
   listed: readonly PanelName[] | null = null;
-  open: readonly PanelId[] = ["displays", "views", "time", "links"];
+  shown: readonly PanelId[] = ["displays", "views", "time", "links"];
+
+  open(id: PanelId): void {
+    this.use([...this.shown, id]);
+  }
 
   isOpen(id: PanelId): boolean {
-    return this.open.includes(id);
+    return this.shown.includes(id);
   }
 
   arrange(file: string): boolean {
     const found = this.kept.get(file);
-    if (found) this.open = found;
+    if (found) this.shown = found;
     return found !== undefined;
   }
 
   keepFor(file: string): void {
     this.file = file;
-    this.kept.set(file, this.open);
+    this.kept.set(file, this.shown);
   }
 
   showOnly(panels: readonly PanelName[]): void {
-    this.open = [...panels, "links"];
+    this.shown = [...panels, "links"];
   }
 
   /** What the user does. */
   use(open: readonly PanelId[]): void {
-    this.open = open;
+    this.shown = open;
     if (this.file !== null) this.kept.set(this.file, open);
     this.changed.emit();
   }
@@ -74,20 +78,20 @@ beforeEach(() => {
 describe("the panels of a file", () => {
   it("are open when the browser sees the file for the first time", () => {
     tell(1, "/a.rviz", ["displays", "views"]);
-    expect(dock.open).toEqual(["displays", "views", "links"]);
+    expect(dock.shown).toEqual(["displays", "views", "links"]);
     expect([dock.file, dock.listed]).toEqual(["/a.rviz", ["displays", "views"]]);
     expect(sent).toEqual([]);
   });
 
   it("stay as they are where the file says nothing", () => {
     tell(1, "/a.rviz", null);
-    expect(dock.open).toEqual(["displays", "views", "time", "links"]);
+    expect(dock.shown).toEqual(["displays", "views", "time", "links"]);
   });
 
   it("are the user's when the browser knows the file", () => {
     dock.kept.set("/a.rviz", ["time", "plot"]);
     tell(1, "/a.rviz", ["displays", "views"]);
-    expect(dock.open).toEqual(["time", "plot"]);
+    expect(dock.shown).toEqual(["time", "plot"]);
     expect(sent).toEqual([]);
   });
 
@@ -95,10 +99,10 @@ describe("the panels of a file", () => {
     dock.kept.set("/b.rviz", ["time", "plot"]);
     tell(1, "/a.rviz", ["displays"]);
     tell(2, "/b.rviz", ["views"]);
-    expect(dock.open).toEqual(["views", "links"]);
+    expect(dock.shown).toEqual(["views", "links"]);
     dock.use(["plot"]);
     tell(3, "/b.rviz", ["views"]);
-    expect(dock.open).toEqual(["views", "links"]);
+    expect(dock.shown).toEqual(["views", "links"]);
   });
 
   it("are known of when both messages about a configuration came, whichever is first", () => {
@@ -106,7 +110,7 @@ describe("the panels of a file", () => {
     receive(configuration({ opened: 2, path: "/b.rviz" }));
     expect(dock.file).toBe("/a.rviz");
     receive({ type: "panels", opened: 2, origin: "", shown: ["time"] });
-    expect([dock.file, dock.open]).toEqual(["/b.rviz", ["time", "links"]]);
+    expect([dock.file, dock.shown]).toEqual(["/b.rviz", ["time", "links"]]);
   });
 });
 
@@ -130,7 +134,7 @@ describe("what the user does", () => {
     expect(dock.file).toBe("<default>");
     dock.use(["displays", "time"]);
     receive(configuration({ opened: 1, path: "/new.rviz" }));
-    expect([dock.file, dock.open]).toEqual(["/new.rviz", ["displays", "time"]]);
+    expect([dock.file, dock.shown]).toEqual(["/new.rviz", ["displays", "time"]]);
     expect(dock.kept.get("/new.rviz")).toEqual(["displays", "time"]);
   });
 
@@ -139,10 +143,10 @@ describe("what the user does", () => {
     dock.use(["time"]);
     hello();
     tell(1, "/a.rviz", ["time"]);
-    expect(dock.open).toEqual(["time"]);
+    expect(dock.shown).toEqual(["time"]);
     hello(); // another program
     tell(1, "/c.rviz", ["views"]);
-    expect(dock.open).toEqual(["views", "links"]);
+    expect(dock.shown).toEqual(["views", "links"]);
     expect(sent).toHaveLength(1);
   });
 });
@@ -169,5 +173,35 @@ describe("the arrangements that the browser keeps", () => {
       texts.set("linkwright.layouts.1", text);
       expect(layouts.latest).toBeNull();
     }
+  });
+});
+
+describe("the pad", () => {
+  const simulation = (present: boolean): ServerMessage => ({ type: "simulation_status", present, paused: false, time: null, real_time_factor: null });
+
+  it("is open where there is a simulation, whichever comes first", () => {
+    tell(1, null, ["displays"], "robot.urdf");
+    expect(dock.isOpen("teleop")).toBe(false);
+    receive(simulation(true));
+    expect(dock.isOpen("teleop")).toBe(true);
+    tell(2, null, ["displays"], "other.urdf");
+    expect(dock.isOpen("teleop")).toBe(true);
+  });
+
+  it("stays closed once it was closed", () => {
+    tell(1, null, ["displays"], "robot.urdf");
+    receive(simulation(true));
+    dock.use(["displays"]);
+    receive(simulation(false), simulation(true));
+    hello();
+    tell(1, null, ["displays"], "robot.urdf");
+    receive(simulation(true));
+    expect(dock.isOpen("teleop")).toBe(false);
+  });
+
+  it("stays closed where a file says which panels are open", () => {
+    tell(1, "/a.rviz", ["displays"]);
+    receive(simulation(true));
+    expect(dock.isOpen("teleop")).toBe(false);
   });
 });

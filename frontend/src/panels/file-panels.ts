@@ -22,6 +22,7 @@ export interface Arrangement {
   /** Shows what the browser keeps for a file; false when that is nothing. */
   arrange(file: string): boolean;
   keepFor(file: string): void;
+  open(id: PanelId): void;
   showOnly(panels: readonly PanelName[]): void;
 }
 
@@ -39,12 +40,18 @@ export class FilePanels {
   private shown: number | null = null;
   /** Which of the file's panels were open when last looked at. */
   private open: readonly PanelName[] | null = null;
+  /** Neither a file nor the browser says how this page's panels are arranged. */
+  private unarranged = false;
+  private simulated = false;
 
   constructor(
     private readonly connection: Connection,
     private readonly dock: Arrangement,
   ) {
-    connection.on("hello", () => (this.told = this.configuration = this.shown = null));
+    connection.on("hello", () => {
+      this.told = this.configuration = this.shown = null;
+      this.simulated = false;
+    });
     connection.on("panels", (message) => {
       this.told = message;
       this.settle();
@@ -53,7 +60,18 @@ export class FilePanels {
       this.configuration = message;
       this.settle();
     });
+    connection.on("simulation_status", ({ present }) => {
+      this.simulated = present;
+      this.openPad();
+    });
     dock.changed.on(() => this.compare());
+  }
+
+  /** A simulated robot is there to be driven: the pad is open unless it is known how the panels should be. */
+  private openPad(): void {
+    if (!this.simulated || !this.unarranged) return;
+    this.unarranged = false;
+    this.dock.open("teleop");
   }
 
   /** Follows the configuration as soon as both messages about it are there. */
@@ -73,6 +91,8 @@ export class FilePanels {
     dock.keepFor(file);
     if (told.shown && (isNews || !isKept)) dock.showOnly(told.shown);
     this.open = this.openNow;
+    this.unarranged = configuration.path === null && !isKept;
+    this.openPad();
   }
 
   private compare(): void {
