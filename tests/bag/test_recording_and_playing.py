@@ -380,3 +380,23 @@ async def test_the_time_is_told_before_messages(
         Player(player_node, bag, options).start()
         await clock.advance(5)
     assert times == [1, 2, 4]
+
+
+async def test_by_simulated_time_nothing_is_looked_for_before_the_time_is_told(
+    graph: Graph, clock: JumpClock, tmp_path: Path
+) -> None:
+    node = graph.create_node("recorder", parameters={"use_sim_time": True})
+    talker = graph.create_node("talker")
+    talker.create_publisher(String, "chatter", DESCRIPTION_QOS).publish(String(data="kept"))
+    tick = get_message("rosgraph_msgs/msg/Clock")
+    ticks = talker.create_publisher(tick, "/clock", DEFAULT_QOS)
+    recorder = Recorder(node, TopicSelection(everything=True), BagWriter(tmp_path / "bag"))
+    await clock.advance(1)
+    for second in (1, 2):
+        message = tick()
+        message.clock.sec = second
+        ticks.publish(message)
+        await clock.advance(1)
+    recorder.close()
+    with BagReader(tmp_path / "bag") as bag:
+        assert [stamp for _, stamp, _ in bag.messages(["/chatter"])] == [1_000_000_000]

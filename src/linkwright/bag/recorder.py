@@ -88,6 +88,8 @@ class Recorder:
             self._logger.warning(f"Not in the recording: {', '.join(missing)}")
 
     def _look(self) -> None:
+        if self._by_clock and self._looking is not None and self._now() == 0:
+            return  # nobody has told the time yet; what is kept for late subscribers is not lost then
         for name, types in self._node.get_topic_names_and_types():
             if name in self._writer.topics or name in self._refused:
                 continue
@@ -129,8 +131,11 @@ class Recorder:
     def _write(self, name: str, data: Any, info: MessageInfo) -> None:
         if self.paused:
             return
-        stamp = self._node.get_clock().now().nanoseconds if self._by_clock else info.received_timestamp
+        stamp = self._now() if self._by_clock else info.received_timestamp
         if self._by_clock and stamp == 0:
             return  # nobody has told the time yet
         self._writer.write(name, stamp, data)
         self._count += 1
+
+    def _now(self) -> int:
+        return self._node.get_clock().now().nanoseconds

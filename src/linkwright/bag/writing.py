@@ -63,7 +63,7 @@ class BagWriter:
                         path=display_path(self.path),
                         reason=foreign(reason),
                     ),
-                    hint=phrase("name another folder with -o"),
+                    hint=phrase("name another folder"),
                 )
             ) from error
         self._connections: dict[str, Any] = {}

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from linkwright.assignments import parse_assignments
 from linkwright.cli.endings import say
-from linkwright.cli.simulation_options import add_simulation_options
+from linkwright.cli.simulation_options import add_simulation_options, recording
 from linkwright.cli.view import add_viewer_options
 from linkwright.diagnostics import (
     Phrase,
@@ -96,7 +96,8 @@ def run(arguments: argparse.Namespace) -> int:
         rate=arguments.rate,
     )
     options = HostOptions(arguments.host, arguments.port, not arguments.no_open)
-    status = run_simulated(world, finder, options, foxglove=arguments.foxglove)
+    with recording(arguments) as writer:
+        status = run_simulated(world, finder, options, foxglove=arguments.foxglove, writer=writer)
     return status or int(has_errors(description.diagnostics))
 
 

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import argparse
-import sys
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from linkwright.assignments import parse_assignments
-from linkwright.cli.simulation_options import add_simulation_options, positive
+from linkwright.cli.simulation_options import (
+    add_place_options,
+    add_simulation_options,
+    load_model,
+    positive,
+    recording,
+)
 from linkwright.cli.view import add_viewer_options
-from linkwright.diagnostics import Diagnostic, phrase, print_diagnostics
-
-if TYPE_CHECKING:
-    from linkwright.hosting.simulated import SimulatedWorld
-    from linkwright.packages import PackageFinder
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -24,10 +24,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "values", metavar="NAME:=VALUE", nargs="*", default=[], help="values for the robot's <xacro:arg>"
     )
-    parser.add_argument("-x", metavar="M", type=float, default=0.0, help="where the robot begins, along x (m)")
-    parser.add_argument("-y", metavar="M", type=float, default=0.0, help="the same along y")
-    parser.add_argument("-z", metavar="M", type=float, default=0.0, help="the same upwards")
-    parser.add_argument("-Y", metavar="RAD", type=float, default=0.0, help="how far the robot is turned (rad)")
+    add_place_options(parser)
     add_simulation_options(parser)
     parser.add_argument("--step", metavar="S", type=positive, default=0.0, help="the time step (default: the world's)")
     parser.add_argument("--seed", metavar="N", type=int, default=0, help="what noise follows from (default: 0)")
@@ -59,36 +56,10 @@ def run(arguments: argparse.Namespace) -> int:
         headless=arguments.headless,
     )
     if arguments.robot is not None:
-        with_robot = _with_robot(world, finder, parse_assignments(arguments.values))
-        if with_robot is None:
+        model = load_model(path, parse_assignments(arguments.values), finder)
+        if model is None:
             return 1
-        world = with_robot
+        world = replace(world, description=model.description, text=model.text, name=model.name)
     options = HostOptions(arguments.host, arguments.port, not arguments.no_open)
-    return run_simulated(world, finder, options, foxglove=arguments.foxglove)
-
-
-def _with_robot(world: SimulatedWorld, finder: PackageFinder, values: dict[str, str]) -> SimulatedWorld | None:
-    """The world with the robot of its path; None where that is wrong, which has been told then."""
-    from dataclasses import replace
-
-    from linkwright.descriptions import examine, is_world
-    from linkwright.descriptions.conversion import as_sdf
-
-    if is_world(world.path.name):
-        from linkwright.sdf.writer import save
-
-        converted = as_sdf(world.path, finder, arguments=values, folder=Path.cwd())
-        if converted.sdf is None or not converted.sdf.models:
-            print_diagnostics(converted.diagnostics or [_no_model(world.path)], sys.stderr)
-            return None
-        return replace(world, text=save(converted.sdf.models[0]), name=converted.sdf.models[0].name)
-    description = examine(world.path, arguments=values, packages=finder)
-    if description.robot is None or not description.robot.links:
-        print_diagnostics(description.diagnostics, sys.stderr)
-        return None
-    return replace(world, description=description, text=description.text, name=description.robot.name)
-
-
-def _no_model(path: Path) -> Diagnostic:
-    message = phrase("there is no model in '{path}'", path=str(path))
-    return Diagnostic("CLI331", message, hint=phrase("the robot is to be URDF, xacro, or SDF with a <model>"))
+    with recording(arguments) as writer:
+        return run_simulated(world, finder, options, foxglove=arguments.foxglove, writer=writer)

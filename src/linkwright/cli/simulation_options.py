@@ -1,8 +1,22 @@
-"""The options that ``linkwright sim`` and ``linkwright drive`` have both."""
+"""What ``linkwright sim``, ``drive`` and ``spawn`` share: options of a simulation, and reading what is put into it."""
 
 from __future__ import annotations
 
 import argparse
+import sys
+from contextlib import nullcontext
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from linkwright.diagnostics import Diagnostic, phrase, print_diagnostics
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from contextlib import AbstractContextManager
+
+    from linkwright.bag import BagWriter
+    from linkwright.descriptions import Description
+    from linkwright.packages import PackageFinder
 
 
 def add_simulation_options(parser: argparse.ArgumentParser) -> None:
@@ -17,6 +31,9 @@ def add_simulation_options(parser: argparse.ArgumentParser) -> None:
         type=_rate,
         default=0.0,
         help="simulated seconds in a real one, or max (default: as the world says)",
+    )
+    parser.add_argument(
+        "--record", metavar="FOLDER", help="record all topics, as bag record -a does, with their simulated times"
     )
 
 
@@ -45,3 +62,69 @@ def _rate(text: str) -> float:
     if not 0.0 < value < 1e6:
         raise argparse.ArgumentTypeError(f"'{text}' is neither a positive number nor max")
     return value
+
+
+def add_place_options(parser: argparse.ArgumentParser) -> None:
+    """Declare where a robot begins."""
+    parser.add_argument("-x", metavar="M", type=float, default=0.0, help="where the robot begins, along x (m)")
+    parser.add_argument("-y", metavar="M", type=float, default=0.0, help="the same along y")
+    parser.add_argument("-z", metavar="M", type=float, default=0.0, help="the same upwards")
+    parser.add_argument("-Y", metavar="RAD", type=float, default=0.0, help="how far the robot is turned (rad)")
+
+
+def recording(arguments: argparse.Namespace) -> AbstractContextManager[BagWriter | None]:
+    """The recording that `add_simulation_options` asks for, which is closed at the end of the block; None for none.
+
+    Raises:
+        LinkwrightError: BAG105, the folder exists already or cannot be made; BAG107, `rosbags` is not installed.
+    """
+    if arguments.record is None:
+        return nullcontext()
+    from linkwright.bag import BagWriter
+
+    return BagWriter(arguments.record)
+
+
+class LoadedModel(NamedTuple):
+    """What is put into a world.
+
+    Attributes:
+        text: URDF or SDF.
+        name: the one that it says.
+        description: of a robot in URDF; None for a model in SDF.
+    """
+
+    text: str
+    name: str
+    description: Description | None
+
+
+def load_model(path: Path, values: Mapping[str, str], finder: PackageFinder) -> LoadedModel | None:
+    """Read a robot or model; None where it is wrong, which has been told then.
+
+    Args:
+        path: URDF, xacro or SDF.
+        values: name -> value of the xacro arguments.
+        finder: where packages are.
+    """
+    from linkwright.descriptions import examine, is_world
+    from linkwright.descriptions.conversion import as_sdf
+
+    if is_world(path.name):
+        from linkwright.sdf.writer import save
+
+        converted = as_sdf(path, finder, arguments=dict(values), folder=Path.cwd())
+        if converted.sdf is None or not converted.sdf.models:
+            print_diagnostics(converted.diagnostics or [_no_model(path)], sys.stderr)
+            return None
+        return LoadedModel(save(converted.sdf.models[0]), converted.sdf.models[0].name, None)
+    description = examine(path, arguments=dict(values), packages=finder)
+    if description.robot is None or not description.robot.links:
+        print_diagnostics(description.diagnostics, sys.stderr)
+        return None
+    return LoadedModel(description.text, description.robot.name, description)
+
+
+def _no_model(path: Path) -> Diagnostic:
+    message = phrase("there is no model in '{path}'", path=str(path))
+    return Diagnostic("CLI331", message, hint=phrase("the robot is to be URDF, xacro, or SDF with a <model>"))

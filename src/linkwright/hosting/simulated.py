@@ -18,6 +18,7 @@ from linkwright.packages import PackageFinder
 from linkwright.xmltree import write
 
 if TYPE_CHECKING:
+    from linkwright.bag import BagWriter
     from linkwright.descriptions import Description
     from linkwright.inference import Inference
     from linkwright.viewer import RvizConfig
@@ -92,8 +93,22 @@ class SimulatedWorld:
         }
 
 
-def run_simulated(world: SimulatedWorld, finder: PackageFinder, options: HostOptions, *, foxglove: int | None) -> int:
+def run_simulated(
+    world: SimulatedWorld,
+    finder: PackageFinder,
+    options: HostOptions,
+    *,
+    foxglove: int | None = None,
+    writer: BagWriter | None = None,
+) -> int:
     """Simulate a world until the user ends it, or its seconds are over.
+
+    Args:
+        world: the world, and what is in it.
+        finder: where packages are.
+        options: how it is run.
+        foxglove: a port for Foxglove and Lichtblick to connect to; None for none.
+        writer: takes what all topics carry, with their simulated times; None for no recording.
 
     Returns:
         The exit status, see `linkwright.hosting.signals.run_to_end`.
@@ -104,7 +119,7 @@ def run_simulated(world: SimulatedWorld, finder: PackageFinder, options: HostOpt
     def run(signals: SignalWatch) -> bool:
         async def show() -> bool:
             signals.session = view = SimulatedView(world, finder, options, log)
-            return await view.run(foxglove)
+            return await view.run(foxglove, writer)
 
         return signals.run(show)
 

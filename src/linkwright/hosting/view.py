@@ -10,6 +10,7 @@ from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from linkwright.diagnostics import LinkwrightError
 from linkwright.hosting.launch_log import LaunchLog, output_destinations
 from linkwright.hosting.node_host import NodeHost
 from linkwright.hosting.plans import VIEWER, HostedPlan, HostOptions
@@ -19,6 +20,7 @@ from linkwright.hosting.xacro_calls import DescriptionError, Descriptions, Xacro
 from linkwright.packages import PackageFinder
 
 if TYPE_CHECKING:
+    from linkwright.bag import BagWriter, Recorder
     from linkwright.viewer import RvizConfig
 
 _PUBLISH_FREQUENCY = 60.0
@@ -95,11 +97,19 @@ class ModelView:
         self.host = NodeHost(self)
         self.reload = LiveReload(self.descriptions, self.host.show_findings, log)
 
-    async def run(self, foxglove: int | None) -> bool:
-        """Show the model until the user, or a viewer that cannot start, ends it; returns whether nothing failed."""
+    async def run(self, foxglove: int | None, writer: BagWriter | None = None) -> bool:
+        """Show the model until the user, or a viewer that cannot start, ends it; returns whether nothing failed.
+
+        Args:
+            foxglove: a port for Foxglove and Lichtblick to connect to; None for none.
+            writer: takes what all topics carry, with the times that ``/clock`` tells; None for no recording.
+        """
         self.loop = asyncio.get_running_loop()
         self.log.begin()
+        recorder = None
         try:
+            if writer is not None:
+                recorder = self._recorder(writer)
             if self._publish():
                 self._plan_others()
                 if foxglove is not None:
@@ -113,10 +123,33 @@ class ModelView:
             while self._tasks:
                 await asyncio.wait(self._tasks)
         finally:
+            if recorder is not None:
+                recorder.close()
             await self._close()
         if self._crash is not None:
             raise self._crash
         return not self._failures
+
+    def _recorder(self, writer: BagWriter) -> Recorder:
+        from linkwright.bag import Recorder, TopicSelection
+
+        def guarded(callback: Callable[..., object]) -> Callable[..., object]:
+            def call(*arguments: Any) -> None:
+                if self._is_over.is_set():
+                    return
+                try:
+                    callback(*arguments)
+                except LinkwrightError as error:  # the disk is full
+                    self.log.diagnostics(error.diagnostics)
+                    self.fail(writer)
+                    self.shut_down("the recording has ended")
+
+            return call
+
+        node = self.host.graph.create_node(
+            "rosbag2_recorder", parameters={"use_sim_time": True}, start_parameter_services=False
+        )
+        return Recorder(node, TopicSelection(everything=True, every_service=True), writer, guarded=guarded)
 
     # --- what is shown ----------------------------------------------------------------------------------------
 

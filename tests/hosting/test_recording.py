@@ -1,0 +1,99 @@
+"""``--record`` of simulations: what all topics carry, with simulated times, and whole however the simulation ends."""
+
+from __future__ import annotations
+
+import asyncio
+import io
+from pathlib import Path
+
+import pytest
+
+from linkwright.bag import BagReader, BagWriter
+from linkwright.cli.command import main
+from linkwright.descriptions import examine
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+from linkwright.hosting.launch_log import LaunchLog
+from linkwright.hosting.plans import HostOptions
+from linkwright.hosting.simulated import SimulatedView, SimulatedWorld
+from linkwright.packages import PackageFinder
+from tests.waiting import eventually
+
+MBOT = Path(__file__).parents[2] / "robots/my_robot_description/urdf/mbot_gazebo.xacro"
+OPTIONS = HostOptions(port=0, open_browser=False, network=False)
+SECOND = 1_000_000_000
+
+
+@pytest.fixture(autouse=True)
+def _logs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "ros_log"))
+    monkeypatch.setenv("LINKWRIGHT_DDS", "0")
+
+
+def mbot(seconds: float) -> SimulatedWorld:
+    """mbot on a plane, without a page, as fast as can be."""
+    description = examine(MBOT)
+    assert description.robot is not None
+    return SimulatedWorld(
+        "empty", MBOT, description, description.text, description.robot.name, seconds=seconds, rate=-1.0, headless=True
+    )
+
+
+def view_of(world: SimulatedWorld) -> tuple[SimulatedView, io.StringIO]:
+    err = io.StringIO()
+    return SimulatedView(world, PackageFinder(start=MBOT.parent), OPTIONS, LaunchLog(io.StringIO(), err)), err
+
+
+class Watched(BagWriter):
+    """A recording that tells of which topics it has messages."""
+
+    def __init__(self, path: Path) -> None:
+        super().__init__(path)
+        self.written: set[str] = set()
+
+    def write(self, topic: str, stamp_ns: int, data: bytes | memoryview) -> None:
+        super().write(topic, stamp_ns, data)
+        self.written.add(topic)
+
+
+async def test_all_topics_are_recorded_with_simulated_times(tmp_path: Path) -> None:
+    view, err = view_of(mbot(2.0))
+    with BagWriter(tmp_path / "run") as writer:
+        assert await view.run(None, writer), err.getvalue()
+    with BagReader(tmp_path / "run") as bag:
+        found = [(topic, stamp) for topic, stamp, _ in bag.messages()]
+        assert bag.finding is None
+    assert {"/clock", "/odom", "/tf", "/tf_static", "/robot_description", "/imu"} <= {topic for topic, _ in found}
+    stamps = [stamp for _, stamp in found]
+    assert stamps == sorted(stamps)
+    assert 0 < stamps[0] <= stamps[-1] <= 2 * SECOND
+
+
+async def test_a_recording_is_whole_when_the_user_ends_the_simulation(tmp_path: Path) -> None:
+    view, err = view_of(mbot(0.0))
+    with Watched(tmp_path / "run") as writer:
+        running = asyncio.create_task(view.run(None, writer))
+        await eventually(lambda: {"/odom", "/tf_static"} <= writer.written or running.done(), what=err.getvalue)
+        view.interrupt("the test is over")
+        assert await running, err.getvalue()
+    with BagReader(tmp_path / "run") as bag:
+        assert {topic for topic, _, _ in bag.messages()} == writer.written
+        assert bag.finding is None
+
+
+async def test_a_full_disk_ends_the_simulation(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*_: object) -> None:
+        raise LinkwrightError(Diagnostic("BAG108", phrase("the disk is full")))
+
+    monkeypatch.setattr(BagWriter, "write", refuse)
+    view, err = view_of(mbot(0.0))
+    with BagWriter(tmp_path / "run") as writer:
+        assert not await view.run(None, writer)
+    assert err.getvalue().count("the disk is full") == 1
+
+
+@pytest.mark.parametrize("words", [("sim", "empty"), ("drive", str(MBOT))], ids=["sim", "drive"])
+def test_a_folder_that_is_there_is_not_written_to(tmp_path: Path, capsys, words: tuple[str, ...]) -> None:
+    assert main([*words, "--headless", "--record", str(tmp_path)]) == 1
+    said = capsys.readouterr().err
+    assert said.count("error[") == 1
+    assert "it exists already" in said
