@@ -98,3 +98,13 @@ async def test_a_second_axis_is_refused():
     async with served(arm(position("<joint_index>1</joint_index>"))) as (server, _, log):
         assert not server.plugins("arm")
         assert [each.text for each in log if "only the first axis" in each.text]
+
+
+async def test_an_arm_on_a_base_that_stands_fast_is_held_too():
+    base = '<link name="base"/><joint name="anchor" type="fixed"><parent>world</parent><child>base</child></joint>'
+    text = arm(position("<use_velocity_commands>true</use_velocity_commands>"))
+    text = text.replace("<parent>world</parent>", "<parent>base</parent>").replace("<joint", f"{base}<joint", 1)
+    async with served(text) as (server, graph, log):
+        await command(graph, server, "/model/arm/joint/shoulder/_0/cmd_pos", -1.0, 2.0)
+        assert server.simulation.joint_state("arm::shoulder")[0] == pytest.approx(-1.0, abs=2e-3)
+        assert not log

@@ -198,16 +198,17 @@ class Scene:
         return actuator
 
     def keep_awake(self, link: str, never: Any) -> None:
-        """Give the bodies that hang together with a link a policy of sleep; those that stand still need none.
+        """Give the bodies that move together with a link a policy of sleep; those that stand still need none.
 
         Raises:
             KeyError: there is no such link.
         """
-        body = self.bodies[link]
-        while body.parent != self.spec.worldbody:
+        body, root = self.bodies[link], None
+        while body != self.spec.worldbody:
+            root = body if len(body.joints) else root
             body = body.parent
-        if body.find_all("joint"):
-            body.sleep = never
+        if root is not None:
+            root.sleep = never
 
     def settle(self) -> None:
         """Give wheels and casters of models with motors their surfaces, once all motors are there."""
