@@ -17,6 +17,7 @@ from linkwright.sdf.resources import ResourceFinder
 from linkwright.sdf.saved import as_saved
 from linkwright.sdf.worlds import World
 from linkwright.simulation.library import load_mujoco
+from linkwright.simulation.scene.bodies import COLLISION_GROUP
 from linkwright.simulation.scene.meshes import MeshLibrary
 from linkwright.simulation.scene.scene import Scene
 from linkwright.simulation.schedule import Schedule, Task
@@ -275,6 +276,33 @@ class Simulation:
         body, result = self.body(name), np.zeros(6)
         self._mujoco.mj_objectVelocity(self.model, self.data, self._mujoco.mjtObj.mjOBJ_XBODY, body, result, 0)
         return result[3:], result[:3]
+
+    def mass_of(self, name: str) -> float:
+        """The mass of a model in kg, with what hangs on its first link.
+
+        Raises:
+            KeyError: there is no such model.
+        """
+        self.refresh()
+        return float(self.model.body_subtreemass[self.model.body(self._root(name)[0]).id])
+
+    def wheel_radius(self, link: str) -> float | None:
+        """The radius in m of what touches of a wheel that rolls; None if that is not round.
+
+        Raises:
+            KeyError: there is no such link.
+        """
+        self.refresh()
+        kinds, model, body = self._mujoco.mjtGeom, self.model, self.model.body(link)
+        radii = []
+        for geom in range(body.geomadr[0], body.geomadr[0] + body.geomnum[0]):
+            if model.geom_group[geom] != COLLISION_GROUP:
+                continue
+            if model.geom_type[geom] == kinds.mjGEOM_ELLIPSOID:
+                radii.append(float(np.median(model.geom_size[geom])))
+            elif model.geom_type[geom] in (kinds.mjGEOM_SPHERE, kinds.mjGEOM_CYLINDER):
+                radii.append(float(model.geom_size[geom, 0]))
+        return max(radii, default=None)
 
     def model_pose(self, name: str) -> Transform:
         """Where the frame of a model is in the world: it moves with its first link."""

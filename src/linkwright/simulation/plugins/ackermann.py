@@ -1,0 +1,146 @@
+"""Cars, which steer their front wheels: ``libgazebo_ros_ackermann_drive.so``.
+
+Source: gazebo_ros_pkgs for ROS 2 (parameters, topics, defaults, the angles of the wheels; ``angular.z`` of a command is
+the angle of steering). Other than there the front wheels are held at their angles, the gains of steering change
+nothing, and the rear wheels hold their velocity with no more than the torque at which they would slip.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import atan2, copysign, dist, hypot, tan
+from typing import Any
+
+from linkwright.diagnostics import phrase
+from linkwright.messages import get_message
+from linkwright.simulation.plugins.odometry import OdometryTopics, planar_velocity, transforms_topic
+from linkwright.simulation.plugins.plugin import SimulatedPlugin
+from linkwright.simulation.simulation import NANOSECONDS
+
+_GAIN = 20.0
+"""Torque of a motor in N m for each rad/s that its wheel is too slow."""
+_GRAVITY = 9.81
+
+
+@dataclass(frozen=True, kw_only=True)
+class AckermannParameters:
+    """Of the plugin of Gazebo classic."""
+
+    front_left_joint: str = "front_left_joint"
+    front_right_joint: str = "front_right_joint"
+    rear_left_joint: str = "rear_left_joint"
+    rear_right_joint: str = "rear_right_joint"
+    left_steering_joint: str = "left_steering_joint"
+    right_steering_joint: str = "right_steering_joint"
+    max_speed: float = 20.0
+    max_steer: float = 0.6
+    update_rate: float = 100.0
+    odometry_frame: str = "odom"
+    robot_base_frame: str = "base_footprint"
+    publish_odom: bool = False
+    publish_odom_tf: bool = False
+    publish_distance: bool = False
+    covariance_x: float = 1e-5
+    covariance_y: float = 1e-5
+    covariance_yaw: float = 1e-3
+
+
+class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
+    """``libgazebo_ros_ackermann_drive.so``."""
+
+    PARAMETERS = AckermannParameters
+    IGNORED = (
+        *("left_steering_pid_gain", "right_steering_pid_gain", "linear_velocity_pid_gain"),
+        *("left_steering_i_range", "right_steering_i_range", "linear_velocity_i_range"),
+        *("steering_wheel_joint", "max_steering_angle", "publish_wheel_tf"),
+    )
+
+    def start(self) -> None:
+        """Give the wheels motors and servos, and listen.
+
+        Raises:
+            LinkwrightError: SIM134 a joint is not there; SIM160 a wheel has no size, or axles are in one place.
+        """
+        said, node, simulation = self.parameters, self.node, self.simulation
+        front = [self.joint(name) for name in (said.front_left_joint, said.front_right_joint)]
+        rear = [self.joint(name) for name in (said.rear_left_joint, said.rear_right_joint)]
+        steering = [self.joint(name) for name in (said.left_steering_joint, said.right_steering_joint)]
+        for joint in (*front, *rear):
+            simulation.let_roll(joint)
+        self._radius = self._radius_of(rear[1])
+        self._measure(front, rear)
+        simulation.keep_awake(self.first_link)
+        torque = simulation.mass_of(self.place.path) * _GRAVITY * self._radius / 2.0
+        self._motors = [simulation.add_velocity_motor(joint, _GAIN, torque) for joint in rear]
+        self._servos = [simulation.add_servo(joint) for joint in steering]
+        odometry = node.publisher("nav_msgs/msg/Odometry", "odom", 1) if said.publish_odom else None
+        transforms = transforms_topic(node) if said.publish_odom_tf else None
+        covariance = (said.covariance_x, said.covariance_y, said.covariance_yaw)
+        self._topics = OdometryTopics(said.odometry_frame, said.robot_base_frame, odometry, transforms, covariance)
+        self._way = node.publisher("std_msgs/msg/Float32", "distance", 1) if said.publish_distance else None
+        node.subscribe("geometry_msgs/msg/Twist", "cmd_vel", self._commanded, 1)
+        self._begin()
+        self.every(said.update_rate, self._update)
+
+    def _begin(self) -> None:
+        self._speed = self._angle = self._distance = 0.0
+        self._place = self.simulation.model_pose(self.place.path)
+        self._time = self.simulation.time
+
+    def reset(self) -> None:
+        """Stand still, with the wheels straight ahead."""
+        self._begin()
+        for servo in self._servos:
+            servo.restart()
+        self._drive(0.0)
+
+    def _radius_of(self, joint: str) -> float:
+        radius = self.simulation.wheel_radius(self.simulation.scene.joints[joint].child)
+        if radius is None:
+            raise self.refused(
+                phrase(
+                    "plugin '{plugin}': the wheel on '{joint}' has no collision that is round",
+                    plugin=self.place.name,
+                    joint=self.parameters.rear_right_joint,
+                )
+            )
+        return radius
+
+    def _measure(self, front: list[str], rear: list[str]) -> None:
+        """The distances of the front wheels and of the axles in m."""
+        simulation = self.simulation
+        left, right, back_left, back_right = (
+            simulation.link_pose(simulation.scene.joints[joint].child)[:3] for joint in (*front, *rear)
+        )
+        self._separation = dist(left, right)
+        self._base = dist(
+            [(a + b) / 2.0 for a, b in zip(left, right, strict=True)],
+            [(a + b) / 2.0 for a, b in zip(back_left, back_right, strict=True)],
+        )
+        if not (self._separation > 0.0 and self._base > 0.0):
+            raise self.refused(phrase("plugin '{plugin}': its wheels are in one place", plugin=self.place.name))
+
+    def _commanded(self, twist: Any) -> None:
+        said = self.parameters
+        self._speed = min(max(float(twist.linear.x), -said.max_speed), said.max_speed)
+        angle = float(twist.angular.z) * copysign(1.0, self._speed)
+        self._angle = min(max(angle, -said.max_steer), said.max_steer)
+
+    def _update(self) -> None:
+        now = self.simulation.time
+        seconds, self._time = (now - self._time) / NANOSECONDS, now
+        self._drive(seconds)
+        before, self._place = self._place, self.simulation.model_pose(self.place.path)
+        self._distance += hypot(self._place[0] - before[0], self._place[1] - before[1])
+        velocity = planar_velocity(self._place, *self.simulation.link_velocity(self.first_link))
+        self._topics.publish(self.stamp(), self._place, *velocity)
+        if self._way is not None:
+            self._way.publish(get_message("std_msgs/msg/Float32")(data=self._distance))
+
+    def _drive(self, seconds: float) -> None:
+        """Turn the wheels: the inner one is steered further, so that both roll about one point."""
+        for motor in self._motors:
+            motor.target = self._speed / self._radius
+        slope = tan(self._angle)
+        for servo, side in zip(self._servos, (-1.0, 1.0), strict=True):
+            servo.move(atan2(slope, 1.0 + side * self._separation / 2.0 / self._base * slope), seconds)
