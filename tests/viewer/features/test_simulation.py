@@ -47,6 +47,8 @@ class Simulation:
             response.success = getattr(request, "name", "") != "nobody"
             if not response.success:
                 response.status_message = "there is no model 'nobody'"
+        if name == "/set_entity_state":
+            response.success = request.state.name != "ground"  # its answer has no text
         if name == "/get_entity_state":
             response.state.name = request.name
             response.state.pose.position.x = 1.0
@@ -149,6 +151,13 @@ async def test_a_model_is_dragged_from_where_it_was():
         position, turn = state.pose.position, state.pose.orientation
         assert (position.x, position.y, position.z, turn.z) == (3.0, 3.0, 0.0, 1.0)
         assert [name for name, _ in simulation.asked].count("/get_entity_state") == 1
+
+
+async def test_a_model_that_cannot_be_moved_is_told_by_its_name():
+    async with simulated() as (_, client):
+        await client.send("drag_model", model="ground", begins=True, offset=[0, 0, 0])
+        notice = await client.until("simulation_notice")
+        assert notice["text"] == "'ground' cannot be moved: it is fixed to the world, or gone"
 
 
 async def test_a_link_is_pushed_at_a_point_for_a_moment():

@@ -167,8 +167,9 @@ class SimulationFeature(PageFeature):
         name: str,
         fields: dict[str, Any],
         answered: Callable[[Any], None] = lambda _: None,
+        refused: Phrase | None = None,
     ) -> None:
-        """Call a service; the page is told when there is none, or when it refuses."""
+        """Call a service; the page is told when there is none, or when it refuses: `refused` where it says no more."""
         client = self._clients.get(name)
         if client is None:
             client = self._clients[name] = self.context.node.create_client(get_service(kind), name)
@@ -182,7 +183,8 @@ class SimulationFeature(PageFeature):
             response = future.result()
             result = getattr(response, "result", None)
             if getattr(response, "success", True) is False:
-                self._refuse(page, getattr(response, "status_message", "") or phrase("'{name}' failed", name=name))
+                without_reason = refused or phrase("'{name}' failed", name=name)
+                self._refuse(page, getattr(response, "status_message", "") or without_reason)
             elif result is not None and result.error_message:
                 self._refuse(page, result.error_message)
             answered(response)
@@ -256,7 +258,8 @@ class SimulationFeature(PageFeature):
             drag.calling = False
             self._put(page, drag)
 
-        self._ask(page, "gazebo_msgs/srv/SetEntityState", "/set_entity_state", {"state": state}, put)
+        fixed = phrase("'{model}' cannot be moved: it is fixed to the world, or gone", model=drag.model)
+        self._ask(page, "gazebo_msgs/srv/SetEntityState", "/set_entity_state", {"state": state}, put, fixed)
 
     def _push(self, page: Page, message: PushLink) -> None:
         if not (_is_vector(message.point) and _is_vector(message.force)):
