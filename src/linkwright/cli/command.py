@@ -38,6 +38,7 @@ GROUPS = {
         "pkg": "create ROS packages, and tell where they are and what is in them",
         "run": "run an executable of a package: ours, a built one, or an entry point of its sources",
         "sim": "simulate a world, with a robot in it, in the browser or without",
+        "spawn": "put a robot or model into a world that is being simulated",
         "launch": "run a ROS 2 launch file, with its rviz2 as a page in the browser",
         "shell": "open a shell in which ros2, xacro, check_urdf, urdf_to_graphviz, rviz2 and colcon exist",
         "completion": "print what makes TAB complete command lines in bash, zsh or fish",
@@ -68,7 +69,9 @@ _IN_ORDER = frozenset({"pkg", "run", "shell"})
 """Verbs whose words are taken in order, beside those with verbs of their own: what follows is another command's.
 Elsewhere options may stand between words (`launch PACKAGE --no-open FILE`)."""
 
-_WITH_A_LOOP = frozenset({"view", "drive", "run", "sim", "launch", "bag", *GROUPS["the running graph, as ros2 does"]})
+_WITH_A_LOOP = frozenset(
+    {"view", "drive", "run", "sim", "spawn", "launch", "bag", *GROUPS["the running graph, as ros2 does"]}
+)
 """Verbs that run an event loop or another program, which care for Ctrl-C themselves; before they do there is nothing to
 be cleaned up."""
 

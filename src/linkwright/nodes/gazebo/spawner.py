@@ -19,7 +19,7 @@ from linkwright.nodes.options import SingleNode
 from linkwright.packages import current_finder
 from linkwright.sdf.resources import Missing, ResourceFinder
 
-_SPAWN = "gazebo_msgs/srv/SpawnEntity"
+SPAWN_SERVICE = "gazebo_msgs/srv/SpawnEntity"
 _LIST = "gazebo_msgs/srv/GetModelList"
 
 
@@ -40,6 +40,17 @@ class Entity:
     rpy: Vector3 = (0.0, 0.0, 0.0)
     namespace: str = ""
     reference_frame: str = ""
+
+
+def spawn_request(entity: Entity, text: str) -> Any:
+    """The request of the service ``/spawn_entity`` for an entity; `text` is its URDF or SDF."""
+    request = get_service(SPAWN_SERVICE).Request(
+        name=entity.name, xml=text, robot_namespace=entity.namespace, reference_frame=entity.reference_frame
+    )
+    position, orientation = request.initial_pose.position, request.initial_pose.orientation
+    position.x, position.y, position.z = entity.xyz
+    orientation.x, orientation.y, orientation.z, orientation.w = quaternion_from_rpy(entity.rpy)
+    return request
 
 
 class EntitySpawner(SingleNode):
@@ -83,15 +94,7 @@ class EntitySpawner(SingleNode):
         if self._described:
             return
         self._described = True
-        entity = self._entity
-        service = get_service(_SPAWN)
-        request = service.Request(
-            name=entity.name, xml=text, robot_namespace=entity.namespace, reference_frame=entity.reference_frame
-        )
-        position, orientation = request.initial_pose.position, request.initial_pose.orientation
-        position.x, position.y, position.z = entity.xyz
-        orientation.x, orientation.y, orientation.z, orientation.w = quaternion_from_rpy(entity.rpy)
-        self._ask(_SPAWN, "spawn_entity", request, self._answered)
+        self._ask(SPAWN_SERVICE, "spawn_entity", spawn_request(self._entity, text), self._answered)
 
     def _ask(self, kind: str, name: str, request: Any, then: Callable[[Any], None]) -> None:
         """Call a service of the simulator; what answers is given to a function."""

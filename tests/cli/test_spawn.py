@@ -1,0 +1,84 @@
+"""``linkwright spawn``, against a simulator that takes note of what it is asked for."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from linkwright.cli import calls, main
+from linkwright.graph import Graph
+from linkwright.messages import get_service
+
+ROBOT = """<robot name="r"><link name="base"><inertial><mass value="1"/>
+<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link></robot>"""
+
+
+@pytest.fixture
+def asked(in_graph) -> list[Any]:
+    """The requests for entities; a name that was taken is refused."""
+    requests: list[Any] = []
+
+    def spawn(request: Any, response: Any) -> Any:
+        response.success = request.name not in [each.name for each in requests]
+        response.status_message = f"spawned {request.name}" if response.success else "it is there"
+        requests.append(request)
+        return response
+
+    def simulator(graph: Graph) -> None:
+        graph.create_node("gazebo").create_service(get_service("gazebo_msgs/srv/SpawnEntity"), "/spawn_entity", spawn)
+
+    in_graph(simulator)
+    return requests
+
+
+def robot(folder: Path) -> str:
+    path = folder / "robot.urdf"
+    path.write_text(ROBOT)
+    return str(path)
+
+
+def test_a_robot_is_put_where_it_is_wanted(asked, tmp_path, capsys):
+    place = ("-x", "1.5", "-y", "-2", "-z", "0.1", "-Y", str(math.pi / 2))
+    assert main(["spawn", robot(tmp_path), "-name", "second", *place, "--namespace", "two"]) == 0
+    assert capsys.readouterr().out == "spawned second\n"
+    (request,) = asked
+    assert (request.name, request.robot_namespace) == ("second", "two")
+    assert '<link name="base"' in request.xml
+    pose = request.initial_pose
+    assert (pose.position.x, pose.position.y, pose.position.z) == (1.5, -2.0, 0.1)
+    assert pose.orientation.z == pytest.approx(math.sqrt(0.5))
+
+
+def test_its_name_is_that_of_the_file(asked, tmp_path):
+    (tmp_path / "box.sdf").write_text('<sdf version="1.7"><model name="box"><link name="a"/></model></sdf>')
+    assert main(["spawn", robot(tmp_path)]) == 0
+    assert main(["spawn", str(tmp_path / "box.sdf")]) == 0
+    assert [request.name for request in asked] == ["r", "box"]
+    assert asked[1].xml.count("<model") == 1
+
+
+def test_what_the_simulation_refuses_is_one_error(asked, tmp_path, capsys):
+    assert main(["spawn", robot(tmp_path)]) == 0
+    assert main(["spawn", robot(tmp_path)]) == 1
+    said = capsys.readouterr().err
+    assert said.count("error[CLI333]") == 1
+    assert "does not take 'r': it is there" in said
+
+
+def test_without_a_simulation_it_is_said_how_to_start_one(in_graph, tmp_path, capsys, monkeypatch):
+    in_graph(lambda graph: None)
+    monkeypatch.setattr(calls, "APPEARS_WITHIN", 0.0)
+    assert main(["spawn", robot(tmp_path)]) == 1
+    said = capsys.readouterr().err
+    assert said.count("error[") == 1
+    assert "linkwright sim empty" in said
+
+
+def test_a_file_that_is_no_model_is_one_error(asked, tmp_path, capsys):
+    (tmp_path / "robot.urdf").write_text("<robot")
+    assert main(["spawn", str(tmp_path / "robot.urdf")]) == 1
+    assert capsys.readouterr().err.count("error[") == 1
+    assert asked == []
