@@ -43,6 +43,8 @@ class _JointStates(SimulatedPlugin[P], Generic[P]):
         self.every(rate, self._publish)
 
     def _publish(self) -> None:
+        if not self._output.is_wanted:
+            return
         states = [self.simulation.joint_state(joint) for joint in self._joints]
         message = JointState(header=Header(stamp=self.stamp()))
         message.name = list(self._names)

@@ -87,7 +87,7 @@ class OdometryTopics:
     def publish(self, stamp: Time, pose: Transform, forward: float, sideways: float, turning: float) -> None:
         """Publish where the robot is, and its velocities in its own axes in m/s and rad/s."""
         x, y, z, *rotation = pose
-        if self.odometry is not None:
+        if self.odometry is not None and self.odometry.is_wanted:
             point = get_message("geometry_msgs/msg/Point")(x, y, z)
             place = get_message("geometry_msgs/msg/Pose")(point, Quaternion(*rotation))
             speed = get_message("geometry_msgs/msg/Twist")(Vector3(forward, sideways, 0.0), Vector3(0.0, 0.0, turning))
@@ -98,7 +98,7 @@ class OdometryTopics:
                 get_message("geometry_msgs/msg/TwistWithCovariance")(speed, self._matrix),
             )
             self.odometry.publish(message)
-        if self.transforms is not None:
+        if self.transforms is not None and self.transforms.is_wanted:
             self.transforms.publish(transform_message(Header(stamp, self.frame), self.child, pose))
 
 
