@@ -24,6 +24,7 @@ TITLES = {
     "launch": ("Launch", "启动"),
     "viewer": ("Viewer", "查看器"),
     "page": ("Page", "网页"),
+    "simulation": ("Simulation", "仿真"),
     "sizes": ("Sizes", "规模"),
 }
 _ENGLISH = """# Benchmarks
