@@ -131,3 +131,17 @@ def test_wheels_that_roll_differently_go_round():
     for _ in range(1000):
         place.roll(0.0009, 0.0011, 0.2)
     assert (place.x, place.y, place.yaw) == pytest.approx((sin(1.0), 1 - cos(1.0), 1.0), abs=1e-6)
+
+
+async def test_transforms_of_wheels_are_published_on_request():
+    plugin = classic("<publish_wheel_tf>true</publish_wheel_tf>")
+    async with served(GROUND, robot(plugin)) as (server, graph, log):
+        transforms = Recording(graph, server.node, "/tf")
+        server.advance(SECOND // 10)
+        await graph.settle()
+        last = {each.transforms[0].child_frame_id: each.transforms[0] for each in transforms}
+        assert sorted(last) == ["base_footprint", "left_wheel", "right_wheel"]
+        assert last["left_wheel"].header.frame_id == "base_link"
+        place = last["left_wheel"].transform.translation
+        assert (place.x, place.y, place.z) == pytest.approx((0.0, 0.19, -0.05), abs=1e-3)
+        assert not log

@@ -7,12 +7,22 @@ robot that drives backward has a negative velocity in its odometry.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from math import inf
 from typing import Any, ClassVar, Generic, TypeVar
 
 from linkwright.diagnostics import phrase
+from linkwright.geometry.single import compose, invert
+from linkwright.messages import Header
 from linkwright.sdf.poses import SEPARATOR
-from linkwright.simulation.plugins.odometry import OdometryTopics, PlanarPose, planar_velocity, transforms_topic
+from linkwright.simulation.plugins.node import Output
+from linkwright.simulation.plugins.odometry import (
+    OdometryTopics,
+    PlanarPose,
+    planar_velocity,
+    transform_message,
+    transforms_topic,
+)
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 from linkwright.simulation.simulation import NANOSECONDS, Motor
@@ -171,6 +181,16 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
         self._topics = OdometryTopics(said.odometry_frame, said.robot_base_frame, odometry, transforms, covariance)
         node.subscribe("geometry_msgs/msg/Twist", said.command_topic, self._commanded, 1)
         self.every(said.update_rate, self._update)
+        if said.publish_wheel_tf:
+            self.every(said.update_rate, partial(self._publish_wheels, transforms or transforms_topic(node)))
+
+    def _publish_wheels(self, output: Output) -> None:
+        """Publish where wheels are in the links that carry them."""
+        for joint in [each for pair in self._pairs for each in pair.joints]:
+            placed = self.simulation.scene.joints[joint]
+            pose = compose(invert(self.simulation.link_pose(placed.parent)), self.simulation.link_pose(placed.child))
+            parent, child = (link.rpartition(SEPARATOR)[2] for link in (placed.parent, placed.child))
+            output.publish(transform_message(Header(self.stamp(), parent), child, pose))
 
     def reset(self) -> None:
         """Stand still where it began."""
