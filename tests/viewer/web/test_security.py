@@ -356,6 +356,7 @@ async def test_who_asks_for_the_page_and_reads_nothing_costs_little(served, tmp_
     (tmp_path / "assets" / "index-abc.js").write_bytes(b"a" * (4 << 20))
     server = served.viewer._server
     monkeypatch.setattr(server, "_page_folder", tmp_path)
+    monkeypatch.setattr("linkwright.viewer.web.server._HEARTBEAT", 600.0)  # the page answers only while it is read
     address = urlsplit(served.viewer.url)
     asking = f"GET /assets/index-abc.js HTTP/1.1\r\nHost: {address.netloc}\r\n\r\n".encode()
     async with page(served.viewer) as client:
