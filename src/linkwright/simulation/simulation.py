@@ -140,10 +140,6 @@ class Simulation:
             if self.data.tree_asleep[tree] >= 0:
                 self.data.tree_asleep[self.data.tree_asleep >= 0] = _AWAKE
 
-    def changed(self) -> None:
-        """Tell that the scene was changed: MuJoCo's model is made anew before it is used next."""
-        self._changed = True
-
     def refresh(self) -> None:
         """Bring MuJoCo's model up to the scene, and what depends on positions up to these."""
         if self._changed:

@@ -49,16 +49,14 @@ class Structure:
     Attributes:
         links: all links, each after the one that holds it.
         loops: joints between links that others hold already.
-        misplaced: joints between links that are not there, with the frame that is missing.
     """
 
     links: tuple[HeldLink, ...]
     loops: tuple[PlacedJoint, ...]
-    misplaced: tuple[tuple[Joint, str], ...]
 
 
 def structure_of(model: Model, name: str, pose: Transform) -> Structure:
-    """The trees of a model.
+    """The trees of a model; joints between links that are not there are left out.
 
     Args:
         model: with its includes resolved.
@@ -71,20 +69,15 @@ def structure_of(model: Model, name: str, pose: Transform) -> Structure:
     frames = Frames(model)
     links = {each.name: each for each in links_of(model, frames, pose, name)}
     joints: list[PlacedJoint] = []
-    misplaced: list[tuple[Joint, str]] = []
     for owner, inner, place, path in _models(model, frames, pose, name):
         for joint in owner.joints:
             try:
                 placed = _placed(joint, inner, place, path)
-            except FrameError as error:
-                misplaced.append((joint, error.name))
-                continue
-            absent = next((end for end in (placed.parent, placed.child) if end not in links and end != WORLD), None)
-            if absent is not None or placed.child == WORLD:
-                misplaced.append((joint, absent or WORLD))
-            else:
+            except FrameError:
+                continue  # `check` tells of it
+            if placed.child in links and (placed.parent in links or placed.parent == WORLD):
                 joints.append(placed)
-    return _trees(links, joints, tuple(misplaced))
+    return _trees(links, joints)
 
 
 def _models(model: Model, frames: Frames, pose: Transform, path: str) -> Iterator[tuple[Model, Frames, Transform, str]]:
@@ -103,9 +96,7 @@ def _placed(joint: Joint, frames: Frames, pose: Transform, path: str) -> PlacedJ
     return PlacedJoint(name, joint, parent, child, compose(pose, frames.pose(joint.name)), axes)
 
 
-def _trees(
-    links: dict[str, PlacedLink], joints: Iterable[PlacedJoint], misplaced: tuple[tuple[Joint, str], ...]
-) -> Structure:
+def _trees(links: dict[str, PlacedLink], joints: Iterable[PlacedJoint]) -> Structure:
     holding: dict[str, PlacedJoint] = {}
     loops: list[PlacedJoint] = []
     held: dict[str, list[str]] = {}
@@ -119,7 +110,7 @@ def _trees(
     ordered = [name for name in links if name not in holding or holding[name].parent == WORLD]
     for name in ordered:  # it grows while it is walked along
         ordered += held.get(name, ())
-    return Structure(tuple(HeldLink(links[name], holding.get(name)) for name in ordered), tuple(loops), misplaced)
+    return Structure(tuple(HeldLink(links[name], holding.get(name)) for name in ordered), tuple(loops))
 
 
 def _holds(holding: dict[str, PlacedJoint], link: str, other: str) -> bool:
