@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from math import inf, isfinite
 from typing import Any
 
@@ -35,6 +35,24 @@ _BEYOND = 1e10
 """A position or velocity that is no less, in m, rad, m/s or rad/s, is taken for an explosion, as MuJoCo does."""
 
 
+def count_links(models: Iterable[Model]) -> int:
+    """How many links models have, if so many can be simulated.
+
+    Raises:
+        LinkwrightError: SIM105 they are too many.
+    """
+    count = sum(_links_in(model) for model in models)
+    if count > _MOST_LINKS:
+        message = phrase("a world of {count} links is more than can be simulated", count=count)
+        hint = phrase("at most {most}; shapes that never move may be in one link", most=_MOST_LINKS)
+        raise LinkwrightError(Diagnostic("SIM105", message, hint=hint))
+    return count
+
+
+def _links_in(model: Model) -> int:
+    return len(model.links) + sum(_links_in(inner) for inner in model.models)
+
+
 class UnstableError(LinkwrightError):
     """The simulation has exploded: a position or velocity is no number any more, or beyond all bounds (SIM120)."""
 
@@ -62,6 +80,7 @@ class Simulation:
     def __init__(self, world: World, finder: ResourceFinder, *, step: float | None = None) -> None:
         self._mujoco = load_mujoco()
         self.world = as_saved(world)
+        count_links(self.world.models)
         self.scene = Scene(self.world, MeshLibrary(finder), step)
         self.step = round(self.scene.step * NANOSECONDS)
         self.time = 0
@@ -158,11 +177,7 @@ class Simulation:
     def _made(self, before: tuple[Any, Any] | None) -> tuple[Any, Any]:
         """MuJoCo's model of the scene, with the state that there was before."""
         self.scene.settle()
-        count = len(self.scene.bodies)
-        if count > _MOST_LINKS:
-            message = phrase("a world of {count} links is more than can be simulated", count=count)
-            hint = phrase("at most {most}; shapes that never move may be in one link", most=_MOST_LINKS)
-            raise LinkwrightError(Diagnostic("SIM105", message, hint=hint))
+        count = count_links(each.model for each in self.scene.models.values())
         if count > _MANY_LINKS:
             self.scene.spec.memory = _BYTES_A_PAIR * count * count + _BYTES
         try:

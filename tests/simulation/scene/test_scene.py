@@ -83,6 +83,15 @@ def test_a_mesh_that_is_not_there_is_told_once(tmp_path):
     simulation.advance(NANOSECONDS // 10)
 
 
+def test_a_mesh_of_too_many_triangles_is_left_out(room, monkeypatch):
+    monkeypatch.setattr("linkwright.simulation.scene.meshes._MOST_TRIANGLES", 7)
+    simulation = simulated(GROUND, mesh_model(room))
+    (found,) = simulation.scene.diagnostics
+    assert found.code == "SIM115"
+    assert "has 8 triangles, and at most 7 are simulated" in found.message
+    simulation.advance(NANOSECONDS // 10)
+
+
 def test_heights_of_an_image_bear(tmp_path):
     path = tmp_path / "heights.png"
     values = np.zeros((33, 33), dtype=np.uint8)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, display_path, phrase
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.decomposition import convex_pieces, thickened
 from linkwright.geometry.mesh_files import BadMeshError, beside
@@ -26,6 +26,8 @@ from linkwright.xmltree import Element
 
 _MOST_PIECES = 300
 """So many convex pieces a mesh may become; each costs a little in every step."""
+_MOST_TRIANGLES = 1_000_000
+"""A mesh of more is left out: it would take gigabytes, and no contact or picture is the better for it."""
 _MOST_HULL_CORNERS = 64
 """The hull of what moves has no more corners."""
 _UNIT: Vector3 = (1.0, 1.0, 1.0)
@@ -108,6 +110,7 @@ class MeshLibrary:
             else:
                 whole = read_mesh(path)
                 vertices, faces = whole.vertices, whole.faces
+            _bounded(path, len(faces))
         except LinkwrightError as error:
             self._warn(error.diagnostics[0], element)
             return []
@@ -152,6 +155,7 @@ class MeshLibrary:
             parts = read_parts(path, resolver=beside(str(path)))
         except BadMeshError as error:
             raise unreadable(path, error.why) from None
+        _bounded(path, sum(len(part.triangles.indices) // 3 for part in parts))
         if shape.submesh is None:
             return parts
         wanted = shape.submesh
@@ -220,6 +224,15 @@ class MeshLibrary:
             self.diagnostics.append(
                 Diagnostic(found.code, message, severity=Severity.WARNING, span=span, source=source, hint=found.hint)
             )
+
+
+def _bounded(path: Path, count: int) -> None:
+    """Refuse a mesh of too many triangles (SIM115)."""
+    if count > _MOST_TRIANGLES:
+        told = {"path": display_path(path), "count": count, "most": _MOST_TRIANGLES}
+        message = phrase("the mesh '{path}' has {count} triangles, and at most {most} are simulated", **told)
+        hint = phrase("simplify it, or take a simple shape for the collision")
+        raise LinkwrightError(Diagnostic("SIM115", message, hint=hint))
 
 
 def _prisms(polyline: Polyline) -> Iterator[Array]:

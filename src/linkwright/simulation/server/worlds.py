@@ -10,6 +10,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, ha
 from linkwright.packages import PackageFinder
 from linkwright.sdf.resources import ResourceFinder
 from linkwright.sdf.worlds import World
+from linkwright.simulation.simulation import count_links
 
 
 class LoadedWorld(NamedTuple):
@@ -27,7 +28,8 @@ def load_world(name: str) -> LoadedWorld:
         name: the file, or the name of a world on the search path: ``empty``.
 
     Raises:
-        LinkwrightError: SIM150 there is no such world; SIM151 the file has none; what is wrong with it.
+        LinkwrightError: SIM150 there is no such world; SIM151 the file has none; SIM105 it has too many
+            links; what is wrong with it.
     """
     path = Path(name).expanduser()
     finder = PackageFinder(start=[path.absolute().parent, Path.cwd()])
@@ -42,7 +44,9 @@ def load_world(name: str) -> LoadedWorld:
         message = phrase("there is no world in '{path}'", path=str(path))
         hint = phrase("models are put into one: linkwright sim empty {path}", path=str(path))
         raise LinkwrightError(*wrong or [Diagnostic("SIM151", message, hint=hint)])
-    return LoadedWorld(description.sdf.worlds[0], resources, description.diagnostics)
+    world = description.sdf.worlds[0]
+    count_links(world.models)
+    return LoadedWorld(world, resources, description.diagnostics)
 
 
 def _named(name: str, finder: ResourceFinder) -> Path:
