@@ -104,9 +104,13 @@ class OdometryTopics:
 
 def transform_message(header: Header, child: str, pose: Transform) -> Any:
     """A message for topics of transforms that says where one frame is."""
+    return get_message("tf2_msgs/msg/TFMessage")(transforms=[transform_stamped(header, child, pose)])
+
+
+def transform_stamped(header: Header, child: str, pose: Transform) -> TransformStamped:
+    """Where a frame is in that of the header."""
     x, y, z, *rotation = pose
-    sent = TransformStamped(header, child, TransformMessage(Vector3(x, y, z), Quaternion(*rotation)))
-    return get_message("tf2_msgs/msg/TFMessage")(transforms=[sent])
+    return TransformStamped(header, child, TransformMessage(Vector3(x, y, z), Quaternion(*rotation)))
 
 
 def transforms_topic(node: PluginNode, name: str = "/tf", usual: str = "") -> Output:

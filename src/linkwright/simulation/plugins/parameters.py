@@ -8,7 +8,8 @@
         publish_odom: bool = False
 
 A name is that of the child element of ``<plugin>``. The types are ``str``, ``float``, ``int``, ``bool``, `Vector3`, and
-``tuple[str, ...]`` or ``tuple[float, ...]`` for elements that may be there several times.
+``tuple[str, ...]`` or ``tuple[float, ...]`` for elements that may be there several times. ``bool | None`` is for one
+whose default depends on others.
 """
 
 from __future__ import annotations
@@ -124,7 +125,14 @@ def _vector(text: str) -> Vector3:
     return x, y, z
 
 
-_CONVERTERS: dict[Any, Callable[[str], Any]] = {str: str, float: float, int: int, bool: _truth, Vector3: _vector}
+_CONVERTERS: dict[Any, Callable[[str], Any]] = {
+    str: str,
+    float: float,
+    int: int,
+    bool: _truth,
+    bool | None: _truth,
+    Vector3: _vector,
+}
 
 
 def _missing(known: Field[Any], element: Element | None) -> Diagnostic:

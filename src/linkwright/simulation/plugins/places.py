@@ -49,7 +49,7 @@ def _sensors(model: Model, path: str, frames: Frames) -> Iterator[PlacedSensor]:
     for link in model.links:
         for sensor in link.sensors:
             name = SEPARATOR.join((path, link.name, sensor.name))
-            pose = _in_link(frames, link, sensor.pose)
+            pose = in_link(frames, link, sensor.pose)
             yield PlacedSensor(name, sensor, f"{path}{SEPARATOR}{link.name}", "", pose)
     for joint in model.joints:
         for sensor in joint.sensors:
@@ -62,7 +62,8 @@ def _sensors(model: Model, path: str, frames: Frames) -> Iterator[PlacedSensor]:
             yield PlacedSensor(name, sensor, f"{path}{SEPARATOR}{child}", f"{path}{SEPARATOR}{joint.name}", pose)
 
 
-def _in_link(frames: Frames, link: Link, raw: RawPose) -> Transform:
+def in_link(frames: Frames, link: Link, raw: RawPose) -> Transform:
+    """Where a part of a link is in its frame."""
     if not raw.relative_to:
         return transform_of(raw.pose)
     return compose(invert(frames.pose(link.name)), frames.placed(raw, link.name))

@@ -1,0 +1,101 @@
+"""gz's publisher of poses."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.testing import Recording
+from tests.simulation.test_plugins import SECOND, robot, served
+from tests.simulation.worlds import GROUND, box
+
+
+def poses(more: str = "") -> str:
+    """The plugin."""
+    name = "gz::sim::systems::PosePublisher"
+    return f'<plugin name="{name}" filename="gz-sim-pose-publisher-system">{more}</plugin>'
+
+
+def _translation(transform):
+    moved = transform.transform.translation
+    return moved.x, moved.y, moved.z
+
+
+async def test_each_link_is_a_message_unless_they_are_asked_for_together():
+    async with served(GROUND, robot(poses("<update_frequency>10</update_frequency>"))) as (server, graph, log):
+        recording = Recording(graph, server.node, "/model/mbot/pose")
+        server.advance(SECOND)
+        await graph.settle()
+        assert len(recording) == 5 * 10
+        assert [each.child_frame_id for each in recording][-5:] == [
+            "mbot/base_link",
+            "mbot/left_wheel",
+            "mbot/right_wheel",
+            "mbot/front_caster",
+            "mbot/back_caster",
+        ]
+        assert {each.header.frame_id for each in recording} == {"mbot"}
+        assert [_translation(each) for each in recording][-4] == pytest.approx((0.0, 0.19, -0.05), abs=1e-3)
+        assert recording.last.header.stamp.sec == 1
+        assert not log
+
+
+async def test_what_no_joint_moves_has_a_topic_of_its_own():
+    more = (
+        "<use_pose_vector_msg>true</use_pose_vector_msg><static_publisher>1</static_publisher>"
+        "<publish_model_pose>true</publish_model_pose><publish_collision_pose>true</publish_collision_pose>"
+        "<publish_link_pose>true</publish_link_pose><update_frequency>50</update_frequency>"
+        "<static_update_frequency>1</static_update_frequency>"
+    )
+    async with served(GROUND, robot(poses(more))) as (server, graph, log):
+        moving, resting = (Recording(graph, server.node, f"/model/mbot/{each}") for each in ("pose", "pose_static"))
+        server.advance(SECOND)
+        await graph.settle()
+        assert (len(moving), len(resting)) == (50, 1)
+        assert [each.child_frame_id for each in moving.last.transforms] == [
+            f"mbot/{side}" for side in ("left_wheel", "right_wheel", "front_caster", "back_caster")
+        ]
+        told = {each.child_frame_id: each for each in resting.last.transforms}
+        assert set(told) == {"mbot", "mbot/base_link"} | {
+            f"mbot/{link}/collision"
+            for link in ("base_link", "left_wheel", "right_wheel", "front_caster", "back_caster")
+        }
+        assert told["mbot"].header.frame_id == "test"
+        assert told["mbot/left_wheel/collision"].header.frame_id == "mbot/left_wheel"
+        assert _translation(told["mbot"]) == pytest.approx((0.0, 0.0, 0.11), abs=2e-3)
+        assert not log
+
+
+async def test_models_in_models_move_with_their_links():
+    inner = box("inner", "0 0 0.5 0 0 0", "0.2 0.2 0.2")
+    joint = '<joint name="j" type="fixed"><parent>link</parent><child>inner::link</child></joint>'
+    more = (
+        "<publish_nested_model_pose>true</publish_nested_model_pose><publish_model_pose>false</publish_model_pose>"
+        "<use_pose_vector_msg>true</use_pose_vector_msg>"
+    )
+    outer = box("outer", "1 0 3 0 0 0", "0.2 0.2 0.2").replace("</model>", f"{inner}{joint}{poses(more)}</model>")
+    async with served(outer) as (server, graph, log):
+        recording = Recording(graph, server.node, "/model/outer/pose")
+        server.advance(SECOND // 100)
+        await graph.settle()
+        assert len(recording) == 10
+        told = {each.child_frame_id: (each.header.frame_id, _translation(each)) for each in recording.last.transforms}
+        assert told == {
+            "outer/link": ("outer", pytest.approx((0.0, 0.0, 0.0), abs=1e-9)),
+            "outer/inner": ("outer", pytest.approx((0.0, 0.0, 0.5), abs=1e-9)),
+            "outer/inner/link": ("outer/inner", pytest.approx((0.0, 0.0, 0.0), abs=1e-9)),
+        }
+        assert not log
+
+
+async def test_a_model_that_stands_still_has_poses_too():
+    still = box("one", "0 0 1 0 0 0").replace("<link", "<static>true</static><link", 1)
+    text = still.replace("</model>", poses("<publish_model_pose>1</publish_model_pose>") + "</model>")
+    async with served(text) as (server, graph, log):
+        recording = Recording(graph, server.node, "/model/one/pose")
+        server.advance(SECOND // 1000)
+        await graph.settle()
+        assert [(each.child_frame_id, _translation(each)) for each in recording] == [
+            ("one", pytest.approx((0.0, 0.0, 1.0))),
+            ("one/link", pytest.approx((0.0, 0.0, 0.0))),
+        ]
+        assert not log
