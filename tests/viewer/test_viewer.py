@@ -37,7 +37,7 @@ async def test_a_page_that_opens_gets_everything_in_order():
             transforms = await client.transforms()
             kinds = [message["type"] for message in client.messages[:-1]]
             first, table = client.messages[0], client.messages[-2]
-    whatever_is_shown = ["diagnostics", "joints", "simulation_status", "view_classes"]
+    whatever_is_shown = ["diagnostics", "joints", "modelling_state", "simulation_status", "view_classes"]
     of_the_configuration = ["configuration", "description_changed", "panels", "time_state", "tools", "view_state"]
     assert kinds == [
         *("hello", "tree", "robot_scene"),

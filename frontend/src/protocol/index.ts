@@ -44,6 +44,21 @@ import type { ImageFrame, OccupancyMap } from "./images";
 import type { CenterJoints, JointPositions, Joints, RandomizeJoints, SetJoint, SetJoints } from "./joints";
 import type { InteractiveMarkerMoved, InteractiveMarkerShape, MarkerFeedback, MarkersChanged } from "./markers";
 import type {
+  AddThing,
+  AskModels,
+  ChangeThings,
+  CopyThings,
+  DeleteThings,
+  GroupThings,
+  ModelChoices,
+  ModellingState,
+  RedoWorld,
+  SaveWorld,
+  SetModelling,
+  UndoWorld,
+  UngroupThing,
+} from "./modelling";
+import type {
   AimTeleop,
   AskFields,
   Drive,
@@ -107,6 +122,7 @@ export * from "./geometry";
 export * from "./images";
 export * from "./joints";
 export * from "./markers";
+export * from "./modelling";
 export * from "./monitor";
 export * from "./points";
 export * from "./robot";
@@ -140,6 +156,8 @@ export type ServerMessage =
   | Joints
   | LinkProvenance
   | LogLines
+  | ModelChoices
+  | ModellingState
   | NodeGraph
   | NodeParameters
   | Panels
@@ -168,6 +186,7 @@ export type ServerMessage =
 
 export type PageMessage =
   | AddDisplay
+  | AddThing
   | AddTool
   | AimTeleop
   | AskConfigurationText
@@ -178,17 +197,22 @@ export type PageMessage =
   | AskFields
   | AskFolder
   | AskInertia
+  | AskModels
   | AskPoint
   | AskProvenance
   | CenterJoints
   | ChangeSavedView
+  | ChangeThings
   | ControlSimulation
+  | CopyThings
   | DeleteModel
+  | DeleteThings
   | DragModel
   | Drive
   | DumpParameters
   | DuplicateDisplays
   | GroupDisplays
+  | GroupThings
   | LoadConfiguration
   | MarkerFeedback
   | MeshStatus
@@ -201,6 +225,7 @@ export type PageMessage =
   | RandomizeJoints
   | Received
   | Redo
+  | RedoWorld
   | RemoveDisplays
   | RemoveSavedView
   | RemoveTool
@@ -209,8 +234,10 @@ export type PageMessage =
   | RevertConfiguration
   | SaveConfiguration
   | SaveView
+  | SaveWorld
   | SetJoint
   | SetJoints
+  | SetModelling
   | SetParameter
   | SetProperty
   | SetTime
@@ -218,6 +245,8 @@ export type PageMessage =
   | ShowPanels
   | SpawnModel
   | Undo
+  | UndoWorld
+  | UngroupThing
   | ViewChanged
   | WatchClock
   | WatchLog
