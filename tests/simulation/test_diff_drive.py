@@ -145,3 +145,19 @@ async def test_transforms_of_wheels_are_published_on_request():
         place = last["left_wheel"].transform.translation
         assert (place.x, place.y, place.z) == pytest.approx((0.0, 0.19, -0.05), abs=1e-3)
         assert not log
+
+
+@pytest.mark.parametrize("plugin", [classic(source=1), gz()], ids=["classic", "gz"])
+async def test_where_everything_is_is_computed_only_for_those_who_listen(plugin, monkeypatch):
+    async with served(GROUND, robot(plugin)) as (server, graph, _):
+        server.advance(SECOND // 10)
+        computed: list[int] = []
+        refresh = server.simulation.refresh
+        monkeypatch.setattr(server.simulation, "refresh", lambda: (computed.append(server.simulation.time), refresh()))
+        server.advance(SECOND // 10)
+        assert not computed
+        heard = Recording(graph, server.node, "/odom")
+        await graph.settle()
+        server.advance(SECOND // 10)
+        await graph.settle()
+        assert heard.last.header.stamp.nanosec == 300_000_000

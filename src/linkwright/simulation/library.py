@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
 from linkwright.diagnostics import missing_extra
 
 
+@cache
 def load_mujoco() -> Any:
     """The module ``mujoco``; it has no types.
 

@@ -152,9 +152,9 @@ class _DiffDrive(SimulatedPlugin[P], Generic[P]):
 
     def _measure(self) -> None:
         """Go on by what the first pair of wheels has turned since."""
-        pair, before, self._turned = self._pairs[0], self._turned, self._angles()
-        left, right = ((new - old) * pair.radius for new, old in zip(self._turned, before, strict=True))
-        self._place.roll(left, right, pair.separation)
+        pair, (left, right), self._turned = self._pairs[0], self._turned, self._angles()
+        new_left, new_right = self._turned
+        self._place.roll((new_left - left) * pair.radius, (new_right - right) * pair.radius, pair.separation)
 
     def reset(self) -> None:
         """Stand still where it began."""
@@ -179,6 +179,7 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
         transforms = transforms_topic(node) if said.publish_odom_tf else None
         covariance = (said.covariance_x, said.covariance_y, said.covariance_yaw)
         self._topics = OdometryTopics(said.odometry_frame, said.robot_base_frame, odometry, transforms, covariance)
+        self._sees_world = said.odometry_source.strip().lower() in (str(_WORLD), "world")
         node.subscribe("geometry_msgs/msg/Twist", said.command_topic, self._commanded, 1)
         self.every(said.update_rate, self._update)
         if said.publish_wheel_tf:
@@ -200,8 +201,10 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
     def _update(self) -> None:
         self._measure()
         self._drive()
+        if not self._topics.is_wanted:
+            return
         stamp = self.stamp()
-        if self.parameters.odometry_source.strip().lower() in (str(_WORLD), "world"):
+        if self._sees_world:
             pose = self.simulation.model_pose(self.place.path)
             self._topics.publish(stamp, pose, *planar_velocity(pose, *self.simulation.link_velocity(self.first_link)))
         else:
@@ -215,9 +218,10 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
         forward, turning = self._wanted
         for number, pair in enumerate(self._pairs):
             wanted = forward - turning * pair.separation / 2.0, forward + turning * pair.separation / 2.0
-            left, right = (
-                _nearer(now, to, greatest) for now, to in zip(self._wheel_speeds[number], wanted, strict=True)
-            )
+            now = self._wheel_speeds[number]
+            if now == wanted:
+                continue
+            left, right = _nearer(now[0], wanted[0], greatest), _nearer(now[1], wanted[1], greatest)
             self._wheel_speeds[number] = left, right
             pair.left.target, pair.right.target = left / pair.radius, right / pair.radius
 
@@ -268,6 +272,8 @@ class GzDiffDrive(_DiffDrive[GzParameters]):
 
     def _publish(self) -> None:
         self._measure()
+        if not self._topics.is_wanted:
+            return
         forward, turning = self._speeds()
         self._topics.publish(self.stamp(), self._place.transform, forward, 0.0, turning)
 

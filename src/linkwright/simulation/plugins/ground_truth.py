@@ -122,6 +122,8 @@ class GzOdometry(SimulatedPlugin[GzOdometryParameters]):
         self._random = self.random
 
     def _publish(self) -> None:
+        if not any(output.is_wanted for output in (self._odometry, self._uncertain, self._transforms)):
+            return
         said, simulation = self.parameters, self.simulation
         pose = compose(simulation.model_pose(self.place.path), self._offset)
         linear, angular = simulation.link_velocity(self.first_link)

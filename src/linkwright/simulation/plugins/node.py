@@ -30,7 +30,10 @@ class Output:
     @property
     def is_wanted(self) -> bool:
         """Whether anybody gets what is published: what is costly to make need not be made otherwise."""
-        return any(each.get_subscription_count() for each in self._publishers)
+        for each in self._publishers:  # noqa: SIM110 - `any` takes twice as long, and this is asked all the time
+            if each.get_subscription_count():
+                return True
+        return False
 
     def publish(self, message: Any) -> None:
         """Publish a message, which nobody changes any more."""

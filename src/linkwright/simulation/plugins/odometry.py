@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cache
 from math import atan2, cos, sin
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -60,6 +61,29 @@ def planar_velocity(pose: Transform, linear: Array, angular: Array) -> tuple[flo
     return forward, sideways, float(angular[2])
 
 
+class _Classes(NamedTuple):
+    """The classes of messages that odometry is made of."""
+
+    point: Any
+    pose: Any
+    twist: Any
+    pose_covariance: Any
+    twist_covariance: Any
+    odometry: Any
+
+
+@cache
+def _classes() -> _Classes:
+    return _Classes(
+        get_message("geometry_msgs/msg/Point"),
+        get_message("geometry_msgs/msg/Pose"),
+        get_message("geometry_msgs/msg/Twist"),
+        get_message("geometry_msgs/msg/PoseWithCovariance"),
+        get_message("geometry_msgs/msg/TwistWithCovariance"),
+        get_message("nav_msgs/msg/Odometry"),
+    )
+
+
 @dataclass(slots=True)
 class OdometryTopics:
     """Odometry on its topics.
@@ -84,20 +108,20 @@ class OdometryTopics:
         diagonal = (x, y, _UNKNOWN, _UNKNOWN, _UNKNOWN, yaw) if any(self.covariance) else (0.0,) * 6
         self._matrix = np.diag(diagonal).astype(np.float64).ravel()
 
+    @property
+    def is_wanted(self) -> bool:
+        """Whether anybody listens."""
+        return any(output is not None and output.is_wanted for output in (self.odometry, self.transforms))
+
     def publish(self, stamp: Time, pose: Transform, forward: float, sideways: float, turning: float) -> None:
         """Publish where the robot is, and its velocities in its own axes in m/s and rad/s."""
         x, y, z, *rotation = pose
         if self.odometry is not None and self.odometry.is_wanted:
-            point = get_message("geometry_msgs/msg/Point")(x, y, z)
-            place = get_message("geometry_msgs/msg/Pose")(point, Quaternion(*rotation))
-            speed = get_message("geometry_msgs/msg/Twist")(Vector3(forward, sideways, 0.0), Vector3(0.0, 0.0, turning))
-            message = get_message("nav_msgs/msg/Odometry")(
-                Header(stamp, self.frame),
-                self.child,
-                get_message("geometry_msgs/msg/PoseWithCovariance")(place, self._matrix),
-                get_message("geometry_msgs/msg/TwistWithCovariance")(speed, self._matrix),
-            )
-            self.odometry.publish(message)
+            make = _classes()
+            place = make.pose(make.point(x, y, z), Quaternion(*rotation))
+            speed = make.twist(Vector3(forward, sideways, 0.0), Vector3(0.0, 0.0, turning))
+            places, speeds = make.pose_covariance(place, self._matrix), make.twist_covariance(speed, self._matrix)
+            self.odometry.publish(make.odometry(Header(stamp, self.frame), self.child, places, speeds))
         if self.transforms is not None and self.transforms.is_wanted:
             self.transforms.publish(transform_message(Header(stamp, self.frame), self.child, pose))
 

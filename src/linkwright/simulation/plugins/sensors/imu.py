@@ -10,7 +10,7 @@ from typing import Generic, TypeVar
 
 from linkwright.geometry.single import compose, quaternion_from_rpy
 from linkwright.geometry.vectors import Vector3
-from linkwright.messages import Quaternion
+from linkwright.messages import Header, Quaternion, get_message
 from linkwright.sdf.noise import Noise, NoiseXyz
 from linkwright.sdf.sensors import Imu
 from linkwright.simulation.plugins.parameters import NoParameters, parameter
@@ -34,13 +34,14 @@ class _ImuPlugin(OneTopic[P], Generic[P]):
     def measure(self) -> None:
         """Measure and publish."""
         measured = self.imu.measure()
-        message = self.message(_TYPE, self.frame)
-        x, y, z, w = measured.orientation.tolist()
-        message.orientation = Quaternion(x, y, z, w)
-        message.angular_velocity = vector(measured.angular_velocity)
-        message.linear_acceleration = vector(measured.linear_acceleration)
-        message.angular_velocity_covariance = self.imu.turning_noise.covariance.copy()
-        message.linear_acceleration_covariance = self.imu.acceleration_noise.covariance.copy()
+        message = get_message(_TYPE)(
+            header=Header(self.stamp(), self.frame),
+            orientation=Quaternion(*measured.orientation.tolist()),
+            angular_velocity=vector(measured.angular_velocity),
+            angular_velocity_covariance=self.imu.turning_noise.covariance,
+            linear_acceleration=vector(measured.linear_acceleration),
+            linear_acceleration_covariance=self.imu.acceleration_noise.covariance,
+        )
         self.output.publish(message)
 
 
