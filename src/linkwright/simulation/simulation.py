@@ -132,6 +132,11 @@ class Simulation:
         self.scene.let_roll(joint)
         self._changed = True
 
+    def let_slide(self, joint: str) -> None:
+        """Let the wheel that a joint holds slide in all directions; a motor only turns it."""
+        self.scene.let_slide(joint)
+        self._changed = True
+
     def add_servo(self, joint: str, speed: float = inf) -> Servo:
         """Hold a joint of one axis where it is told to be.
 
@@ -467,6 +472,11 @@ class Servo:
         speed = min(speed, limit) if isfinite(limit) and limit > 0.0 else speed
         self._speed = speed if isfinite(speed) else _SERVO_SPEED
         self.restart()
+
+    @property
+    def position(self) -> float:
+        """Where it holds the joint, in rad (m)."""
+        return self._position
 
     def restart(self) -> None:
         """Hold it where it is."""

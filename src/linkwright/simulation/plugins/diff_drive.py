@@ -15,6 +15,14 @@ from linkwright.diagnostics import phrase
 from linkwright.geometry.single import compose, invert
 from linkwright.messages import Header
 from linkwright.sdf.poses import SEPARATOR
+from linkwright.simulation.plugins.gz_drive import (
+    GZ_RATE,
+    GZ_TORQUE,
+    MOTOR_GAIN,
+    DriveCommands,
+    GzDriveParameters,
+    connected,
+)
 from linkwright.simulation.plugins.node import Output
 from linkwright.simulation.plugins.odometry import (
     OdometryTopics,
@@ -29,12 +37,6 @@ from linkwright.simulation.simulation import NANOSECONDS, Motor
 
 P = TypeVar("P")
 
-_GAIN = 20.0
-"""Torque of a motor in N m for each rad/s that its wheel is too slow."""
-_GZ_TORQUE = 5.0
-"""The greatest torque of a wheel in N m where a plugin of gz names none: gz sets velocities whatever that takes."""
-_GZ_RATE = 100.0
-"""How often a plugin of gz looks at its command in Hz; gz does before each step."""
 _WORLD = 1
 
 
@@ -64,25 +66,13 @@ class ClassicParameters:
 
 
 @dataclass(frozen=True, kw_only=True)
-class GzParameters:
+class GzParameters(GzDriveParameters):
     """Of the plugin of gz."""
 
     left_joint: tuple[str, ...] = parameter()
     right_joint: tuple[str, ...] = parameter()
     wheel_separation: float = 1.0
     wheel_radius: float = 0.2
-    odom_publish_frequency: float = 50.0
-    topic: str = ""
-    odom_topic: str = ""
-    tf_topic: str = ""
-    frame_id: str = ""
-    child_frame_id: str = ""
-    min_linear_velocity: float = -inf
-    max_linear_velocity: float = inf
-    min_angular_velocity: float = -inf
-    max_angular_velocity: float = inf
-    max_linear_acceleration: float = inf
-    max_angular_acceleration: float = inf
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,7 +116,7 @@ class _DiffDrive(SimulatedPlugin[P], Generic[P]):
         pairs = []
         for names, (separation, radius) in zip(zip(left, right, strict=True), sizes, strict=False):
             joints = (self.joint(names[0]), self.joint(names[1]))
-            motors = [self.simulation.add_velocity_motor(joint, _GAIN, torque) for joint in joints]
+            motors = [self.simulation.add_velocity_motor(joint, MOTOR_GAIN, torque) for joint in joints]
             pairs.append(_Pair(motors[0], motors[1], joints, separation, radius))
         self._pairs = tuple(pairs)
         self._begin()
@@ -235,39 +225,28 @@ class GzDiffDrive(_DiffDrive[GzParameters]):
     """``gz-sim-diff-drive-system``."""
 
     PARAMETERS = GzParameters
-    IGNORED = (
-        *("min_velocity", "max_velocity", "min_acceleration", "max_acceleration", "min_jerk", "max_jerk"),
-        *("min_linear_acceleration", "min_angular_acceleration", "min_linear_jerk", "max_linear_jerk"),
-        *("min_angular_jerk", "max_angular_jerk"),
-    )
 
     def start(self) -> None:
         """Give the wheels motors, and listen."""
-        said, model = self.parameters, self.place.path
+        said = self.parameters
         count = max(len(said.left_joint), len(said.right_joint))
         sizes = [(said.wheel_separation, said.wheel_radius)] * count
-        self._fit_wheels(said.left_joint, said.right_joint, sizes, _GZ_TORQUE)
-        frame = said.frame_id or f"{model}/odom"
-        child = said.child_frame_id or f"{model}/{self.first_link.rpartition(SEPARATOR)[2]}"
-        name = said.odom_topic or f"/model/{model}/odometry"
-        odometry = self.node.publisher("nav_msgs/msg/Odometry", name, usual="/odom")
-        transforms = transforms_topic(self.node, said.tf_topic or f"/model/{model}/tf", "/tf")
-        self._topics = OdometryTopics(frame, child, odometry, transforms)
-        topic = said.topic or f"/model/{model}/cmd_vel"
-        self.node.subscribe("geometry_msgs/msg/Twist", topic, self._commanded, usual="/cmd_vel")
-        self.every(_GZ_RATE, self._drive)
+        self._fit_wheels(said.left_joint, said.right_joint, sizes, GZ_TORQUE)
+        self._commands = DriveCommands(said)
+        self._topics = connected(self, said, self._commands)
+        self.node.subscribe("std_msgs/msg/Bool", f"/model/{self.place.path}/enable", self._commands.enable)
+        self.every(GZ_RATE, self._drive)
         self.every(said.odom_publish_frequency, self._publish)
+
+    def reset(self) -> None:
+        """Stand still where it began."""
+        self._commands.restart()
+        super().reset()
 
     def _drive(self) -> None:
         self._measure()
-        said = self.parameters
-        forward, turning = self._wanted
-        forward = min(max(forward, said.min_linear_velocity), said.max_linear_velocity)
-        turning = min(max(turning, said.min_angular_velocity), said.max_angular_velocity)
-        self._now = (
-            _nearer(self._now[0], forward, said.max_linear_acceleration / _GZ_RATE),
-            _nearer(self._now[1], turning, said.max_angular_acceleration / _GZ_RATE),
-        )
+        forward, _, turning = self._commands.follow()
+        self._now = (forward, turning)
         self._turn_wheels()
 
     def _publish(self) -> None:

@@ -35,10 +35,13 @@ class PlanarPose:
 
         Source: gazebo_ros_diff_drive, the method of Runge and Kutta of the second order.
         """
-        turn = (right - left) / separation
-        way = (left + right) / 2.0
-        self.x += way * cos(self.yaw + turn / 2.0)
-        self.y += way * sin(self.yaw + turn / 2.0)
+        self.advance((left + right) / 2.0, 0.0, (right - left) / separation)
+
+    def advance(self, forward: float, sideways: float, turn: float) -> None:
+        """Go some way forward and to the left in m, while turning by an angle in rad."""
+        middle = self.yaw + turn / 2.0
+        self.x += forward * cos(middle) - sideways * sin(middle)
+        self.y += forward * sin(middle) + sideways * cos(middle)
         self.yaw += turn
 
     @property

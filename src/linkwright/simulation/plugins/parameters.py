@@ -8,8 +8,8 @@
         publish_odom: bool = False
 
 A name is that of the child element of ``<plugin>``. The types are ``str``, ``float``, ``int``, ``bool``, `Vector3`, and
-``tuple[str, ...]`` or ``tuple[float, ...]`` for elements that may be there several times. ``bool | None`` is for one
-whose default depends on others.
+``tuple[str, ...]`` or ``tuple[float, ...]`` for elements that may be there several times. ``bool | None`` and
+``float | None`` are for those whose defaults depend on others.
 """
 
 from __future__ import annotations
@@ -131,6 +131,7 @@ _CONVERTERS: dict[Any, Callable[[str], Any]] = {
     int: int,
     bool: _truth,
     bool | None: _truth,
+    float | None: float,
     Vector3: _vector,
 }
 

@@ -8,12 +8,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import cos, sin
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 from linkwright.diagnostics import phrase
 from linkwright.simulation.plugins.odometry import OdometryTopics, planar_velocity, transforms_topic, yaw_of
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
+
+P = TypeVar("P")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -32,7 +34,30 @@ class PlanarMoveParameters:
     covariance_yaw: float = 1e-3
 
 
-class PlanarMove(SimulatedPlugin[PlanarMoveParameters]):
+class PlanarDrive(SimulatedPlugin[P], Generic[P]):
+    """Gives a model a velocity in its plane."""
+
+    def be_free(self) -> None:
+        """Make sure that the model can move, and keep it awake.
+
+        Raises:
+            LinkwrightError: SIM160 it is fixed to the world.
+        """
+        if not self.simulation.moves_freely(self.place.path):
+            raise self.refused(
+                phrase("plugin '{plugin}' cannot move a model that is fixed to the world", plugin=self.place.name)
+            )
+        self.simulation.keep_awake(self.first_link)
+
+    def hold(self, forward: float, sideways: float, turning: float) -> None:
+        """Have velocities in m/s and rad/s for the next step; those that lead out of the plane stay."""
+        yaw = yaw_of(self.simulation.model_pose(self.place.path))
+        linear, angular = self.simulation.link_velocity(self.first_link)
+        along = (forward * cos(yaw) - sideways * sin(yaw), forward * sin(yaw) + sideways * cos(yaw), float(linear[2]))
+        self.simulation.set_model_velocity(self.place.path, along, (float(angular[0]), float(angular[1]), turning))
+
+
+class PlanarMove(PlanarDrive[PlanarMoveParameters]):
     """``libgazebo_ros_planar_move.so``."""
 
     PARAMETERS = PlanarMoveParameters
@@ -44,13 +69,8 @@ class PlanarMove(SimulatedPlugin[PlanarMoveParameters]):
         Raises:
             LinkwrightError: SIM160 the model is fixed to the world.
         """
-        said, node, simulation = self.parameters, self.node, self.simulation
-        self._link = self.first_link
-        if not simulation.moves_freely(self.place.path):
-            raise self.refused(
-                phrase("plugin '{plugin}' cannot move a model that is fixed to the world", plugin=self.place.name)
-            )
-        simulation.keep_awake(self._link)
+        said, node = self.parameters, self.node
+        self.be_free()
         self._wanted = (0.0, 0.0, 0.0)
         odometry = node.publisher("nav_msgs/msg/Odometry", said.odometry_topic, 1) if said.publish_odom else None
         transforms = transforms_topic(node) if said.publish_odom_tf else None
@@ -65,16 +85,13 @@ class PlanarMove(SimulatedPlugin[PlanarMoveParameters]):
         self._wanted = (float(twist.linear.x), float(twist.linear.y), float(twist.angular.z))
 
     def _move(self) -> None:
-        """Set the velocities in the plane; those that lead out of it stay."""
-        forward, sideways, turning = self._wanted
-        yaw = yaw_of(self.simulation.model_pose(self.place.path))
-        linear, angular = self.simulation.link_velocity(self._link)
-        along = (forward * cos(yaw) - sideways * sin(yaw), forward * sin(yaw) + sideways * cos(yaw), float(linear[2]))
-        self.simulation.set_model_velocity(self.place.path, along, (float(angular[0]), float(angular[1]), turning))
+        self.hold(*self._wanted)
 
     def _publish(self) -> None:
         pose = self.simulation.model_pose(self.place.path)
-        self._topics.publish(self.stamp(), pose, *planar_velocity(pose, *self.simulation.link_velocity(self._link)))
+        self._topics.publish(
+            self.stamp(), pose, *planar_velocity(pose, *self.simulation.link_velocity(self.first_link))
+        )
 
     def reset(self) -> None:
         """Stand still."""

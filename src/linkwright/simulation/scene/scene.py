@@ -19,7 +19,7 @@ from linkwright.simulation.scene.bodies import SECOND_AXIS, BodyWriter, hinge_an
 from linkwright.simulation.scene.meshes import MeshLibrary
 from linkwright.simulation.scene.shapes import set_pose
 from linkwright.simulation.scene.structure import HeldLink, PlacedJoint, Structure, structure_of
-from linkwright.simulation.scene.wheels import make_rolling, make_sliding
+from linkwright.simulation.scene.wheels import make_omnidirectional, make_rolling, make_sliding
 
 _ANCHORS_APART = 0.1
 """How far from each other in m the two points are that hold the axis of a hinge that closes a loop."""
@@ -172,6 +172,10 @@ class Scene:
         model = joint.partition(SEPARATOR)[0]
         self._unsettled.add(model)
         self._driven.setdefault(model, set()).add(joint)
+
+    def let_slide(self, joint: str) -> None:
+        """Let the wheel that a joint holds slide in all directions, as if it had rollers; a motor only turns it."""
+        make_omnidirectional(self.bodies[self.joints[joint].child], self.step)
 
     def add_servo(self, joint: str) -> str:
         """Hold a joint of one axis where it is told to be; what pulls at it makes no difference.

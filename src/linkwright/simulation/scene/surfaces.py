@@ -55,6 +55,18 @@ def make_slippery(geom: Any) -> None:
     geom.priority = _priority(0.0)
 
 
+def make_frictionless(geom: Any, step: float) -> None:
+    """Let a shape slide without friction, and bear its load as a wheel does.
+
+    Args:
+        geom: the shape.
+        step: the time step of the simulation in s.
+    """
+    geom.condim = 1
+    make_wheel(geom, step)
+    geom.priority = _priority(0.0)
+
+
 def make_soft(geom: Any) -> None:
     """Let a shape give way a little, so that it does not take the load from wheels beside it."""
     geom.solref = list(_SOFT)

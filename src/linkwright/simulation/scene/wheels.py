@@ -10,7 +10,7 @@ from linkwright.geometry.arrays import Array, rotation_matrix
 from linkwright.geometry.single import rotation_from_z
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.scene.bodies import COLLISION_GROUP
-from linkwright.simulation.scene.surfaces import is_slippery, make_slippery, make_soft, make_wheel
+from linkwright.simulation.scene.surfaces import is_slippery, make_frictionless, make_slippery, make_soft, make_wheel
 
 _ROUND = 0.05
 """A mesh is a wheel where it reaches equally far from its axis on all sides, up to this share."""
@@ -55,6 +55,18 @@ def make_sliding(body: Any, unsaid: set[str]) -> None:
                 make_slippery(geom)
             else:
                 make_soft(geom)
+
+
+def make_omnidirectional(body: Any, step: float) -> None:
+    """Let what touches of a body slide in all directions and bear its load, as a wheel with rollers.
+
+    Args:
+        body: a body of the specification.
+        step: the time step of the simulation in s.
+    """
+    for geom in body.geoms:
+        if geom.group == COLLISION_GROUP:
+            make_frictionless(geom, step)
 
 
 def _round_mesh(spec: Any, geom: Any, origin: Array, axis: Array) -> None:

@@ -1,0 +1,192 @@
+"""Cars of gz, which steer their front wheels: ``gz-sim-ackermann-steering-system``.
+
+Source: gz-sim (parameters, topics, defaults, the angles of the wheels, odometry; ``angular.z`` of a command is how fast
+the car turns). Other than there a wheel is steered to its angle as fast as the gain says, whatever pulls at it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from math import atan, atan2, copysign, cos, sin, tan
+from typing import Any
+
+from linkwright.diagnostics import phrase
+from linkwright.simulation.plugins.gz_drive import (
+    GZ_RATE,
+    GZ_TORQUE,
+    MOTOR_GAIN,
+    DriveCommands,
+    GzDriveParameters,
+    connected,
+)
+from linkwright.simulation.plugins.odometry import PlanarPose
+from linkwright.simulation.plugins.parameters import parameter
+from linkwright.simulation.plugins.plugin import SimulatedPlugin
+
+_SLOW = 1e-3
+"""A car that is to turn no faster than this, in rad/s, goes straight ahead."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class SteeringParameters(GzDriveParameters):
+    """Of the plugin."""
+
+    left_joint: tuple[str, ...] = ()
+    right_joint: tuple[str, ...] = ()
+    left_steering_joint: tuple[str, ...] = parameter()
+    right_steering_joint: tuple[str, ...] = parameter()
+    wheel_separation: float = 1.0
+    kingpin_width: float = 0.8
+    wheel_base: float = 1.0
+    wheel_radius: float = 0.2
+    steering_limit: float = 0.5
+    steering_only: bool = False
+    sub_topic: str = ""
+    steer_p_gain: float = 1.0
+    steer_cmd_max: float = 1000.0
+    steer_cmd_min: float = -1000.0
+
+
+class GzAckermann(SimulatedPlugin[SteeringParameters]):
+    """``gz-sim-ackermann-steering-system``: a car, or its steering alone."""
+
+    PARAMETERS = SteeringParameters
+    IGNORED = (
+        *("steer_i_gain", "steer_d_gain", "steer_i_max", "steer_i_min", "steer_cmd_offset"),
+        *("use_actuator_msg", "actuator_number"),
+    )
+
+    def start(self) -> None:
+        """Give the wheels motors and servos, and listen.
+
+        Raises:
+            LinkwrightError: SIM134 a joint is not there; SIM160 a measure is not positive, or no wheel is named.
+        """
+        said, simulation = self.parameters, self.simulation
+        sizes = (said.wheel_separation, said.wheel_base, said.wheel_radius)
+        if not (min(sizes) > 0.0 and said.left_joint and said.right_joint) and not said.steering_only:
+            raise self.refused(
+                phrase("plugin '{plugin}': wheels and their positive measures are needed", plugin=self.place.name)
+            )
+        sides = (said.left_joint, said.right_joint)
+        wheels = [] if said.steering_only else [[self.joint(name) for name in side] for side in sides]
+        steering = [
+            [self.joint(name) for name in side] for side in (said.left_steering_joint, said.right_steering_joint)
+        ]
+        steered = {simulation.scene.joints[joint].child for side in steering for joint in side}
+        for name, placed in simulation.scene.joints.items():
+            if placed.parent in steered:
+                simulation.let_roll(name)
+        simulation.keep_awake(self.first_link)
+        self._turned = [joints[0] for joints in wheels]
+        self._steering = [joints[0] for joints in steering]
+        self._motors = [
+            [simulation.add_velocity_motor(joint, MOTOR_GAIN, GZ_TORQUE) for joint in joints] for joints in wheels
+        ]
+        greatest = max(said.steer_cmd_max, -said.steer_cmd_min)
+        self._servos = [[simulation.add_servo(joint, greatest) for joint in joints] for joints in steering]
+        self._commands, self._limiter = DriveCommands(said), said.limiter("angular")
+        self._angle = 0.0
+        self._begin()
+        if said.steering_only:
+            self._listen_to_angles()
+            self.every(GZ_RATE, self._steer_only)
+            return
+        self._topics = connected(self, self._with_topic(), self._commands)
+        self.every(GZ_RATE, self._drive)
+        self.every(said.odom_publish_frequency, self._publish)
+
+    def _with_topic(self) -> SteeringParameters:
+        said = self.parameters
+        inside = f"/model/{self.place.path}/{said.sub_topic}" if said.sub_topic else ""
+        return replace(said, topic=said.topic or inside)
+
+    def _listen_to_angles(self) -> None:
+        said = self.parameters
+        topic = said.topic or f"/model/{self.place.path}/{said.sub_topic or 'steer_angle'}"
+        self.node.subscribe("std_msgs/msg/Float64", topic, self._told_angle)
+
+    def _told_angle(self, message: Any) -> None:
+        self._angle = float(message.data)
+
+    def _begin(self) -> None:
+        self._angle = 0.0
+        self._place = PlanarPose()
+        self._angles = self._wheel_angles()
+
+    def reset(self) -> None:
+        """Stand still, with the wheels straight ahead."""
+        self._begin()
+        self._commands.restart()
+        self._limiter.restart()
+        for servo in (each for side in self._servos for each in side):
+            servo.restart()
+        self._turn_wheels(0.0, 0.0)
+
+    # --- the wheels ---------------------------------------------------------------------------------------------------
+
+    def _drive(self) -> None:
+        """Turn the wheels as the command says: the inner ones slower, and steered further."""
+        self._measure()
+        said = self.parameters
+        forward, _, turning = self._commands.follow()
+        curvature = self._curvature(forward, turning)
+        half = said.wheel_separation / 2.0 * curvature
+        self._turn_wheels(forward * (1.0 - half), forward * (1.0 + half))
+        slope, aside = said.wheel_base * curvature, said.kingpin_width / 2.0 * curvature
+        self._steer(atan2(slope, 1.0 - aside), atan2(slope, 1.0 + aside))
+
+    def _curvature(self, forward: float, turning: float) -> float:
+        """One over the radius of the circle to drive, in 1/m, to the left positive; no tighter than the limit."""
+        said = self.parameters
+        greatest = sin(said.steering_limit) / said.wheel_base
+        if abs(turning) < _SLOW:
+            return 0.0
+        if forward == 0.0:
+            return copysign(greatest, turning)
+        return min(max(turning / forward, -greatest), greatest)
+
+    def _turn_wheels(self, left: float, right: float) -> None:
+        for motors, speed in zip(self._motors, (left, right), strict=False):
+            for motor in motors:
+                motor.target = speed / self.parameters.wheel_radius
+
+    def _steer_only(self) -> None:
+        said = self.parameters
+        angle = self._limiter.follow(self._angle, 1.0 / GZ_RATE)
+        angle = min(max(angle, -said.steering_limit), said.steering_limit)
+        along, across = 2.0 * said.wheel_base * cos(angle), said.wheel_separation * sin(angle)
+        slope = 2.0 * said.wheel_base * sin(angle)
+        self._steer(atan(slope / (along - across)), atan(slope / (along + across)))
+
+    def _steer(self, left: float, right: float) -> None:
+        """Bring the wheels nearer to their angles in rad, at a speed that is the gain times what is missing."""
+        said = self.parameters
+        for servos, angle in zip(self._servos, (left, right), strict=True):
+            for servo in servos:
+                speed = said.steer_p_gain * (angle - servo.position)
+                speed = min(max(speed, said.steer_cmd_min), said.steer_cmd_max)
+                servo.move(servo.position + speed / GZ_RATE, 1.0 / GZ_RATE)
+
+    # --- odometry -----------------------------------------------------------------------------------------------------
+
+    def _wheel_angles(self) -> tuple[float, ...]:
+        return tuple(self.simulation.joint_state(joint)[0] for joint in self._turned)
+
+    @property
+    def _turn(self) -> float:
+        """How far the car turns by its steering, in rad for each m."""
+        left, right = (self.simulation.joint_state(joint)[0] for joint in self._steering)
+        return tan((left + right) / 2.0) / self.parameters.wheel_base
+
+    def _measure(self) -> None:
+        """Go on by what the first wheels of both sides have turned since."""
+        before, self._angles = self._angles, self._wheel_angles()
+        way = sum(new - old for new, old in zip(self._angles, before, strict=True)) / 2.0 * self.parameters.wheel_radius
+        self._place.advance(way, 0.0, way * self._turn)
+
+    def _publish(self) -> None:
+        self._measure()
+        speeds = [self.simulation.joint_state(joint)[1] for joint in self._turned]
+        forward = sum(speeds) / 2.0 * self.parameters.wheel_radius
+        self._topics.publish(self.stamp(), self._place.transform, forward, 0.0, forward * self._turn)

@@ -1,0 +1,84 @@
+"""What the drives of gz have in common: their topics and frames, and the velocity that they are told, within limits.
+
+Source: gz-sim (parameters, topics, defaults).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from linkwright.sdf.poses import SEPARATOR
+from linkwright.simulation.plugins.limits import SpeedLimits
+from linkwright.simulation.plugins.odometry import OdometryTopics, transforms_topic
+from linkwright.simulation.plugins.plugin import SimulatedPlugin
+
+GZ_RATE = 100.0
+"""How often a drive of gz looks at its command in Hz; gz does before each step."""
+GZ_TORQUE = 5.0
+"""The greatest torque of a wheel in N m where a plugin of gz names none: gz sets velocities whatever that takes."""
+MOTOR_GAIN = 20.0
+"""Torque of a motor in N m for each rad/s that its wheel is too slow."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class GzDriveParameters(SpeedLimits):
+    """Of all drives of gz."""
+
+    topic: str = ""
+    odom_topic: str = ""
+    tf_topic: str = ""
+    frame_id: str = ""
+    child_frame_id: str = ""
+    odom_publish_frequency: float = 50.0
+
+
+class DriveCommands:
+    """The velocity that a drive is told: forward and to the left in m/s, around z in rad/s.
+
+    Args:
+        limits: how fast it may go.
+
+    Attributes:
+        is_enabled: whether it listens; else it comes to rest.
+    """
+
+    def __init__(self, limits: SpeedLimits) -> None:
+        self._limiters = tuple(limits.limiter(kind) for kind in ("linear", "linear", "angular"))
+        self.is_enabled = True
+        self.restart()
+
+    def restart(self) -> None:
+        """Stand still, and wait for a command."""
+        self._wanted = (0.0, 0.0, 0.0)
+        for limiter in self._limiters:
+            limiter.restart()
+
+    def take(self, twist: Any) -> None:
+        """Take a command, ``geometry_msgs/msg/Twist``."""
+        if self.is_enabled:
+            self._wanted = (float(twist.linear.x), float(twist.linear.y), float(twist.angular.z))
+
+    def enable(self, message: Any) -> None:
+        """Listen or come to rest, as ``std_msgs/msg/Bool`` says."""
+        self.is_enabled = bool(message.data)
+        if not self.is_enabled:
+            self._wanted = (0.0, 0.0, 0.0)
+
+    def follow(self) -> tuple[float, float, float]:
+        """The velocity that it is to have now, which is asked for `GZ_RATE` times a second."""
+        pairs = zip(self._limiters, self._wanted, strict=True)
+        forward, sideways, turning = (limiter.follow(wanted, 1.0 / GZ_RATE) for limiter, wanted in pairs)
+        return forward, sideways, turning
+
+
+def connected(plugin: SimulatedPlugin[Any], said: GzDriveParameters, commands: DriveCommands) -> OdometryTopics:
+    """The topics of odometry of a drive, which takes its commands from now on."""
+    model, node = plugin.place.path, plugin.node
+    frame = said.frame_id or f"{model}/odom"
+    child = said.child_frame_id or f"{model}/{plugin.first_link.rpartition(SEPARATOR)[2]}"
+    odometry = node.publisher("nav_msgs/msg/Odometry", said.odom_topic or f"/model/{model}/odometry", usual="/odom")
+    transforms = transforms_topic(node, said.tf_topic or f"/model/{model}/tf", "/tf")
+    topic = said.topic or f"/model/{model}/cmd_vel"
+    node.subscribe("geometry_msgs/msg/Twist", topic, commands.take, usual="/cmd_vel")
+    return OdometryTopics(frame, child, odometry, transforms)

@@ -1,0 +1,78 @@
+"""How fast a drive of gz may go, speed up and change that: its parameters, and what keeps to them.
+
+Source: gz-sim's drives and gz-math's SpeedLimiter.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf
+
+
+@dataclass(frozen=True, kw_only=True)
+class SpeedLimits:
+    """Limits in m/s and rad/s, m/s2 and rad/s2, m/s3 and rad/s3; those of one kind come before those of both."""
+
+    min_velocity: float = -inf
+    max_velocity: float = inf
+    min_acceleration: float = -inf
+    max_acceleration: float = inf
+    min_jerk: float = -inf
+    max_jerk: float = inf
+    min_linear_velocity: float | None = None
+    max_linear_velocity: float | None = None
+    min_linear_acceleration: float | None = None
+    max_linear_acceleration: float | None = None
+    min_linear_jerk: float | None = None
+    max_linear_jerk: float | None = None
+    min_angular_velocity: float | None = None
+    max_angular_velocity: float | None = None
+    min_angular_acceleration: float | None = None
+    max_angular_acceleration: float | None = None
+    min_angular_jerk: float | None = None
+    max_angular_jerk: float | None = None
+
+    def limiter(self, kind: str) -> SpeedLimiter:
+        """What keeps to the limits of one kind of velocity, ``linear`` or ``angular``."""
+        return SpeedLimiter(*(self._bounds(kind, each) for each in ("velocity", "acceleration", "jerk")))
+
+    def _bounds(self, kind: str, derivative: str) -> tuple[float, float]:
+        special = (getattr(self, f"{side}_{kind}_{derivative}") for side in ("min", "max"))
+        general = (getattr(self, f"{side}_{derivative}") for side in ("min", "max"))
+        lower, upper = (both if one is None else one for one, both in zip(special, general, strict=True))
+        return lower, upper
+
+
+class SpeedLimiter:
+    """Follows a wanted velocity within bounds.
+
+    Args:
+        velocity, acceleration, jerk: the least and the greatest.
+
+    Attributes:
+        speed: the velocity now.
+    """
+
+    def __init__(
+        self, velocity: tuple[float, float], acceleration: tuple[float, float], jerk: tuple[float, float]
+    ) -> None:
+        self._velocity = velocity
+        self._acceleration = acceleration
+        self._jerk = jerk
+        self.restart()
+
+    def restart(self) -> None:
+        """Stand still."""
+        self.speed = self._before = 0.0
+
+    def follow(self, wanted: float, seconds: float) -> float:
+        """The velocity so many seconds after the last one."""
+        changed = self.speed - self._before
+        change = changed + _within(self._jerk, wanted - self.speed - changed, seconds * seconds)
+        speed = self.speed + _within(self._acceleration, change, seconds)
+        self.speed, self._before = _within(self._velocity, speed), self.speed
+        return self.speed
+
+
+def _within(bounds: tuple[float, float], value: float, factor: float = 1.0) -> float:
+    return min(max(value, bounds[0] * factor), bounds[1] * factor)

@@ -1,0 +1,115 @@
+"""Mecanum wheels of gz: ``gz-sim-mecanum-drive-system``.
+
+Source: gz-sim (parameters, topics, defaults, which wheel turns how fast; odometry from the wheels). Other than there
+rollers are not simulated by friction that differs with the direction: the wheels slide, and the robot has the velocity
+that turning wheels of that kind give it, as `planar_move` holds a velocity.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf
+
+from linkwright.diagnostics import phrase
+from linkwright.simulation.plugins.gz_drive import (
+    GZ_RATE,
+    MOTOR_GAIN,
+    DriveCommands,
+    GzDriveParameters,
+    connected,
+)
+from linkwright.simulation.plugins.odometry import PlanarPose
+from linkwright.simulation.plugins.parameters import parameter
+from linkwright.simulation.plugins.planar_move import PlanarDrive
+
+
+@dataclass(frozen=True, kw_only=True)
+class MecanumParameters(GzDriveParameters):
+    """Of the plugin."""
+
+    front_left_joint: tuple[str, ...] = parameter()
+    front_right_joint: tuple[str, ...] = parameter()
+    back_left_joint: tuple[str, ...] = parameter()
+    back_right_joint: tuple[str, ...] = parameter()
+    wheel_separation: float = 1.0
+    wheelbase: float = 1.0
+    wheel_radius: float = 0.2
+
+
+_SIGNS = ((1.0, -1.0, -1.0), (1.0, 1.0, 1.0), (1.0, 1.0, -1.0), (1.0, -1.0, 1.0))
+"""How wheels turn when the robot goes forward, goes to the left, turns to the left: front left and right, back ones."""
+
+
+class GzMecanum(PlanarDrive[MecanumParameters]):
+    """``gz-sim-mecanum-drive-system``."""
+
+    PARAMETERS = MecanumParameters
+
+    def start(self) -> None:
+        """Give the wheels motors, and listen.
+
+        Raises:
+            LinkwrightError: SIM134 a joint is not there; SIM160 a measure is not positive, or the model is fixed.
+        """
+        said, simulation = self.parameters, self.simulation
+        if not (min(said.wheel_separation, said.wheelbase) > 0.0 and said.wheel_radius > 0.0):
+            raise self.refused(
+                phrase("plugin '{plugin}': distance and size of wheels must be positive", plugin=self.place.name)
+            )
+        self.be_free()
+        corners = (said.front_left_joint, said.front_right_joint, said.back_left_joint, said.back_right_joint)
+        wheels = [[self.joint(name) for name in names] for names in corners]
+        for joint in (each for joints in wheels for each in joints):
+            simulation.let_slide(joint)
+        self._motors = [
+            [simulation.add_velocity_motor(joint, MOTOR_GAIN, inf) for joint in joints] for joints in wheels
+        ]
+        self._wheels = [joints[0] for joints in wheels]
+        self._arm = (said.wheel_separation + said.wheelbase) / 2.0
+        self._commands = DriveCommands(said)
+        self._topics = connected(self, said, self._commands)
+        self._begin()
+        self.every(GZ_RATE, self._drive)
+        self.every(0.0, self._move)
+        self.every(said.odom_publish_frequency, self._publish)
+
+    def _begin(self) -> None:
+        self._place = PlanarPose()
+        self._angles = self._states(0)
+
+    def reset(self) -> None:
+        """Stand still where it began."""
+        self._commands.restart()
+        self._begin()
+        self._turn_wheels((0.0, 0.0, 0.0))
+
+    def _drive(self) -> None:
+        self._turn_wheels(self._commands.follow())
+
+    def _turn_wheels(self, velocity: tuple[float, float, float]) -> None:
+        forward, sideways, turning = velocity
+        for motors, signs in zip(self._motors, _SIGNS, strict=True):
+            rim = signs[0] * forward + signs[1] * sideways + signs[2] * turning * self._arm
+            for motor in motors:
+                motor.target = rim / self.parameters.wheel_radius
+
+    def _states(self, derivative: int) -> list[float]:
+        """The angles of the four wheels in rad, or how fast they turn in rad/s."""
+        return [self.simulation.joint_state(joint)[derivative] for joint in self._wheels]
+
+    def _rolled(self, turned: list[float]) -> tuple[float, float, float]:
+        """The way or velocity of a robot whose wheels have turned so far, or turn so fast."""
+        radius = self.parameters.wheel_radius
+        forward, sideways, turning = (
+            sum(signs[way] * angle for signs, angle in zip(_SIGNS, turned, strict=True)) * radius / len(_SIGNS)
+            for way in range(3)
+        )
+        return forward, sideways, turning / self._arm
+
+    def _move(self) -> None:
+        before, self._angles = self._angles, self._states(0)
+        self._place.advance(*self._rolled([new - old for new, old in zip(self._angles, before, strict=True)]))
+        self.hold(*self._rolled(self._states(1)))
+
+    def _publish(self) -> None:
+        self._topics.publish(self.stamp(), self._place.transform, *self._rolled(self._states(1)))

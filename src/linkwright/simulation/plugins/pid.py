@@ -1,0 +1,44 @@
+"""PID controllers, as those of gz are.
+
+Source: gz-math's PID: a bound whose least is more than its greatest bounds nothing.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, kw_only=True)
+class Gains:
+    """Gains and bounds of a controller: of the sum of errors, times its gain, and of the command."""
+
+    p: float
+    i: float
+    d: float
+    i_min: float
+    i_max: float
+    cmd_min: float
+    cmd_max: float
+    cmd_offset: float
+
+
+class Pid:
+    """A force of an error, by its size, its sum and its change; bounded."""
+
+    def __init__(self, gains: Gains) -> None:
+        self._gains = gains
+        self._sum = 0.0
+        self._before: float | None = None
+
+    def force(self, error: float, seconds: float) -> float:
+        """The force in N m (N) for what is wanted less what is there, so many seconds after the last one."""
+        gains = self._gains
+        self._sum = _bounded(self._sum + gains.i * error * seconds, gains.i_min, gains.i_max)
+        change = 0.0 if self._before is None else (error - self._before) / seconds
+        self._before = error
+        force = gains.cmd_offset + gains.p * error + self._sum + gains.d * change
+        return _bounded(force, gains.cmd_min, gains.cmd_max)
+
+
+def _bounded(value: float, least: float, greatest: float) -> float:
+    return min(max(value, least), greatest) if least <= greatest else value

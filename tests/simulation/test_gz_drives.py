@@ -1,0 +1,170 @@
+"""Drives of gz but the differential one: cars, and mecanum wheels; and the limits that all of them have."""
+
+from __future__ import annotations
+
+from math import atan, pi
+
+import pytest
+
+from linkwright.messages import get_message
+from linkwright.simulation.plugins.limits import SpeedLimits
+from linkwright.simulation.plugins.odometry import yaw_of
+from linkwright.testing import Recording
+from tests.simulation.test_ackermann import BASE, RADIUS, TRACK, car
+from tests.simulation.test_movers import drive
+from tests.simulation.test_plugins import SECOND, robot, served
+from tests.simulation.worlds import GROUND, box
+
+WHEEL = f"<cylinder><radius>{RADIUS}</radius><length>0.05</length></cylinder>"
+LENGTH, WIDTH = 0.4, 0.5
+
+
+def steering(more: str = "") -> str:
+    """The plugin of gz for the car."""
+    return (
+        '<plugin name="gz::sim::systems::AckermannSteering" filename="gz-sim-ackermann-steering-system">'
+        "<left_joint>rear_left_joint</left_joint><right_joint>rear_right_joint</right_joint>"
+        "<left_steering_joint>left_steering_joint</left_steering_joint>"
+        "<right_steering_joint>right_steering_joint</right_steering_joint>"
+        f"<wheel_separation>{TRACK}</wheel_separation><kingpin_width>{TRACK}</kingpin_width>"
+        f"<wheel_base>{BASE}</wheel_base><wheel_radius>{RADIUS}</wheel_radius><steer_p_gain>10</steer_p_gain>"
+        f"<topic>cmd_vel</topic><odom_topic>odom</odom_topic><tf_topic>tf</tf_topic>{more}</plugin>"
+    )
+
+
+def mecanum(more: str = "", name: str = "robot") -> str:
+    """A robot of 9 kg with four wheels that grip, and the plugin of gz."""
+    text = box(name, "0 0 0.2 0 0 0", "0.6 0.3 0.1", 5.0)
+    corners = [(end, side) for end in ("front", "back") for side in ("left", "right")]
+    for end, side in corners:
+        x, y = (LENGTH / 2 if end == "front" else -LENGTH / 2), (WIDTH / 2 if side == "left" else -WIDTH / 2)
+        wheel = (
+            f'<link name="{end}_{side}"><pose>{x} {y} -0.1 {pi / 2} 0 0</pose><inertial><mass>1</mass><inertia>'
+            "<ixx>0.003</ixx><iyy>0.003</iyy><izz>0.005</izz></inertia></inertial>"
+            f'<collision name="collision"><geometry>{WHEEL}</geometry></collision></link>'
+            f'<joint name="{end}_{side}_joint" type="revolute"><parent>link</parent><child>{end}_{side}</child>'
+            '<axis><xyz expressed_in="__model__">0 1 0</xyz></axis></joint>'
+        )
+        text = text.replace("</model>", wheel + "</model>")
+    names = "".join(f"<{end}_{side}_joint>{end}_{side}_joint</{end}_{side}_joint>" for end, side in corners)
+    plugin = (
+        f'<plugin name="gz::sim::systems::MecanumDrive" filename="gz-sim-mecanum-drive-system">{names}'
+        f"<wheel_separation>{WIDTH}</wheel_separation><wheelbase>{LENGTH}</wheelbase>"
+        f"<wheel_radius>{RADIUS}</wheel_radius><topic>cmd_vel</topic><odom_topic>odom</odom_topic>{more}</plugin>"
+    )
+    return text.replace("</model>", plugin + "</model>")
+
+
+def test_limits_hold_for_velocity_acceleration_and_jerk():
+    limiter = SpeedLimits(max_velocity=1.0, max_linear_acceleration=2.0, min_acceleration=-4.0).limiter("linear")
+    assert [limiter.follow(5.0, 0.1) for _ in range(7)] == pytest.approx([0.2, 0.4, 0.6, 0.8, 1.0, 1.0, 1.0])
+    assert [limiter.follow(0.0, 0.1) for _ in range(3)] == pytest.approx([0.6, 0.2, 0.0])
+    slow = SpeedLimits(max_jerk=10.0, max_linear_velocity=0.1).limiter("angular")
+    assert [slow.follow(5.0, 0.1) for _ in range(3)] == pytest.approx([0.1, 0.3, 0.6])
+
+
+async def test_a_car_drives_the_circle_that_a_command_says_and_knows_where_it_is():
+    async with served(GROUND, car(steering())) as (server, graph, log):
+        odometry, transforms = (Recording(graph, server.node, each) for each in ("/odom", "/tf"))
+        await drive(server, graph, 0.5, turning=0.3, seconds=2.0)
+        begin = yaw_of(server.simulation.model_pose("car"))
+        await drive(server, graph, 0.5, turning=0.3, seconds=1.0)
+        pose = server.simulation.model_pose("car")
+        assert yaw_of(pose) - begin == pytest.approx(0.3, rel=0.05)
+        told = odometry.last
+        assert (told.header.frame_id, told.child_frame_id) == ("car/odom", "car/base")
+        assert (told.pose.pose.position.x, told.pose.pose.position.y) == pytest.approx(pose[:2], abs=0.05)
+        assert told.twist.twist.linear.x == pytest.approx(0.5, abs=0.02)
+        assert told.twist.twist.angular.z == pytest.approx(0.3, rel=0.05)
+        assert len(odometry) == len(transforms) == 150
+        server.reset()
+        server.advance(SECOND)
+        assert server.simulation.model_pose("car")[:2] == pytest.approx((0.0, 0.0), abs=5e-3)
+        assert not log
+
+
+async def test_a_car_steers_no_further_than_its_limit_and_backward_too():
+    async with served(GROUND, car(steering("<steering_limit>0.3</steering_limit>"))) as (server, graph, log):
+        odometry = Recording(graph, server.node, "/odom")
+        await drive(server, graph, -0.5, turning=5.0, seconds=2.0)
+        left, right = (server.simulation.joint_state(f"car::{side}_steering_joint")[0] for side in ("left", "right"))
+        radius = BASE / 0.29552020666133955
+        expected = (atan(BASE / (-radius - TRACK / 2)), atan(BASE / (-radius + TRACK / 2)))
+        assert (left, right) == pytest.approx(expected, abs=0.01)
+        assert odometry.last.twist.twist.linear.x == pytest.approx(-0.5, abs=0.02)
+        assert odometry.last.twist.twist.angular.z > 0.2
+        assert not log
+
+
+async def test_the_steering_alone_takes_an_angle():
+    only = steering("<steering_only>true</steering_only>").replace("<topic>cmd_vel</topic>", "")
+    async with served(GROUND, car(only)) as (server, graph, log):
+        node = graph.create_node("driver")
+        publisher = node.create_publisher("std_msgs/msg/Float64", "/model/car/steer_angle", 10)
+        publisher.publish(get_message("std_msgs/msg/Float64")(data=0.4))
+        await graph.settle()
+        server.advance(2 * SECOND)
+        left, right = (server.simulation.joint_state(f"car::{side}_steering_joint")[0] for side in ("left", "right"))
+        assert left > 0.4 > right > 0.3
+        assert not log
+
+
+async def test_a_car_without_wheels_to_turn_is_told_of():
+    none = steering().replace("<left_joint>rear_left_joint</left_joint>", "")
+    async with served(GROUND, car(none)) as (server, _, log):
+        assert not server.plugins("car")
+        assert [each.text for each in log if "positive measures are needed" in each.text]
+
+
+@pytest.mark.parametrize(
+    ("command", "moved"),
+    [((0.5, 0.0, 0.0), (0.5, 0.0, 0.0)), ((0.0, 0.5, 0.0), (0.0, 0.5, 0.0)), ((0.0, 0.0, 1.0), (0.0, 0.0, 1.0))],
+    ids=["forward", "sideways", "turning"],
+)
+async def test_mecanum_wheels_go_any_way_and_know_how_far(command, moved):
+    async with served(GROUND, mecanum()) as (server, graph, log):
+        odometry = Recording(graph, server.node, "/odom")
+        await drive(server, graph, *command, seconds=1.0)
+        begin, told = server.simulation.model_pose("robot"), odometry.last.pose.pose.position
+        await drive(server, graph, *command, seconds=1.0)
+        end, last = server.simulation.model_pose("robot"), odometry.last
+        assert end[2] == pytest.approx(0.2, abs=2e-3)
+        assert (end[0] - begin[0], end[1] - begin[1], yaw_of(end) - yaw_of(begin)) == pytest.approx(moved, abs=0.01)
+        position = last.pose.pose.position
+        assert (position.x - told.x, position.y - told.y) == pytest.approx(moved[:2], abs=0.01)
+        twist = last.twist.twist
+        assert (twist.linear.x, twist.linear.y, twist.angular.z) == pytest.approx(command, abs=0.01)
+        assert not log
+
+
+async def test_wheels_of_a_robot_that_goes_sideways_turn_against_each_other_and_stop_after_a_reset():
+    async with served(GROUND, mecanum("<max_linear_velocity>0.2</max_linear_velocity>")) as (server, graph, log):
+        await drive(server, graph, 0.0, 1.0, seconds=1.0)
+        names = ("front_left", "front_right", "back_left", "back_right")
+        speeds = [server.simulation.joint_state(f"robot::{name}_joint")[1] * RADIUS for name in names]
+        assert speeds == pytest.approx([-0.2, 0.2, 0.2, -0.2], abs=0.01)
+        server.reset()
+        server.advance(SECOND)
+        assert server.simulation.model_pose("robot")[:2] == pytest.approx((0.0, 0.0), abs=2e-3)
+        assert not log
+
+
+async def test_a_drive_that_is_not_enabled_comes_to_rest():
+    plugin = (
+        '<plugin name="drive" filename="gz-sim-diff-drive-system"><left_joint>left_joint</left_joint>'
+        "<right_joint>right_joint</right_joint><wheel_separation>0.38</wheel_separation>"
+        "<wheel_radius>0.06</wheel_radius><topic>cmd_vel</topic><max_acceleration>1</max_acceleration>"
+        "<min_acceleration>-1</min_acceleration></plugin>"
+    )
+    async with served(GROUND, robot(plugin)) as (server, graph, log):
+        await drive(server, graph, 0.5, seconds=2.0)
+        node = graph.create_node("guard")
+        publisher = node.create_publisher("std_msgs/msg/Bool", "/model/mbot/enable", 10)
+        publisher.publish(get_message("std_msgs/msg/Bool")(data=False))
+        await graph.settle()
+        server.advance(SECOND)
+        begin = server.simulation.model_pose("mbot")[0]
+        await drive(server, graph, 0.5, seconds=1.0)
+        assert begin > 0.8
+        assert server.simulation.model_pose("mbot")[0] - begin == pytest.approx(0.0, abs=2e-3)
+        assert not log

@@ -1,0 +1,91 @@
+"""Joints that follow a trajectory by gz's controller."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.messages import Duration, Time, get_message
+from linkwright.testing import Recording
+from tests.simulation.test_joint_controllers import arm
+from tests.simulation.test_plugins import SECOND, served
+
+TOPIC = "/model/arm/joint_trajectory"
+GAINS = (
+    "<position_p_gain>400</position_p_gain><position_i_gain>400</position_i_gain><position_d_gain>40</position_d_gain>"
+    "<position_i_min>-20</position_i_min><position_i_max>20</position_i_max>"
+)
+
+
+def controller(more: str = GAINS) -> str:
+    """The plugin."""
+    name = "gz::sim::systems::JointTrajectoryController"
+    return f'<plugin name="{name}" filename="gz-sim-joint-trajectory-controller-system">{more}</plugin>'
+
+
+def trajectory(*points: tuple[float, float], name: str = "shoulder", stamp: int = 0):
+    """A message: seconds from the start and positions in rad."""
+    message = get_message("trajectory_msgs/msg/JointTrajectory")(joint_names=[name])
+    message.header.stamp = Time(stamp, 0)
+    for seconds, position in points:
+        point = get_message("trajectory_msgs/msg/JointTrajectoryPoint")(positions=[position])
+        point.time_from_start = Duration(int(seconds), round(seconds % 1 * SECOND))
+        message.points.append(point)
+    return message
+
+
+async def follow(graph, server, message, seconds: float) -> None:
+    """Send a trajectory, and let time pass."""
+    node = graph.create_node("planner")
+    node.create_publisher("trajectory_msgs/msg/JointTrajectory", TOPIC, 10).publish(message)
+    await graph.settle()
+    server.advance(round(seconds * SECOND))
+    await graph.settle()
+    node.destroy_node()
+
+
+async def test_joints_are_at_each_point_until_the_next_is_due():
+    async with served(arm(controller("<initial_position>0.5</initial_position>" + GAINS))) as (server, graph, log):
+        progress = Recording(graph, server.node, f"{TOPIC}_progress")
+        server.advance(3 * SECOND)
+        assert server.simulation.joint_state("arm::shoulder")[0] == pytest.approx(0.5, abs=5e-3)
+        await follow(graph, server, trajectory((0.0, 0.2), (3.0, -0.4), (6.0, 1.0)), 2.9)
+        assert [each.data for each in progress] == pytest.approx([1 / 3, 2 / 3])
+        assert server.simulation.joint_state("arm::shoulder")[0] == pytest.approx(-0.4, abs=5e-3)
+        server.advance(4 * SECOND)
+        await graph.settle()
+        assert server.simulation.joint_state("arm::shoulder")[0] == pytest.approx(1.0, abs=5e-3)
+        assert progress.last.data == 1.0
+        server.reset()
+        server.advance(3 * SECOND)
+        assert server.simulation.joint_state("arm::shoulder")[0] == pytest.approx(0.5, abs=5e-3)
+        assert not log
+
+
+async def test_a_trajectory_may_begin_later():
+    more = "<use_header_start_time>true</use_header_start_time>" + GAINS
+    async with served(arm(controller(more))) as (server, graph, _):
+        progress = Recording(graph, server.node, f"{TOPIC}_progress")
+        await follow(graph, server, trajectory((0.0, 0.1), (1.0, 0.3), stamp=2), 2.5)
+        assert [each.data for each in progress] == [0.5, 1.0]
+
+
+async def test_without_gains_efforts_alone_push():
+    async with served(arm(controller("<joint_name>shoulder</joint_name>"))) as (server, graph, log):
+        server.advance(3 * SECOND)
+        assert server.simulation.joint_state("arm::shoulder")[0] > 1.0
+        message = trajectory((0.0, 0.0))
+        message.points[0].effort = [-30.0]
+        await follow(graph, server, message, 3.0)
+        assert server.simulation.joint_state("arm::shoulder")[0] == pytest.approx(-2.0, abs=0.01)
+        assert not log
+
+
+async def test_joints_that_are_not_moved_are_named_and_no_points_end_a_trajectory():
+    async with served(arm(controller())) as (server, graph, log):
+        await follow(graph, server, trajectory((0.0, 1.0), name="elbow"), 0.1)
+        assert [each.text for each in log] == [
+            "plugin 'gz::sim::systems::JointTrajectoryController' moves no joint that is called elbow"
+        ]
+        await follow(graph, server, trajectory((3.0, 0.4), (8.0, 1.0)), 2.9)
+        await follow(graph, server, trajectory(), 5.0)
+        assert server.simulation.joint_state("arm::shoulder")[0] == pytest.approx(0.4, abs=5e-3)
