@@ -40,10 +40,12 @@ class Converted:
     Attributes:
         sdf: what it says; None where it cannot be read.
         diagnostics: what is wrong with it, and what could not be taken over.
+        files: those that were read, the main file first.
     """
 
     sdf: Sdf | None
     diagnostics: tuple[Diagnostic, ...]
+    files: tuple[Path, ...]
 
 
 def as_sdf(
@@ -70,19 +72,20 @@ def as_sdf(
     if is_world(path.name):
         world = examine_world(path, arguments=arguments, packages=finder)
         if world.sdf is None:
-            return Converted(None, world.diagnostics)
+            return Converted(None, world.diagnostics, world.files)
         sdf = replace(world.sdf, worlds=tuple(map(_as_it_is, world.sdf.worlds)))
-        return Converted(_from_folder(sdf, path.parent, folder), world.diagnostics)
+        return Converted(_from_folder(sdf, path.parent, folder), world.diagnostics, world.files)
     from linkwright.sdf.from_urdf import model_from_robot
     from linkwright.sdf.worlds import Sdf
     from linkwright.sdf.writer import VERSION
 
     description = examine(path, arguments=arguments, packages=finder)
     if description.robot is None or not description.robot.root:
-        return Converted(None, description.diagnostics)
+        return Converted(None, description.diagnostics, description.files)
     conversion = model_from_robot(description.robot, lump_fixed_joints=lump_fixed_joints)
     sdf = Sdf(VERSION, models=(conversion.model,))
-    return Converted(_from_folder(sdf, path.parent, folder), (*description.diagnostics, *conversion.diagnostics))
+    found = (*description.diagnostics, *conversion.diagnostics)
+    return Converted(_from_folder(sdf, path.parent, folder), found, description.files)
 
 
 def _as_it_is(world: World) -> World:

@@ -79,7 +79,7 @@ class Simulator(SingleNode):
         self.finished: asyncio.Future[int] = loop.create_future()
         with starting(self._node):
             said = {name: self._node.declare_parameter(name, value).value for name, value in _PARAMETERS.items()}
-            world, finder, findings = load_world(words[0] if words else said["world"])
+            world, finder, findings, _ = load_world(words[0] if words else said["world"])
             self._log(each for each in findings if each.severity is Severity.ERROR)
             simulation = Simulation(world, finder, step=said["step"] or None)
             self.server = SimulationServer(simulation, self._node, ServerOptions(said["seed"], said["usual_names"]))

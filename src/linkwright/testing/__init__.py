@@ -1,7 +1,26 @@
-"""Testing nodes: graphs whose time stands still until the test lets it pass, so that an hour takes milliseconds."""
+"""Testing nodes: graphs whose time stands still until the test lets it pass, so that an hour takes milliseconds.
+
+With `SteppedSimulation` a simulated world stands still and goes on with the graph.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
 
 from linkwright.testing.recording import Recording
 from linkwright.testing.stepped import AsyncSteppedGraph
 from linkwright.testing.stepped_sync import SteppedGraph
 
-__all__ = ["AsyncSteppedGraph", "Recording", "SteppedGraph"]
+if TYPE_CHECKING:
+    from linkwright.testing.simulated import AsyncSteppedSimulation, SteppedSimulation
+
+__all__ = ["AsyncSteppedGraph", "AsyncSteppedSimulation", "Recording", "SteppedGraph", "SteppedSimulation"]
+
+
+def __getattr__(name: str) -> Any:
+    """What needs the simulation, which takes long to import."""
+    if name in {"AsyncSteppedSimulation", "SteppedSimulation"}:
+        from linkwright.testing import simulated
+
+        return getattr(simulated, name)
+    raise AttributeError(f"module '{__name__}' has no attribute '{name}'")

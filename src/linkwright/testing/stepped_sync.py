@@ -42,10 +42,13 @@ class SteppedGraph:
     Args:
         start: the time of day at the beginning, in seconds since the epoch.
         strict: whether errors of callbacks are raised by the step in which they happen; else they are only logged.
+        steps: what it is the plain form of, where that is a class of its own; `start` and `strict` are its then.
     """
 
-    def __init__(self, *, start: float = 1_700_000_000.0, strict: bool = True) -> None:
-        self._steps = AsyncSteppedGraph(start=start, strict=strict)
+    def __init__(
+        self, *, start: float = 1_700_000_000.0, strict: bool = True, steps: AsyncSteppedGraph | None = None
+    ) -> None:
+        self._steps = steps or AsyncSteppedGraph(start=start, strict=strict)
         self._loop: asyncio.AbstractEventLoop | None = None
         self._context: Context | None = None
 

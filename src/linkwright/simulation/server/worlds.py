@@ -14,11 +14,12 @@ from linkwright.simulation.simulation import count_links
 
 
 class LoadedWorld(NamedTuple):
-    """A world that was read, with its includes, where its files are, and what is remarkable about it."""
+    """A world that was read, with its includes, where its files are, what is remarkable about it, and what was read."""
 
     world: World
     finder: ResourceFinder
     diagnostics: tuple[Diagnostic, ...]
+    files: tuple[Path, ...]
 
 
 def load_world(name: str) -> LoadedWorld:
@@ -46,7 +47,7 @@ def load_world(name: str) -> LoadedWorld:
         raise LinkwrightError(*wrong or [Diagnostic("SIM151", message, hint=hint)])
     world = description.sdf.worlds[0]
     count_links(world.models)
-    return LoadedWorld(world, resources, description.diagnostics)
+    return LoadedWorld(world, resources, description.diagnostics, description.files)
 
 
 def _named(name: str, finder: ResourceFinder) -> Path:

@@ -1,0 +1,65 @@
+"""Models that differ in their masses, in how much they grip, or in how noisy their sensors are."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import fields, is_dataclass, replace
+from typing import Any, TypeVar, cast
+
+from linkwright.sdf.links import Collision, Inertia, Inertial, Link
+from linkwright.sdf.models import Model
+from linkwright.sdf.noise import Noise
+from linkwright.sdf.surfaces import Friction
+
+V = TypeVar("V")
+
+_SCALED_NOISE = ("mean", "stddev", "bias_mean", "bias_stddev", "dynamic_bias_stddev")
+
+
+def with_mass(model: Model, factor: float) -> Model:
+    """A model whose links weigh so many times as much, of the same shapes: their inertias grow as well."""
+
+    def scaled(link: Link) -> Link:
+        inertial = link.inertial or Inertial()
+        inertia = Inertia(*(getattr(inertial.inertia, each.name) * factor for each in fields(Inertia)))
+        density = None if inertial.density is None else inertial.density * factor
+        return replace(link, inertial=replace(inertial, mass=inertial.mass * factor, inertia=inertia, density=density))
+
+    return _changed(model, Link, scaled)
+
+
+def with_friction(model: Model, coefficient: float) -> Model:
+    """A model with another coefficient of friction, in all its collisions and in all directions."""
+
+    def scaled(collision: Collision) -> Collision:
+        friction = replace(collision.surface.friction or Friction(), mu=coefficient, mu2=coefficient)
+        return replace(collision, surface=replace(collision.surface, friction=friction))
+
+    return _changed(model, Collision, scaled)
+
+
+def with_noise(model: Model, factor: float) -> Model:
+    """A model whose sensors have so many times the noise and bias that is written in their ``<noise>``."""
+
+    def scaled(noise: Noise) -> Noise:
+        return replace(noise, **{name: getattr(noise, name) * factor for name in _SCALED_NOISE})
+
+    return _changed(model, Noise, scaled)
+
+
+def _changed(value: V, kind: type[Any], change: Callable[[Any], Any]) -> V:
+    """A value with all values of a class in it changed; what is not changed is the same object."""
+    if isinstance(value, kind):
+        return cast("V", change(value))
+    if isinstance(value, tuple):
+        parts = [_changed(each, kind, change) for each in value]
+        if all(new is old for new, old in zip(parts, value, strict=True)):
+            return value
+        return cast("V", type(value)(*parts) if hasattr(value, "_fields") else tuple(parts))
+    if not is_dataclass(value) or isinstance(value, type):
+        return value
+    new = {
+        each.name: _changed(getattr(value, each.name), kind, change) for each in fields(value) if each.name != "element"
+    }
+    new = {name: part for name, part in new.items() if part is not getattr(value, name)}
+    return replace(value, **new) if new else value

@@ -1,0 +1,81 @@
+"""Worlds and robots for simulations, each read once as long as its files stay as they are."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from linkwright.descriptions.conversion import as_sdf
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+from linkwright.packages import PackageFinder
+from linkwright.sdf.models import Model
+from linkwright.sdf.worlds import World
+from linkwright.simulation.server.worlds import load_world
+
+_MOST = 64
+"""So many worlds and robots are kept; a sweep over arguments makes one for each value."""
+
+
+class _Kept(NamedTuple):
+    value: Any
+    states: tuple[object, ...]
+    files: tuple[Path, ...]
+
+
+_kept: dict[tuple[object, ...], _Kept] = {}
+
+
+def read_world(name: str) -> World:
+    """A world by its file or name, with its includes, as `load_world` reads it.
+
+    Raises:
+        LinkwrightError: those of `load_world`.
+    """
+
+    def read() -> tuple[World, tuple[Path, ...]]:
+        loaded = load_world(name)
+        return loaded.world, loaded.files
+
+    world: World = _read_once(("world", str(Path.cwd()), name), read)
+    return world
+
+
+def read_model(path: Path, arguments: Mapping[str, str]) -> Model:
+    """A robot or model of a URDF, xacro or SDF file.
+
+    Raises:
+        LinkwrightError: SIM142 there is no model in the file; what is wrong with it.
+    """
+
+    def read() -> tuple[Model, tuple[Path, ...]]:
+        finder = PackageFinder(start=[path.parent, Path.cwd()])
+        converted = as_sdf(path, finder, arguments=dict(arguments), folder=Path.cwd())
+        if converted.sdf is None or not converted.sdf.models:
+            message = phrase("there is no model in '{path}'", path=str(path))
+            hint = phrase("the robot is to be URDF, xacro, or SDF with a <model>")
+            raise LinkwrightError(*converted.diagnostics or [Diagnostic("SIM142", message, hint=hint)])
+        return converted.sdf.models[0], converted.files
+
+    key = ("model", str(Path.cwd()), str(path), *sorted(arguments.items()))
+    model: Model = _read_once(key, read)
+    return model
+
+
+def _read_once(key: tuple[object, ...], read: Callable[[], tuple[Any, tuple[Path, ...]]]) -> Any:
+    kept = _kept.pop(key, None)
+    if kept is None or kept.states != tuple(map(_state, kept.files)):
+        value, files = read()
+        kept = _Kept(value, tuple(map(_state, files)), files)
+    _kept[key] = kept
+    if len(_kept) > _MOST:
+        del _kept[next(iter(_kept))]
+    return kept.value
+
+
+def _state(path: Path) -> object:
+    try:
+        facts = path.stat()
+    except OSError:
+        return None
+    return facts.st_mtime_ns, facts.st_size, facts.st_ino

@@ -1,0 +1,268 @@
+"""A simulated world for tests: it and the graph go on together, step by step."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING
+
+from linkwright.geometry.single import Transform, quaternion_from_rpy
+from linkwright.graph import CLOCK_QOS
+from linkwright.messages import Time, get_message
+from linkwright.packages import PackageFinder
+from linkwright.sdf.models import Model
+from linkwright.sdf.resources import ResourceFinder
+from linkwright.sdf.variation import with_friction, with_mass, with_noise
+from linkwright.sdf.worlds import World
+from linkwright.simulation.server.server import ServerOptions, SimulationServer
+from linkwright.simulation.simulation import NANOSECONDS, Simulation
+from linkwright.testing.scenes import read_model, read_world
+from linkwright.testing.stepped import AsyncSteppedGraph
+from linkwright.testing.stepped_sync import SteppedGraph
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
+
+_NODE = "gazebo"
+_CLOCK, _TWIST = "rosgraph_msgs/msg/Clock", "geometry_msgs/msg/Twist"
+_PERIOD = 0.01
+
+
+class AsyncSteppedSimulation(AsyncSteppedGraph):
+    """`SteppedSimulation` for tests that are coroutines; arguments and attributes are those described there."""
+
+    def __init__(
+        self,
+        world: str | Path = "empty",
+        robot: str | Path | None = None,
+        *,
+        arguments: Mapping[str, object] | None = None,
+        pose: Sequence[float] = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+        seed: int = 0,
+        friction: float | None = None,
+        mass: float = 1.0,
+        noise: float = 1.0,
+        period: float = _PERIOD,
+        start: float = 1_700_000_000.0,
+        strict: bool = True,
+    ) -> None:
+        super().__init__(start=start, strict=strict)
+        self._path = None if robot is None else PackageFinder(start=[Path.cwd()]).resolve(str(robot), Path.cwd())
+        self._world = read_world(str(world))
+        if friction is not None:
+            self._world = _gripping(self._world, friction)
+        self._model: Model | None = None
+        if self._path is not None:
+            model = read_model(self._path, {name: _text(value) for name, value in (arguments or {}).items()})
+            model = model if mass == 1.0 else with_mass(model, mass)
+            self._model = model if noise == 1.0 else with_noise(model, noise)
+        x, y, z, roll, pitch, yaw = pose
+        self._pose: Transform = (x, y, z, *quaternion_from_rpy((roll, pitch, yaw)))
+        self._options = ServerOptions(seed, usual_names=True)
+        self._folders = [
+            Path.cwd(),
+            *([] if self._path is None else [self._path.parent]),
+            Path(world).absolute().parent,
+        ]
+        self._period = round(period * NANOSECONDS)
+        self._until = 0
+        self._server: SimulationServer | None = None
+
+    async def __aenter__(self) -> Self:
+        await super().__aenter__()
+        try:
+            self._begin()
+        except BaseException:
+            await self.graph.close()
+            raise
+        return self
+
+    async def __aexit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.server.close()
+        await super().__aexit__(kind, error, trace)
+
+    def _begin(self) -> None:
+        simulation = Simulation(self._world, ResourceFinder(PackageFinder(start=self._folders)))
+        node = self.graph.create_node(_NODE)
+        self._clock_topic = node.create_publisher(get_message(_CLOCK), "/clock", CLOCK_QOS)
+        self._server = SimulationServer(simulation, node, self._options)
+        self._server.start()
+        if self._model is not None:
+            self._server.spawn(self._model, self._model.name, self._pose)
+        self._tell_time()
+
+    @property
+    def server(self) -> SimulationServer:
+        """What runs the plugins.
+
+        Raises:
+            RuntimeError: the test has not begun.
+        """
+        if self._server is None:
+            raise RuntimeError("use it as a context manager")
+        return self._server
+
+    @property
+    def simulation(self) -> Simulation:
+        """The world that moves."""
+        return self.server.simulation
+
+    def robot_pose(self) -> Transform:
+        """Where the robot really is; see `SteppedSimulation.robot_pose`."""
+        assert self._model is not None, "there is a robot"
+        return self.simulation.model_pose(self._model.name)
+
+    def drive(self, linear: float, angular: float = 0.0, topic: str = "/cmd_vel") -> None:
+        """Tell the robot how to move; see `SteppedSimulation.drive`."""
+        message = get_message(_TWIST)()
+        message.linear.x, message.angular.z = float(linear), float(angular)
+        self.publish(topic, message)
+
+    async def advance(self, seconds: float) -> None:
+        """Let time pass in the simulation and in the graph.
+
+        Raises:
+            UnstableError: something in the simulation is no number any more.
+            Exception: the error of a callback; time has passed all the same.
+        """
+        await self.settle()
+        self._until += round(seconds * NANOSECONDS)
+        server, simulation = self.server, self.simulation
+        while simulation.time < self._until:
+            before = simulation.time
+            server.exchange.work()
+            simulation.advance(min(self._period, self._until - before))
+            await self.clock.advance((simulation.time - before) / NANOSECONDS)
+            self._tell_time()
+            server.exchange.deliver()
+            await self.graph.settle()
+        self._raise()
+
+    async def reset(self) -> None:
+        """Put everything in the world back to where it was at the start; simulated time and noise begin anew.
+
+        Nodes and what was recorded stay, and so does the time of day.
+        """
+        self.server.reset()
+        self._until = 0
+        self._tell_time()
+        await self.settle()
+
+    def _tell_time(self) -> None:
+        self._clock_topic.publish(get_message(_CLOCK)(clock=Time(*divmod(self.simulation.time, NANOSECONDS))))
+
+
+class SteppedSimulation(SteppedGraph):
+    """A simulated world and a graph whose time passes only in `advance`, and in both together.
+
+    >>> with SteppedSimulation("empty", "package://my_robot_description/urdf/mbot_gazebo.xacro") as test:
+    ...     odometry = test.record("/odom")
+    ...     test.drive(0.5)
+    ...     test.advance(2.5)
+    ...     1.0 < odometry.last.pose.pose.position.x < 1.25
+    True
+
+    There is neither a thread nor real time in it. The world moves for a `period`; then timers of the graph are called
+    that are due, the time is told on ``/clock``, what plugins and sensors published is received, and what comes of
+    that is done before the world moves again. What was commanded meanwhile counts from then on. Twice the same test
+    gives twice the same bits. Nodes written for rclpy live in it after `init_rclpy`, and follow simulated time with
+    the parameter ``use_sim_time``.
+
+    The names of topics are those of ``linkwright sim``: ``/cmd_vel``, ``/odom``, ``/scan``. Worlds and robots are
+    read once in a process; a robot whose files have changed is read anew.
+
+    Args:
+        world: a file in SDF, or the name of a world.
+        robot: a file in URDF, xacro or SDF that is put into it, or its ``package://`` address; None for none.
+        arguments: values for its ``<xacro:arg>``.
+        pose: where it begins: x, y, z in m, roll, pitch, yaw in rad.
+        seed: what all noise follows from.
+        friction: the coefficient of friction of all that stands still in the world, of the ground above all; None for
+            what is written. Of two that touch, the lesser counts.
+        mass: how many times as heavy as written the robot is, its inertias too.
+        noise: how many times as noisy as written its sensors are; 0 for exact ones.
+        period: how long the world moves between two looks at the graph, in s.
+        start: the time of day at the beginning, in seconds since the epoch.
+        strict: whether errors of callbacks are raised by the step in which they happen; else they are only logged.
+
+    Raises:
+        LinkwrightError: SIM101 MuJoCo is not installed; SIM150 there is no such world; SIM142 there is no model in
+            the file; what is wrong with either.
+    """
+
+    _steps: AsyncSteppedSimulation
+
+    def __init__(
+        self,
+        world: str | Path = "empty",
+        robot: str | Path | None = None,
+        *,
+        arguments: Mapping[str, object] | None = None,
+        pose: Sequence[float] = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+        seed: int = 0,
+        friction: float | None = None,
+        mass: float = 1.0,
+        noise: float = 1.0,
+        period: float = _PERIOD,
+        start: float = 1_700_000_000.0,
+        strict: bool = True,
+    ) -> None:
+        super().__init__(
+            steps=AsyncSteppedSimulation(
+                world,
+                robot,
+                arguments=arguments,
+                pose=pose,
+                seed=seed,
+                friction=friction,
+                mass=mass,
+                noise=noise,
+                period=period,
+                start=start,
+                strict=strict,
+            )
+        )
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._steps.server.close()  # rclpy's shutdown would take its nodes away first
+        super().__exit__(kind, error, trace)
+
+    @property
+    def simulation(self) -> Simulation:
+        """The world that moves: where links and joints are, what pushes them."""
+        return self._steps.simulation
+
+    def robot_pose(self) -> Transform:
+        """Where the frame of the robot really is in the world: x, y, z in m and a quaternion x, y, z, w."""
+        return self._steps.robot_pose()
+
+    def drive(self, linear: float, angular: float = 0.0, topic: str = "/cmd_vel") -> None:
+        """Tell the robot how to move from the next step on.
+
+        Args:
+            linear: forwards, in m/s.
+            angular: to the left, in rad/s.
+            topic: where it listens for a ``Twist``.
+        """
+        self._steps.drive(linear, angular, topic)
+
+    def reset(self) -> None:
+        """Begin anew; see `AsyncSteppedSimulation.reset`."""
+        self._run(self._steps.reset())
+
+
+def _gripping(world: World, friction: float) -> World:
+    """A world in which what stands still has another coefficient of friction."""
+    models = tuple(with_friction(each, friction) if each.static else each for each in world.models)
+    return replace(world, models=models)
+
+
+def _text(value: object) -> str:
+    """A value as xacro arguments are written."""
+    return str(value).lower() if isinstance(value, bool) else str(value)

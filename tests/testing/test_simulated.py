@@ -1,0 +1,174 @@
+"""Simulated worlds whose time passes in steps, together with that of a graph."""
+
+import doctest
+import os
+import threading
+
+import numpy as np
+import pytest
+
+import linkwright.testing.simulated
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph import Parameter
+from linkwright.messages import get_message
+from linkwright.testing import AsyncSteppedSimulation, SteppedSimulation
+from tests.places import PACKAGE
+
+MBOT = PACKAGE / "urdf" / "mbot_gazebo.xacro"
+Twist, Odometry = get_message("geometry_msgs/msg/Twist"), get_message("nav_msgs/msg/Odometry")
+BOX = """<sdf version="1.7"><model name="crate"><link name="link"><inertial><mass>2</mass></inertial>
+<collision name="c"><geometry><box><size>1 1 1</size></box></geometry></collision></link></model></sdf>"""
+SLOPE = """<sdf version="1.7"><world name="slope"><model name="ramp"><static>true</static><link name="link">
+<collision name="c"><pose>0 0 -0.5 0 0.3 0</pose><geometry><box><size>20 20 1</size></box></geometry></collision>
+</link></model></world></sdf>"""
+
+
+def test_the_example_of_the_documentation_runs():
+    results = doctest.testmod(linkwright.testing.simulated)
+    assert results.attempted == 1
+    assert results.failed == 0
+
+
+def test_mbot_drives_a_metre_and_its_odometry_says_so():
+    with SteppedSimulation("empty", MBOT) as test:
+        odometry = test.record("/odom")
+        test.drive(0.5)
+        test.advance(2.4)
+        test.drive(0.0)
+        test.advance(0.6)
+        position = odometry.last.pose.pose.position
+        assert position.x == pytest.approx(test.robot_pose()[0], abs=0.05)
+        assert 1.0 < position.x < 1.3
+        assert odometry.times[-1] == pytest.approx(test.now)
+        assert odometry.last.header.stamp.sec == 3
+        assert test.simulation.time == 3_000_000_000
+
+
+def _driven(seed: int) -> tuple[list[bytes], list[float]]:
+    with SteppedSimulation("empty", MBOT, seed=seed, noise=2.0) as test:
+        imu, odometry = test.record("/imu"), test.record("/odom")
+        test.drive(0.3, 0.5)
+        test.advance(0.5)
+        assert imu.messages
+        poses = [each.pose.pose.position.x for each in odometry]
+        return [np.asarray([each.linear_acceleration.x]).tobytes() for each in imu], poses
+
+
+def test_twice_the_same_is_the_same_bits_and_another_seed_makes_other_noise():
+    assert _driven(1) == _driven(1)
+    assert _driven(1)[0] != _driven(2)[0]
+
+
+def test_a_node_for_rclpy_drives_it_without_a_thread():
+    from linkwright.standins.rclpy_api.node import Node
+
+    class Keeper(Node):
+        """Drives on until odometry says half a metre, and looks at the clock."""
+
+        def __init__(self):
+            super().__init__("keeper", parameter_overrides=[Parameter("use_sim_time", value=True)])
+            self.commands = self.create_publisher(Twist, "/cmd_vel", 10)
+            self.create_subscription(Odometry, "/odom", self.look, 10)
+            self.ticks = []
+            self.create_timer(0.1, lambda: self.ticks.append(self.get_clock().now().nanoseconds))
+
+        def look(self, odometry):
+            command = Twist()
+            command.linear.x = 0.4 if odometry.pose.pose.position.x < 0.5 else 0.0
+            self.commands.publish(command)
+
+    threads = threading.active_count()
+    with SteppedSimulation("empty", MBOT) as test:
+        test.init_rclpy()
+        keeper = Keeper()
+        test.advance(3.0)
+        assert test.robot_pose()[0] == pytest.approx(0.55, abs=0.05)
+        assert keeper.ticks == [100_000_000 * number for number in range(1, 31)]
+        assert threading.active_count() == threads
+
+
+def test_it_begins_anew():
+    with SteppedSimulation("empty", MBOT) as test:
+        odometry = test.record("/odom")
+        test.drive(0.5)
+        test.advance(1.0)
+        first = odometry.last.pose.pose.position.x
+        test.reset()
+        assert test.simulation.time == 0
+        odometry.clear()
+        test.drive(0.5)
+        test.advance(1.0)
+        assert odometry.last.pose.pose.position.x == pytest.approx(first, abs=0.02)
+        assert test.now == pytest.approx(2.0)
+
+
+async def test_in_a_coroutine():
+    async with AsyncSteppedSimulation("empty", MBOT, pose=(1.0, 2.0, 0.0, 0.0, 0.0, 0.0)) as test:
+        odometry = test.record("/odom")
+        await test.advance(0.25)
+        assert test.simulation.time == 250_000_000
+        assert len(odometry) == 12
+        assert test.robot_pose()[:2] == pytest.approx((1.0, 2.0), abs=1e-3)
+
+
+def test_short_times_add_up():
+    with SteppedSimulation() as test:
+        for _ in range(100):
+            test.advance(0.0015)
+        assert test.simulation.time == 150_000_000
+
+
+@pytest.mark.parametrize(("friction", "slides"), [(0.2, True), (0.5, False)])
+def test_friction_of_what_stands_still(tmp_path, friction, slides):
+    (tmp_path / "crate.sdf").write_text(BOX)
+    (tmp_path / "slope.world").write_text(SLOPE)
+    pose = (0.0, 0.0, 0.55, 0.0, 0.3, 0.0)
+    with SteppedSimulation(tmp_path / "slope.world", tmp_path / "crate.sdf", friction=friction, pose=pose) as test:
+        test.advance(0.3)
+        before = test.robot_pose()[0]
+        test.advance(1.0)
+        assert (test.robot_pose()[0] - before > 0.3) is slides
+
+
+def test_mass_and_arguments():
+    with SteppedSimulation("empty", MBOT, arguments={"laser": True, "camera": False}) as test:
+        light = test.simulation.mass_of("mbot")
+        assert "/scan" in dict(test.graph.get_topic_names_and_types())
+    with SteppedSimulation("empty", MBOT, mass=3.0) as test:
+        assert test.simulation.mass_of("mbot") > 2.0 * light
+        assert "/scan" not in dict(test.graph.get_topic_names_and_types())
+
+
+def test_a_file_that_has_changed_is_read_anew(tmp_path):
+    path = tmp_path / "crate.sdf"
+    masses = []
+    for mass, moment in (("2", 1_000_000_000), ("7", 2_000_000_000)):
+        path.write_text(BOX.replace("<mass>2<", f"<mass>{mass}<"))
+        os.utime(path, ns=(moment, moment))
+        with SteppedSimulation(robot=path) as test:
+            masses.append(test.simulation.mass_of("crate"))
+    assert masses == [2.0, 7.0]
+
+
+@pytest.mark.parametrize(
+    ("world", "robot", "code"),
+    [
+        ("nowhere", None, "SIM150"),
+        ("empty", "none.sdf", "XML101"),
+        ("empty", "world.sdf", "SIM142"),
+        ("empty", "package://nowhere/a.urdf", "PKG101"),
+    ],
+)
+def test_what_cannot_be_had_is_one_error(tmp_path, monkeypatch, world, robot, code):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "world.sdf").write_text(SLOPE)
+    with pytest.raises(LinkwrightError) as raised:
+        SteppedSimulation(world, robot)
+    assert [each.code for each in raised.value.diagnostics] == [code]
+
+
+def test_an_error_in_a_callback_comes_out_of_the_step():
+    with SteppedSimulation() as test:
+        test.create_node("broken").create_timer(0.05, lambda: 1 / 0)
+        with pytest.raises(ZeroDivisionError):
+            test.advance(0.1)
