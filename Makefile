@@ -1,6 +1,6 @@
 # Every target sets up what it needs below this folder and leaves the system as it is.
 #
-#   make demo    see the robot of the tutorial in a browser
+#   make demo    drive the robot of the tutorial, with laser and camera, through a simulated world in a browser
 #   make test    all tests, those of the page in a real Chromium (fetched below .build/ where there is none)
 #   make test-ros  the tests against real ROS 2, which is installed from PyPI below .build/
 #   make check   ruff, mypy, import-linter, the page's type check, generated files current
@@ -39,6 +39,7 @@ PYTEST = $(BIN)/$(if $(AGAIN),python tools/pytest_again.py,pytest)
 # Files in the order of their names: those with few tests, which take longest, would else come last, one beside an idle core.
 WORKERS = -n 2 --dist loadfile --no-loadscope-reorder
 
+MBOT := robots/my_robot_description/urdf/mbot_gazebo.xacro
 LOCKED := .build/constraints.txt
 PAGE_SOURCES := $(shell find frontend -path frontend/node_modules -prune -o -type f -print)
 
@@ -46,7 +47,7 @@ PAGE_SOURCES := $(shell find frontend -path frontend/node_modules -prune -o -typ
 
 # Ctrl-C is how the demo ends (status 130), which is no error; the shell has to outlive it to say so.
 demo: $(VENV)/.ready
-	@trap : INT; $(BIN)/linkwright launch my_robot_description display_xacro.launch.py $(ARGS) || [ $$? = 130 ]
+	@trap : INT; $(BIN)/linkwright sim playground $(MBOT) laser:=true camera:=true $(ARGS) || [ $$? = 130 ]
 
 test: $(VENV)/.dev page
 	$(BIN)/python tools/build_page.py test

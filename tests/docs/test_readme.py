@@ -11,6 +11,7 @@ import sys
 import pytest
 from PIL import Image
 
+from linkwright.cli.command import parser_for
 from tests.docs.pages import READMES
 from tests.places import REPOSITORY
 from tests.repository_tools import load_tool
@@ -101,6 +102,16 @@ def test_make_demo_ends_on_interrupt_without_an_error_of_makes(tmp_path):
     done = make_demo(tmp_path, *installed(tmp_path, program))
     assert "ended" in done.stdout
     assert done.stderr == ""
+
+
+def test_make_demo_drives_mbot_with_laser_and_camera_in_the_playground(tmp_path):
+    done = make_demo(tmp_path, *installed(tmp_path, "echo $@"), "ARGS=--no-open")
+    command, *words = done.stdout.split()
+    assert command == "sim"
+    asked = parser_for("sim").parse_args(words)
+    assert (asked.world, asked.values) == ("playground", ["laser:=true", "camera:=true"])
+    assert (REPOSITORY / asked.robot).is_file()
+    assert asked.no_open
 
 
 def test_make_demo_reports_a_failure(tmp_path):

@@ -13,7 +13,6 @@ from linkwright.hosting.sensor_topics import image_topics, scan_topics
 from linkwright.hosting.signals import SignalWatch, run_to_end
 from linkwright.hosting.view import ModelView
 from linkwright.hosting.xacro_calls import XacroCall
-from linkwright.inference.applying import completed
 from linkwright.packages import PackageFinder
 from linkwright.xmltree import write
 
@@ -70,6 +69,8 @@ class SimulatedWorld:
     @classmethod
     def of(cls, world: str, description: Description, found: Inference) -> SimulatedWorld:
         """A robot with all that was inferred about it, standing on the ground of a world."""
+        from linkwright.inference.applying import completed  # not above: only robots that lack something need it
+
         assert description.robot is not None, "something was inferred about it"
         text = write(completed(description.document, found))
         pose = (0.0, 0.0, -found.ground, 0.0, 0.0, 0.0)
