@@ -177,10 +177,13 @@ describe("the arrangements that the browser keeps", () => {
 });
 
 describe("the pad", () => {
-  const simulation = (present: boolean): ServerMessage => ({ type: "simulation_status", present, paused: false, time: null, real_time_factor: null });
+  const simulation = (drivable: boolean): ServerMessage => ({
+    type: "simulation_status", present: true, drivable, paused: false, time: null, real_time_factor: null,
+  });
 
-  it("is open where there is a simulation, whichever comes first", () => {
+  it("is open where there is a simulated robot that drives, whichever comes first", () => {
     tell(1, null, ["displays"], "robot.urdf");
+    receive(simulation(false));
     expect(dock.isOpen("teleop")).toBe(false);
     receive(simulation(true));
     expect(dock.isOpen("teleop")).toBe(true);

@@ -42,7 +42,7 @@ export class FilePanels {
   private open: readonly PanelName[] | null = null;
   /** Neither a file nor the browser says how this page's panels are arranged. */
   private unarranged = false;
-  private simulated = false;
+  private drivable = false;
 
   constructor(
     private readonly connection: Connection,
@@ -50,7 +50,7 @@ export class FilePanels {
   ) {
     connection.on("hello", () => {
       this.told = this.configuration = this.shown = null;
-      this.simulated = false;
+      this.drivable = false;
     });
     connection.on("panels", (message) => {
       this.told = message;
@@ -60,8 +60,8 @@ export class FilePanels {
       this.configuration = message;
       this.settle();
     });
-    connection.on("simulation_status", ({ present }) => {
-      this.simulated = present;
+    connection.on("simulation_status", ({ drivable }) => {
+      this.drivable = drivable;
       this.openPad();
     });
     dock.changed.on(() => this.compare());
@@ -69,7 +69,7 @@ export class FilePanels {
 
   /** A simulated robot is there to be driven: the pad is open unless it is known how the panels should be. */
   private openPad(): void {
-    if (!this.simulated || !this.unarranged) return;
+    if (!this.drivable || !this.unarranged) return;
     this.unarranged = false;
     this.dock.open("teleop");
   }

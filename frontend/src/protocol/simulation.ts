@@ -3,6 +3,7 @@
 /** How the simulation goes; `present` is false where there is none. */
 export interface SimulationStatus {
   present: boolean;
+  drivable: boolean;
   paused: boolean;
   time: number | null;
   real_time_factor: number | null;

@@ -85,6 +85,14 @@ async def test_pages_hear_whether_time_passes_and_how_fast():
         await client.until("simulation_status", paused=True, time=12.5, real_time_factor=0.5)
 
 
+async def test_pages_hear_whether_there_is_something_to_drive():
+    async with simulated() as (simulation, client):
+        simulation.node.create_subscription("geometry_msgs/msg/TwistStamped", "robot/cmd_vel", lambda _: None, 10)
+        await client.until("simulation_status", drivable=True)
+        simulation.node.destroy_node()
+        await client.until("simulation_status", present=False, drivable=False)
+
+
 async def test_a_simulation_that_goes_is_gone_for_pages_too():
     async with simulated() as (simulation, client):
         simulation.node.destroy_node()

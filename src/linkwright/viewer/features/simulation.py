@@ -14,9 +14,11 @@ from math import isfinite
 from pathlib import Path
 from typing import Any, ClassVar
 
+from msgspec.structs import replace
+
 from linkwright.descriptions import examine, examine_world, is_world
 from linkwright.diagnostics import LinkwrightError, Phrase, phrase
-from linkwright.graph import Client, DurabilityPolicy, QoSProfile
+from linkwright.graph import Client, DurabilityPolicy, EndpointKind, QoSProfile
 from linkwright.messages import get_message, get_service
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
 from linkwright.viewer.protocol.message import ServerMessage
@@ -35,10 +37,11 @@ _STATE = "/simulation_state"
 _LATCHED = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _PAUSED = 2
 """Of simulation_interfaces/msg/SimulationState."""
+_VELOCITIES = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
 _PUSH_NS = 50_000_000
 """How long a push lasts; pages repeat it while the user pulls."""
 
-_ABSENT = SimulationStatus(present=False, paused=False, time=None, real_time_factor=None)
+_ABSENT = SimulationStatus(present=False, drivable=False, paused=False, time=None, real_time_factor=None)
 _EMPTY = "std_srvs/srv/Empty"
 _ACTIONS = {
     "play": (_EMPTY, "/unpause_physics"),
@@ -124,18 +127,21 @@ class SimulationFeature(PageFeature):
             ]
         elif not present:
             self._leave()
-        if present != self._status.present:
-            self._tell(SimulationStatus(present, paused=False, time=None, real_time_factor=None))
+        now = self._status if present == self._status.present else replace(_ABSENT, present=present)
+        self._tell(replace(now, drivable=present and self._is_drivable()))
+
+    def _is_drivable(self) -> bool:
+        endpoints = self.context.node.graph.endpoints()
+        return any(each.kind is EndpointKind.SUBSCRIPTION and each.type_name in _VELOCITIES for each in endpoints)
 
     def _state(self, message: Any) -> None:
-        now = self._status
-        self._tell(SimulationStatus(True, message.state == _PAUSED, now.time, now.real_time_factor))
+        self._tell(replace(self._status, present=True, paused=message.state == _PAUSED))
 
     def _metrics(self, message: Any) -> None:
         stamp = message.header.stamp
         time = stamp.sec + stamp.nanosec / 1e9
         factor = message.real_time_factor if isfinite(message.real_time_factor) else None
-        self._tell(SimulationStatus(True, self._status.paused, time, factor))
+        self._tell(replace(self._status, present=True, time=time, real_time_factor=factor))
 
     def _tell(self, status: SimulationStatus) -> None:
         if status != self._status:
