@@ -169,7 +169,7 @@ def _drain(main: int, heard: list[bytes]) -> None:
 @pytest.mark.parametrize(
     ("words", "shown"),
     [
-        (("topic", "echo", "/chatter"), "data:"),
+        (("topic", "echo", "/chatter", "std_msgs/msg/Int32"), "data:"),  # without a type it ends if nobody talks yet
         (("topic", "hz", "/chatter"), "average rate"),
         (("topic", "bw", "/chatter"), "from"),
         (("topic", "pub", "/words", "std_msgs/msg/String", "{data: hi}"), "publishing #"),
