@@ -10,6 +10,7 @@ import "./styles/pictures.css";
 import "./styles/description.css";
 import "./styles/monitor.css";
 import "./styles/plots.css";
+import "./styles/modelling.css";
 import { Connection, socketUrl } from "./connection/connection";
 import { Tokens, type AddressBar } from "./connection/tokens";
 import { h } from "./dom";
@@ -25,6 +26,8 @@ import { JointsPanel } from "./panels/joints-panel";
 import { Layouts } from "./panels/layouts";
 import { livePanels } from "./panels/live-panels";
 import { LinksPanel } from "./panels/links-panel";
+import { WorldCommands } from "./panels/modelling/world-commands";
+import { WorldPanel } from "./panels/modelling/world-panel";
 import { KeySheet } from "./panels/key-sheet";
 import { ScenePanel } from "./panels/scene-panel";
 import { ShareMenu } from "./panels/share-menu";
@@ -39,8 +42,10 @@ import { Controls } from "./scene/controls";
 import { JointDrag } from "./scene/joint-drag";
 import { Keyboard } from "./scene/keyboard";
 import type { PanelHost } from "./scene/displays/display-panel";
+import type { Modeller } from "./scene/modelling/modeller";
 import { Stage } from "./scene/stage";
 import { WorldHandling } from "./scene/world-handling";
+import type { ToolEvent } from "./scene/tools/tool";
 import { Toolbox } from "./scene/tools/toolbox";
 import { Door } from "./shell/door";
 import { FileCommands } from "./shell/file-commands";
@@ -64,8 +69,11 @@ function start(app: HTMLElement): void {
   const session = new Session(connection);
 
   const sheet = new KeySheet(session.tools);
+  let modeller: Modeller | null = null;
+  const commands = new WorldCommands(session.modelling, () => modeller?.escape());
   const scene = new ScenePanel(
     session,
+    commands,
     () => dock.open("diagnostics"),
     () => sheet.toggle(),
   );
@@ -86,6 +94,7 @@ function start(app: HTMLElement): void {
     source,
     new JointTablePanel(session),
     new DiagnosticsPanel(session),
+    new WorldPanel(session.modelling, session.angles, commands),
     ...livePanels(session.monitor, (id) => dock.open(id)),
   ], new Layouts(browserStorage()));
   keepCurrent(dock, session);
@@ -97,7 +106,9 @@ function start(app: HTMLElement): void {
   });
 
   const stage = makeStage(scene.container, session, dock.displayPanels);
-  const toolbox = stage && takeTools(stage, session);
+  commands.takeKeys();
+  const toolbox = stage && takeTools(stage, session, (event) => (modeller ? modeller.pointer(event) : event));
+  if (stage) whenModelling(stage, session, (made) => (modeller = made));
   const files = new FileCommands(session.configuration);
   app.prepend(new TitleBar(session, dock, files, theme, new ShareMenu(session, stage, tokens)).element);
   takeFileKeys(session, files);
@@ -130,28 +141,45 @@ function keepCurrent(dock: Dock, session: Session): void {
     if (session.joints.controls === null) dock.close("joints");
     else if (!dock.isOpen("joints")) dock.open("joints");
   };
+  const keepWorld = (): void => {
+    if (!session.modelling.active) dock.close("world");
+    else if (!dock.isOpen("world")) dock.open("world");
+  };
   const keepDisplays = (): void => dock.displayPanels.keep(session.displays.displays.map(({ id }) => id));
   const countFindings = (): void => dock.setCount("diagnostics", session.diagnostics.length);
   session.joints.controlsChanged.on(keepJoints);
+  session.modelling.changed.on(keepWorld);
   session.displays.treeChanged.on(keepDisplays);
   session.diagnosticsChanged.on(countFindings);
   dock.rearranged.on(() => {
     keepJoints();
+    keepWorld();
     keepDisplays();
     countFindings();
   });
 }
 
 /** Mouse and keys for the scene. */
-function takeTools(stage: Stage, session: Session): Toolbox {
+function takeTools(stage: Stage, session: Session, model: (event: ToolEvent) => ToolEvent | null): Toolbox {
   const toolbox = new Toolbox(stage, session);
   const joints = new JointDrag(stage, session);
   const worlds = new WorldHandling(stage, session);
   const controls = new Controls(stage, session.view, (event) => {
-    if (!joints.pointer(event) && !worlds.pointer(event)) toolbox.current.pointer(event);
+    if (joints.pointer(event)) return;
+    const left = model(event);
+    if (left && !worlds.pointer(left)) toolbox.current.pointer(left);
   });
   new Keyboard(session, stage, toolbox, controls);
   return toolbox;
+}
+
+/** Fetches what models the world when that is asked for first. */
+function whenModelling(stage: Stage, session: Session, made: (modeller: Modeller) => void): void {
+  const stop = session.modelling.changed.on(() => {
+    if (!session.modelling.active) return;
+    stop();
+    void import("./scene/modelling/modeller").then(({ Modeller }) => made(new Modeller(stage, session)));
+  });
 }
 
 /** The keys of the File menu, and undo: they work everywhere but in dialogs; where text is typed, undo is the text's. */

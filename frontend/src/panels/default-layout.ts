@@ -73,6 +73,7 @@ const HOMES: Readonly<Record<PanelId, Home>> = {
     width: 290,
   },
   links: { beside: [["displays", "within"], ["scene", "left"]], width: 320, inactive: true },
+  world: { beside: [["displays", "within"], ["links", "within"], ["scene", "left"]], width: 320 },
   source: { beside: [["diagram", "within"], ["joint-table", "within"], ["scene", "below"]], height: 300 },
   diagram: { beside: [["source", "within"], ["joint-table", "within"], ["scene", "below"]], height: 300 },
   "joint-table": { beside: [["source", "within"], ["diagram", "within"], ["scene", "below"]], height: 300 },

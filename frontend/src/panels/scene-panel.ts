@@ -6,6 +6,7 @@ import { DiagnosticsBanner } from "./diagnostics-banner";
 import { InspectMenu } from "./inspect-menu";
 import { OrientationSign } from "./orientation-sign";
 import { LineNotice } from "./line-notice";
+import type { WorldCommands } from "./modelling/world-commands";
 import type { Panel } from "./panel";
 import { showSceneMenus } from "./scene-menu";
 import { SimulationBar } from "./simulation-bar";
@@ -23,7 +24,7 @@ export class ScenePanel implements Panel {
   readonly box: HTMLElement;
   private readonly waiting = h("div", { class: "waiting" }, h("span", { class: "pulse" }), strings.scene.waiting);
 
-  constructor(session: Session, showDiagnostics: () => void, showKeys: () => void) {
+  constructor(session: Session, commands: WorldCommands, showDiagnostics: () => void, showKeys: () => void) {
     const toolbar = new Toolbar(session.tools, showKeys);
     const banner = new DiagnosticsBanner(session, showDiagnostics);
     const notice = new ConnectionNotice(session.connection);
@@ -34,7 +35,7 @@ export class ScenePanel implements Panel {
       "div",
       { class: "scene-box" },
       this.container,
-      h("div", { class: "overlay" }, h("div", { class: "notices" }, new SimulationBar(session.simulation).element, notice.element, banner.element), this.waiting, h("div", { class: "corner" }, new LineNotice(session).element, card.element), inspect.element, sign.element),
+      h("div", { class: "overlay" }, h("div", { class: "notices" }, new SimulationBar(session.simulation, session.modelling, commands).element, notice.element, banner.element), this.waiting, h("div", { class: "corner" }, new LineNotice(session).element, card.element), inspect.element, sign.element),
     );
     showSceneMenus(this.box, session.sceneMenu);
     this.element = h("div", { class: "scene-panel" }, toolbar.element, this.box);

@@ -1,8 +1,11 @@
 import { button, h } from "../dom";
 import { icon } from "../icons";
+import type { Modelling } from "../state/modelling/modelling";
 import type { SimulationState } from "../state/simulation";
 import { Dialog } from "../shell/dialog";
 import { strings } from "../strings";
+import { ModellingBar } from "./modelling/modelling-bar";
+import type { WorldCommands } from "./modelling/world-commands";
 
 const NOTICE_MS = 8000;
 
@@ -16,15 +19,23 @@ export class SimulationBar {
   private readonly notice = h("div", { class: "simulation-notice", role: "status" });
   private timer = 0;
 
-  constructor(private readonly simulation: SimulationState) {
+  private readonly model: HTMLButtonElement;
+
+  constructor(
+    private readonly simulation: SimulationState,
+    private readonly modelling: Modelling,
+    commands: WorldCommands,
+  ) {
     const words = strings.simulation;
     this.play = button(words.pause, () => simulation.control(simulation.paused ? "play" : "pause"), "scene-tool small", icon("pause"));
     this.step = button(words.step, () => simulation.control("step"), "scene-tool small", icon("step"));
     const reset = button(words.reset, () => simulation.control("reset"), "scene-tool small", icon("reset"));
     const add = button(words.spawn, () => this.askSpawn([0, 0, 0]), "scene-tool small", icon("plus"));
-    const bar = h("div", { class: "simulation-tools", role: "toolbar", aria: { label: words.label } }, this.play, this.step, reset, add, this.factor, this.time);
-    this.element = h("div", { class: "simulation-bar" }, bar, this.notice);
+    this.model = button(strings.modelling.begin, () => modelling.setActive(!modelling.active), "scene-tool small", icon("build"));
+    const bar = h("div", { class: "simulation-tools", role: "toolbar", aria: { label: words.label } }, this.play, this.step, reset, add, this.model, this.factor, this.time);
+    this.element = h("div", { class: "simulation-bar" }, bar, new ModellingBar(modelling, commands).element, this.notice);
     simulation.changed.on(() => this.show());
+    modelling.changed.on(() => this.show());
     simulation.refused.on((text) => this.tell(text));
     simulation.spawnAsked.on((position) => this.askSpawn(position));
     this.show();
@@ -41,8 +52,19 @@ export class SimulationBar {
       this.play.replaceChildren(icon(paused ? "play" : "pause"));
     }
     this.step.disabled = !paused;
+    this.showModelling();
     this.factor.textContent = factor === null ? "–" : `${factor.toFixed(2)}×`;
     this.time.textContent = time === null ? "–" : `${time.toFixed(1)} s`;
+  }
+
+  private showModelling(): void {
+    const { available, active } = this.modelling;
+    const label = active ? strings.modelling.end : strings.modelling.begin;
+    this.model.hidden = !available;
+    this.model.title = label;
+    this.model.setAttribute("aria-label", label);
+    this.model.setAttribute("aria-pressed", String(active));
+    this.model.classList.toggle("active", active);
   }
 
   private tell(text: string): void {

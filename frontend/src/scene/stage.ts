@@ -1,4 +1,4 @@
-import { Box3, type Object3D } from "three";
+import { Box3, Group, type Object3D } from "three";
 import type { DisplayState } from "../state/displays";
 import type { Session } from "../state/session";
 import type { Span } from "../state/views/fit";
@@ -36,6 +36,8 @@ export class Stage {
   private readonly flash: Flash;
   private readonly marks: InspectLayer;
   private readonly focalShape = new FocalShape();
+  /** What only this view shows: handles, and the point that it turns about. */
+  readonly aids = new Group();
   private interaction: Interaction = { enabled: false, hideOthers: false };
   private robotSettled = false;
 
@@ -53,7 +55,8 @@ export class Stage {
     const invalidate = (): void => this.loop.invalidate();
     this.flash = new Flash(this.viewport, session, (display, link) => this.objectsOf(display, link), invalidate);
     this.marks = new InspectLayer(session, (display) => this.boundsOf(display), invalidate);
-    this.viewport.scene.add(this.focalShape.root, this.marks.root);
+    this.aids.add(this.focalShape.root);
+    this.viewport.scene.add(this.aids, this.marks.root);
     this.listen();
     this.matchDisplays();
   }
@@ -91,10 +94,9 @@ export class Stage {
 
   /** The scene as PNG, without what is selected or shown while the camera moves. */
   async picture(scale: number): Promise<Blob | null> {
-    const focal = this.focalShape.root.visible;
-    this.focalShape.root.visible = false;
+    this.aids.visible = false;
     const picture = this.viewport.picture(scale);
-    this.focalShape.root.visible = focal;
+    this.aids.visible = true;
     this.draw(true);
     return picture;
   }
@@ -235,6 +237,12 @@ export class Stage {
     return [...this.enabled()].flatMap(([, drawing]) => (drawing instanceof RobotModelDrawing ? [drawing] : []));
   }
 
+  /** The simulated world, if one is shown, with the display's id. */
+  get world(): { id: string; drawing: WorldDrawing } | null {
+    for (const [id, drawing] of this.enabled()) if (drawing instanceof WorldDrawing) return { id, drawing };
+    return null;
+  }
+
   private worlds(): WorldDrawing[] {
     return [...this.enabled()].flatMap(([, drawing]) => (drawing instanceof WorldDrawing ? [drawing] : []));
   }
@@ -253,14 +261,13 @@ export class Stage {
   }
 
   private showing(accepts: (display: DisplayState) => boolean, draw: () => void): void {
-    const focal = this.focalShape.root.visible;
-    this.focalShape.root.visible = false;
+    this.aids.visible = false;
     for (const { display, drawing } of this.drawings.values()) {
       drawing.root.visible = display.enabled && accepts(display);
     }
     draw();
     for (const { display, drawing } of this.drawings.values()) drawing.root.visible = display.enabled;
-    this.focalShape.root.visible = focal;
+    this.aids.visible = true;
   }
 
   private selectionChanged(): void {

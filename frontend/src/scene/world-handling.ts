@@ -2,11 +2,12 @@ import { Matrix4, Plane, Vector3 } from "three";
 import type { Session } from "../state/session";
 import { strings } from "../strings";
 import { WorldDrawing } from "./displays/world";
+import { modelOf } from "./displays/world-models";
 import type { Stage } from "./stage";
 import type { ToolEvent } from "./tools/tool";
 
 /** The tools that leave the mouse to what is done to models. */
-const TOOLS = ["rviz_default_plugins/Interact", "rviz_default_plugins/MoveCamera"];
+export const HANDLING_TOOLS = ["rviz_default_plugins/Interact", "rviz_default_plugins/MoveCamera"];
 /** Of one page, at most so often. */
 const PERIOD_MS = 50;
 /** Newtons for each metre that a link is pulled by. */
@@ -43,8 +44,8 @@ export class WorldHandling {
       else if (event.type === "up" && !event.left) this.letGo(this.hold);
       return true;
     }
-    const { simulation, tools } = this.session;
-    if (!simulation.present || (tools.current && !TOOLS.includes(tools.current.cls))) return false;
+    const { simulation, modelling, tools } = this.session;
+    if (!simulation.present || modelling.active || (tools.current && !HANDLING_TOOLS.includes(tools.current.cls))) return false;
     if (event.type === "down" && event.button === "left" && event.ctrl) return this.grab(event);
     if (event.type === "up" && event.button === "right" && event.click) this.openMenu(event);
     return false;
@@ -111,8 +112,4 @@ export class WorldHandling {
     const { key, point } = found.hit;
     return { drawing: found.drawing, link: key, at: point.clone(), matrix: found.drawing.poseOf(key) };
   }
-}
-
-function modelOf(link: string): string {
-  return link.split("::")[0] ?? link;
 }

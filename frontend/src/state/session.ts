@@ -9,6 +9,7 @@ import { ElementFocus } from "./element-focus";
 import { FrameStore } from "./frames";
 import { InspectState } from "./inspect";
 import { JointsState } from "./joints";
+import { Modelling } from "./modelling/modelling";
 import { MonitorState } from "./monitor/monitor";
 import { PoseStore } from "./named-poses";
 import type { SceneMenu } from "./scene-menu";
@@ -37,6 +38,7 @@ export class Session {
   readonly data: DisplayDataStore;
   readonly slowLine: SlowLine;
   readonly simulation: SimulationState;
+  readonly modelling: Modelling;
   readonly robotChanged = new Signal<RobotScene>();
   readonly diagnosticsChanged = new Signal();
   /** Answers `ask_provenance`. */
@@ -59,6 +61,7 @@ export class Session {
     this.data = new DisplayDataStore(connection);
     this.slowLine = new SlowLine(this.data);
     this.simulation = new SimulationState(connection);
+    this.modelling = new Modelling(connection, browserStorage());
     this.joints = new JointsState(connection);
     this.description = new DescriptionState(connection);
     this.monitor = new MonitorState(connection, browserStorage());

@@ -2,6 +2,7 @@ import { details } from "./en/details";
 import { displays } from "./en/displays";
 import { shell } from "./en/shell";
 import { description } from "./en/description";
+import { modelling } from "./en/modelling";
 import { monitor } from "./en/monitor";
 import { tools } from "./en/tools";
 import { sharing } from "./en/sharing";
@@ -18,10 +19,12 @@ export const en = {
     views: "Views",
     joints: "Joints",
     diagnostics: "Diagnostics",
+    world: modelling.panel,
   },
   shell,
   sharing,
   simulation,
+  modelling,
   details,
   displays,
   tree: {

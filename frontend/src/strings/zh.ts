@@ -3,6 +3,7 @@ import { displays } from "./zh/displays";
 import { shell } from "./zh/shell";
 import { description } from "./zh/description";
 import type { Strings } from "./en";
+import { modelling } from "./zh/modelling";
 import { monitor } from "./zh/monitor";
 import { tools } from "./zh/tools";
 import { sharing } from "./zh/sharing";
@@ -11,10 +12,11 @@ import { simulation } from "./zh/simulation";
 /** 简体中文 */
 export const zh: Strings = {
   panels: { ...description.panels,
-    ...tools.panels, ...monitor.panels, displays: "显示", scene: "三维视图", views: "视角", joints: "关节", diagnostics: "诊断" },
+    ...tools.panels, ...monitor.panels, displays: "显示", scene: "三维视图", views: "视角", joints: "关节", diagnostics: "诊断", world: modelling.panel },
   shell,
   sharing,
   simulation,
+  modelling,
   details,
   displays,
   tree: {

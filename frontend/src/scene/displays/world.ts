@@ -5,6 +5,7 @@ import type { Described, Hit, SelectionBox } from "../picking";
 import { dataPose, poseMatrix } from "../pose";
 import { RobotDrawing } from "../robot/robot-drawing";
 import type { Drawing, DrawingContext } from "./drawing";
+import { Displacement, modelOf } from "./world-models";
 
 /** linkwright/World: the links of all models of a simulated world. */
 export class WorldDrawing implements Drawing {
@@ -13,6 +14,7 @@ export class WorldDrawing implements Drawing {
   private scene: WorldScene | null = null;
   private placed: { data: DisplayData; content: WorldPoses } | null = null;
   private rowOf = new Map<string, number>();
+  private readonly displacement = new Displacement();
   private styleIsOld = true;
   private poseIsOld = true;
 
@@ -24,6 +26,7 @@ export class WorldDrawing implements Drawing {
     const { content } = data;
     if (content.kind === "world_scene") this.take(content);
     else if (content.kind === "world_poses") {
+      if (this.placed) this.displacement.compare(this.placed.content.poses, content.poses, this.rowOf);
       this.placed = { data, content };
       this.poseIsOld = true;
     }
@@ -86,6 +89,25 @@ export class WorldDrawing implements Drawing {
     return this.shown?.poseOf(link) ?? null;
   }
 
+  /** The links of a model that stands in the world itself. */
+  linksOf(model: string): string[] {
+    return [...this.rowOf.keys()].filter((link) => modelOf(link) === model);
+  }
+
+  /** Whether there is nothing of a link but planes, as of a ground. */
+  isFlat(link: string): boolean {
+    const row = this.rowOf.get(link);
+    const visuals = (row === undefined ? null : this.scene?.links[row]?.visuals) ?? [];
+    return visuals.every(({ kind }) => kind === "plane");
+  }
+
+  /** Shows models moved in the world until they really are elsewhere: by what their poses are premultiplied. */
+  displace(models: ReadonlyMap<string, Matrix4>): void {
+    this.displacement.set(models);
+    this.poseIsOld = true;
+    this.context.invalidate();
+  }
+
   /** A direction of the fixed frame in that of the world. */
   toWorld(direction: Vector3): Vector3 {
     const length = direction.length();
@@ -95,6 +117,13 @@ export class WorldDrawing implements Drawing {
   /** A point of the fixed frame in that of the world, m. */
   placeInWorld(point: readonly number[]): number[] {
     return new Vector3().fromArray(point).applyMatrix4(this.world().invert()).toArray();
+  }
+
+  /** Where the world is in the fixed frame. */
+  world(): Matrix4 {
+    const world = new Matrix4();
+    if (this.placed) dataPose(this.context.session.frames, this.placed.data, world);
+    return world;
   }
 
   inspect(): object {
@@ -114,21 +143,17 @@ export class WorldDrawing implements Drawing {
     shown.place((link, matrix) => {
       const row = this.rowOf.get(link.name);
       if (row === undefined) return false;
-      poseMatrix(poses, matrix, row * 7).premultiply(world);
+      this.displacement.apply(link.name, poseMatrix(poses, matrix, row * 7)).premultiply(world);
       return true;
     });
   }
 
-  private world(): Matrix4 {
-    const world = new Matrix4();
-    if (this.placed) dataPose(this.context.session.frames, this.placed.data, world);
-    return world;
-  }
 
   private take(scene: WorldScene): void {
     const { session, display, meshes, invalidate } = this.context;
     this.shown?.dispose();
     this.scene = scene;
+    this.displacement.set(new Map());
     this.rowOf = new Map(scene.links.map((link, row) => [link.name, row]));
     this.shown = new RobotDrawing(
       { links: scene.links, joints: [] },

@@ -1,0 +1,105 @@
+import { button, h } from "../../dom";
+import { icon, type IconName } from "../../icons";
+import { keyText, type Shortcut } from "../../shell/shortcuts";
+import type { GizmoMode, Modelling, Placing } from "../../state/modelling/modelling";
+import type { NewKind } from "../../state/modelling/shapes";
+import { strings } from "../../strings";
+import { ModelDialog } from "./model-dialog";
+import { WORLD_KEYS, type WorldCommands } from "./world-commands";
+
+/** What can be put into the world, but for models. */
+const PALETTE: readonly (readonly [Exclude<NewKind, "model">, IconName])[] = [
+  ["box", "shapeBox"],
+  ["cylinder", "shapeCylinder"],
+  ["sphere", "shapeSphere"],
+  ["wall", "shapeWall"],
+  ["ramp", "shapeRamp"],
+  ["point_light", "bulb"],
+  ["directional_light", "sun"],
+  ["spot_light", "spot"],
+];
+const MODES: readonly (readonly [GizmoMode, IconName])[] = [
+  ["translate", "move"],
+  ["rotate", "turn"],
+  ["scale", "scale"],
+];
+
+/** Over the scene while the world is modelled: what can be added, what the gizmo does, undo and save. */
+export class ModellingBar {
+  readonly element: HTMLElement;
+  private readonly palette = new Map<NewKind, HTMLButtonElement>();
+  private readonly modes = new Map<GizmoMode, HTMLButtonElement>();
+  private readonly snap: HTMLButtonElement;
+  private readonly undo: HTMLButtonElement;
+  private readonly redo: HTMLButtonElement;
+  private readonly save: HTMLButtonElement;
+
+  constructor(
+    private readonly modelling: Modelling,
+    commands: WorldCommands,
+  ) {
+    const words = strings.modelling;
+    for (const [kind, name] of PALETTE) this.palette.set(kind, this.adder(kind, name));
+    this.palette.set("model", tool(words.addModel, "library", () => new ModelDialog(modelling).open()));
+    for (const [mode, name] of MODES) {
+      this.modes.set(mode, tool(withKeys(words.modes[mode], WORLD_KEYS[mode]), name, () => (modelling.gizmo = mode)));
+    }
+    this.snap = tool(words.snap, "magnet", () => (modelling.snapping.enabled = !modelling.snapping.enabled));
+    this.undo = tool(withKeys(words.undo, WORLD_KEYS.undo), "undo", () => modelling.undo());
+    this.redo = tool(withKeys(words.redo, WORLD_KEYS.redo), "redo", () => modelling.redo());
+    this.save = tool(withKeys(words.save, WORLD_KEYS.save), "save", () => commands.save());
+    const line = (): HTMLElement => h("span", { class: "bar-line" });
+    const tools = [...this.palette.values(), line(), ...this.modes.values(), this.snap, line(), this.undo, this.redo, this.save];
+    this.element = h("div", { class: "simulation-tools modelling-tools", role: "toolbar", aria: { label: words.label } }, ...tools);
+    for (const signal of [modelling.changed, modelling.selectionChanged, modelling.toolChanged, modelling.snapping.changed]) {
+      signal.on(() => this.show());
+    }
+    this.show();
+  }
+
+  private show(): void {
+    const { modelling } = this;
+    this.element.hidden = !modelling.active;
+    for (const [kind, each] of this.palette) press(each, modelling.placing?.kind === kind);
+    for (const [mode, each] of this.modes) press(each, modelling.gizmo === mode);
+    const scale = this.modes.get("scale");
+    if (scale) scale.disabled = modelling.selected.length > 0 && !modelling.canScale;
+    press(this.snap, modelling.snapping.enabled);
+    this.undo.disabled = !modelling.canUndo;
+    this.redo.disabled = !modelling.canRedo;
+    this.save.classList.toggle("unsaved", modelling.unsaved);
+  }
+
+  /** A click takes the thing in hand, dragging drops it onto the ground, and the keyboard puts it into the middle. */
+  private adder(kind: Exclude<NewKind, "model">, name: IconName): HTMLButtonElement {
+    const { modelling } = this;
+    const words = strings.modelling;
+    const placing: Placing = { kind, address: "" };
+    const made = tool(kind === "wall" ? words.addWall : words.add(words.kinds[kind]), name, () => undefined);
+    made.setAttribute("aria-label", words.kinds[kind]);
+    made.addEventListener("click", (event) => {
+      if (event.detail === 0) modelling.dropped.emit({ placing, at: null });
+      else modelling.place(modelling.placing?.kind === kind ? null : placing);
+    });
+    made.addEventListener("pointerup", ({ clientX: x, clientY: y }) => {
+      if (!(document.elementFromPoint(x, y) instanceof HTMLCanvasElement)) return;
+      modelling.dropped.emit({ placing, at: { x, y } });
+    });
+    // Else a finger that drags would scroll, and the button would hear no more of it.
+    made.addEventListener("pointerdown", ({ pointerId }) => made.setPointerCapture(pointerId));
+    return made;
+  }
+}
+
+function tool(label: string, name: IconName, run: () => void): HTMLButtonElement {
+  return button(label, run, "scene-tool small", icon(name));
+}
+
+function press(element: HTMLButtonElement, on: boolean): void {
+  element.setAttribute("aria-pressed", String(on));
+  element.classList.toggle("active", on);
+}
+
+function withKeys(label: string, shortcut: Shortcut): string {
+  return `${label} (${keyText(shortcut)})`;
+}

@@ -1,0 +1,102 @@
+import { h } from "../../dom";
+import { icon, type IconName } from "../../icons";
+import type { WorldThing } from "../../protocol";
+import type { Modelling } from "../../state/modelling/modelling";
+import type { Shape } from "../../state/modelling/shapes";
+import { strings } from "../../strings";
+import { VirtualRows } from "../virtual-rows";
+
+const ROW_HEIGHT = 23;
+const ICONS: Readonly<Record<Shape, IconName>> = {
+  box: "shapeBox",
+  cylinder: "shapeCylinder",
+  sphere: "shapeSphere",
+  wall: "shapeWall",
+  ramp: "shapeRamp",
+};
+
+/** All that stands in the world, by name; several can be selected, as in the scene. */
+export class ThingList {
+  readonly element: HTMLElement;
+  private readonly rows: VirtualRows;
+  private things: readonly WorldThing[] = [];
+  /** The row that keys go on from, and where a range begins. */
+  private current = 0;
+  private anchor = 0;
+
+  constructor(private readonly modelling: Modelling) {
+    this.rows = new VirtualRows("thing-list", ROW_HEIGHT, (index) => this.row(index));
+    this.element = this.rows.element;
+    this.element.setAttribute("role", "listbox");
+    this.element.setAttribute("aria-multiselectable", "true");
+    this.element.setAttribute("aria-label", strings.modelling.things);
+    this.element.addEventListener("keydown", (event) => this.keyed(event));
+    modelling.changed.on(() => this.show());
+    modelling.selectionChanged.on(() => this.reveal());
+    this.show();
+  }
+
+  private show(): void {
+    this.things = this.modelling.things;
+    this.rows.refresh(this.things.length);
+    this.mark();
+  }
+
+  private reveal(): void {
+    const last = this.modelling.selected.at(-1);
+    const index = this.things.findIndex(({ name }) => name === last);
+    if (index >= 0 && index !== this.current) {
+      this.current = this.anchor = index;
+      this.rows.reveal(index);
+    }
+    this.rows.refresh();
+    this.mark();
+  }
+
+  private row(index: number): HTMLElement {
+    const thing = this.things[index];
+    const name = thing?.name ?? "";
+    const selected = this.modelling.selected.includes(name);
+    const row = h(
+      "div",
+      { class: selected ? "thing-row selected" : "thing-row", role: "option", title: name, aria: { selected: String(selected) } },
+      icon(thing ? iconOf(thing) : "unknown"),
+      h("span", {}, name),
+    );
+    row.id = `thing-${index}`;
+    row.addEventListener("click", (event) => this.take(index, event.shiftKey, event.ctrlKey || event.metaKey));
+    return row;
+  }
+
+  private take(index: number, range: boolean, toggle: boolean): void {
+    const thing = this.things[index];
+    if (!thing) return;
+    this.current = index;
+    if (!range) this.anchor = index;
+    const [from, to] = [Math.min(this.anchor, index), Math.max(this.anchor, index)];
+    if (toggle) this.modelling.select([thing.name], "toggle");
+    else this.modelling.select(range ? this.things.slice(from, to + 1).map(({ name }) => name) : [thing.name]);
+    this.mark();
+  }
+
+  private mark(): void {
+    if (this.things.length > 0) this.element.setAttribute("aria-activedescendant", `thing-${this.current}`);
+    else this.element.removeAttribute("aria-activedescendant");
+  }
+
+  private keyed(event: KeyboardEvent): void {
+    const last = this.things.length - 1;
+    const to = { ArrowDown: this.current + 1, ArrowUp: this.current - 1, Home: 0, End: last }[event.key];
+    if (to === undefined || last < 0) return;
+    event.preventDefault();
+    const index = Math.max(0, Math.min(last, to));
+    this.take(index, event.shiftKey, false);
+    this.rows.reveal(index);
+  }
+}
+
+function iconOf({ kind, shape, parts, address }: WorldThing): IconName {
+  if (kind === "light") return "bulb";
+  if (shape) return ICONS[shape];
+  return parts.length > 0 ? "group" : address === null ? "cube" : "library";
+}

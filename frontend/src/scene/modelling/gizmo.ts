@@ -1,0 +1,88 @@
+import { Matrix4, Object3D, Vector3 } from "three";
+import { TransformControls } from "three/addons/controls/TransformControls.js";
+import type { GizmoMode } from "../../state/modelling/modelling";
+import type { Stage } from "../stage";
+import type { ToolEvent } from "../tools/tool";
+
+/** Of the handles, for a mouse and for fingers. */
+const [SIZE, LARGE] = [0.9, 1.3];
+
+/** Handles that move, turn and scale a frame; told of the pointer by the stage's own events. */
+export class Gizmo {
+  private readonly frame = new Object3D();
+  private readonly controls: TransformControls;
+  private readonly helper: Object3D;
+
+  constructor(private readonly stage: Stage) {
+    this.controls = new TransformControls(stage.viewport.camera);
+    this.controls.size = matchMedia("(pointer: coarse)").matches ? LARGE : SIZE;
+    this.helper = this.controls.getHelper();
+    stage.aids.add(this.frame, this.helper);
+    this.controls.addEventListener("change", () => stage.loop.invalidate());
+  }
+
+  get held(): boolean {
+    return this.controls.dragging;
+  }
+
+  /** Where the frame is, without its scale. */
+  get pose(): Matrix4 {
+    return new Matrix4().compose(this.frame.position, this.frame.quaternion, new Vector3(1, 1, 1));
+  }
+
+  get scale(): readonly [number, number, number] {
+    return this.frame.scale.toArray();
+  }
+
+  /** Puts the handles on a pose in the fixed frame; null takes them away. */
+  show(pose: Matrix4 | null, mode: GizmoMode): void {
+    if (pose === null) {
+      this.controls.detach();
+    } else {
+      pose.decompose(this.frame.position, this.frame.quaternion, this.frame.scale);
+      this.frame.scale.setScalar(1);
+      this.controls.mode = mode;
+      this.controls.space = mode === "translate" ? "world" : "local";
+      this.controls.attach(this.frame);
+    }
+    this.stage.loop.invalidate();
+  }
+
+  /** Whether the pointer is over a handle. */
+  hover(event: ToolEvent): boolean {
+    this.controls.camera = this.stage.viewport.camera;
+    this.controls.pointerHover(this.pointer(event, -1));
+    return this.controls.axis !== null;
+  }
+
+  /** Takes the handle under the pointer; false where there is none. */
+  grab(event: ToolEvent): boolean {
+    if (!this.hover(event)) return false;
+    this.helper.updateMatrixWorld(true); // the plane of this handle
+    this.controls.pointerDown(this.pointer(event, 0));
+    return this.held;
+  }
+
+  /** Steps are in m and rad, 0 for none. */
+  drag(event: ToolEvent, steps: { length: number; angle: number }): void {
+    this.controls.translationSnap = steps.length || null;
+    this.controls.rotationSnap = steps.angle || null;
+    this.controls.pointerMove(this.pointer(event, -1));
+  }
+
+  release(event: ToolEvent): void {
+    this.controls.pointerUp(this.pointer(event, 0));
+  }
+
+  /** Lets go, with the frame where it was. */
+  cancel(): void {
+    this.controls.reset();
+    this.controls.pointerUp(null);
+  }
+
+  /** What the controls want of an event: the place from -1 to 1, and a button as browsers number them. */
+  private pointer({ x, y }: ToolEvent, button: number): PointerEvent {
+    const { width, height } = this.stage.viewport.size;
+    return { x: (x / width) * 2 - 1, y: 1 - (y / height) * 2, button } as PointerEvent;
+  }
+}

@@ -1,0 +1,17 @@
+import { Matrix4, Plane, Vector3 } from "three";
+import type { Place } from "../../state/modelling/shapes";
+import type { Stage } from "../stage";
+
+const GROUND = new Plane(new Vector3(0, 0, 1), 0);
+
+/** Where the world is in the fixed frame. */
+export function worldFrame(stage: Stage): Matrix4 {
+  return stage.world?.drawing.world() ?? new Matrix4();
+}
+
+/** Where the ground of the world, z = 0, is seen at a place of the canvas, pixels. */
+export function groundAt(stage: Stage, x: number, y: number): Place | null {
+  const ray = stage.picker.rayAt(x, y).ray.clone().applyMatrix4(worldFrame(stage).invert());
+  const at = ray.intersectPlane(GROUND, new Vector3());
+  return at && [at.x, at.y];
+}

@@ -1,0 +1,237 @@
+import type { Connection } from "../../connection/connection";
+import type { ModelChoice, ModellingState, WorldThing } from "../../protocol";
+import { Signal } from "../signal";
+import type { TextStorage } from "../storage";
+import type { Change, NewKind, Placement } from "./shapes";
+import { Snapping } from "./snapping";
+
+/** What the gizmo does to what is selected. */
+export type GizmoMode = "translate" | "rotate" | "scale";
+
+/** What a click in the scene puts there; `address` is of a model. */
+export interface Placing {
+  readonly kind: NewKind;
+  readonly address: string;
+}
+
+const NOTHING: Omit<ModellingState, "type"> = {
+  available: false,
+  active: false,
+  file: null,
+  unsaved: false,
+  can_undo: false,
+  can_redo: false,
+  things: [],
+};
+/** How far copies stand beside what they are copies of, m, at least. */
+const LEAST_OFFSET = 0.5;
+
+/** Modelling the world: what the server tells of its file, and what this page has selected and in hand. */
+export class Modelling {
+  /** The world is another, or may be edited now, or no more. */
+  readonly changed = new Signal();
+  readonly selectionChanged = new Signal();
+  /** The gizmo does something else, or something else is put into the world. */
+  readonly toolChanged = new Signal();
+  /** The models that may be added are known. */
+  readonly offered = new Signal<readonly ModelChoice[]>();
+  /** The user drops something onto the scene: pixels from the window's upper left corner; null for the middle of it. */
+  readonly dropped = new Signal<{ placing: Placing; at: { x: number; y: number } | null }>();
+  readonly snapping: Snapping;
+  private told = NOTHING;
+  private names: readonly string[] = [];
+  private mode: GizmoMode = "translate";
+  private inHand: Placing | null = null;
+  private clipboard: readonly string[] = [];
+  /** This page made something: what is new in the next state is selected. */
+  private makes = false;
+
+  constructor(
+    private readonly connection: Connection,
+    storage: TextStorage,
+  ) {
+    this.snapping = new Snapping(storage);
+    connection.on("modelling_state", (state) => this.take(state));
+    connection.on("model_choices", ({ models }) => this.offered.emit(models));
+    connection.on("simulation_notice", () => (this.makes = false));
+  }
+
+  /** Whether there is a world that can be edited. */
+  get available(): boolean {
+    return this.told.available;
+  }
+
+  get active(): boolean {
+    return this.told.active;
+  }
+
+  /** Null for a world that was never saved. */
+  get file(): string | null {
+    return this.told.file;
+  }
+
+  get unsaved(): boolean {
+    return this.told.unsaved;
+  }
+
+  get canUndo(): boolean {
+    return this.told.can_undo;
+  }
+
+  get canRedo(): boolean {
+    return this.told.can_redo;
+  }
+
+  get things(): readonly WorldThing[] {
+    return this.told.things;
+  }
+
+  /** Names, in the order of selecting. */
+  get selected(): readonly string[] {
+    return this.names;
+  }
+
+  get selectedThings(): WorldThing[] {
+    return this.names.flatMap((name) => this.find(name) ?? []);
+  }
+
+  get gizmo(): GizmoMode {
+    return this.mode;
+  }
+
+  set gizmo(mode: GizmoMode) {
+    if (mode === this.mode) return;
+    this.mode = mode;
+    this.toolChanged.emit();
+  }
+
+  get placing(): Placing | null {
+    return this.inHand;
+  }
+
+  /** Whether what is selected can be one model, and be the models again that it is made of. */
+  get canGroup(): boolean {
+    const things = this.selectedThings;
+    return things.length > 1 && things.every(({ kind }) => kind === "model");
+  }
+
+  get canUngroup(): boolean {
+    return this.selectedThings.some(({ parts }) => parts.length > 0);
+  }
+
+  get canScale(): boolean {
+    const [thing, ...more] = this.selectedThings;
+    return more.length === 0 && thing !== undefined && thing.shape !== null;
+  }
+
+  get canPaste(): boolean {
+    return this.clipboard.some((name) => this.find(name));
+  }
+
+  find(name: string): WorldThing | null {
+    return this.told.things.find((thing) => thing.name === name) ?? null;
+  }
+
+  /** `toggle` adds what is not selected, and takes away what is. */
+  select(names: readonly string[], mode: "replace" | "toggle" = "replace"): void {
+    const others = this.names.filter((name) => !names.includes(name));
+    const added = names.filter((name) => !this.names.includes(name));
+    this.choose(mode === "replace" ? names : [...others, ...added]);
+  }
+
+  /** Takes something in hand that the next click puts into the world; null for nothing. */
+  place(placing: Placing | null): void {
+    this.inHand = placing;
+    this.toolChanged.emit();
+  }
+
+  setActive(active: boolean): void {
+    this.connection.send({ type: "set_modelling", active });
+  }
+
+  add({ kind, address }: Placing, { pose, size }: Placement): void {
+    this.makes = true;
+    this.connection.send({ type: "add_thing", shape: kind, address, pose: [...pose], size: [...size] });
+  }
+
+  /** All of them are one step of undo. */
+  change(changes: readonly Change[]): void {
+    if (changes.length === 0) return;
+    if (changes.some(({ new_name }) => typeof new_name === "string")) this.makes = true;
+    const stays = { pose: null, size: null, new_name: null, static: null, colour: null };
+    this.connection.send({ type: "change_things", changes: changes.map((change) => ({ ...stays, ...change })) });
+  }
+
+  copy(): void {
+    this.clipboard = this.names;
+  }
+
+  paste(): void {
+    this.copies(this.clipboard.filter((name) => this.find(name)));
+  }
+
+  duplicate(): void {
+    this.copies(this.names);
+  }
+
+  remove(): void {
+    if (this.names.length > 0) this.connection.send({ type: "delete_things", names: [...this.names] });
+  }
+
+  group(): void {
+    if (!this.canGroup) return;
+    this.makes = true;
+    this.connection.send({ type: "group_things", names: [...this.names], name: "group" });
+  }
+
+  ungroup(): void {
+    for (const { name, parts } of this.selectedThings) {
+      if (parts.length === 0) continue;
+      this.makes = true;
+      this.connection.send({ type: "ungroup_thing", name });
+    }
+  }
+
+  undo(): void {
+    if (this.canUndo) this.connection.send({ type: "undo_world" });
+  }
+
+  redo(): void {
+    if (this.canRedo) this.connection.send({ type: "redo_world" });
+  }
+
+  /** Into its file, or where `path` says. */
+  save(path: string | null): void {
+    this.connection.send({ type: "save_world", path });
+  }
+
+  askModels(): void {
+    this.connection.send({ type: "ask_models" });
+  }
+
+  private copies(names: readonly string[]): void {
+    if (names.length === 0) return;
+    this.makes = true;
+    const step = Math.max(LEAST_OFFSET, this.snapping.metres);
+    this.connection.send({ type: "copy_things", names: [...names], offset: [step, step, 0] });
+  }
+
+  private take(state: ModellingState): void {
+    const before = new Set(this.told.things.map(({ name }) => name));
+    this.told = state;
+    const news = state.things.map(({ name }) => name).filter((name) => !before.has(name));
+    const left = state.active ? this.names.filter((name) => this.find(name)) : [];
+    if (!state.active && this.inHand) this.place(null);
+    this.changed.emit();
+    if (this.makes && news.length > 0) {
+      this.makes = false;
+      this.choose(news);
+    } else if (left.length < this.names.length) this.choose(left);
+  }
+
+  private choose(names: readonly string[]): void {
+    if (names.length === this.names.length && names.every((name, i) => name === this.names[i])) return;
+    this.names = names;
+    this.selectionChanged.emit();
+  }
+}

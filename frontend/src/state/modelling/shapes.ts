@@ -1,0 +1,95 @@
+import type { AddThing, ThingChange, WorldThing } from "../../protocol";
+import { snapped } from "./snapping";
+
+export type NewKind = AddThing["shape"];
+export type Shape = NonNullable<WorldThing["shape"]>;
+/** A place of the ground: x and y in the world, m. */
+export type Place = readonly [number, number];
+
+/** What is to be different about a thing; what is not named stays. */
+export type Change = Pick<ThingChange, "name"> & Partial<ThingChange>;
+
+/** Metres: what new walls have. */
+const THICKNESS = 0.1;
+const HEIGHT = 1;
+/** Nothing gets smaller than this, m. */
+export const LEAST_SIZE = 0.001;
+
+/** Of new things, m, as the server's sizes: x y z; radius and length of a cylinder; the radius of a sphere. */
+const SIZES: Readonly<Partial<Record<NewKind, readonly number[]>>> = {
+  box: [0.5, 0.5, 0.5],
+  cylinder: [0.25, 0.5],
+  sphere: [0.25],
+  ramp: [1, 0.5, 0.25],
+};
+/** How high new lights hang, m. */
+const LIGHT_HEIGHTS: Readonly<Partial<Record<NewKind, number>>> = { point_light: 2, spot_light: 2, directional_light: 5 };
+
+/** A thing to be added: where, in the world, and how large. */
+export interface Placement {
+  readonly pose: readonly number[];
+  readonly size: readonly number[];
+}
+
+/** Something new that stands at a place of the ground. */
+export function placementAt(kind: NewKind, [x, y]: Place): Placement {
+  const size = SIZES[kind] ?? [];
+  const z = LIGHT_HEIGHTS[kind] ?? (isShape(kind) ? restingHeight(kind, size) : 0);
+  return { pose: [x, y, z, 0, 0, 0], size };
+}
+
+/** The wall whose foot goes from one place of the ground to another; null where there is no way between them. */
+export function wallBetween(a: Place, b: Place): Placement | null {
+  const [dx, dy] = [b[0] - a[0], b[1] - a[1]];
+  const length = Math.hypot(dx, dy);
+  if (length < THICKNESS / 2) return null;
+  const size = [length, THICKNESS, HEIGHT];
+  return { pose: [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, restingHeight("wall", size), 0, 0, Math.atan2(dy, dx)], size };
+}
+
+/** How high the origin of a shape is that stands on the ground, m. */
+export function restingHeight(shape: Shape, size: readonly number[]): number {
+  const [first = 0, second = 0, third = 0] = size;
+  if (shape === "sphere") return first;
+  return (shape === "cylinder" ? second : third) / 2;
+}
+
+/** A size scaled along x, y and z: round shapes follow the axis that is scaled most. */
+export function scaledSize(shape: Shape, size: readonly number[], scale: readonly number[], step: number): number[] {
+  const [sx = 1, sy = 1, sz = 1] = scale;
+  const factors = shape === "sphere" ? [strongest(sx, sy, sz)] : shape === "cylinder" ? [strongest(sx, sy), sz] : [sx, sy, sz];
+  // What is not scaled stays beside the grid where it was.
+  return size.map((length, i) => {
+    const factor = Math.abs(factors[i] ?? 1);
+    return factor === 1 ? length : Math.max(step || LEAST_SIZE, snapped(length * factor, step));
+  });
+}
+
+/** A thing with another size: one that stands upright keeps its foot where it is. */
+export function resized({ name, shape, size: before, pose }: WorldThing, size: readonly number[]): Change {
+  const [x = 0, y = 0, z = 0, roll = 0, pitch = 0, yaw = 0] = pose;
+  const change = { name, size: [...size] };
+  if (shape === null || roll !== 0 || pitch !== 0) return change;
+  const rise = restingHeight(shape, size) - restingHeight(shape, before);
+  return rise === 0 ? change : { ...change, pose: [x, y, tidy(z + rise), roll, pitch, yaw] };
+}
+
+/** A number without the dust of its calculation. */
+export function tidy(value: number): number {
+  return Math.round(value * 1e9) / 1e9;
+}
+
+/** By what a shape's drawing is stretched along x, y and z when it gets another size. */
+export function stretch(shape: Shape, before: readonly number[], after: readonly number[]): [number, number, number] {
+  const by = (i: number): number => ((before[i] ?? 0) > 0 ? (after[i] ?? 0) / (before[i] ?? 1) : 1);
+  if (shape === "sphere") return [by(0), by(0), by(0)];
+  return shape === "cylinder" ? [by(0), by(0), by(1)] : [by(0), by(1), by(2)];
+}
+
+export function isShape(kind: NewKind): kind is Shape {
+  return kind === "wall" || kind in SIZES;
+}
+
+function strongest(...factors: number[]): number {
+  return factors.reduce((best, each) => (Math.abs(Math.log(Math.abs(each))) > Math.abs(Math.log(Math.abs(best))) ? each : best), 1);
+}

@@ -1,0 +1,67 @@
+import { Signal } from "../signal";
+import type { TextStorage } from "../storage";
+
+const KEY = "linkwright.snapping";
+const DEGREE = Math.PI / 180;
+
+/** Grids to choose from, m and degrees. */
+export const LENGTH_STEPS = [0.01, 0.05, 0.1, 0.25, 0.5, 1] as const;
+export const ANGLE_STEPS = [1, 5, 15, 30, 45, 90] as const;
+
+/** The nearest multiple of a step, without the dust of binary fractions. */
+export function snapped(value: number, step: number): number {
+  return step > 0 ? Number((Math.round(value / step) * step).toPrecision(12)) : value;
+}
+
+/** Whether things that are moved, turned and scaled keep to a grid, and which; remembered by the browser. */
+export class Snapping {
+  readonly changed = new Signal();
+  private on = true;
+  private length = 0.1;
+  private angle = 15;
+
+  constructor(private readonly storage: TextStorage) {
+    const [on, length, angle] = (storage.getItem(KEY) ?? "").split(" ");
+    if (!(Number(length) > 0 && Number(angle) > 0)) return;
+    [this.on, this.length, this.angle] = [on === "on", Number(length), Number(angle)];
+  }
+
+  get enabled(): boolean {
+    return this.on;
+  }
+
+  set enabled(on: boolean) {
+    this.on = on;
+    this.keep();
+  }
+
+  /** Of the grid, m. */
+  get metres(): number {
+    return this.length;
+  }
+
+  set metres(length: number) {
+    this.length = length;
+    this.keep();
+  }
+
+  get degrees(): number {
+    return this.angle;
+  }
+
+  set degrees(angle: number) {
+    this.angle = angle;
+    this.keep();
+  }
+
+  /** The steps that hold now, m and rad; 0 where there is no grid. `inverted` while Ctrl is held. */
+  steps(inverted: boolean): { length: number; angle: number } {
+    const on = this.on !== inverted;
+    return { length: on ? this.length : 0, angle: on ? this.angle * DEGREE : 0 };
+  }
+
+  private keep(): void {
+    this.storage.setItem(KEY, `${this.on ? "on" : "off"} ${this.length} ${this.angle}`);
+    this.changed.emit();
+  }
+}

@@ -1,0 +1,207 @@
+import { beforeEach, describe, expect, it, vi } from "vitest";
+import { Connection } from "../src/connection/connection";
+import { hex, thingItems } from "../src/panels/modelling/thing-items";
+import type { ModellingState, PageMessage, WorldThing } from "../src/protocol";
+import { AngleUnits } from "../src/state/angle-unit";
+import { Modelling } from "../src/state/modelling/modelling";
+import { placementAt, resized, scaledSize, stretch, wallBetween } from "../src/state/modelling/shapes";
+import { Snapping, snapped } from "../src/state/modelling/snapping";
+import { browserStorage } from "../src/state/storage";
+import type { TreeItem } from "../src/tree/tree-item";
+
+// The page's words ask the browser for its language.
+vi.mock("../src/strings", async () => ({ strings: (await import("../src/strings/en")).en }));
+
+let sent: PageMessage[];
+let connection: Connection;
+let modelling: Modelling;
+
+function thing(part: Partial<WorldThing> & Pick<WorldThing, "name">): WorldThing {
+  const size = [1, 1, 1];
+  return { kind: "model", pose: [0, 0, 0.5, 0, 0, 0], static: false, shape: "box", size, colour: null, address: null, parts: [], ...part };
+}
+
+function told(part: Partial<ModellingState>, ...things: WorldThing[]): void {
+  const state = { available: true, active: true, file: "/w.sdf", unsaved: false, can_undo: false, can_redo: false };
+  connection.message.emit({ type: "modelling_state", ...state, ...part, things });
+}
+
+beforeEach(() => {
+  sent = [];
+  connection = new Connection("ws://localhost/ws");
+  vi.spyOn(connection, "send").mockImplementation((message) => void sent.push(message));
+  modelling = new Modelling(connection, browserStorage());
+});
+
+describe("snapping", () => {
+  it("keeps to multiples of a step, without dust", () => {
+    expect(snapped(0.34, 0.1)).toBe(0.3);
+    expect(snapped(-0.26, 0.25)).toBe(-0.25);
+    expect(snapped(0.1234, 0)).toBe(0.1234);
+  });
+
+  it("is inverted by Ctrl, and remembered", () => {
+    const storage = browserStorage();
+    const snapping = new Snapping(storage);
+    [snapping.metres, snapping.degrees] = [0.5, 90];
+    expect(snapping.steps(false)).toEqual({ length: 0.5, angle: Math.PI / 2 });
+    expect(snapping.steps(true)).toEqual({ length: 0, angle: 0 });
+    snapping.enabled = false;
+    const again = new Snapping(storage);
+    expect([again.enabled, again.metres, again.degrees]).toEqual([false, 0.5, 90]);
+    expect(again.steps(true).length).toBe(0.5);
+  });
+});
+
+describe("shapes", () => {
+  it("stand on the ground", () => {
+    expect(placementAt("box", [1, 2])).toEqual({ pose: [1, 2, 0.25, 0, 0, 0], size: [0.5, 0.5, 0.5] });
+    expect(placementAt("sphere", [0, 0]).pose[2]).toBe(0.25);
+    expect(placementAt("point_light", [0, 0])).toEqual({ pose: [0, 0, 2, 0, 0, 0], size: [] });
+    expect(placementAt("model", [3, 4]).pose).toEqual([3, 4, 0, 0, 0, 0]);
+  });
+
+  it("a wall goes from one point to the other", () => {
+    const wall = wallBetween([1, 1], [1, 4]);
+    expect(wall).toEqual({ pose: [1, 2.5, 0.5, 0, 0, Math.PI / 2], size: [3, 0.1, 1] });
+    expect(wallBetween([1, 1], [1, 1])).toBeNull();
+  });
+
+  it("scale along their axes, round ones as the axis that is scaled most, never to nothing", () => {
+    expect(scaledSize("box", [1, 2, 3], [2, 1, 0.5], 0.1)).toEqual([2, 2, 1.5]);
+    expect(scaledSize("cylinder", [0.5, 1], [1, 0.5, 1], 0)).toEqual([0.25, 1]);
+    expect(scaledSize("sphere", [0.5], [1, 1, 3], 0)).toEqual([1.5]);
+    expect(scaledSize("box", [1, 1, 1], [0, 1, 1], 0.25)).toEqual([0.25, 1, 1]);
+    expect(scaledSize("box", [0.33, 1, 1], [1, 2, 1], 0.1)).toEqual([0.33, 2, 1]);
+    expect(stretch("cylinder", [0.5, 1], [1, 3])).toEqual([2, 2, 3]);
+  });
+
+  it("keep their foot where it is when they stand upright", () => {
+    expect(resized(thing({ name: "box" }), [1, 1, 3])).toEqual({ name: "box", size: [1, 1, 3], pose: [0, 0, 1.5, 0, 0, 0] });
+    const tilted = thing({ name: "box", pose: [0, 0, 0.5, 0.1, 0, 0] });
+    expect(resized(tilted, [1, 1, 3])).toEqual({ name: "box", size: [1, 1, 3] });
+  });
+});
+
+describe("what is selected", () => {
+  it("is taken anew, or added and taken away with Shift", () => {
+    told({}, thing({ name: "a" }), thing({ name: "b" }));
+    modelling.select(["a"]);
+    modelling.select(["b"], "toggle");
+    expect(modelling.selected).toEqual(["a", "b"]);
+    modelling.select(["a"], "toggle");
+    expect(modelling.selected).toEqual(["b"]);
+  });
+
+  it("is what this page made, and no more what is gone", () => {
+    told({}, thing({ name: "a" }));
+    modelling.select(["a"]);
+    told({}, thing({ name: "a" }), thing({ name: "of another page" }));
+    expect(modelling.selected).toEqual(["a"]);
+    modelling.add({ kind: "box", address: "" }, placementAt("box", [0, 0]));
+    told({ can_undo: true }, thing({ name: "a" }), thing({ name: "box" }));
+    expect(modelling.selected).toEqual(["box"]);
+    told({ can_redo: true }, thing({ name: "a" }));
+    expect(modelling.selected).toEqual([]);
+  });
+
+  it("follows a thing that gets another name, unless the server refuses it", () => {
+    told({}, thing({ name: "a" }));
+    modelling.select(["a"]);
+    modelling.change([{ name: "a", new_name: "b" }]);
+    told({}, thing({ name: "b" }));
+    expect(modelling.selected).toEqual(["b"]);
+    modelling.change([{ name: "b", new_name: "c" }]);
+    connection.message.emit({ type: "simulation_notice", text: "no" });
+    told({}, thing({ name: "b" }), thing({ name: "d" }));
+    expect(modelling.selected).toEqual(["b"]);
+  });
+
+  it("is nothing, and nothing is in hand, when modelling ends", () => {
+    told({}, thing({ name: "a" }));
+    modelling.select(["a"]);
+    modelling.place({ kind: "box", address: "" });
+    told({ active: false }, thing({ name: "a" }));
+    expect([modelling.selected, modelling.placing]).toEqual([[], null]);
+  });
+});
+
+describe("what can be done", () => {
+  it("is undone and redone only where there is something", () => {
+    told({});
+    modelling.undo();
+    modelling.redo();
+    expect(sent).toEqual([]);
+    told({ can_undo: true, can_redo: true });
+    modelling.undo();
+    modelling.redo();
+    expect(sent.map(({ type }) => type)).toEqual(["undo_world", "redo_world"]);
+  });
+
+  it("depends on what is selected", () => {
+    const grouped = thing({ name: "g", shape: null, size: [], parts: ["p", "q"] });
+    told({}, thing({ name: "a" }), grouped, thing({ name: "sun", kind: "light", shape: null, size: [] }));
+    const can = (...names: string[]): boolean[] => {
+      modelling.select(names);
+      return [modelling.canScale, modelling.canGroup, modelling.canUngroup];
+    };
+    expect(can("a")).toEqual([true, false, false]);
+    expect(can("g")).toEqual([false, false, true]);
+    expect(can("a", "g")).toEqual([false, true, true]);
+    expect(can("a", "sun")).toEqual([false, false, false]);
+  });
+
+  it("tells the server in whole messages", () => {
+    told({}, thing({ name: "a" }), thing({ name: "b" }));
+    modelling.select(["a", "b"]);
+    modelling.copy();
+    modelling.group();
+    modelling.remove();
+    modelling.paste();
+    modelling.save(null);
+    modelling.change([{ name: "a", static: true }]);
+    expect(sent).toEqual([
+      { type: "group_things", names: ["a", "b"], name: "group" },
+      { type: "delete_things", names: ["a", "b"] },
+      { type: "copy_things", names: ["a", "b"], offset: [0.5, 0.5, 0] },
+      { type: "save_world", path: null },
+      { type: "change_things", changes: [{ name: "a", pose: null, size: null, new_name: null, static: true, colour: null }] },
+    ]);
+  });
+});
+
+describe("the rows of what is selected", () => {
+  const items = (): Map<string, TreeItem> => {
+    const angles = new AngleUnits(browserStorage());
+    angles.current = "deg";
+    const all = thingItems(modelling, angles).flatMap((item) => [item, ...(item.children?.() ?? [])]);
+    return new Map(all.map((item) => [item.key, item]));
+  };
+
+  it("show what several have in common, and change it for all in one step", () => {
+    told({}, thing({ name: "a", pose: [1, 2, 0.5, 0, 0, 0] }), thing({ name: "b", pose: [1, 5, 0.5, 0, 0, 0] }));
+    modelling.select(["a", "b"]);
+    expect([items().get("pose/0")?.value, items().get("pose/1")?.value]).toEqual([1, null]);
+    items().get("pose/5")?.set?.(90);
+    const [message] = sent;
+    const poses = message?.type === "change_things" ? message.changes.map(({ pose }) => pose) : [];
+    expect(poses).toEqual([
+      [1, 2, 0.5, 0, 0, 1.570796327],
+      [1, 5, 0.5, 0, 0, 1.570796327],
+    ]);
+  });
+
+  it("are of the kind of thing", () => {
+    told({}, thing({ name: "c", shape: "cylinder", size: [0.5, 1], colour: [1, 0.5, 0, 0.5] }), thing({ name: "sun", kind: "light", shape: null, size: [] }));
+    modelling.select(["c"]);
+    expect([...items().keys()]).toEqual(expect.arrayContaining(["name", "size/1", "static", "colour"]));
+    items().get("colour")?.set?.("#00ff00");
+    expect(sent.at(-1)).toMatchObject({ changes: [{ name: "c", colour: [0, 1, 0, 0.5] }] });
+    modelling.select(["sun"]);
+    expect([...items().keys()].filter((key) => /size|static|colour/.test(key))).toEqual([]);
+  });
+
+  it("colours are written as the page writes them", () => {
+    expect(hex([1, 0.5, 0, 1])).toBe("#ff8000");
+  });
+});

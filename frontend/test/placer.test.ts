@@ -1,0 +1,71 @@
+import { Group, Raycaster, Vector3 } from "three";
+import { beforeEach, describe, expect, it, vi } from "vitest";
+import { Connection } from "../src/connection/connection";
+import type { PageMessage } from "../src/protocol";
+import { Placer } from "../src/scene/modelling/placer";
+import type { Stage } from "../src/scene/stage";
+import type { ToolEvent } from "../src/scene/tools/tool";
+import { Modelling } from "../src/state/modelling/modelling";
+import { browserStorage } from "../src/state/storage";
+
+let sent: PageMessage[];
+let modelling: Modelling;
+let placer: Placer;
+
+/** On a canvas of which a pixel is a metre, seen from above. */
+function pointer(type: ToolEvent["type"], x: number, y: number, part: Partial<ToolEvent> = {}): boolean {
+  const button = type === "move" ? null : "left";
+  const rest = { dx: 0, dy: 0, wheel: 0, left: type !== "up", middle: false, right: false, shift: false, ctrl: false, alt: false, click: false };
+  return placer.pointer({ type, x, y, button, ...rest, ...part });
+}
+
+beforeEach(() => {
+  sent = [];
+  const connection = new Connection("ws://localhost/ws");
+  vi.spyOn(connection, "send").mockImplementation((message) => void sent.push(message));
+  modelling = new Modelling(connection, browserStorage());
+  const rayAt = (x: number, y: number): Raycaster => new Raycaster(new Vector3(x, y, 5), new Vector3(0, 0, -1));
+  const stage = { aids: new Group(), world: null, picker: { rayAt }, loop: { invalidate: () => undefined } };
+  placer = new Placer(stage as unknown as Stage, modelling);
+});
+
+describe("putting things into the world", () => {
+  it("needs a click, on the grid or with Ctrl beside it; Shift keeps the thing in hand", () => {
+    modelling.place({ kind: "sphere", address: "" });
+    pointer("down", 1.04, 2);
+    pointer("up", 1.04, 2, { click: true, shift: true });
+    pointer("up", 1.04, 2, { click: true, ctrl: true });
+    expect(sent).toEqual([
+      { type: "add_thing", shape: "sphere", address: "", pose: [1, 2, 0.25, 0, 0, 0], size: [0.25] },
+      { type: "add_thing", shape: "sphere", address: "", pose: [1.04, 2, 0.25, 0, 0, 0], size: [0.25] },
+    ]);
+    expect(modelling.placing).toBeNull();
+  });
+
+  it("leaves dragging to the camera", () => {
+    modelling.place({ kind: "box", address: "" });
+    expect(pointer("down", 0, 0)).toBe(false);
+    expect(pointer("move", 3, 0)).toBe(false);
+    expect(pointer("up", 3, 0)).toBe(false);
+    expect(sent).toEqual([]);
+  });
+
+  it("draws a wall from point to point, and then others", () => {
+    modelling.place({ kind: "wall", address: "" });
+    expect(pointer("down", 0, 0)).toBe(true);
+    expect(pointer("move", 4, 0)).toBe(true);
+    pointer("up", 4, 0);
+    expect(sent).toEqual([{ type: "add_thing", shape: "wall", address: "", pose: [2, 0, 0.5, 0, 0, 0], size: [4, 0.1, 1] }]);
+    pointer("down", 4, 0);
+    pointer("up", 4, 0, { click: true });
+    pointer("down", 4, 3);
+    pointer("up", 4, 3, { click: true });
+    expect(sent.at(-1)).toMatchObject({ pose: [4, 1.5, 0.5, 0, 0, Math.PI / 2], size: [3, 0.1, 1] });
+    expect(modelling.placing?.kind).toBe("wall");
+  });
+
+  it("drops what is dragged from the bar", () => {
+    placer.drop({ kind: "model", address: "model://chair" }, 2, 3);
+    expect(sent).toEqual([{ type: "add_thing", shape: "model", address: "model://chair", pose: [2, 3, 0, 0, 0, 0], size: [] }]);
+  });
+});
