@@ -16,7 +16,6 @@ from linkwright.diagnostics import Diagnostic, Severity
 from linkwright.geometry.single import Transform, quaternion_from_rpy
 from linkwright.graph import Graph
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
-from linkwright.sdf.worlds import World, physics_of
 
 _EMPTY = "empty"
 _PARAMETERS: dict[str, Any] = {
@@ -79,14 +78,14 @@ class Simulator(SingleNode):
         self.finished: asyncio.Future[int] = loop.create_future()
         with starting(self._node):
             said = {name: self._node.declare_parameter(name, value).value for name, value in _PARAMETERS.items()}
-            world, finder, findings, _ = load_world(words[0] if words else said["world"])
-            self._log(each for each in findings if each.severity is Severity.ERROR)
-            simulation = Simulation(world, finder, step=said["step"] or None)
+            loaded = load_world(words[0] if words else said["world"])
+            self._log(each for each in loaded.diagnostics if each.severity is Severity.ERROR)
+            simulation = Simulation(loaded.world, loaded.finder, step=said["step"] or None)
             self.server = SimulationServer(simulation, self._node, ServerOptions(said["seed"], said["usual_names"]))
-            self._reports = Reports(self.server, self._node, finder, said["publish_rate"])
+            self._reports = Reports(self.server, self._node, said["publish_rate"])
             self.runner = Runner(
                 self.server,
-                factor=_factor(said["real_time_factor"], world),
+                factor=said["real_time_factor"] if said["real_time_factor"] >= 0 else inf,
                 paused=said["pause"],
                 seconds=said["seconds"] or None,
                 watch=lambda: self._reports.watch(lambda: self.runner.real_time_factor),
@@ -94,7 +93,7 @@ class Simulator(SingleNode):
                 on_end=partial(_call_on, loop, self._finish),
             )
             own = PluginNode(self._node, self.server.exchange, owned=False, qos={}, usual=None)
-            self.services = Services(self.server, self.runner, own, finder, options.library)
+            self.services = Services(self.server, self.runner, own, loaded, options.library)
             self.server.start()
             if said["robot_description"]:
                 pose = _pose(said["robot_pose"])
@@ -131,13 +130,6 @@ class Simulator(SingleNode):
 
 def _call_on(loop: asyncio.AbstractEventLoop, function: Callable[[], None]) -> None:
     loop.call_soon_threadsafe(function)
-
-
-def _factor(said: float, world: World) -> float:
-    if said:
-        return said if said > 0 else inf
-    wanted = physics_of(world).real_time_factor
-    return wanted if wanted > 0 else 1.0
 
 
 def _pose(numbers: Sequence[float]) -> Transform:

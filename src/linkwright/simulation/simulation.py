@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from math import inf, isfinite
 from typing import Any
 
@@ -15,7 +15,7 @@ from linkwright.geometry.vectors import Vector3
 from linkwright.sdf.models import Model
 from linkwright.sdf.resources import ResourceFinder
 from linkwright.sdf.saved import as_saved
-from linkwright.sdf.worlds import World
+from linkwright.sdf.worlds import World, gravity_of, physics_of
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.scene.bodies import COLLISION_GROUP
 from linkwright.simulation.scene.meshes import MeshLibrary
@@ -69,6 +69,8 @@ class Simulation:
         step: the time step in s; that of the world by default.
 
     Attributes:
+        world: as it was read, with its includes resolved, and as it was saved.
+        finder: where meshes are.
         scene: what moves.
         model, data: MuJoCo's, of this moment: both are others after models have come or gone.
         revision: how often they were made anew.
@@ -81,8 +83,11 @@ class Simulation:
         self._mujoco = load_mujoco()
         self.world = as_saved(world)
         count_links(self.world.models)
-        self.scene = Scene(self.world, MeshLibrary(finder), step)
-        self.step = round(self.scene.step * NANOSECONDS)
+        self.finder = finder
+        self._said_step = step
+        self._meshes = MeshLibrary(finder)
+        self.scene = Scene(self.world, self._meshes, step)
+        self.step = _whole_step(self.scene.step)
         self.time = 0
         self.schedule = Schedule()
         self.revision = 0
@@ -120,6 +125,63 @@ class Simulation:
         """
         self.scene.remove(name)
         self._changed = True
+
+    def set_world(self, world: World, finder: ResourceFinder) -> None:
+        """Take everything but the models from another world: gravity, time step, light, place on earth.
+
+        Args:
+            world: with its includes resolved.
+            finder: where its meshes are.
+        """
+        before, self.world, self.finder = self.world, as_saved(world), finder
+        self._meshes.look_in(finder)
+        self.scene.set_physics(self.world, self._said_step or physics_of(self.world).max_step_size)
+        self.step = round(self.scene.step * NANOSECONDS)
+        self._changed |= _outlook(before) != _outlook(self.world)
+
+    def beside(self, world: World, finder: ResourceFinder) -> Simulation:
+        """A simulation of another world, run as this one."""
+        return Simulation(world, finder, step=self._said_step)
+
+    def place(self, poses: Mapping[str, Transform]) -> None:
+        """Let models begin elsewhere, and put them there; their joints stay as they are.
+
+        Args:
+            poses: of the frame of each in the world, by their names.
+
+        Raises:
+            KeyError: there is none of such a name.
+            FrameError: a link cannot be placed.
+        """
+        for name, pose in poses.items():
+            self.scene.place(name, pose)
+            self._changed = True
+        self.refresh()
+        for name in poses:
+            for link in self.free_links(name):
+                joint = self.model.joint(f"{link}#free")
+                start, speed = int(joint.qposadr[0]), int(joint.dofadr[0])
+                self.data.qpos[start : start + 7] = self.model.qpos0[start : start + 7]
+                self.data.qvel[speed : speed + 6] = 0.0
+        self._current = False
+
+    def set_moved(self) -> None:
+        """Positions or velocities of `data` have been set: work out what depends on them when it is asked for."""
+        self._current = False
+
+    def free_links(self, name: str) -> list[str]:
+        """The links of a model that move by themselves, fixed to nothing.
+
+        Raises:
+            KeyError: there is no such model.
+        """
+        self.refresh()
+        links = [held.link.name for held in self.scene.models[name].structure.links]
+        return [each for each in links if self._is_free(each)]
+
+    def _is_free(self, link: str) -> bool:
+        body = self.model.body(link)
+        return body.jntnum[0] == 1 and bool(self.model.jnt_type[body.jntadr[0]] == self._mujoco.mjtJoint.mjJNT_FREE)
 
     def add_velocity_motor(self, joint: str, gain: float, limit: float) -> Motor:
         """Give a joint a motor, as `Scene.add_velocity_motor` does."""
@@ -347,10 +409,7 @@ class Simulation:
             KeyError: there is no such model.
         """
         self.refresh()
-        root = self.model.body(self._root(name)[0])
-        if root.jntnum[0] != 1:
-            return False
-        return bool(self.model.jnt_type[root.jntadr[0]] == self._mujoco.mjtJoint.mjJNT_FREE)
+        return self._is_free(self._root(name)[0])
 
     def set_model_pose(self, name: str, pose: Transform) -> None:
         """Put a model elsewhere; it stands still there.
@@ -422,6 +481,23 @@ class Simulation:
         """
         self.refresh()
         self.data.body(link).xfrc_applied[:] = (*force, *torque)
+
+
+def _whole_step(step: float) -> int:
+    """A time step in s as nanoseconds.
+
+    Raises:
+        LinkwrightError: SIM106 no time passes in it.
+    """
+    if not (isfinite(step) and round(step * NANOSECONDS) > 0):
+        message = phrase("a time step of {step} s cannot be simulated", step=step)
+        raise LinkwrightError(Diagnostic("SIM106", message, hint=phrase("0.001 is usual: <max_step_size>0.001")))
+    return round(step * NANOSECONDS)
+
+
+def _outlook(world: World) -> tuple[object, ...]:
+    """What MuJoCo's model, or pictures of it, are made anew for."""
+    return gravity_of(world), physics_of(world).max_step_size, world.scene, world.lights
 
 
 class Motor:

@@ -52,6 +52,11 @@ class MeshLibrary:
         self._assets: dict[Hashable, list[str]] = {}
         self._told: set[str] = set()
 
+    def look_in(self, finder: ResourceFinder) -> None:
+        """Find meshes elsewhere from now on; those that were not there are looked for again."""
+        self._finder = finder
+        self._files = {key: path for key, path in self._files.items() if path is not None}
+
     def collisions(
         self, body: Any, shape: Shape, pose: Transform, element: Element | None, *, fixed: bool
     ) -> list[Any]:

@@ -91,6 +91,18 @@ class Scene:
             if model.name not in self.models:  # `check` tells of a second one
                 self.add(model, model.name, frames.pose(model.name))
 
+    def set_physics(self, world: World, step: float) -> None:
+        """Take gravity from another world, and another time step in s; models stay as they are."""
+        self.spec.option.gravity = list(gravity_of(world))
+        if step == self.step:
+            return
+        self.step = self.spec.option.timestep = step
+        self._unsettled |= self._driven.keys()
+        loops = (self._mujoco.mjtEq.mjEQ_WELD, self._mujoco.mjtEq.mjEQ_CONNECT)
+        for equality in self.spec.equalities:
+            if equality.type in loops:
+                equality.solref = [_LOOP_STEPS * step, 1.0]
+
     def _set_options(self, world: World) -> None:
         """What measurements of wheels, casters and rest have shown to be right: decision 0042."""
         option = self.spec.option
@@ -135,6 +147,27 @@ class Scene:
             added.parts += self._closed(joint, poses)
         added.parts += self._strangers(structure)
         return added
+
+    def place(self, name: str, pose: Transform) -> None:
+        """Let a model begin elsewhere.
+
+        Args:
+            name: what it is called.
+            pose: where its frame stands in the world.
+
+        Raises:
+            KeyError: there is none of that name.
+            FrameError: a link of it cannot be placed.
+        """
+        placed = self.models[name]
+        placed.structure = structure_of(placed.model, name, pose)
+        placed.pose = pose
+        for held in placed.structure.links:
+            body = self.bodies[held.link.name]
+            if body.parent == self.spec.worldbody:
+                set_pose(body, held.link.pose)
+            if held.joint is not None and held.joint.name in self.joints:
+                self.joints[held.joint.name] = held.joint
 
     def remove(self, name: str) -> None:
         """Remove a model.

@@ -16,7 +16,7 @@ from linkwright.messages import Header, String, Time, get_message
 from linkwright.messages.tf_message import TFMessage, TransformBatch
 from linkwright.sdf.frames import pose_of
 from linkwright.sdf.poses import WORLD, RawPose
-from linkwright.sdf.resources import Missing, ResourceFinder
+from linkwright.sdf.resources import Missing
 from linkwright.sdf.writer import save
 from linkwright.simulation.plugins.node import Output
 from linkwright.simulation.server.server import SimulationServer
@@ -37,13 +37,11 @@ class Reports:
     Args:
         server: the simulation.
         node: the node of the simulator.
-        finder: where meshes are, whose addresses are told as files.
         clock_rate: how often a simulated second the time is told.
     """
 
-    def __init__(self, server: SimulationServer, node: Node, finder: ResourceFinder, clock_rate: float) -> None:
+    def __init__(self, server: SimulationServer, node: Node, clock_rate: float) -> None:
         self._server = server
-        self._finder = finder
         self._clock = self._output(node, _CLOCK, "/clock", CLOCK_QOS)
         self._state = self._output(node, _STATE, "/simulation_state", _LATCHED)
         self._description = self._output(node, "std_msgs/msg/String", "/world_description", _LATCHED)
@@ -106,5 +104,5 @@ class Reports:
         self._clock.publish(get_message(_CLOCK)(clock=self._time()))
 
     def _address(self, written: str, beside: Path) -> str:
-        found = self._finder.file(written, beside) if written else Missing
+        found = self._server.simulation.finder.file(written, beside) if written else Missing
         return found.as_uri() if isinstance(found, Path) and found.is_absolute() else written

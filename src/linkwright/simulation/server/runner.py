@@ -9,6 +9,7 @@ from math import inf
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import run_logged
+from linkwright.sdf.worlds import physics_of
 from linkwright.simulation.server.server import SimulationServer
 from linkwright.simulation.simulation import NANOSECONDS
 
@@ -31,7 +32,8 @@ class Runner:
 
     Args:
         server: the simulation.
-        factor: how many simulated seconds pass in a real one; infinite for as many as can be.
+        factor: how many simulated seconds pass in a real one; infinite for as many as can be, 0 for what the
+            world says.
         paused: whether it begins paused.
         seconds: after how many simulated seconds it is done; None for never.
         watch: called in the thread every now and then, paused or not.
@@ -47,7 +49,7 @@ class Runner:
         self,
         server: SimulationServer,
         *,
-        factor: float = 1.0,
+        factor: float = 0.0,
         paused: bool = False,
         seconds: float | None = None,
         watch: Callable[[], None] = lambda: None,
@@ -57,10 +59,12 @@ class Runner:
         self.paused = paused
         self.real_time_factor = 0.0
         self._server = server
-        self._factor = factor
+        self._said_factor = factor
+        self._factor = 1.0
         self._left = None if seconds is None else round(seconds * NANOSECONDS)
         self._watch, self._on_state, self._on_end = watch, on_state, on_end
         self._ends = False
+        server.on_change.append(self._resume)
         self._began = (0.0, 0)
         self._measured = (0.0, 0)
         self._thread = threading.Thread(target=self._run, name="linkwright-simulation", daemon=True)
@@ -100,7 +104,8 @@ class Runner:
             self._on_state()
 
     def _resume(self) -> None:
-        """Count real time from now on."""
+        """Count real time from now on, as fast as is said; the world may be another one."""
+        self._factor = self._said_factor or max(physics_of(self._server.simulation.world).real_time_factor, 0.0) or 1.0
         self._began = self._measured = (time.monotonic(), self._server.simulation.time)
 
     def _run(self) -> None:

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from zlib import crc32
 
 import numpy as np
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, foreign, joined, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, joined, phrase
 from linkwright.geometry.single import IDENTITY, Transform
 from linkwright.graph import Node
-from linkwright.sdf.frames import FrameError
+from linkwright.sdf.comparison import alike
 from linkwright.sdf.models import Model
+from linkwright.sdf.resources import ResourceFinder
+from linkwright.sdf.saved import as_saved
+from linkwright.sdf.worlds import World
 from linkwright.simulation.exchange import Exchange
 from linkwright.simulation.plugins.node import PluginNode
 from linkwright.simulation.plugins.parameters import parameters_from
@@ -21,6 +24,9 @@ from linkwright.simulation.plugins.places import of_model, of_world
 from linkwright.simulation.plugins.plugin import PluginClass, PluginPlace, SimulatedPlugin
 from linkwright.simulation.plugins.registry import is_of_gz, needs_nothing, plugin_class, sensor_class
 from linkwright.simulation.plugins.ros_element import node_of
+from linkwright.simulation.scene.scene import SceneModel
+from linkwright.simulation.server.carrying import motion_of, resume
+from linkwright.simulation.server.changes import Coming, changes_to, check, come_into, surroundings
 from linkwright.simulation.simulation import Simulation
 
 _WORLD = ""
@@ -68,6 +74,8 @@ class SimulationServer:
         self._options = options or ServerOptions()
         self._usual: set[str] | None = set() if self._options.usual_names else None
         self._plugins: dict[str, list[SimulatedPlugin[object]]] = {}
+        self._namespaces: dict[str, str] = {}
+        self._of_world = set(simulation.scene.models)
         self._node_names: set[str] = set()
         self._told: set[str] = set()
 
@@ -99,24 +107,68 @@ class SimulationServer:
         Raises:
             LinkwrightError: SIM102 there is a model of that name; SIM140 it cannot be placed or moved.
         """
+        if name in self.simulation.scene.models:
+            raise LinkwrightError(Diagnostic("SIM102", phrase("there is already a model '{name}'", name=name)))
+        self._exchange((), (Coming(model, name, pose, namespace),))
+
+    def renew(self, model: Model, name: str) -> None:
+        """Take another model in the place of one: it goes on where that is, as fast, its joints as they are.
+
+        Args:
+            model: with its includes resolved.
+            name: what both are called.
+
+        Raises:
+            LinkwrightError: SIM141 there is none of that name; SIM140 it cannot be placed or moved, and nothing has
+                changed.
+        """
+        before = self._model(name)
+        coming = Coming(model, name, before.pose, self._namespaces.get(name, ""), here=True)
+        check(self.simulation.world, self.simulation, (coming,), self.simulation.finder)
+        self._exchange((), (replace(coming, motion=motion_of(self.simulation, name)),))
+
+    def load(self, world: World, finder: ResourceFinder, allow: Callable[[Sequence[Diagnostic]], object]) -> None:
+        """Make the world that runs another one; what is the same in both goes on as it is, and what was spawned stays.
+
+        Args:
+            world: the other one, with its includes resolved.
+            finder: where its meshes are.
+            allow: called with what of it could not be taken over, before anything changes; it may raise.
+
+        Raises:
+            LinkwrightError: SIM102 a model has the name of one that was spawned; SIM104, SIM140 it cannot be simulated.
+                Nothing has changed.
+        """
+        simulation, before = self.simulation, self.simulation.world
+        wanted = as_saved(world)
+        changes = changes_to(wanted, simulation.scene.models, self._of_world)
+        if surroundings(before) != surroundings(wanted):
+            changes = changes.with_all(simulation.scene.models, self._namespaces)
+        allow(check(wanted, simulation, (*changes.renewed, *changes.new), finder))
+        renewed = tuple(replace(each, motion=motion_of(simulation, each.name)) for each in changes.renewed)
+        simulation.set_world(world, finder)
+        simulation.place(changes.moved)
+        self._exchange(changes.gone, (*renewed, *changes.new))
+        self._of_world = {each.name for each in wanted.models}
+        if not alike(before.plugins, wanted.plugins):
+            self._end(self._plugins.pop(_WORLD, []))
+            self._load(_WORLD, of_world(wanted), "")
+
+    def _exchange(self, gone: Iterable[str], coming: Sequence[Coming]) -> None:
+        """Let models go and others come, those of the same name in their places."""
         simulation = self.simulation
         told = len(simulation.scene.diagnostics)
-        is_new = name not in simulation.scene.models
-        try:
-            simulation.spawn(model, name, pose)
-            simulation.refresh()
-        except (FrameError, ValueError, RuntimeError, LinkwrightError) as error:
-            if is_new and name in simulation.scene.models:
-                simulation.delete(name)
-            if isinstance(error, LinkwrightError):
-                raise
-            reason = (
-                phrase("'{name}' has no place", name=error.name) if isinstance(error, FrameError) else foreign(error)
-            )
-            message = phrase("model '{name}' cannot be simulated: {reason}", name=name, reason=reason)
-            raise LinkwrightError(Diagnostic("SIM140", message)) from error
+        for name in (*gone, *(each.name for each in coming if each.name in simulation.scene.models)):
+            self._end(self._plugins.pop(name, []))
+            simulation.delete(name)
+        come_into(simulation, coming)
+        for each in coming:
+            if each.motion is not None:
+                resume(simulation, each.name, each.motion, here=each.here)
         self._tell(simulation.scene.diagnostics[told:])
-        self._load(name, of_model(simulation.world, model, name), namespace)
+        for each in coming:
+            self._namespaces[each.name] = each.namespace
+            self._load(each.name, of_model(simulation.world, each.model, each.name), each.namespace)
         self._changed()
 
     def delete(self, name: str) -> None:
@@ -125,11 +177,16 @@ class SimulationServer:
         Raises:
             LinkwrightError: SIM141 there is none of that name.
         """
-        if name not in self.simulation.scene.models:
-            raise LinkwrightError(Diagnostic("SIM141", phrase("there is no model '{name}'", name=name)))
+        self._model(name)
         self._end(self._plugins.pop(name, []))
+        self._of_world.discard(name)
         self.simulation.delete(name)
         self._changed()
+
+    def _model(self, name: str) -> SceneModel:
+        if name not in self.simulation.scene.models:
+            raise LinkwrightError(Diagnostic("SIM141", phrase("there is no model '{name}'", name=name)))
+        return self.simulation.scene.models[name]
 
     def reset(self) -> None:
         """Begin anew: everything is where it was, at time 0, and random numbers are the same again."""

@@ -15,11 +15,12 @@ from linkwright.geometry.single import IDENTITY, Transform, compose, invert, nor
 from linkwright.messages import Header, Quaternion, Time, Vector3, get_message
 from linkwright.sdf.frames import transform_of
 from linkwright.sdf.poses import SEPARATOR, WORLD
-from linkwright.sdf.resources import ResourceFinder
 from linkwright.simulation.plugins.node import PluginNode
 from linkwright.simulation.server.entities import entity_from
+from linkwright.simulation.server.loading import WorldLoader, told
 from linkwright.simulation.server.runner import Runner
 from linkwright.simulation.server.server import SimulationServer
+from linkwright.simulation.server.worlds import LoadedWorld
 from linkwright.simulation.server.wrenches import Wrench, Wrenches
 from linkwright.simulation.simulation import NANOSECONDS
 
@@ -36,8 +37,11 @@ class Services:
         server: the simulation.
         runner: what advances it.
         node: the node of the simulator.
-        finder: where the includes of models are.
+        world: what is simulated.
         library: the robot descriptions that the process has read.
+
+    Attributes:
+        worlds: what makes the world another one.
     """
 
     def __init__(
@@ -45,12 +49,12 @@ class Services:
         server: SimulationServer,
         runner: Runner,
         node: PluginNode,
-        finder: ResourceFinder,
+        world: LoadedWorld,
         library: DescriptionLibrary,
     ) -> None:
         self._server = server
         self._runner = runner
-        self._finder = finder
+        self.worlds = WorldLoader(server, world)
         self._library = library
         self._wrenches = Wrenches(server.simulation)
         for kind, name, callback in (
@@ -66,6 +70,7 @@ class Services:
             ("std_srvs/srv/Empty", "/reset_simulation", self._reset),
             ("std_srvs/srv/Empty", "/reset_world", self._reset),
             ("simulation_interfaces/srv/StepSimulation", "/step_simulation", self._step),
+            ("simulation_interfaces/srv/LoadWorld", "/load_world", self.worlds.answer),
         ):
             node.service(kind, name, callback)
 
@@ -83,7 +88,7 @@ class Services:
         Raises:
             LinkwrightError: what is wrong with it.
         """
-        entity = entity_from(text, self._finder, self._library)
+        entity = entity_from(text, self._server.simulation.finder, self._library)
         placed = compose(pose, transform_of(entity.model.pose.pose))
         self._server.spawn(entity.model, name or entity.model.name, placed, namespace)
 
@@ -232,10 +237,7 @@ def _answered(response: Any, work: Callable[[], str]) -> Any:
     try:
         response.success, message = True, work()
     except LinkwrightError as error:
-        finding = error.diagnostics[0]
-        place = f"{finding.span}: " if finding.span else ""
-        hint = f" ({finding.hint})" if finding.hint else ""
-        response.success, message = False, f"{place}{finding.message}{hint}"
+        response.success, message = False, told(error.diagnostics[0])
     if hasattr(response, "status_message"):
         response.status_message = message
     return response

@@ -11,33 +11,46 @@ from linkwright.packages import PackageFinder
 from linkwright.sdf.resources import ResourceFinder
 from linkwright.sdf.worlds import World
 from linkwright.simulation.simulation import count_links
+from linkwright.xmltree import Overlay
+
+_FILE = "file://"
 
 
 class LoadedWorld(NamedTuple):
-    """A world that was read, with its includes, where its files are, what is remarkable about it, and what was read."""
+    """A world that was read, with its includes.
+
+    Attributes:
+        world: what it says.
+        finder: where its files are.
+        diagnostics: what is remarkable about it.
+        path: the file.
+        files: all files that it was made of.
+    """
 
     world: World
     finder: ResourceFinder
     diagnostics: tuple[Diagnostic, ...]
+    path: Path
     files: tuple[Path, ...]
 
 
-def load_world(name: str) -> LoadedWorld:
+def load_world(name: str, text: str | None = None) -> LoadedWorld:
     """The first world of a file.
 
     Args:
-        name: the file, or the name of a world on the search path: ``empty``.
+        name: the file or its address, or the name of a world on the search path: ``empty``.
+        text: what is taken for the text of the file, which need not be there.
 
     Raises:
         LinkwrightError: SIM150 there is no such world; SIM151 the file has none; SIM105 it has too many
             links; what is wrong with it.
     """
-    path = Path(name).expanduser()
+    path = Path(name.removeprefix(_FILE)).expanduser()
     finder = PackageFinder(start=[path.absolute().parent, Path.cwd()])
     resources = ResourceFinder(finder)
-    if not path.is_file():
+    if text is None and not path.is_file():
         path = _named(name, resources)
-    description = examine_world(path, packages=finder)
+    description = examine_world(path, packages=finder, overlay=None if text is None else Overlay({path: text}))
     if description.sdf is None:
         raise LinkwrightError(*description.diagnostics)
     if not description.sdf.worlds:
@@ -47,7 +60,7 @@ def load_world(name: str) -> LoadedWorld:
         raise LinkwrightError(*wrong or [Diagnostic("SIM151", message, hint=hint)])
     world = description.sdf.worlds[0]
     count_links(world.models)
-    return LoadedWorld(world, resources, description.diagnostics, description.files)
+    return LoadedWorld(world, resources, description.diagnostics, path, description.files)
 
 
 def _named(name: str, finder: ResourceFinder) -> Path:

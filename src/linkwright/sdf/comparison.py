@@ -1,0 +1,52 @@
+"""Whether two things that were read say the same, wherever and however they were written."""
+
+from __future__ import annotations
+
+from dataclasses import fields, is_dataclass
+from pathlib import Path
+from typing import Any
+
+from linkwright.sdf.links import Collision, Visual
+from linkwright.sdf.plugins import Plugin
+from linkwright.sdf.shapes import Heightmap, Mesh
+from linkwright.xmltree import Element
+
+
+def alike(one: Any, other: Any) -> bool:
+    """Whether two parts of the model of a file, or tuples of them, say the same.
+
+    Comments, blanks and positions make no difference. The parameters of plugins do, which only their elements hold, and
+    so do the folders of files that name meshes by paths.
+    """
+    if one is other:
+        return True
+    if type(one) is not type(other):
+        return False
+    if isinstance(one, tuple):
+        return len(one) == len(other) and all(map(alike, one, other))
+    if not is_dataclass(one):
+        return bool(one == other or (one != one and other != other))
+    if isinstance(one, Plugin) and not _same_elements(one.element, other.element):
+        return False
+    if isinstance(one, Visual | Collision) and _folder(one) != _folder(other):
+        return False
+    return all(alike(getattr(one, each.name), getattr(other, each.name)) for each in fields(one) if each.compare)
+
+
+def _same_elements(one: Element | None, other: Element | None) -> bool:
+    if one is None or other is None:
+        return one is other
+    return _said(one) == _said(other)
+
+
+def _said(element: Element) -> tuple[object, ...]:
+    inside = tuple(map(_said, element.elements()))
+    return element.tag, element.attributes, element.text().split(), inside
+
+
+def _folder(part: Visual | Collision) -> Path | None:
+    """The folder from which the paths in a part with a mesh start; None where it makes no difference."""
+    shape, element = part.geometry, part.element
+    if not isinstance(shape, Mesh | Heightmap) or "://" in shape.uri or element is None or element.source is None:
+        return None
+    return Path(element.source.name).absolute().parent

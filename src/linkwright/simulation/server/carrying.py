@@ -1,0 +1,94 @@
+"""How a model moves, kept while it comes anew."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from linkwright.geometry.arrays import Array
+from linkwright.geometry.single import Transform, compose, invert
+from linkwright.geometry.vectors import Vector3
+from linkwright.simulation.simulation import Simulation
+
+
+@dataclass(frozen=True, slots=True)
+class Motion:
+    """How a model stands and moves.
+
+    Attributes:
+        pose: where its frame is in the world.
+        linear: the velocity of its first link in m/s, in the axes of the world.
+        angular: that of its turning in rad/s, in the axes of the world.
+        joints: type, positions and velocities of its joints as MuJoCo has them, by name.
+    """
+
+    pose: Transform
+    linear: Vector3
+    angular: Vector3
+    joints: dict[str, tuple[int, Array, Array]]
+
+
+def motion_of(simulation: Simulation, name: str) -> Motion:
+    """How a model stands and moves now.
+
+    Raises:
+        KeyError: there is no such model.
+    """
+    pose = simulation.model_pose(name)
+    first = simulation.scene.models[name].structure.links[0].link.name
+    linear, angular = simulation.link_velocity(first)
+    joints = {}
+    for joint, number in _joints(simulation, name).items():
+        view = simulation.data.joint(number)
+        joints[joint] = int(simulation.model.jnt_type[number]), view.qpos.copy(), view.qvel.copy()
+    return Motion(pose, tuple(linear.tolist()), tuple(angular.tolist()), joints)
+
+
+def resume(simulation: Simulation, name: str, motion: Motion, *, here: bool) -> None:
+    """Let a model go on as one of its name did before: its joints, where those have stayed what they were.
+
+    Args:
+        simulation: the world.
+        name: what the model is called.
+        motion: how it moved.
+        here: whether it goes on where it was, too, and as fast; if it moves freely.
+
+    Raises:
+        KeyError: there is no such model.
+    """
+    free = {f"{link}#free": link for link in simulation.free_links(name)}
+    for joint, number in _joints(simulation, name).items():
+        kind, position, velocity = motion.joints.get(joint, (-1, None, None))
+        if joint not in free and kind == int(simulation.model.jnt_type[number]):
+            view = simulation.data.joint(number)
+            view.qpos[:], view.qvel[:] = position, velocity
+    simulation.set_moved()
+    if here and free:
+        _put(simulation, name, motion, free)
+
+
+def _put(simulation: Simulation, name: str, motion: Motion, free: dict[str, str]) -> None:
+    """Put all links that move freely where they were; the first, and those that are new, by the frame of the model."""
+    model = simulation.scene.models[name]
+    poses = {held.link.name: held.link.pose for held in model.structure.links}
+    moved = compose(motion.pose, invert(model.pose))
+    for number, (joint, link) in enumerate(free.items()):
+        view = simulation.data.joint(joint)
+        if number and joint in motion.joints:
+            _, view.qpos[:], view.qvel[:] = motion.joints[joint]
+        else:
+            x, y, z, qx, qy, qz, qw = compose(moved, poses[link])
+            view.qpos[:] = x, y, z, qw, qx, qy, qz
+    simulation.set_moved()
+    if simulation.moves_freely(name):
+        simulation.set_model_velocity(name, motion.linear, motion.angular)
+
+
+def _joints(simulation: Simulation, name: str) -> dict[str, int]:
+    """The joints that MuJoCo has of a model, and their numbers."""
+    simulation.refresh()
+    model, found = simulation.model, {}
+    for held in simulation.scene.models[name].structure.links:
+        body = model.body(held.link.name)
+        for number in range(int(body.jntadr[0]), int(body.jntadr[0]) + int(body.jntnum[0])):
+            found[model.joint(number).name] = number
+    return found

@@ -1,0 +1,167 @@
+"""What is to be done to a world that runs so that it becomes another one."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, foreign, phrase
+from linkwright.geometry.single import Transform
+from linkwright.sdf.comparison import alike
+from linkwright.sdf.frames import FrameError, Frames
+from linkwright.sdf.models import Model
+from linkwright.sdf.poses import AT_ORIGIN
+from linkwright.sdf.resources import ResourceFinder
+from linkwright.sdf.worlds import World, physics_of
+from linkwright.simulation.scene.scene import SceneModel
+from linkwright.simulation.server.carrying import Motion
+from linkwright.simulation.simulation import Simulation, count_links
+
+
+@dataclass(frozen=True, slots=True)
+class Coming:
+    """A model that comes.
+
+    Attributes:
+        model: with its includes resolved.
+        name: what it is called.
+        pose: where its frame is in the world when this begins.
+        namespace: of the nodes of its plugins that name none.
+        motion: how the one moved in whose place it comes; None for none.
+        here: whether it goes on where that one was.
+    """
+
+    model: Model
+    name: str
+    pose: Transform
+    namespace: str = ""
+    motion: Motion | None = None
+    here: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Changes:
+    """What makes one world another.
+
+    Attributes:
+        gone: names of the models that go.
+        moved: those that stand elsewhere and are as they were: their new poses in the world.
+        renewed: those that are others, which have names that were there.
+        new: those that come.
+    """
+
+    gone: tuple[str, ...]
+    moved: dict[str, Transform]
+    renewed: tuple[Coming, ...]
+    new: tuple[Coming, ...]
+
+    def with_all(self, running: Mapping[str, SceneModel], namespaces: Mapping[str, str]) -> Changes:
+        """These, and all that would stay as it is comes anew where it is."""
+        others = {*self.gone, *(each.name for each in self.renewed)}
+        poses = {name: self.moved.get(name, each.pose) for name, each in running.items() if name not in others}
+        rest = (
+            Coming(running[name].model, name, pose, namespaces.get(name, ""), here=name not in self.moved)
+            for name, pose in poses.items()
+        )
+        return replace(self, moved={}, renewed=(*self.renewed, *rest))
+
+
+def changes_to(world: World, running: Mapping[str, SceneModel], owned: Collection[str]) -> Changes:
+    """What makes the models that run those of another world.
+
+    Args:
+        world: the other one, with its includes resolved and as it was saved.
+        running: the models that run, by name.
+        owned: names of those that came with a world; all others stay as they are.
+
+    Raises:
+        LinkwrightError: SIM102 a model has the name of one that stays; SIM140 one has no place.
+    """
+    frames = Frames(world)
+    moved: dict[str, Transform] = {}
+    renewed: list[Coming] = []
+    new: list[Coming] = []
+    names: set[str] = set()
+    for model in world.models:
+        if model.name in names:
+            continue  # `check` tells of a second one
+        names.add(model.name)
+        try:
+            pose = frames.pose(model.name)
+        except FrameError as error:
+            raise _not_simulated(model.name, error) from error
+        before = running.get(model.name)
+        if before is None:
+            new.append(Coming(model, model.name, pose))
+        elif model.name not in owned:
+            span = None if model.element is None else model.element.span()
+            message = phrase("there is already a model '{name}'", name=model.name)
+            hint = phrase("it was put into the running simulation: delete it there, or give this one another name")
+            raise LinkwrightError(Diagnostic("SIM102", message, span, hint=hint))
+        elif not alike(_unplaced(before.model), _unplaced(model)):
+            renewed.append(Coming(model, model.name, pose, here=pose == before.pose))
+        elif pose != before.pose:
+            moved[model.name] = pose
+    gone = tuple(name for name in running if name in owned and name not in names)
+    return Changes(gone, moved, tuple(renewed), tuple(new))
+
+
+def check(world: World, simulation: Simulation, coming: Sequence[Coming], finder: ResourceFinder) -> list[Diagnostic]:
+    """Try whether models can be simulated in a world, beside the simulation that runs.
+
+    Args:
+        world: the world; its own models are left out.
+        simulation: the one that runs.
+        coming: the models.
+        finder: where meshes are.
+
+    Returns:
+        What could not be taken over.
+
+    Raises:
+        LinkwrightError: SIM104, SIM105, SIM140 they cannot.
+    """
+    models = {each.name: each.model for each in simulation.scene.models.values()}
+    count_links((models | {each.name: each.model for each in coming}).values())
+    trial = simulation.beside(replace(world, models=(), states=()), finder)
+    come_into(trial, coming)
+    return trial.scene.diagnostics
+
+
+def come_into(simulation: Simulation, coming: Sequence[Coming]) -> None:
+    """Put models into a simulation, all or none.
+
+    Raises:
+        LinkwrightError: SIM102 there is a model of such a name; SIM104, SIM105, SIM140 one cannot be simulated.
+    """
+    came: list[str] = []
+    try:
+        for each in coming:
+            came.append(each.name)
+            simulation.spawn(each.model, each.name, each.pose)
+        simulation.refresh()
+    except (FrameError, ValueError, RuntimeError, LinkwrightError) as error:
+        for name in came:
+            if name in simulation.scene.models:
+                simulation.delete(name)
+        raise _not_simulated(came[-1], error) from error
+
+
+def surroundings(world: World) -> tuple[object, ...]:
+    """What the plugins of models go by besides their models."""
+    physics = physics_of(world)
+    return world.name, world.spherical_coordinates, world.magnetic_field, world.wind, physics.max_step_size
+
+
+def _not_simulated(name: str, error: Exception) -> LinkwrightError:
+    if isinstance(error, LinkwrightError):
+        return error
+    reason: Phrase = foreign(error)
+    if isinstance(error, FrameError):
+        reason = phrase("'{name}' has no place", name=error.name)
+    message = phrase("model '{name}' cannot be simulated: {reason}", name=name, reason=reason)
+    return LinkwrightError(Diagnostic("SIM140", message))
+
+
+def _unplaced(model: Model) -> Model:
+    return replace(model, pose=AT_ORIGIN, placement_frame="")

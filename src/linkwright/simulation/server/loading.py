@@ -1,0 +1,122 @@
+"""Making the world that runs that of another file or text, by ``/load_world``.
+
+Source: ``simulation_interfaces/srv/LoadWorld``. There the scene is cleared and the simulation stops; here what is the
+same in both worlds goes on as it is, what was spawned stays, and so does time. ``uri`` is the path or address of a
+file, or the name of a world; ``resource_string``, which counts for nothing beside it there, is the text that the file
+has not been saved with yet.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, phrase
+from linkwright.messages import get_message
+from linkwright.simulation.server.server import SimulationServer
+from linkwright.simulation.server.worlds import LoadedWorld, load_world
+
+_OK, _NOT_FOUND, _FAILED = 1, 2, 4
+"""Of simulation_interfaces/msg/Result."""
+_UNSUPPORTED_FORMAT, _NO_RESOURCE, _UNREADABLE, _MISSING_ASSETS, _UNSUPPORTED_ELEMENTS = 101, 102, 103, 104, 106
+"""Of simulation_interfaces/srv/LoadWorld."""
+_RESULTS = {
+    "SIM150": _NOT_FOUND,
+    "SIM151": _UNSUPPORTED_FORMAT,
+    "SIM102": _FAILED,
+    "SIM104": _FAILED,
+    "SIM105": _FAILED,
+    "SIM106": _FAILED,
+    "SIM140": _FAILED,
+    "SIM152": _NO_RESOURCE,
+}
+_MISSING, _NOT_READ = ("SDF160", "SIM112"), ("SDF150",)
+"""The codes of models and meshes that are not there, and of elements that are not read."""
+_TEXT = "<the world>"
+
+
+class WorldLoader:
+    """Makes the world that runs another one.
+
+    Args:
+        server: the simulation.
+        loaded: the world that it runs.
+
+    Attributes:
+        loaded: the world that it runs now.
+    """
+
+    def __init__(self, server: SimulationServer, loaded: LoadedWorld) -> None:
+        self.loaded = loaded
+        self._server = server
+
+    def load(self, uri: str, text: str = "", *, refused: Sequence[str] = ()) -> None:
+        """Make the world that runs that of a file or text.
+
+        What is wrong with both worlds alike is no reason to refuse the other one.
+
+        Args:
+            uri: the file; empty for a text that is of none.
+            text: what is taken for the text of the file; empty for what it says.
+            refused: codes of warnings for which it is not taken.
+
+        Raises:
+            LinkwrightError: it cannot be read or simulated; nothing has changed.
+        """
+        if not (uri or text):
+            hint = phrase("give the file of a world, or its text")
+            raise LinkwrightError(Diagnostic("SIM152", phrase("no world is given"), hint=hint))
+        loaded = load_world(uri or str(Path.cwd() / _TEXT), text or None)
+        known = {_essence(each) for each in (*self.loaded.diagnostics, *self._server.simulation.scene.diagnostics)}
+
+        def allow(findings: Sequence[Diagnostic]) -> None:
+            wrong = [
+                each
+                for each in findings
+                if (each.severity is Severity.ERROR or each.code in refused) and _essence(each) not in known
+            ]
+            if wrong:
+                raise LinkwrightError(*wrong)
+
+        allow(loaded.diagnostics)
+        self._server.load(loaded.world, loaded.finder, allow)
+        self.loaded = loaded
+
+    def answer(self, request: Any, response: Any) -> Any:
+        """Answer ``/load_world``."""
+        resource = request.world_resource
+        refused = (
+            *(() if request.ignore_missing_or_unsupported_assets else _MISSING),
+            *(_NOT_READ if request.fail_on_unsupported_element else ()),
+        )
+        try:
+            self.load(resource.uri, resource.resource_string, refused=refused)
+        except LinkwrightError as error:
+            finding = error.diagnostics[0]
+            response.result.result = _result(finding)
+            response.result.error_message = told(finding)
+            return response
+        response.result.result = _OK
+        response.world.name = self.loaded.world.name
+        response.world.world_resource = get_message("simulation_interfaces/msg/Resource")(uri=str(self.loaded.path))
+        return response
+
+
+def told(finding: Diagnostic) -> str:
+    """A finding in one line: where, what, and what to do about it."""
+    place = f"{finding.span}: " if finding.span else ""
+    hint = f" ({finding.hint})" if finding.hint else ""
+    return f"{place}{finding.message}{hint}"
+
+
+def _result(finding: Diagnostic) -> int:
+    if finding.code in _MISSING:
+        return _MISSING_ASSETS
+    if finding.code in _NOT_READ:
+        return _UNSUPPORTED_ELEMENTS
+    return _RESULTS.get(finding.code, _UNREADABLE)
+
+
+def _essence(finding: Diagnostic) -> tuple[str, str]:
+    return finding.code, str(finding.message)

@@ -1,0 +1,223 @@
+"""Making the world that runs another one: `/load_world`."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.graph import DurabilityPolicy, QoSProfile
+from linkwright.messages import get_message
+from tests.simulation.test_plugins import joint_states, robot
+from tests.simulation.test_server import simulator
+from tests.simulation.worlds import box
+from tests.waiting import eventually
+
+GROUND = "<include><uri>model://ground_plane</uri></include>"
+LATCHED = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+SPIN = """<model name="arm"><pose>5 5 1 0 0 0</pose><link name="base"/>
+<link name="tip"><pose>0 0 0.5 0 0 0</pose></link>
+<joint name="fix" type="fixed"><parent>world</parent><child>base</child></joint>
+<joint name="turn" type="revolute"><parent>base</parent><child>tip</child><axis><xyz>0 0 1</xyz></axis></joint>
+{more}</model>"""
+
+
+def text(*parts: str) -> str:
+    """A world."""
+    return f'<sdf version="1.7"><world name="test">{GROUND}{"".join(parts)}</world></sdf>'
+
+
+async def load(it, tmp_path, *parts: str, said: str = "", **flags: bool):
+    """Load another text for the file of the world."""
+    resource = get_message("simulation_interfaces/msg/Resource")
+    world = resource(uri=str(tmp_path / "a.world"), resource_string=said or text(*parts))
+    return await it.ask("simulation_interfaces/srv/LoadWorld", "/load_world", world_resource=world, **flags)
+
+
+async def steps(it, count: int) -> None:
+    """Let time pass."""
+    await it.ask("simulation_interfaces/srv/StepSimulation", "/step_simulation", steps=count)
+
+
+async def test_what_is_the_same_goes_on(tmp_path):
+    falling, other = box("one", "0 0 9 0 0 0"), box("two", "3 0 9 0 0 0")
+    async with simulator(tmp_path, falling, other) as it:
+        simulation = it.simulator.server.simulation
+        await steps(it, 100)
+        before = simulation.model_pose("one"), *map(tuple, simulation.link_velocity("one::link"))
+        answer = await load(it, tmp_path, "\n<!-- here -->", falling.replace("9 0 0 0", " 9.0  0 0 0"), other)
+        assert (answer.result.result, answer.result.error_message) == (answer.result.RESULT_OK, "")
+        assert (answer.world.name, answer.world.world_resource.uri) == ("test", str(tmp_path / "a.world"))
+        assert (simulation.model_pose("one"), *map(tuple, simulation.link_velocity("one::link"))) == before
+        assert simulation.time == 100_000_000
+        assert simulation.revision == 0, "nothing was made anew"
+
+
+async def test_what_stands_elsewhere_is_moved_and_begins_there(tmp_path):
+    async with simulator(tmp_path, box("one", "0 0 9 0 0 0"), box("two", "3 0 9 0 0 0")) as it:
+        simulation = it.simulator.server.simulation
+        await steps(it, 100)
+        before = simulation.model_pose("two"), *map(tuple, simulation.link_velocity("two::link"))
+        await load(it, tmp_path, box("one", "0 1 5 0 0 0"), box("two", "3 0 9 0 0 0"))
+        assert simulation.model_pose("one")[:3] == (0, 1, 5)
+        assert not simulation.link_velocity("one::link")[0].any()
+        assert (simulation.model_pose("two"), *map(tuple, simulation.link_velocity("two::link"))) == before
+        await steps(it, 100)
+        await it.ask("std_srvs/srv/Empty", "/reset_world")
+        assert simulation.model_pose("one")[:3] == (0, 1, 5)
+        assert simulation.model_pose("two")[:3] == (3, 0, 9)
+
+
+async def test_what_stands_fast_is_moved_with_its_joints_as_they_are(tmp_path):
+    async with simulator(tmp_path, SPIN.format(more="")) as it:
+        simulation = it.simulator.server.simulation
+        simulation.set_joint_position("arm::turn", 0.7)
+        await load(it, tmp_path, SPIN.format(more="").replace("5 5 1 0", "6 5 1 0"))
+        assert simulation.joint_state("arm::turn")[0] == pytest.approx(0.7)
+        assert simulation.model_pose("arm")[:3] == (6, 5, 1)
+        assert simulation.link_pose("arm::tip")[:3] == pytest.approx((6, 5, 1.5))
+
+
+async def test_what_has_changed_comes_anew_where_it_is(tmp_path):
+    async with simulator(tmp_path, box("one", "0 0 9 0 0.3 0"), SPIN.format(more="")) as it:
+        simulation = it.simulator.server.simulation
+        simulation.set_model_velocity("one", (1.0, 2.0, 0.0), (0.0, 0.0, 3.0))
+        simulation.set_joint_position("arm::turn", 0.7)
+        await steps(it, 100)
+        before = simulation.model_pose("one"), simulation.link_velocity("one::link")
+        turned = simulation.joint_state("arm::turn")
+        hand = '<link name="hand"/><joint name="hold" type="fixed"><parent>tip</parent><child>hand</child></joint>'
+        await load(it, tmp_path, box("one", "0 0 9 0 0.3 0", size="1 1 2"), SPIN.format(more=hand))
+        assert simulation.model_pose("one") == pytest.approx(before[0], abs=1e-12)
+        for now, then in zip(simulation.link_velocity("one::link"), before[1], strict=True):
+            assert now == pytest.approx(then, abs=1e-12)
+        assert simulation.joint_state("arm::turn") == turned
+        assert "arm::hand" in simulation.scene.bodies
+        await it.ask("std_srvs/srv/Empty", "/reset_world")
+        assert simulation.model_pose("one")[:3] == (0, 0, 9)
+
+
+async def test_what_has_changed_and_stands_elsewhere_comes_there(tmp_path):
+    async with simulator(tmp_path, box("one", "0 0 9 0 0 0")) as it:
+        await steps(it, 100)
+        await load(it, tmp_path, box("one", "0 4 9 0 0 0", size="1 1 2"))
+        assert it.simulator.server.simulation.model_pose("one")[:3] == (0, 4, 9)
+
+
+async def test_models_come_and_go_and_what_was_spawned_stays(tmp_path):
+    async with simulator(tmp_path, box("one", "0 0 9 0 0 0"), box("two", "3 0 9 0 0 0")) as it:
+        descriptions = it.hear("std_msgs/msg/String", "/world_description", LATCHED)
+        xml = f'<sdf version="1.7">{box("spawned", "0 0 0 0 0 0")}</sdf>'
+        await it.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="spawned", xml=xml)
+        await it.ask("gazebo_msgs/srv/DeleteEntity", "/delete_entity", name="one")
+        await load(it, tmp_path, box("one", "0 0 9 0 0 0"), box("three", "6 0 9 0 0 0"))
+        names = set(it.simulator.server.simulation.scene.models)
+        assert names == {"ground_plane", "spawned", "one", "three"}
+        await eventually(lambda: bool(descriptions) and "three" in descriptions[-1].data)
+        assert "two" not in descriptions[-1].data
+
+
+async def test_physics_gravity_light_and_plugins_follow(tmp_path):
+    async with simulator(tmp_path, box("one", "0 0 9 0 0 0"), real_time_factor=0.0) as it:
+        simulation = it.simulator.server.simulation
+        log = it.hear("rcl_interfaces/msg/Log", "/rosout")
+        physics = (
+            '<physics type="ode"><max_step_size>0.002</max_step_size><real_time_factor>2</real_time_factor></physics>'
+        )
+        sun = '<light name="sun" type="directional"/><scene><ambient>1 0 0 1</ambient></scene>'
+        state = '<plugin name="state" filename="libnobody_knows.so"/>'
+        await load(it, tmp_path, "<gravity>0 0 0</gravity>", physics, sun, state, box("one", "0 0 9 0 0 0"))
+        await steps(it, 500)
+        assert simulation.time == 1_000_000_000
+        assert simulation.model_pose("one")[2] == 9.0
+        assert [each.name for each in simulation.world.lights] == ["sun"]
+        assert simulation.world.scene.ambient[:3] == (1, 0, 0)
+        await eventually(lambda: any("libnobody_knows" in each.msg for each in log))
+        await load(it, tmp_path, box("one", "0 0 9 0 0 0"))
+        await steps(it, 100)
+        assert simulation.model_pose("one")[2] < 9.0
+
+
+async def test_plugins_of_what_has_not_changed_run_on_and_those_of_others_begin_anew(tmp_path):
+    async with simulator(tmp_path, robot(joint_states())) as it:
+        server = it.simulator.server
+        before = server.plugins("mbot")
+        assert before
+        await load(it, tmp_path, robot(joint_states()), box("one", "9 9 1 0 0 0"))
+        assert server.plugins("mbot") == before
+        await load(it, tmp_path, robot(joint_states(more="<ros><namespace>/new</namespace></ros>")))
+        (plugin,) = server.plugins("mbot")
+        assert plugin not in before
+        heard = it.hear("sensor_msgs/msg/JointState", "/new/joint_states")
+        await steps(it, 1000)
+        await eventually(lambda: bool(heard))
+
+
+@pytest.mark.parametrize(
+    ("said", "result", "message"),
+    [
+        ("<sdf", 103, "a.world:1:1: "),
+        (text(box("one", "0 0 what 0 0 0")), 103, "a.world:1:"),
+        ('<sdf version="1.7"><model name="m"><link name="l"/></model></sdf>', 101, "there is no world in"),
+        (text("<include><uri>model://nowhere_at_all</uri></include>"), 104, "a.world:1:"),
+        (text(box("spawned", "0 0 0 0 0 0")), 4, "there is already a model 'spawned'"),
+        (text('<physics type="ode"><max_step_size>-1</max_step_size></physics>'), 4, "a time step of -1.0 s"),
+        (text("<includ/>"), 106, "<includ> in <world> is not read"),
+    ],
+)
+async def test_a_world_that_cannot_be_had_changes_nothing(tmp_path, said, result, message):
+    async with simulator(tmp_path, box("one", "0 0 9 0 0 0")) as it:
+        simulation = it.simulator.server.simulation
+        xml = f'<sdf version="1.7">{box("spawned", "0 0 0 0 0 0")}</sdf>'
+        await it.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="spawned", xml=xml)
+        await steps(it, 100)
+        simulation.refresh()
+        before = simulation.world, simulation.revision, simulation.data.qpos.tolist(), simulation.data.qvel.tolist()
+        answer = await load(it, tmp_path, said=said, fail_on_unsupported_element=True)
+        assert answer.result.result == result
+        assert message in answer.result.error_message
+        simulation.refresh()
+        after = simulation.world, simulation.revision, simulation.data.qpos.tolist(), simulation.data.qvel.tolist()
+        assert after == before
+
+
+async def test_what_is_missing_may_be_left_out(tmp_path):
+    async with simulator(tmp_path) as it:
+        missing = "<include><uri>model://nowhere_at_all</uri></include>"
+        answer = await load(it, tmp_path, missing, ignore_missing_or_unsupported_assets=True)
+        assert answer.result.result == answer.result.RESULT_OK
+        answer = await load(it, tmp_path, missing, box("one", "0 0 9 0 0 0"))
+        assert answer.result.result == answer.result.RESULT_OK, "it was missing before, too"
+
+
+async def test_no_world_and_no_such_file_are_said(tmp_path):
+    async with simulator(tmp_path) as it:
+        answer = await it.ask("simulation_interfaces/srv/LoadWorld", "/load_world")
+        assert (answer.result.result, answer.result.error_message) == (
+            answer.NO_RESOURCE,
+            "no world is given (give the file of a world, or its text)",
+        )
+        resource = get_message("simulation_interfaces/msg/Resource")(uri="no_such")
+        answer = await it.ask("simulation_interfaces/srv/LoadWorld", "/load_world", world_resource=resource)
+        assert answer.result.result == answer.result.RESULT_NOT_FOUND
+
+
+DRIVE = """<plugin name="drive" filename="libgazebo_ros_diff_drive.so"><left_joint>left_joint</left_joint>
+<right_joint>right_joint</right_joint><wheel_separation>0.38</wheel_separation><wheel_diameter>0.12</wheel_diameter></plugin>"""
+
+
+async def test_a_robot_comes_anew_where_it_is_and_drives(tmp_path):
+    async with simulator(tmp_path, robot(DRIVE)) as it:
+        simulation = it.simulator.server.simulation
+        command = it.node.create_publisher(get_message("geometry_msgs/msg/Twist"), "/cmd_vel", 10)
+        await steps(it, 100)
+        simulation.set_model_pose("mbot", (2.0, 1.0, 0.11, 0.0, 0.0, 0.0, 1.0))
+        await steps(it, 10)
+        before, wheel = simulation.model_pose("mbot"), simulation.joint_state("mbot::left_joint")
+        mast = "<link name='mast'/><joint name='m' type='fixed'><parent>base_link</parent><child>mast</child></joint>"
+        await load(it, tmp_path, robot(DRIVE, mast))
+        assert simulation.model_pose("mbot") == pytest.approx(before, abs=1e-9)
+        assert simulation.joint_state("mbot::left_joint") == pytest.approx(wheel, abs=1e-9)
+        twist = get_message("geometry_msgs/msg/Twist")()
+        twist.linear.x = 0.5
+        command.publish(twist)
+        await steps(it, 2000)
+        assert simulation.model_pose("mbot")[0] > before[0] + 0.5
