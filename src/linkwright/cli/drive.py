@@ -125,7 +125,7 @@ def _summary(robot: Robot, found: Inference) -> Phrase:
 
 def _listed(found: Inference) -> str:
     """Each inference with its place, its reason and the text that says it."""
-    from linkwright.inference.writing import block
+    from linkwright.xmltree.patches import block
 
     lines: list[str] = []
     for finding in found.findings:

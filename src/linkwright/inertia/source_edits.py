@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator
 from math import isclose
 
 from linkwright.diagnostics import SourceText, phrase
@@ -13,6 +12,7 @@ from linkwright.inertia.blocks import Attributes, inertial_block, inertial_parts
 from linkwright.urdf import Link
 from linkwright.xacro.origin import Frame, frames
 from linkwright.xmltree import Element, parse
+from linkwright.xmltree.patches import Replacement, indentation, newline_of
 from linkwright.xmltree.positions import attribute_name_range, attribute_value_range
 
 _START_TAG = re.compile(r"""<(?:[^"'>]|"[^"]*"|'[^']*')*>""")
@@ -21,15 +21,6 @@ _REST_OF_LINE = re.compile(r"(?:[ \t]*<!--(?:(?!-->).)*-->)*(?=[ \t]*\r?\n)")
 
 _EXPRESSION = re.compile(r"\$[{(](?!find\b)")
 """An expression whose value may change; a package's folder does not change the shape of a mesh."""
-
-
-@dataclass(frozen=True, slots=True)
-class Replacement:
-    """Characters `start` to `end` (exclusive) of a source text become `text`."""
-
-    start: int
-    end: int
-    text: str
 
 
 class NotWritableError(Exception):
@@ -58,13 +49,6 @@ def edits_for(link: Link, properties: MassProperties) -> tuple[SourceText, list[
     if _holds(inertial, _EXPRESSION):
         raise NotWritableError(phrase("its <inertial> is written with expressions"))
     return source, list(_changed_block(source.text, inertial, properties))
-
-
-def apply(text: str, edits: Iterable[Replacement]) -> str:
-    """A text with replacements made, which must not overlap."""
-    for edit in sorted(edits, key=lambda edit: (edit.start, edit.end), reverse=True):
-        text = text[: edit.start] + edit.text + text[edit.end :]
-    return text
 
 
 def written_element(element: Element | None, tag: str) -> Element:
@@ -111,10 +95,10 @@ def written_link(link: Link) -> Element:
 
 def _new_block(text: str, link: Element, properties: MassProperties) -> Replacement:
     at = _tag_end(text, link.offset)
-    newline = "\r\n" if "\r\n" in text else "\n"
-    outer = _indentation(text, link.offset)
+    newline = newline_of(text)
+    outer = indentation(text, link.offset)
     child = next(link.elements(), None)
-    inner = _indentation(text, child.offset) if child is not None else None
+    inner = indentation(text, child.offset) if child is not None else None
     if inner is None:
         inner = (outer or "") + "  "
     step = inner.removeprefix(outer or "") if inner.startswith(outer or "") else ""
@@ -127,15 +111,15 @@ def _new_block(text: str, link: Element, properties: MassProperties) -> Replacem
 
 def _changed_block(text: str, inertial: Element, properties: MassProperties) -> Iterator[Replacement]:
     end = _tag_end(text, inertial.offset)
-    newline = "\r\n" if "\r\n" in text else "\n"
+    newline = newline_of(text)
     if text[end - 2] == "/":
-        block = inertial_block(properties, _indentation(text, inertial.offset) or "", newline=newline)
+        block = inertial_block(properties, indentation(text, inertial.offset) or "", newline=newline)
         yield Replacement(inertial.offset, end, block)
         return
-    indent = (_indentation(text, inertial.offset) or "") + "  "
+    indent = (indentation(text, inertial.offset) or "") + "  "
     first = next(inertial.elements(), None)
     if first is not None:
-        indent = _indentation(text, first.offset) or indent
+        indent = indentation(text, first.offset) or indent
     missing = []
     for tag, attributes in inertial_parts(properties):
         child = inertial.first(tag)
@@ -185,9 +169,3 @@ def _tag_end(text: str, offset: int) -> int:
     found = _START_TAG.match(text, offset)
     assert found is not None, "the text was parsed"
     return found.end()
-
-
-def _indentation(text: str, offset: int) -> str | None:
-    """The blanks before a place in its line; None when something else stands there."""
-    before = text[text.rfind("\n", 0, offset) + 1 : offset]
-    return before if not before.strip() else None

@@ -10,9 +10,10 @@ from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText, display_path, foreign, phrase
 from linkwright.geometry.mass import MassProperties
-from linkwright.inertia.source_edits import NotWritableError, Replacement, apply, edits_for
+from linkwright.inertia.source_edits import NotWritableError, edits_for
 from linkwright.urdf import Link, Robot
 from linkwright.whole_files import write_whole_file
+from linkwright.xmltree.patches import Replacement, apply
 from linkwright.xmltree.reader import read_bytes
 
 _BYTE_ORDER_MARK = "\ufeff"

@@ -11,18 +11,16 @@ from pathlib import Path
 from linkwright.diagnostics import Diagnostic, SourceText, phrase
 from linkwright.inertia.source_edits import (
     NotWritableError,
-    Replacement,
     edits_for,
     written_element,
     written_link,
 )
 from linkwright.inertia.writing import write_edits
 from linkwright.inference.model import Finding, Inference
-from linkwright.lint.fix import element_range, escaped, is_literal, value_edit
+from linkwright.lint.fix import is_literal, value_edit
 from linkwright.urdf import Joint, Link, Robot
 from linkwright.xmltree import Element, Text
-
-_STEP = "  "
+from linkwright.xmltree.patches import Replacement, inserted
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,25 +59,6 @@ def write_inference(robot: Robot, inference: Inference) -> Written:
     done = write_edits({key: partial(writer.edits, findings) for key, findings in by_key.items()})
     refused = tuple(_refusal(finding, why) for key, why in done.refused.items() for finding in by_key[key])
     return Written(done.files, sum(len(by_key[key]) for key in done.links), refused)
-
-
-def block(element: Element, indent: str = "", step: str = _STEP, newline: str = "\n") -> str:
-    """An element as it is written into a file, without a line end after it.
-
-    Args:
-        element: made by a program; its text, if any, is all that it holds.
-        indent: before each line but the first.
-        step: before the children, besides.
-        newline: between the lines.
-    """
-    opening = element.tag + "".join(f' {name}="{escaped(value)}"' for name, value in element.attributes.items())
-    children = list(element.elements())
-    if not children:
-        text = element.text()
-        return f"<{opening}>{escaped(text)}</{element.tag}>" if text else f"<{opening}/>"
-    inner = indent + step
-    lines = [f"<{opening}>", *(inner + block(child, inner, step, newline) for child in children)]
-    return newline.join([*lines, f"{indent}</{element.tag}>"])
 
 
 class _Writer:
@@ -162,33 +141,10 @@ def _inserted(owner: Element, new: list[Element]) -> Iterator[Replacement]:
     """Elements at the end of one in a file."""
     if not new:
         return
-    text = _source(owner).text
-    found = element_range(owner)
-    if found is None:
+    edit = inserted(owner, new)
+    if edit is None:
         raise NotWritableError(phrase("it is not written in a file"))
-    start, end = found
-    newline = "\r\n" if "\r\n" in text else "\n"
-    outer = _indentation(text, start)
-    child = next(owner.elements(), None)
-    inner = outer + _STEP if child is None else _indentation(text, child.offset)
-    step = inner.removeprefix(outer) if inner.startswith(outer) and inner != outer else _STEP
-    lines = newline.join(inner + block(each, inner, step, newline) for each in new)
-    if text.endswith("/>", start, end):
-        opening = text[start : end - 2].rstrip()
-        yield Replacement(start, end, f"{opening}>{newline}{lines}{newline}{outer}</{owner.tag}>")
-        return
-    closing = text.rindex("</", start, end)
-    line = text.rfind("\n", 0, closing) + 1
-    if line > start and not text[line:closing].strip():
-        yield Replacement(line, line, f"{lines}{newline}")
-    else:
-        yield Replacement(closing, closing, f"{newline}{lines}{newline}{outer}")
-
-
-def _indentation(text: str, offset: int) -> str:
-    """The blanks that the line of a place begins with."""
-    line = text[text.rfind("\n", 0, offset) + 1 : offset]
-    return line[: len(line) - len(line.lstrip())]
+    yield edit
 
 
 def _source(element: Element) -> SourceText:

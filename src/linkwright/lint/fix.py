@@ -9,12 +9,8 @@ import re
 from dataclasses import dataclass
 
 from linkwright.xmltree import Element
+from linkwright.xmltree.patches import element_range, escaped, start_tag_of, whole_lines
 from linkwright.xmltree.positions import attribute_name_range, attribute_value_range
-
-_TAG_NAME = re.compile(r"<[^\s/>]+")
-_START_TAG_REST = re.compile(r"""(?:[^"'>]|"[^"]*"|'[^']*')*>""")
-_MARKUP = re.compile(r"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>|</[^>]*>|<", re.DOTALL)
-_UNSAFE = {"&": "&amp;", "<": "&lt;", '"': "&quot;"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,10 +61,10 @@ def rename_attribute(element: Element, old: str, new: str, *, safe: bool = True)
 def add_attribute(element: Element, attribute: str, value: str, *, safe: bool = True) -> Fix | None:
     """Write an attribute behind those there are; None where the element is not written in a file."""
     source = element.source
-    opened = _opened(element)
+    opened = start_tag_of(element)
     if source is None or opened is None or attribute in element.attributes:
         return None
-    at = opened[1]
+    at = opened.room
     return Fix((Edit(source.name, at, at, f' {attribute}="{escaped(value)}"'),), safe)
 
 
@@ -91,12 +87,7 @@ def remove_element(element: Element, *, safe: bool = True) -> Fix | None:
     found = element_range(element)
     if source is None or found is None:
         return None
-    text, (start, end) = source.text, found
-    line_start = text.rfind("\n", 0, start) + 1
-    line_end = text.find("\n", end)
-    line_end = len(text) if line_end < 0 else line_end + 1
-    if not text[line_start:start].strip() and not text[end:line_end].strip():
-        start, end = line_start, line_end
+    start, end = whole_lines(source.text, *found)
     return Fix((Edit(source.name, start, end, ""),), safe)
 
 
@@ -119,48 +110,3 @@ def is_literal(element: Element, attribute: str) -> bool:
         return False
     written = source.text[slice(*found)]
     return "$" not in written and "&" not in written and written.split() == element.attributes[attribute].split()
-
-
-def element_range(element: Element) -> tuple[int, int] | None:
-    """Character offsets of an element in its file, from its ``<`` to behind its last ``>``; None for a made one."""
-    source = element.source
-    opened = _opened(element)
-    if source is None or opened is None:
-        return None
-    text = source.text
-    end, is_empty = opened[2], opened[3]
-    depth = 0 if is_empty else 1
-    while depth:
-        found = _MARKUP.search(text, end)
-        if found is None:
-            return None
-        end = found.end()
-        if found[0] == "<":
-            rest = _START_TAG_REST.match(text, end)
-            if rest is None:
-                return None
-            end = rest.end()
-            depth += not rest[0].endswith("/>")
-        elif found[0].startswith("</"):
-            depth -= 1
-    return element.offset, end
-
-
-def escaped(value: str) -> str:
-    """A value as it is written between double quotes."""
-    return "".join(_UNSAFE.get(character, character) for character in value)
-
-
-def _opened(element: Element) -> tuple[int, int, int, bool] | None:
-    """Offsets of a start tag: its ``<``, where an attribute can be added, its end; and whether it is the whole."""
-    source = element.source
-    if source is None:
-        return None
-    text = source.text
-    name = _TAG_NAME.match(text, element.offset)
-    rest = name and _START_TAG_REST.match(text, name.end())
-    if not name or not rest or name[0] != f"<{element.tag}":
-        return None
-    is_empty = rest[0].endswith("/>")
-    inside = text[name.end() : rest.end() - (2 if is_empty else 1)]
-    return element.offset, name.end() + len(inside.rstrip()), rest.end(), is_empty

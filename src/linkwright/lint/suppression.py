@@ -14,7 +14,7 @@ from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, SourceText, phrase
 from linkwright.lint.finding import Finding
-from linkwright.lint.fix import Edit, Fix, element_range
+from linkwright.lint.fix import Edit, Fix
 from linkwright.lint.registry import find_rule
 from linkwright.lint.selector_words import canonical, is_selector, selector_hint
 from linkwright.lint.selectors import matches
@@ -22,6 +22,7 @@ from linkwright.lint.settings import Settings
 from linkwright.lint.subject import Subject
 from linkwright.xmltree import Element
 from linkwright.xmltree.decoding import decode
+from linkwright.xmltree.patches import element_range
 from linkwright.xmltree.reader import read_bytes
 
 UNUSED = "LW001"

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, Note, counted, joined, nearest, phrase, quoted, quoted_names
 from linkwright.extensions import extensions
-from linkwright.lint.fix import Edit, Fix, element_range
+from linkwright.lint.fix import Edit, Fix
 from linkwright.lint.rule import Rule, Scope
 from linkwright.lint.rules.package_manifest import PackageRule
 from linkwright.lint.rules.package_python import is_ament_python
 from linkwright.lint.subject import Subject
+from linkwright.xmltree.patches import element_range
 
 if TYPE_CHECKING:
     from linkwright.lint.package import PackageContext

@@ -16,7 +16,6 @@ from linkwright import descriptions
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, SourceText, translated
 from linkwright.geometry.single import quaternion_of, rpy_from_quaternion
 from linkwright.lint import Finding, Settings, Subject
-from linkwright.lint.fix import element_range
 from linkwright.lint.registry import all_rules
 from linkwright.lint.suppression import Suppressions
 from linkwright.packages import PackageFinder
@@ -36,6 +35,7 @@ from linkwright.viewer.robot import frame_of, link_inertia
 from linkwright.xacro.origin import Frame, frames
 from linkwright.xmltree import Document, Element
 from linkwright.xmltree.decoding import decode
+from linkwright.xmltree.patches import element_range
 from linkwright.xmltree.reader import read_bytes
 
 _EXPANDED = ""

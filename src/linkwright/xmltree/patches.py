@@ -1,0 +1,185 @@
+"""Smallest changes of a text of XML: where elements stand in it, and replacing ranges of it.
+
+Everything outside the ranges, formatting and comments included, stays as it is.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from linkwright.xmltree.nodes import Element
+
+_TAG_NAME = re.compile(r"<[^\s/>]+")
+_START_TAG_REST = re.compile(r"""(?:[^"'>]|"[^"]*"|'[^']*')*>""")
+_MARKUP = re.compile(r"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>|</[^>]*>|<", re.DOTALL)
+_STEP = "  "
+_UNSAFE = {"&": "&amp;", "<": "&lt;", '"': "&quot;"}
+
+
+@dataclass(frozen=True, slots=True)
+class Replacement:
+    """Characters `start` to `end` (exclusive) of a source text become `text`."""
+
+    start: int
+    end: int
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class StartTag:
+    """A start tag in a text, by character offsets.
+
+    Attributes:
+        start: its ``<``.
+        room: behind its last attribute, where another can be written.
+        end: behind its ``>``.
+        is_whole: whether it is the whole element, ``<a/>``.
+    """
+
+    start: int
+    room: int
+    end: int
+    is_whole: bool
+
+
+def apply(text: str, edits: Iterable[Replacement]) -> str:
+    """A text with replacements made, which must not overlap."""
+    for edit in sorted(edits, key=lambda edit: (edit.start, edit.end), reverse=True):
+        text = text[: edit.start] + edit.text + text[edit.end :]
+    return text
+
+
+def escaped(value: str) -> str:
+    """A value as it is written between double quotes."""
+    return "".join(_UNSAFE.get(character, character) for character in value)
+
+
+def newline_of(text: str) -> str:
+    """What ends the lines of a text."""
+    return "\r\n" if "\r\n" in text else "\n"
+
+
+def indentation(text: str, offset: int) -> str | None:
+    """The blanks before a place in its line; None when something else stands there."""
+    before = text[text.rfind("\n", 0, offset) + 1 : offset]
+    return before if not before.strip() else None
+
+
+def start_tag_of(element: Element) -> StartTag | None:
+    """The start tag of an element in its source; None for one that is not written there: made, or by an entity."""
+    if element.source is None:
+        return None
+    text = element.source.text
+    name = _TAG_NAME.match(text, element.offset)
+    rest = name and _START_TAG_REST.match(text, name.end())
+    if not name or not rest or name[0] != f"<{element.tag}":
+        return None
+    is_whole = rest[0].endswith("/>")
+    inside = text[name.end() : rest.end() - (2 if is_whole else 1)]
+    return StartTag(element.offset, name.end() + len(inside.rstrip()), rest.end(), is_whole)
+
+
+def element_range(element: Element) -> tuple[int, int] | None:
+    """Character offsets of an element in its file, from its ``<`` to behind its last ``>``; None for a made one."""
+    tag = start_tag_of(element)
+    if element.source is None or tag is None:
+        return None
+    text, end = element.source.text, tag.end
+    depth = 0 if tag.is_whole else 1
+    while depth:
+        found = _MARKUP.search(text, end)
+        if found is None:
+            return None
+        end = found.end()
+        if found[0] == "<":
+            rest = _START_TAG_REST.match(text, end)
+            if rest is None:
+                return None
+            end = rest.end()
+            depth += not rest[0].endswith("/>")
+        elif found[0].startswith("</"):
+            depth -= 1
+    return element.offset, end
+
+
+def whole_lines(text: str, start: int, end: int) -> tuple[int, int]:
+    """A range with the lines that it stands in, their ends included, where nothing else stands there."""
+    line_start = text.rfind("\n", 0, start) + 1
+    line_end = text.find("\n", end)
+    line_end = len(text) if line_end < 0 else line_end + 1
+    alone = not text[line_start:start].strip() and not text[end:line_end].strip()
+    return (line_start, line_end) if alone else (start, end)
+
+
+def block(element: Element, indent: str = "", step: str = _STEP, newline: str = "\n") -> str:
+    """An element as it is written into a file, without a line end after it.
+
+    Args:
+        element: made by a program; its text, if any, is all that it holds.
+        indent: before each line but the first.
+        step: before the children, besides.
+        newline: between the lines.
+    """
+    opening = element.tag + "".join(f' {name}="{escaped(value)}"' for name, value in element.attributes.items())
+    children = list(element.elements())
+    if not children:
+        text = element.text()
+        return f"<{opening}>{escaped(text)}</{element.tag}>" if text else f"<{opening}/>"
+    inner = indent + step
+    lines = [f"<{opening}>", *(inner + block(child, inner, step, newline) for child in children)]
+    return newline.join([*lines, f"{indent}</{element.tag}>"])
+
+
+def inserted(
+    owner: Element, new: Sequence[Element], *, after: Element | None = None, first: bool = False
+) -> Replacement | None:
+    """The replacement that puts elements into one, with the indentation that there is.
+
+    Args:
+        owner: of a file.
+        new: made by a program.
+        after: an element in the owner that they come behind; None for the end.
+        first: whether they come before all elements in it, where `after` is None.
+
+    Returns:
+        None where the owner is not written in the file as an element.
+    """
+    found = element_range(owner)
+    tag = start_tag_of(owner)
+    if found is None or tag is None or owner.source is None:
+        return None
+    text, (start, end) = owner.source.text, found
+    newline, outer = newline_of(text), _blanks(text, start)
+    child = next(owner.elements(), None)
+    inner = outer + _STEP if child is None else _blanks(text, child.offset)
+    in_line = child is not None and "\n" not in text[start : child.offset]
+    if in_line:
+        inner = outer + _STEP
+    step = inner.removeprefix(outer) if inner.startswith(outer) and inner != outer else _STEP
+    if tag.is_whole:
+        lines = newline.join(inner + block(each, inner, step, newline) for each in new)
+        return Replacement(tag.room, end, f">{newline}{lines}{newline}{outer}</{owner.tag}>")
+    behind = element_range(after) if after is not None else None
+    if in_line and not any(True for each in new for _ in each.elements()):
+        at = behind[1] if behind else tag.end if first else text.rindex("</", start, end)
+        return Replacement(at, at, "".join(block(each) for each in new))
+    lines = newline.join(inner + block(each, inner, step, newline) for each in new)
+    if behind is not None:
+        return Replacement(behind[1], behind[1], f"{newline}{lines}")
+    if first and child is not None:
+        if in_line:
+            return Replacement(tag.end, tag.end, f"{newline}{lines}{newline}{inner}")
+        return Replacement(child.offset, child.offset, f"{lines.removeprefix(inner)}{newline}{inner}")
+    closing = text.rindex("</", start, end)
+    line = text.rfind("\n", 0, closing) + 1
+    if line > start and not text[line:closing].strip():
+        return Replacement(line, line, f"{lines}{newline}")
+    return Replacement(closing, closing, f"{newline}{lines}{newline}{outer}")
+
+
+def _blanks(text: str, offset: int) -> str:
+    """The blanks that the line of a place begins with."""
+    line = text[text.rfind("\n", 0, offset) + 1 : offset]
+    return line[: len(line) - len(line.lstrip())]
