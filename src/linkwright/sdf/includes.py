@@ -24,6 +24,8 @@ _DEEPEST = 64
 _MOST = 100_000
 """So many models may come of a file; with models that include others twice each, few lines make more."""
 
+Thing = Model | Light | Actor
+
 
 @dataclass
 class Included:
@@ -34,11 +36,13 @@ class Included:
             nowhere stays.
         diagnostics: what is wrong with the included files, and which includes lead nowhere.
         files: the files that were read for it, each once.
+        things: what the includes of worlds led to, by their elements' ids; None where there is none.
     """
 
     sdf: Sdf
     diagnostics: list[Diagnostic] = field(default_factory=list)
     files: dict[Path, None] = field(default_factory=dict)
+    things: dict[int, Thing | None] = field(default_factory=dict)
 
 
 def resolve_includes(sdf: Sdf, path: Path, finder: ResourceFinder) -> Included:
@@ -52,10 +56,7 @@ def resolve_includes(sdf: Sdf, path: Path, finder: ResourceFinder) -> Included:
     resolver = _Resolver(finder)
     worlds = tuple(resolver.world(world, path) for world in sdf.worlds)
     models = tuple(resolver.model(model, path, ()) for model in sdf.models)
-    return Included(replace(sdf, worlds=worlds, models=models), resolver.diagnostics, resolver.files)
-
-
-Thing = Model | Light | Actor
+    return Included(replace(sdf, worlds=worlds, models=models), resolver.diagnostics, resolver.files, resolver.things)
 
 
 class _Named(Protocol):
@@ -71,6 +72,7 @@ class _Resolver:
     def __init__(self, finder: ResourceFinder) -> None:
         self.diagnostics: list[Diagnostic] = []
         self.files: dict[Path, None] = {}
+        self.things: dict[int, Thing | None] = {}
         self._finder = finder
         self._readings: dict[Path, Reading | None] = {}
         self._count = 0
@@ -80,7 +82,7 @@ class _Resolver:
         lights, actors, left = list(world.lights), list(world.actors), []
         names = _names(models, world.frames, world.joints)
         for include in world.includes:
-            thing = self._included(include, path, ())
+            thing = self.things[id(include.element)] = self._included(include, path, ())
             self._check_name(thing, include, names)
             if isinstance(thing, Model):
                 models.append(thing)

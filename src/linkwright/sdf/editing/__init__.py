@@ -1,0 +1,23 @@
+"""Losslessly editing worlds: text in, text out, and only what an edit is about is different."""
+
+from linkwright.sdf.editing.adding import NewShape, add_include, add_light, add_shape
+from linkwright.sdf.editing.changing import Change, change, copy, delete
+from linkwright.sdf.editing.errors import EditError
+from linkwright.sdf.editing.grouping import group, ungroup
+from linkwright.sdf.editing.text import Thing, WorldText
+
+__all__ = [
+    "Change",
+    "EditError",
+    "NewShape",
+    "Thing",
+    "WorldText",
+    "add_include",
+    "add_light",
+    "add_shape",
+    "change",
+    "copy",
+    "delete",
+    "group",
+    "ungroup",
+]

@@ -1,0 +1,151 @@
+"""Adding shapes, lights and models to a world."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from linkwright.diagnostics import phrase
+from linkwright.sdf.editing import writing
+from linkwright.sdf.editing.changing import pose_in_world
+from linkwright.sdf.editing.errors import EditError
+from linkwright.sdf.editing.shapes import ShapeKind, geometry, inertial, is_size, lengths, made
+from linkwright.sdf.editing.text import WorldText
+from linkwright.sdf.includes import resolve_includes
+from linkwright.sdf.lights import Light
+from linkwright.sdf.models import Include, Model
+from linkwright.sdf.resources import Missing
+from linkwright.sdf.worlds import Sdf, World
+from linkwright.xmltree import Element
+
+LightKind = Literal["point", "directional", "spot"]
+
+
+@dataclass(frozen=True, slots=True)
+class NewShape:
+    """What a shape is where nothing else is said: metres, kilograms, red green blue; without a mass it is static."""
+
+    size: tuple[float, ...]
+    colour: tuple[float, float, float]
+    mass: float | None = 1.0
+
+
+USUAL: dict[ShapeKind, NewShape] = {
+    "box": NewShape((0.5, 0.5, 0.5), (0.9, 0.4, 0.1)),
+    "cylinder": NewShape((0.25, 0.5), (0.2, 0.5, 0.8)),
+    "sphere": NewShape((0.25,), (0.3, 0.7, 0.3)),
+    "wall": NewShape((2.0, 0.1, 1.0), (0.8, 0.8, 0.75), None),
+    "ramp": NewShape((1.5, 1.0, 0.3), (0.6, 0.6, 0.65), None),
+}
+_LIGHTS: dict[LightKind, tuple[Element, ...]] = {
+    "point": (
+        made("diffuse", "0.8 0.8 0.8 1"),
+        made("specular", "0.2 0.2 0.2 1"),
+        made("attenuation", made("range", "20"), made("constant", "0.5"), made("linear", "0.1")),
+    ),
+    "directional": (
+        made("cast_shadows", "true"),
+        made("diffuse", "0.8 0.8 0.8 1"),
+        made("specular", "0.2 0.2 0.2 1"),
+        made("direction", "-0.5 0.1 -0.9"),
+    ),
+    "spot": (
+        made("cast_shadows", "true"),
+        made("diffuse", "0.8 0.8 0.8 1"),
+        made("specular", "0.2 0.2 0.2 1"),
+        made("attenuation", made("range", "20"), made("constant", "0.5"), made("linear", "0.1")),
+        made("direction", "0 0 -1"),
+        made("spot", made("inner_angle", "0.4"), made("outer_angle", "0.8"), made("falloff", "1")),
+    ),
+}
+_THINGS = ("model", "include", "light", "actor")
+"""What a new thing comes behind."""
+
+
+def add_shape(
+    world: WorldText, kind: ShapeKind, pose: Sequence[float], size: Sequence[float] = ()
+) -> tuple[WorldText, str]:
+    """Add a model that is one simple shape.
+
+    Args:
+        world: the world.
+        kind: which shape; walls and ramps are static, the others have a mass of 1 kg.
+        pose: of its middle in the world: x, y, z in m, roll, pitch, yaw in rad.
+        size: see `SimpleShape`; empty for the usual one.
+
+    Returns:
+        The world, and the name of the model.
+
+    Raises:
+        EditError: the numbers are none that a shape can have.
+    """
+    usual = USUAL[kind]
+    wanted = tuple(map(float, size)) or usual.size
+    if not is_size(kind, wanted):
+        raise EditError(phrase("'{numbers}' is no size of a {kind}", numbers=" ".join(map(str, size)), kind=kind))
+    name = world.free_name(kind)
+    colour = lengths((*usual.colour, 1.0))
+    parts = [
+        made("collision", *geometry(kind, wanted), name="collision"),
+        made(
+            "visual",
+            *geometry(kind, wanted),
+            made("material", made("ambient", colour), made("diffuse", colour)),
+            name="visual",
+        ),
+    ]
+    if usual.mass is not None:
+        parts.insert(0, inertial(kind, wanted, usual.mass))
+    static = [] if usual.mass is not None else [made("static", "true")]
+    link = made("link", *parts, name=kind if kind in ("wall", "ramp") else "link")
+    model = made("model", writing.pose_element(pose_in_world(pose)), *static, link, name=name)
+    return _with(world, model), name
+
+
+def add_light(world: WorldText, kind: LightKind, pose: Sequence[float]) -> tuple[WorldText, str]:
+    """Add a light.
+
+    Returns:
+        The world, and the name of the light.
+
+    Raises:
+        EditError: the pose is none.
+    """
+    name = world.free_name(f"{kind}_light")
+    light = made("light", writing.pose_element(pose_in_world(pose)), *_LIGHTS[kind], name=name, type=kind)
+    return _with(world, light), name
+
+
+def add_include(world: WorldText, address: str, pose: Sequence[float]) -> tuple[WorldText, str]:
+    """Add a model of another file.
+
+    Args:
+        world: the world.
+        address: ``model://NAME``, or whatever else ``<uri>`` may be.
+        pose: of its frame in the world: x, y, z in m, roll, pitch, yaw in rad.
+
+    Returns:
+        The world, and the name of the model here.
+
+    Raises:
+        EditError: there is no such model, or the pose is none.
+    """
+    address = address.strip()
+    if not address:
+        raise EditError(phrase("'{uri}' names no model", uri=address))
+    found = world.finder.model(address, world.path.parent)
+    if isinstance(found, Missing):
+        raise EditError(found.reason)
+    alone = World(includes=(Include(address),))
+    included = resolve_includes(Sdf("1.6", worlds=(alone,)), world.path, world.finder).sdf.worlds[0]
+    things: tuple[Model | Light, ...] = (*included.models, *included.lights)
+    if not things:
+        raise EditError(phrase("there is no model in '{address}'", address=address))
+    name = world.free_name(things[0].name)
+    pose_of_it = writing.pose_element(pose_in_world(pose))
+    return _with(world, made("include", made("uri", address), made("name", name), pose_of_it)), name
+
+
+def _with(world: WorldText, new: Element) -> WorldText:
+    return world.edited([writing.inserted_in(world.element, [new], after=_THINGS)])

@@ -1,0 +1,430 @@
+"""Changing, copying and deleting the models and lights of a world.
+
+A world that Gazebo classic saved says in ``<state>`` once more where everything is, and that counts. So what is moved
+is moved there too, with its links; what is renamed or deleted is so there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from math import isfinite
+
+from linkwright.diagnostics import phrase
+from linkwright.geometry.single import IDENTITY, Pose, Transform, compose, invert
+from linkwright.sdf.editing import writing
+from linkwright.sdf.editing.errors import EditError
+from linkwright.sdf.editing.shapes import (
+    geometry,
+    inertial,
+    is_size,
+    lengths,
+    made,
+    number,
+    solid,
+    tensor,
+)
+from linkwright.sdf.editing.text import Thing, WorldText
+from linkwright.sdf.frames import FrameError, transform_of
+from linkwright.sdf.links import Collision, Visual
+from linkwright.sdf.models import Include, Model
+from linkwright.sdf.poses import SEPARATOR
+from linkwright.sdf.values import POSE as POSE_NUMBERS
+from linkwright.sdf.values import pose_of
+from linkwright.xmltree import Element
+from linkwright.xmltree.patches import Replacement, indentation, newline_of
+
+_NEW_MASS = 1.0
+_FIRST = ("uri", "name")
+"""What the pose of an include comes behind."""
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """What is to be different about a thing; None for what stays.
+
+    Attributes:
+        name: the thing.
+        pose: in the world: x, y, z in m, roll, pitch, yaw in rad.
+        size: of a model that is one simple shape, see `SimpleShape`.
+        new_name: another name.
+        static: whether it never moves.
+        colour: of such a model or a light: red, green, blue, alpha from 0 to 1.
+    """
+
+    name: str
+    pose: tuple[float, ...] | None = None
+    size: tuple[float, ...] | None = None
+    new_name: str | None = None
+    static: bool | None = None
+    colour: tuple[float, ...] | None = None
+
+
+def change(world: WorldText, changes: Iterable[Change]) -> WorldText:
+    """Change things.
+
+    Args:
+        world: the world.
+        changes: which; a name may come once.
+
+    Raises:
+        EditError: something cannot be changed so.
+    """
+    changes = list(changes)
+    alone: list[Replacement] = []
+    moves: list[tuple[str, Pose]] = []
+    for each in changes:
+        thing = world.thing(each.name)
+        alone += _values(thing, each)
+        if each.pose is not None:
+            pose = pose_in_world(each.pose)
+            if thing.pose.relative_to:
+                moves.append((each.name, pose))
+            else:
+                alone += moved(world, thing, pose)
+    world = world.edited(alone)
+    for name, pose in sorted(moves, key=lambda move: _depth(world, move[0])):
+        world = world.edited(moved(world, world.thing(name), pose))
+    for each in changes:
+        if each.new_name is not None and each.new_name != each.name:
+            world = _renamed(world, world.thing(each.name), each.new_name)
+    return world
+
+
+def copy(world: WorldText, names: Sequence[str], offset: Sequence[float]) -> tuple[WorldText, list[str]]:
+    """Copy things.
+
+    Args:
+        world: the world.
+        names: the things.
+        offset: x, y, z in m from each to its copy.
+
+    Returns:
+        The world, and the names of the copies.
+
+    Raises:
+        EditError: one is not there or cannot be copied.
+    """
+    if len(offset) != 3 or not all(map(isfinite, offset)):
+        raise EditError(phrase("an offset has three numbers"))
+    edits, taken, moves = [], world.taken, []
+    for name in dict.fromkeys(names):
+        thing = world.thing(name)
+        free = world.free_name(name, taken)
+        taken |= {free}
+        x, y, z = (a + b for a, b in zip(thing.place[:3], offset, strict=True))
+        moves.append((free, Pose((x, y, z), _written_pose(thing).rpy)))
+        edits.append(_copied(thing, free))
+    world = world.edited(edits)
+    for name, pose in sorted(moves, key=lambda move: _depth(world, move[0])):
+        world = world.edited(moved(world, world.thing(name), pose))
+    return world, [name for name, _ in moves]
+
+
+def delete(world: WorldText, names: Iterable[str]) -> WorldText:
+    """Take things out, and what a saved state says of them.
+
+    Raises:
+        EditError: one is not there, or something that stays refers to it.
+    """
+    gone = {name: world.thing(name) for name in names}
+    elements = {id(thing.element) for thing in gone.values()}
+    for child in world.element.elements():
+        if id(child) in elements:
+            continue
+        for element, attribute in _references_in(child):
+            head = named_in(element, attribute).partition(SEPARATOR)[0]
+            if head in gone:
+                where = child.attributes.get("name") or child.tag
+                raise EditError(phrase("'{name}' cannot be deleted: '{user}' refers to it", name=head, user=where))
+    edits = [writing.removed(thing.element) for thing in gone.values()]
+    edits += [writing.removed(entry) for name in gone for entry in state_of(world, name)]
+    return world.edited(edits)
+
+
+def pose_in_world(numbers: Sequence[float]) -> Pose:
+    """A pose that somebody gave by six numbers.
+
+    Raises:
+        EditError: they are none.
+    """
+    if len(numbers) != 6 or not all(map(isfinite, numbers)):
+        raise EditError(phrase("a pose has six numbers: x y z roll pitch yaw"))
+    x, y, z, roll, pitch, yaw = map(float, numbers)
+    return Pose((x, y, z), (roll, pitch, yaw))
+
+
+def pose_of_thing(thing: Thing) -> Pose:
+    """Where a thing is in the world, as numbers: those of the file where they say just that."""
+    return _written_pose(thing)
+
+
+def moved(world: WorldText, thing: Thing, pose: Pose) -> list[Replacement]:
+    """The edits by which a thing ends in a pose in the world, whatever frame its own is given in.
+
+    Raises:
+        EditError: that frame is not there.
+    """
+    wanted = transform_of(pose)
+    edits = place(thing, _local(world, thing, pose))
+    for entry in state_of(world, thing.name):
+        edits += _state_moved(entry, thing.place, wanted, pose)
+    return edits
+
+
+def place(thing: Thing, pose: Pose) -> list[Replacement]:
+    """The edits that write the pose of a thing, in the frame that it is given in."""
+    element = thing.element.first("pose")
+    if element is not None:
+        return writing.set_pose(element, pose)
+    after = _FIRST if isinstance(thing.written, Include) else ()
+    return [writing.inserted_in(thing.element, [writing.pose_element(pose)], after=after, first=not after)]
+
+
+def state_of(world: WorldText, name: str) -> list[Element]:
+    """What the last saved state says of a thing."""
+    state = world.state
+    entries = () if state is None else (*state.elements("model"), *state.elements("light"))
+    return [entry for entry in entries if entry.attributes.get("name") == name]
+
+
+def named_in(element: Element, attribute: str | None) -> str:
+    """The name by which an element refers to something."""
+    return element.text().strip() if attribute is None else element.attributes[attribute]
+
+
+def renamed_references(world: WorldText, names: dict[str, str]) -> list[Replacement]:
+    """The edits by which what refers to things, or to what is in them, does so by other names."""
+    edits: list[Replacement] = []
+    for element, attribute in writing.references(world.element):
+        written = named_in(element, attribute)
+        head, colon, tail = written.partition(SEPARATOR)
+        new = names.get(head)
+        if new is None:
+            continue
+        text = f"{new}{colon}{tail}"
+        edits += (
+            writing.set_text(element, text) if attribute is None else writing.set_attribute(element, attribute, text)
+        )
+    return edits
+
+
+# --- single values -------------------------------------------------------------------------------------------------
+
+
+def _values(thing: Thing, wanted: Change) -> list[Replacement]:
+    edits: list[Replacement] = []
+    if wanted.size is not None and (thing.shape is None or tuple(wanted.size) != thing.shape.size):
+        edits += _resized(thing, tuple(wanted.size))
+    if wanted.colour is not None:
+        edits += _coloured(thing, wanted.colour)
+    if wanted.static is not None and wanted.static != thing.static:
+        edits += _static(thing, wanted.static, wanted.size)
+    return edits
+
+
+def _resized(thing: Thing, size: tuple[float, ...]) -> list[Replacement]:
+    shape = thing.shape
+    if shape is None:
+        raise EditError(phrase("'{name}' has no size that could be changed: it is no simple shape", name=thing.name))
+    if not is_size(shape.kind, size):
+        raise EditError(phrase("'{numbers}' is no size of a {kind}", numbers=" ".join(map(str, size)), kind=shape.kind))
+    assert isinstance(thing.written, Model), "only models that are written here have a shape"
+    link = thing.written.links[0]
+    edits: list[Replacement] = []
+    shapes: tuple[Visual | Collision, ...] = (*link.visuals, *link.collisions)
+    for part in shapes:
+        assert part.element is not None, "it was read from the text"
+        for new in geometry(shape.kind, size):
+            edits += _same_values(part.element, new)
+    before, after = solid(shape.kind, shape.size), solid(shape.kind, size)
+    found = link.inertial
+    if found is not None and found.element is not None and not found.auto and before.mass > 0:
+        properties = after.with_mass(found.mass * after.mass / before.mass)
+        edits += writing.set_child(found.element, "mass", number(properties.mass))
+        old = found.element.first("pose")
+        if old is not None and properties.center.any():
+            x, y, z = properties.center.tolist()
+            edits += writing.set_pose(old, Pose((x, y, z)))
+        inertia = found.element.first("inertia")
+        if inertia is None:
+            new = made("inertia", *(made(tag, text) for tag, text in tensor(properties).items() if text != "0"))
+            edits.append(writing.inserted_in(found.element, [new]))
+        else:
+            for tag, text in tensor(properties).items():
+                if inertia.first(tag) is not None or text != "0":
+                    edits += writing.set_child(inertia, tag, text)
+    return edits
+
+
+def _same_values(owner: Element, new: Element) -> list[Replacement]:
+    """Give what is written in an element the values of one that was made."""
+    edits: list[Replacement] = []
+    found = list(owner.elements(new.tag))
+    if not found:
+        return [writing.inserted_in(owner, [new])]
+    children = list(new.elements())
+    if new.tag == "pose":
+        x, y, z, roll, pitch, yaw = (float(word) for word in new.text().split())
+        return writing.set_pose(found[0], Pose((x, y, z), (roll, pitch, yaw)))
+    if not children:
+        numbers = [float(word) for word in new.text().split()]
+        return writing.set_numbers(found[0], numbers)
+    several: dict[str, int] = {}
+    for child in children:
+        index = several.get(child.tag, 0)
+        several[child.tag] = index + 1
+        theirs = list(found[0].elements(child.tag))
+        if index < len(theirs) and not any(True for _ in child.elements()):
+            edits += writing.set_numbers(theirs[index], [float(word) for word in child.text().split()])
+        else:
+            edits += _same_values(found[0], child)
+    return edits
+
+
+def _coloured(thing: Thing, colour: Sequence[float]) -> list[Replacement]:
+    if len(colour) != 4 or not all(isfinite(each) and 0 <= each <= 1 for each in colour):
+        raise EditError(phrase("a colour has four numbers from 0 to 1: red green blue alpha"))
+    if thing.kind == "light" and not isinstance(thing.written, Include):
+        return writing.set_child(thing.element, "diffuse", colour)
+    if thing.shape is None or not isinstance(thing.written, Model):
+        raise EditError(phrase("'{name}' has no colour that could be changed: it is no simple shape", name=thing.name))
+    edits: list[Replacement] = []
+    for visual in thing.written.links[0].visuals:
+        assert visual.element is not None, "it was read from the text"
+        material = visual.element.first("material")
+        if material is None:
+            text = lengths(tuple(colour))
+            parts = (made("ambient", text), made("diffuse", text))
+            edits.append(writing.inserted_in(visual.element, [made("material", *parts)]))
+            continue
+        script = material.first("script")  # it would come before the colours
+        missing = [tag for tag in ("ambient", "diffuse") if material.first(tag) is None]
+        for tag in ("ambient", "diffuse"):
+            if tag not in missing:
+                edits += writing.set_child(material, tag, colour)
+        new = [made(tag, lengths(tuple(colour))) for tag in missing]
+        if script is not None:
+            edits.append(writing.exchanged(script, new))
+        elif new:
+            edits.append(writing.inserted_in(material, new))
+    return edits
+
+
+def _static(thing: Thing, static: bool, size: Sequence[float] | None) -> list[Replacement]:
+    if thing.kind != "model":
+        raise EditError(phrase("'{name}' is a light, and does not move anyway", name=thing.name))
+    text = "true" if static else "false"
+    child = thing.element.first("static")
+    if child is not None:
+        edits = writing.set_text(child, text)
+    else:
+        after = ("uri", "name", "pose") if isinstance(thing.written, Include) else ("pose",)
+        first = thing.element.first("pose") is None and not isinstance(thing.written, Include)
+        edits = [writing.inserted_in(thing.element, [made("static", text)], after=after, first=first)]
+    if not static and thing.shape is not None and isinstance(thing.written, Model):
+        link = thing.written.links[0]
+        if link.inertial is None and link.element is not None:
+            new = inertial(thing.shape.kind, tuple(size or thing.shape.size), _NEW_MASS)
+            edits.append(writing.inserted_in(link.element, [new], first=True))
+    return edits
+
+
+# --- names ---------------------------------------------------------------------------------------------------------
+
+
+def _renamed(world: WorldText, thing: Thing, name: str) -> WorldText:
+    world.check_name(name)
+    edits = _named(thing, name)
+    edits += renamed_references(world, {thing.name: name})
+    for entry in state_of(world, thing.name):
+        edits += writing.set_attribute(entry, "name", name)
+    return world.edited(edits)
+
+
+def _named(thing: Thing, name: str) -> list[Replacement]:
+    if isinstance(thing.written, Include):
+        return writing.set_child(thing.element, "name", name, after=("uri",))
+    return writing.set_attribute(thing.element, "name", name)
+
+
+def _copied(thing: Thing, name: str) -> Replacement:
+    """A copy behind a thing, on lines of its own where it stands on such."""
+    text, (start, end) = writing.text_of(thing.element), writing.range_of(thing.element)
+    copy = text[start:end]
+    for edit in sorted(_named(thing, name), key=lambda edit: edit.start, reverse=True):
+        copy = copy[: edit.start - start] + edit.text + copy[edit.end - start :]
+    indent = indentation(text, start)
+    between = "" if indent is None else f"{newline_of(text)}{indent}"
+    return Replacement(end, end, between + copy)
+
+
+# --- places --------------------------------------------------------------------------------------------------------
+
+
+def _written_pose(thing: Thing) -> Pose:
+    own = thing.pose
+    if own.pose.quaternion is None and not own.relative_to and _same(transform_of(own.pose), thing.place):
+        return own.pose
+    return writing.pose_from(thing.place)
+
+
+def _same(some: Transform, other: Transform) -> bool:
+    return all(a == b for a, b in zip(some, other, strict=True))
+
+
+def _local(world: WorldText, thing: Thing, pose: Pose) -> Pose:
+    """A pose in the world as it is written of a thing: in the frame that it is given in, of its placement frame."""
+    relative_to = thing.pose.relative_to
+    placed = thing.model.placement_frame if thing.model is not None else ""
+    if isinstance(thing.written, Model | Include):
+        placed = thing.written.placement_frame or placed
+    if not relative_to and not placed:
+        return pose
+    try:
+        local = compose(invert(world.frames.pose(relative_to)) if relative_to else IDENTITY, transform_of(pose))
+        if placed:
+            local = compose(local, world.frames.inside(thing.name).pose(placed))
+    except FrameError as error:
+        reason = phrase(
+            "'{name}' stands relative to '{frame}', which cannot be placed", name=thing.name, frame=error.name
+        )
+        raise EditError(reason) from None
+    return writing.pose_from(local)
+
+
+def _state_moved(entry: Element, old: Transform, new: Transform, pose: Pose) -> list[Replacement]:
+    """Move what a saved state says of a thing, whose parts are told in the frame of the world as well."""
+    by = compose(new, invert(old))
+    edits: list[Replacement] = []
+    for element in entry.walk():
+        told = element.first("pose") if element.tag in ("model", "link", "light") else None
+        if told is None:
+            continue
+        if element is entry:
+            edits += writing.set_pose(told, pose)
+            continue
+        try:
+            numbers = POSE_NUMBERS.read(told.text())
+            there = transform_of(pose_of(numbers, degrees=False, rotation_format="euler_rpy"))
+        except ValueError:
+            continue
+        edits += writing.set_pose(told, writing.pose_from(compose(by, there)))
+    return edits
+
+
+def _depth(world: WorldText, name: str) -> int:
+    """How many things a thing stands relative to, one after the other."""
+    depth, seen = 0, set[str]()
+    thing = world.things.get(name)
+    while thing is not None and thing.name not in seen:
+        seen.add(thing.name)
+        thing = world.things.get(thing.pose.relative_to.partition(SEPARATOR)[0])
+        depth += 1
+    return depth
+
+
+def _references_in(child: Element) -> list[tuple[Element, str | None]]:
+    holder = Element("world")
+    holder.children.append(child)
+    return list(writing.references(holder))

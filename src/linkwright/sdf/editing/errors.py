@@ -1,0 +1,17 @@
+"""Why a world cannot be edited."""
+
+from __future__ import annotations
+
+from linkwright.diagnostics import Phrase
+
+
+class EditError(Exception):
+    """A world cannot be edited so; the text says why, as a sentence without a full stop.
+
+    Attributes:
+        message: the text.
+    """
+
+    def __init__(self, message: Phrase | str) -> None:
+        super().__init__(message)
+        self.message = message

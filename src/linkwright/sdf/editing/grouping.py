@@ -1,0 +1,238 @@
+"""Making one model of several, and several of one."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+
+from linkwright.diagnostics import phrase
+from linkwright.geometry.single import Pose, Transform, compose
+from linkwright.sdf.editing import writing
+from linkwright.sdf.editing.changing import named_in, place, pose_of_thing, renamed_references, state_of
+from linkwright.sdf.editing.errors import EditError
+from linkwright.sdf.editing.shapes import lengths, made
+from linkwright.sdf.editing.text import Thing, WorldText
+from linkwright.sdf.frames import transform_of
+from linkwright.sdf.models import Include, Model
+from linkwright.sdf.poses import MODEL, SEPARATOR
+from linkwright.xmltree import Element
+from linkwright.xmltree.patches import Replacement, apply, escaped, indentation, newline_of
+
+_STEP = "  "
+_DIGITS = 3
+"""A group stands at a millimetre."""
+_LINE = re.compile(r"(?<=\n)(?=[^\r\n])")
+_CDATA = re.compile(r"<!\[CDATA\[.*?\]\]>", re.DOTALL)
+
+
+def group(world: WorldText, names: Sequence[str], name: str) -> WorldText:
+    """Make one model of several, which stay where they are; it stands in the middle of them.
+
+    A saved state tells no more of them: where it had them, they stand now.
+
+    Args:
+        world: the world.
+        names: the models, two at least.
+        name: of the new one; a free one like it is taken.
+
+    Raises:
+        EditError: they cannot be one model.
+    """
+    things = [world.thing(each) for each in dict.fromkeys(names)]
+    _check_group(things)
+    name = world.free_name(name.strip() or "group")
+    world.check_name(name)
+    inside = frozenset(thing.name for thing in things)
+    x, y, z = (round(sum(thing.place[axis] for thing in things) / len(things), _DIGITS) for axis in range(3))
+    origin: Transform = (x, y, z, 0.0, 0.0, 0.0, 1.0)
+    edits: list[Replacement] = []
+    for thing in things:
+        edits += [writing.removed(entry) for entry in state_of(world, thing.name)]
+        base = thing.pose.relative_to
+        if base.partition(SEPARATOR)[0] in inside and not state_of(world, thing.name):
+            continue  # one that stands relative to another of them does so still
+        edits += _placed_in(world, thing, origin)
+    edits += renamed_references_outside(world, inside, name)
+    text = world.text
+    first = min(things, key=lambda thing: thing.element.offset)
+    start = writing.range_of(first.element)[0]
+    blanks, newline = indentation(text, start) or "", newline_of(text)
+    inner = blanks + _STEP
+    static = f"{newline}{inner}<static>true</static>" if things[0].static else ""
+    head = f'<model name="{escaped(name)}">{newline}{inner}<pose>{lengths((x, y, z, 0.0, 0.0, 0.0))}</pose>{static}'
+    parts = []
+    for thing in sorted(things, key=lambda thing: thing.element.offset):
+        begin, end = writing.range_of(thing.element)
+        own = [each for each in edits if begin <= each.start and each.end <= end]
+        edits = [each for each in edits if each not in own]
+        moved = [Replacement(each.start - begin, each.end - begin, each.text) for each in own]
+        parts.append(inner + _shifted(apply(text[begin:end], moved), _STEP))
+    whole = newline.join([head, *parts, f"{blanks}</model>"])
+    begin, end = writing.range_of(first.element)
+    edits.append(Replacement(begin, end, whole))
+    edits += [writing.removed(thing.element) for thing in things if thing is not first]
+    return world.edited(edits)
+
+
+def ungroup(world: WorldText, name: str) -> tuple[WorldText, list[str]]:
+    """Make models of the world of the parts of one, which stay where they are.
+
+    Returns:
+        The world, and the names of the parts, which are others where they were taken.
+
+    Raises:
+        EditError: the model is more than its parts, or another file's.
+    """
+    thing = world.thing(name)
+    model = thing.written
+    if not isinstance(model, Model):
+        raise EditError(phrase("'{name}' is not a group that is written in this file", name=name))
+    if not thing.parts or model.joints or model.frames or model.plugins or model.links:
+        raise EditError(phrase("'{name}' is more than the models in it, and cannot be taken apart", name=name))
+    parts = [each for each in thing.element.elements() if each.tag in ("model", "include")]
+    if len(parts) != len(thing.parts):
+        raise EditError(phrase("'{name}' includes what is not there, and cannot be taken apart", name=name))
+    names = _names_of(world, thing, parts)
+    edits: list[Replacement] = [writing.removed(entry) for entry in state_of(world, name)]
+    frames = world.frames.inside(name)
+    for element, old in zip(parts, _old_names(thing, parts), strict=True):
+        edits += _let_out(world, thing, element, old, names, compose(thing.place, frames.pose(old)))
+    for element, attribute in writing.references(world.element):
+        head, colon, tail = named_in(element, attribute).partition(SEPARATOR)
+        part, more, rest = tail.partition(SEPARATOR)
+        if head != name:
+            continue
+        if not colon or part not in names:
+            raise EditError(phrase("'{name}' cannot be taken apart: something refers to it", name=name))
+        written = f"{names[part]}{more}{rest}"
+        edits += writing.set_reference(element, attribute, written)
+    edits += [writing.removed(each) for tag in ("pose", "static") for each in thing.element.elements(tag)]
+    begin, end = writing.range_of(thing.element)
+    first, last = writing.content_of(thing.element)
+    own = [Replacement(e.start - first, e.end - first, e.text) for e in edits if begin <= e.start and e.end <= end]
+    edits = [each for each in edits if not (begin <= each.start and each.end <= end)]
+    blanks = indentation(world.text, begin)
+    inner = apply(world.text[first:last], own).strip()
+    step = (indentation(world.text, parts[0].offset) or "").removeprefix(blanks or "")
+    edits.append(Replacement(begin, end, _unshifted(inner, step)))
+    return world.edited(edits), list(names.values())
+
+
+def renamed_references_outside(world: WorldText, inside: frozenset[str], group_name: str) -> list[Replacement]:
+    """The edits by which what stands outside of a group refers to what is in it."""
+    names = {each: f"{group_name}{SEPARATOR}{each}" for each in inside}
+    ranges = [writing.range_of(world.thing(each).element) for each in inside]
+    return [
+        each
+        for each in renamed_references(world, names)
+        if not any(start <= each.start and each.end <= end for start, end in ranges)
+    ]
+
+
+def _check_group(things: Sequence[Thing]) -> None:
+    if len(things) < 2:
+        raise EditError(phrase("a group is made of two models at least"))
+    light = next((thing for thing in things if thing.kind == "light"), None)
+    if light is not None:
+        raise EditError(phrase("'{name}' is a light, which cannot be part of a model", name=light.name))
+    other = next((thing for thing in things if thing.static != things[0].static), None)
+    if other is not None:
+        static, moving = (other, things[0]) if other.static else (things[0], other)
+        raise EditError(
+            phrase(
+                "'{static}' is static and '{moving}' is not: make both the same", static=static.name, moving=moving.name
+            )
+        )
+
+
+def _placed_in(world: WorldText, thing: Thing, origin: Transform) -> list[Replacement]:
+    """Write the pose of a thing in the frame of a group that stands at a place, by which it is where it is now."""
+    written = pose_of_thing(thing)
+    x, y, z = (a - b for a, b in zip(written.xyz, origin[:3], strict=True))
+    local = Pose((x, y, z), written.rpy)
+    placed = thing.model.placement_frame if thing.model is not None else ""
+    if placed:
+        inner = compose(transform_of(local), world.frames.inside(thing.name).pose(placed))
+        local = writing.pose_from(inner)
+    edits = place(thing, local)
+    pose = thing.element.first("pose")
+    if pose is not None:
+        edits += [edit for name in ("relative_to", "frame") for edit in writing.without_attribute(pose, name)]
+    return edits
+
+
+def _old_names(thing: Thing, parts: Sequence[Element]) -> list[str]:
+    """The names of parts within their group, in the order of the text: models first, then what is included."""
+    assert isinstance(thing.written, Model), "groups are models"
+    assert thing.model is not None, "groups are models"
+    models = [id(each.element) for each in thing.written.models]
+    includes = [id(each.element) for each in thing.written.includes]
+    order = {each: thing.model.models[index].name for index, each in enumerate((*models, *includes))}
+    return [order[id(each)] for each in parts]
+
+
+def _names_of(world: WorldText, thing: Thing, parts: Sequence[Element]) -> dict[str, str]:
+    names: dict[str, str] = {}
+    taken = world.taken - {thing.name}
+    for old in _old_names(thing, parts):
+        names[old] = world.free_name(old, taken)
+        taken |= {names[old]}
+    return names
+
+
+def _let_out(
+    world: WorldText, thing: Thing, element: Element, old: str, names: dict[str, str], there: Transform
+) -> list[Replacement]:
+    """What changes in a part of a group that comes out of it."""
+    assert thing.model is not None, "groups are models"
+    model = next(each for each in thing.model.models if each.name == old)
+    edits: list[Replacement] = []
+    if names[old] != old:
+        edits += (
+            writing.set_child(element, "name", names[old], after=("uri",))
+            if element.tag == "include"
+            else writing.set_attribute(element, "name", names[old])
+        )
+    if thing.static and not model.static:
+        after = ("uri", "name", "pose")
+        child = element.first("static")
+        edits += (
+            writing.set_text(child, "true")
+            if child is not None
+            else [writing.inserted_in(element, [made("static", "true")], after=after, first=True)]
+        )
+    pose = element.first("pose")
+    base = model.pose.relative_to
+    head, colon, tail = base.partition(SEPARATOR)
+    if pose is not None and head in names:
+        attribute = "relative_to" if "relative_to" in pose.attributes else "frame"
+        return [*edits, *writing.set_attribute(pose, attribute, f"{names[head]}{colon}{tail}")]
+    if base not in ("", MODEL):
+        raise EditError(phrase("'{name}' stands relative to '{frame}', and cannot come out", name=old, frame=base))
+    if model.placement_frame:
+        there = compose(there, world.frames.inside(thing.name).inside(old).pose(model.placement_frame))
+    local = writing.pose_from(there)
+    part = Thing(old, "model", element, Include("") if element.tag == "include" else model, model, None, there, None)
+    edits += place(part, local)
+    if pose is not None:
+        edits += [edit for name in ("relative_to", "frame") for edit in writing.without_attribute(pose, name)]
+    return edits
+
+
+def _shifted(text: str, step: str) -> str:
+    """A text with its lines but the first set in by a step; those in CDATA stay."""
+    return _outside_cdata(text, lambda part: _LINE.sub(step, part))
+
+
+def _unshifted(text: str, step: str) -> str:
+    """The other way round."""
+    pattern = re.compile(rf"(?<=\n){re.escape(step)}")
+    return _outside_cdata(text, lambda part: pattern.sub("", part)) if step else text
+
+
+def _outside_cdata(text: str, do: Callable[[str], str]) -> str:
+    kept, parts, at = [found.span() for found in _CDATA.finditer(text)], [], 0
+    for start, end in kept:
+        parts += [do(text[at:start]), text[start:end]]
+        at = end
+    return "".join([*parts, do(text[at:])])

@@ -1,0 +1,183 @@
+"""Models that are one simple shape: recognising them, their parts as elements, and the mass of what they are.
+
+A wall is a box whose link is called ``wall``. A ramp is a wedge that rises along x, a ``<polyline>`` of three corners
+in a link called ``ramp``: so a file keeps what they are without anything that is not SDF.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import isfinite, pi
+from typing import Literal
+
+import numpy as np
+
+from linkwright.geometry.mass import MassProperties
+from linkwright.geometry.shapes import Box, Cylinder, Sphere
+from linkwright.geometry.single import Pose
+from linkwright.geometry.solids import shape_properties
+from linkwright.sdf.links import Collision, Visual
+from linkwright.sdf.materials import Material
+from linkwright.sdf.models import Model
+from linkwright.sdf.poses import AT_ORIGIN, RawPose
+from linkwright.sdf.scripts import gazebo_look, painted
+from linkwright.sdf.shapes import Polyline, Shape
+from linkwright.sdf.values import Color, plain
+from linkwright.xmltree import Element, Text
+
+ShapeKind = Literal["box", "cylinder", "sphere", "wall", "ramp"]
+
+COUNTS = {"box": 3, "cylinder": 2, "sphere": 1, "wall": 3, "ramp": 3}
+"""How many numbers the size of a shape has: x y z; radius and length; radius."""
+DIGITS = 9
+"""Numbers are written to the nanometre."""
+
+
+@dataclass(frozen=True, slots=True)
+class SimpleShape:
+    """What a model of one simple shape is.
+
+    Attributes:
+        kind: which.
+        size: metres: x, y, z of a box, wall or ramp; radius and length of a cylinder; the radius of a sphere.
+        colour: red, green, blue, alpha from 0 to 1; None where nothing is said.
+    """
+
+    kind: ShapeKind
+    size: tuple[float, ...]
+    colour: Color | None = None
+
+
+def simple_shape(model: Model) -> SimpleShape | None:
+    """What a model is, where it is one link in its frame, whose shapes are all the same; else None."""
+    if len(model.links) != 1 or model.joints or model.models or model.includes:
+        return None
+    link = model.links[0]
+    parts: list[Visual | Collision] = [*link.visuals, *link.collisions]
+    if link.pose != AT_ORIGIN or not parts or any(part.geometry != parts[0].geometry for part in parts):
+        return None
+    found = _sized(parts[0].geometry, link.name)
+    if found is None or any(not _is_at(part.pose, found) for part in parts):
+        return None
+    kind, size = found
+    return SimpleShape(kind, size, _colour(link.visuals[0].material) if link.visuals else None)
+
+
+def _sized(geometry: Shape, link: str) -> tuple[ShapeKind, tuple[float, ...]] | None:
+    if isinstance(geometry, Box):
+        return "wall" if link == "wall" else "box", geometry.size
+    if isinstance(geometry, Cylinder):
+        return "cylinder", (geometry.radius, geometry.length)
+    if isinstance(geometry, Sphere):
+        return "sphere", (geometry.radius,)
+    if isinstance(geometry, tuple) and len(geometry) == 1 and link == "ramp":
+        (x, y), height = np.ptp(np.array(geometry[0].points or [(0.0, 0.0)]), axis=0).tolist(), geometry[0].height
+        size = round(x, DIGITS), height, round(y, DIGITS)
+        if _close(geometry[0].points, wedge(size).points):
+            return "ramp", size
+    return None
+
+
+def _is_at(pose: RawPose, shape: tuple[ShapeKind, tuple[float, ...]]) -> bool:
+    wanted = ramp_pose(shape[1]) if shape[0] == "ramp" else AT_ORIGIN.pose
+    return not pose.relative_to and _close((pose.pose.xyz, pose.pose.rpy), (wanted.xyz, wanted.rpy))
+
+
+def _close(some: tuple[tuple[float, ...], ...], others: tuple[tuple[float, ...], ...]) -> bool:
+    return len(some) == len(others) and bool(np.allclose(some, others, rtol=0.0, atol=1e-6))
+
+
+def _colour(material: Material | None) -> Color | None:
+    if material is None:
+        return None
+    look = gazebo_look(material.script.name) if material.script else None
+    if look is not None:
+        material = painted(material, look)
+    return material.diffuse or material.ambient
+
+
+def is_size(kind: str, size: tuple[float, ...]) -> bool:
+    """Whether numbers can be the size of a shape."""
+    return len(size) == COUNTS[kind] and all(isfinite(each) and 1e-6 <= each <= 1e6 for each in size)
+
+
+def wedge(size: tuple[float, ...]) -> Polyline:
+    """The outline of a ramp in x and z, as the x and y of a polyline, raised to its width."""
+    x, y, z = size
+    return Polyline(((-x / 2, -z / 2), (x / 2, -z / 2), (x / 2, z / 2)), y)
+
+
+def ramp_pose(size: tuple[float, ...]) -> Pose:
+    """Where the polyline of a ramp stands in its link: on its side."""
+    return Pose((0.0, size[1] / 2, 0.0), (pi / 2, 0.0, 0.0))
+
+
+def solid(kind: str, size: tuple[float, ...], density: float = 1.0) -> MassProperties:
+    """The mass of a solid shape, its centre and its inertia, in the frame of its link."""
+    if kind == "cylinder":
+        return shape_properties(Cylinder(*size), density)
+    if kind == "sphere":
+        return shape_properties(Sphere(*size), density)
+    x, y, z = size
+    box = shape_properties(Box((x, y, z)), density)
+    if kind != "ramp":
+        return box
+    mass = box.mass / 2
+    xx, yy, zz, xz = x * x / 18, y * y / 12, z * z / 18, x * z / 36  # second moments of a right triangle and a bar
+    inertia = mass * np.array([[yy + zz, 0.0, -xz], [0.0, xx + zz, 0.0], [-xz, 0.0, xx + yy]])
+    return MassProperties(mass, np.array([x / 6, 0.0, -z / 6]), inertia)
+
+
+def tensor(properties: MassProperties) -> dict[str, str]:
+    """The elements of ``<inertia>`` and their texts."""
+    inertia = properties.inertia
+    places = {"ixx": (0, 0), "ixy": (0, 1), "ixz": (0, 2), "iyy": (1, 1), "iyz": (1, 2), "izz": (2, 2)}
+    return {tag: number(float(inertia[at])) for tag, at in places.items()}
+
+
+def number(value: float) -> str:
+    """A number as it is written: with six digits that count, as those of inertia have."""
+    return plain(float(f"{value:.6g}"))
+
+
+def length(value: float) -> str:
+    """A length or angle as it is written."""
+    return plain(round(value, DIGITS))
+
+
+def lengths(values: tuple[float, ...]) -> str:
+    """Several of them."""
+    return " ".join(map(length, values))
+
+
+def made(tag: str, *children: Element | str, **attributes: str) -> Element:
+    """An element with a text or with others in it."""
+    element = Element(tag, attributes)
+    element.children.extend(Text(child) if isinstance(child, str) else child for child in children)
+    return element
+
+
+def inertial(kind: str, size: tuple[float, ...], mass: float) -> Element:
+    """The ``<inertial>`` of a solid shape with a mass in kg."""
+    properties = solid(kind, size).with_mass(mass)
+    parts = [made("mass", number(mass))]
+    if properties.center.any():
+        parts.append(made("pose", f"{lengths(tuple(properties.center.tolist()))} 0 0 0"))
+    parts.append(made("inertia", *(made(tag, text) for tag, text in tensor(properties).items() if text != "0")))
+    return made("inertial", *parts)
+
+
+def geometry(kind: str, size: tuple[float, ...]) -> list[Element]:
+    """The ``<geometry>`` of a shape; before it, where the shape does not stand in its frame, its ``<pose>``."""
+    if kind == "ramp":
+        outline = wedge(size)
+        points = (made("point", lengths(point)) for point in outline.points)
+        shape = made("polyline", *points, made("height", length(outline.height)))
+        pose = ramp_pose(size)
+        text = f"{lengths(pose.xyz)} {' '.join(map(plain, pose.rpy))}"
+        return [made("pose", text), made("geometry", shape)]
+    if kind == "cylinder":
+        return [made("geometry", made("cylinder", made("radius", length(size[0])), made("length", length(size[1]))))]
+    if kind == "sphere":
+        return [made("geometry", made("sphere", made("radius", length(size[0]))))]
+    return [made("geometry", made("box", made("size", lengths(size))))]

@@ -1,0 +1,221 @@
+"""A world as text: what stands in it, where each thing is written, and where it stands."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Literal
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, has_errors, phrase
+from linkwright.geometry.single import Transform
+from linkwright.sdf.actors import Actor
+from linkwright.sdf.editing.errors import EditError
+from linkwright.sdf.editing.shapes import SimpleShape, simple_shape
+from linkwright.sdf.frames import FrameError, Frames, transform_of
+from linkwright.sdf.includes import resolve_includes
+from linkwright.sdf.joints import Joint
+from linkwright.sdf.lights import Light
+from linkwright.sdf.models import Frame, Include, Model
+from linkwright.sdf.poses import AT_ORIGIN, SEPARATOR, WORLD, RawPose
+from linkwright.sdf.reader import read
+from linkwright.sdf.resources import ResourceFinder
+from linkwright.sdf.saved import as_saved
+from linkwright.sdf.text import parse_as_gazebo
+from linkwright.sdf.worlds import World
+from linkwright.xmltree import Element
+from linkwright.xmltree.patches import Replacement, apply
+
+_NUMBERED = re.compile(r"(.+?)_\d+").fullmatch
+
+
+@dataclass(frozen=True, slots=True)
+class Thing:
+    """A model or light of a world.
+
+    Attributes:
+        name: its name in the world.
+        kind: what it is.
+        element: where it is written.
+        written: what is written there.
+        model: the model, with its includes resolved; None for a light, and for an include that leads nowhere.
+        light: the light; None for a model.
+        place: its frame in the world.
+        shape: what it is, where it is one simple shape that is written in this file.
+    """
+
+    name: str
+    kind: Literal["model", "light"]
+    element: Element
+    written: Model | Light | Include
+    model: Model | None
+    light: Light | None
+    place: Transform
+    shape: SimpleShape | None
+
+    @property
+    def pose(self) -> RawPose:
+        """Its pose as it is written."""
+        return self.written.pose or AT_ORIGIN
+
+    @property
+    def static(self) -> bool:
+        """Whether it never moves."""
+        if self.model is not None:
+            return self.model.static
+        return isinstance(self.written, Include) and bool(self.written.static)
+
+    @property
+    def parts(self) -> tuple[str, ...]:
+        """The names of the models in it, where it is nothing but these."""
+        if not isinstance(self.written, Model) or self.model is None or self.written.links:
+            return ()
+        return tuple(each.name for each in self.model.models)
+
+
+class WorldText:
+    """A world as text, read; of a file with several worlds the first.
+
+    Args:
+        text: SDF.
+        path: the file that it is of, from whose folder its addresses start.
+        finder: where the models are that it includes.
+
+    Attributes:
+        world: what it says, with includes resolved and everything where the last saved state has it.
+        frames: the frames of that.
+        things: its models and lights by their names, in the order of the text.
+
+    Raises:
+        LinkwrightError: it is not XML.
+        EditError: there is no world in it.
+    """
+
+    def __init__(self, text: str, path: Path, finder: ResourceFinder) -> None:
+        self.text, self.path, self.finder = text, path, finder
+        document, _ = parse_as_gazebo(text, str(path))
+        reading = read(document)
+        if reading.sdf is None or not reading.sdf.worlds or reading.sdf.worlds[0].element is None:
+            raise EditError(phrase("there is no world in '{path}'", path=str(path)))
+        self._written = reading.sdf.worlds[0]
+        self.element: Element = reading.sdf.worlds[0].element
+        self._included = resolve_includes(replace(reading.sdf, worlds=(self._written,)), path, finder)
+        resolved = self._included.sdf.worlds[0]
+        self._findings = (*reading.diagnostics, *self._included.diagnostics)
+        self.world: World = as_saved(resolved)
+        self.frames = Frames(self.world)
+        self.things: Mapping[str, Thing] = dict(self._things())
+
+    @property
+    def errors(self) -> list[Diagnostic]:
+        """What is wrong with it so that simulators refuse it."""
+        return [each for each in self._findings if has_errors([each])]
+
+    @cached_property
+    def taken(self) -> frozenset[str]:
+        """The names that a new thing cannot have."""
+        world, state = self.world, self.world.states[-1] if self.world.states else None
+        gone = state.deletions.names if state is not None else ()
+        beside: tuple[Actor | Frame | Joint, ...] = (*world.actors, *world.frames, *world.joints)
+        return frozenset({WORLD, *self.things, *(each.name for each in beside), *gone})
+
+    @property
+    def state(self) -> Element | None:
+        """The last saved state, which says where things are."""
+        return self.world.states[-1].element if self.world.states else None
+
+    def thing(self, name: str) -> Thing:
+        """A model or light by its name.
+
+        Raises:
+            EditError: there is none.
+        """
+        try:
+            return self.things[name]
+        except KeyError:
+            raise EditError(phrase("there is no '{name}' in the world's file", name=name)) from None
+
+    def edited(self, edits: list[Replacement]) -> WorldText:
+        """The world with replacements made in its text.
+
+        Raises:
+            EditError: no world would come of them, which is a mistake of the one who made them.
+        """
+        return self.with_text(apply(self.text, edits))
+
+    def with_text(self, text: str) -> WorldText:
+        """The same world with another text.
+
+        Raises:
+            EditError: it would be none.
+        """
+        if text == self.text:
+            return self
+        try:
+            return WorldText(text, self.path, self.finder)
+        except LinkwrightError as error:
+            found = error.diagnostics[0]
+            raise EditError(phrase("the text would not be SDF: {reason}", reason=found.message)) from None
+
+    def free_name(self, wanted: str, taken: frozenset[str] | None = None) -> str:
+        """A name that nothing has: the wanted one, or with a number behind it."""
+        taken = self.taken if taken is None else taken
+        if wanted not in taken:
+            return wanted
+        numbered = _NUMBERED(wanted)
+        stem = numbered[1] if numbered else wanted
+        number = 2
+        while f"{stem}_{number}" in taken:
+            number += 1
+        return f"{stem}_{number}"
+
+    def check_name(self, name: str) -> None:
+        """Refuse what cannot be the name of a new thing.
+
+        Raises:
+            EditError: it is empty, taken, or means something else in SDF.
+        """
+        if not name.strip():
+            raise EditError(phrase("a name cannot be empty"))
+        if SEPARATOR in name or name == WORLD or (name.startswith("__") and name.endswith("__")):
+            raise EditError(phrase("'{name}' cannot be a name: it means something else in SDF", name=name))
+        if name in self.taken:
+            raise EditError(phrase("there is something named '{name}' already", name=name))
+
+    def _things(self) -> Iterator[tuple[str, Thing]]:
+        seen: set[str] = set()
+        state = self._written.states[-1] if self._written.states else None
+        gone = frozenset(state.deletions.names) if state is not None else frozenset[str]()
+        found: list[Model | Light | Include] = [*self._written.models, *self._written.lights, *self._written.includes]
+        if state is not None:
+            found += [*state.insertions.models, *state.insertions.lights]
+        for each in sorted(found, key=lambda each: 0 if each.element is None else each.element.offset):
+            thing = self._thing(each)
+            if thing is not None and thing.name not in seen and thing.name not in gone:
+                seen.add(thing.name)
+                yield thing.name, thing
+
+    def _thing(self, written: Model | Light | Include) -> Thing | None:
+        element = written.element
+        assert element is not None, "it was read from the text"
+        found = self._included.things.get(id(element)) if isinstance(written, Include) else written
+        if isinstance(found, Model):
+            model = next((each for each in self.world.models if each.name == found.name), found)
+            shape = simple_shape(written) if isinstance(written, Model) else None
+            return Thing(found.name, "model", element, written, model, None, self._place(model), shape)
+        if isinstance(found, Light):
+            light = next((each for each in self.world.lights if each.name == found.name), found)
+            return Thing(found.name, "light", element, written, None, light, self._place(light), None)
+        if isinstance(written, Include) and found is None:
+            name = written.name or written.uri.strip().rstrip("/").rpartition("/")[2]
+            pose = written.pose or AT_ORIGIN
+            return Thing(name, "model", element, written, None, None, transform_of(pose.pose), None)
+        return None  # an actor
+
+    def _place(self, thing: Model | Light) -> Transform:
+        try:
+            return self.frames.pose(thing.name) if isinstance(thing, Model) else self.frames.placed(thing.pose)
+        except FrameError:
+            return transform_of(thing.pose.pose)  # what is wrong with it is told by those who check frames

@@ -1,0 +1,98 @@
+"""Adding to a world: what comes of it reads as what was added."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from linkwright.geometry.mass import combine
+from linkwright.geometry.shapes import Box
+from linkwright.geometry.single import Pose
+from linkwright.geometry.solids import shape_properties
+from linkwright.sdf.editing import Change, EditError, add_include, add_light, add_shape, change, delete
+from linkwright.sdf.editing.shapes import solid
+from tests.sdf.editing.texts import PLAIN, inside, world_text
+
+POSE = (1.0, 2.0, 3.0, 0.0, 0.0, 0.5)
+SIZES = {"box": (1, 2, 3), "cylinder": (0.1, 2), "sphere": (0.3,), "wall": (4, 0.2, 1), "ramp": (2, 1, 0.5)}
+
+
+@pytest.mark.parametrize("kind", SIZES)
+def test_a_shape_is_what_it_was_when_it_is_read_again(kind):
+    before = world_text(PLAIN)
+    text, name = add_shape(before, kind, POSE, SIZES[kind])
+    thing = text.things[name]
+    assert (thing.shape.kind, thing.shape.size) == (kind, SIZES[kind])
+    assert thing.pose.pose == Pose(POSE[:3], POSE[3:])
+    assert thing.static == (kind in ("wall", "ramp"))
+    assert not text.errors
+    assert delete(text, [name]).text == PLAIN
+    usual, name = add_shape(before, kind, POSE)
+    larger = change(usual, [Change(name, size=SIZES[kind], static=False)])
+    assert larger.things[name].shape.size == SIZES[kind]
+    assert change(text, [Change(name, static=False)]).things[name].shape.size == SIZES[kind]
+
+
+def test_a_new_shape_weighs_a_kilogram_and_has_the_inertia_of_a_solid():
+    text, name = add_shape(inside(), "cylinder", POSE, (0.5, 2.0))
+    inertial = text.things[name].model.links[0].inertial
+    assert inertial.mass == 1.0
+    assert inertial.inertia.izz == pytest.approx(0.125)
+    assert inertial.inertia.ixx == pytest.approx((3 * 0.25 + 4) / 12, rel=1e-5)
+
+
+def test_a_ramp_has_the_mass_of_a_wedge():
+    size, count = (2.0, 1.0, 0.5), 400
+    step = size[0] / count
+    heights = (np.arange(count) + 0.5) / count * size[2]
+    slices = [
+        shape_properties(Box((step, size[1], h))).moved(Pose((-1 + (index + 0.5) * step, 0.0, h / 2 - size[2] / 2)))
+        for index, h in enumerate(heights.tolist())
+    ]
+    whole, wanted = combine(slices), solid("ramp", size)
+    assert whole.mass == pytest.approx(wanted.mass)
+    assert whole.center == pytest.approx(wanted.center, abs=1e-5)
+    assert whole.inertia == pytest.approx(wanted.inertia, rel=1e-3, abs=1e-6)
+
+
+def test_new_things_come_behind_the_last_and_are_set_in_as_the_others_are():
+    text, _ = add_light(world_text(PLAIN), "point", POSE)
+    assert text.text.startswith(PLAIN[: PLAIN.index("  </world>")])
+    assert '    <light name="point_light" type="point">\n      <pose>1 2 3 0 0 0.5</pose>\n' in text.text
+    text, _ = add_shape(world_text("<sdf version='1.6'><world name='w'/></sdf>"), "box", POSE)
+    assert "<world name='w'>\n  <model name=\"box\">\n    <pose>" in text.text
+    tabs = "<sdf version='1.6'>\n\t<world name='w'>\n\t\t<gravity>0 0 -9.8</gravity>\n\t</world>\n</sdf>"
+    text, _ = add_shape(world_text(tabs), "box", POSE)
+    assert '</gravity>\n\t\t<model name="box">\n\t\t\t<pose>' in text.text
+
+
+@pytest.mark.parametrize("kind", ["point", "directional", "spot"])
+def test_lights_are_of_their_kind(kind):
+    text, name = add_light(inside(), kind, POSE)
+    light = text.things[name].light
+    assert (name, light.type) == (f"{kind}_light", kind)
+    assert (light.spot is not None) == (kind == "spot")
+    assert not text.errors
+
+
+def test_a_model_is_included_by_its_address_with_a_free_name(tmp_path):
+    folder = tmp_path / "crate"
+    folder.mkdir()
+    (folder / "model.sdf").write_text("<sdf version='1.6'><model name='box'><link name='l'/></model></sdf>")
+    text, name = add_include(world_text(PLAIN, str(tmp_path)), " model://crate ", POSE)
+    assert name == "box_2"
+    lines = ("<uri>model://crate</uri>", "<name>box_2</name>", "<pose>1 2 3 0 0 0.5</pose>")
+    assert "    <include>\n      " + "\n      ".join(lines) + "\n    </include>\n" in text.text
+    assert text.things[name].place[:3] == (1, 2, 3)
+    text, name = add_include(text, "model://sun", POSE)
+    assert (name, text.things[name].kind) == ("sun", "light")
+    with pytest.raises(EditError, match="there is no model 'nothing' on the search path"):
+        add_include(text, "model://nothing", POSE)
+    with pytest.raises(EditError, match="names no model"):
+        add_include(text, " ", POSE)
+
+
+@pytest.mark.parametrize("pose", [(1, 2, 3), (1, 2, 3, 4, 5, float("inf")), ()])
+def test_what_is_no_pose_is_refused(pose):
+    with pytest.raises(EditError, match="a pose has six numbers"):
+        add_shape(inside(), "box", pose)

@@ -1,0 +1,116 @@
+"""Edits of worlds that nobody wrote by hand: an edit and its inverse give the same text, and nothing else changes."""
+
+from __future__ import annotations
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from linkwright.sdf.editing import Change, change, copy, delete, group, ungroup
+from linkwright.sdf.editing.shapes import length
+from linkwright.sdf.frames import placed_links
+from tests.sdf.editing.texts import world_text
+
+NUMBERS = st.floats(-100, 100).map(lambda value: round(value, 6) or 0.0)
+ANGLES = st.floats(-1.5, 1.5).map(lambda value: round(value, 6) or 0.0)
+POSES = st.tuples(NUMBERS, NUMBERS, NUMBERS, ANGLES, ANGLES, ANGLES)
+SIZES = st.tuples(*[st.floats(0.01, 50).map(lambda value: round(value, 4))] * 3)
+SPACES = st.sampled_from(["", " ", "\n", "\n    ", "\t", "<!-- a < b -- c -->", "\n<!-- é 机器人 -->\n", "<?p i?>"])
+QUOTES = st.sampled_from(["'", '"'])
+SEPARATORS = st.sampled_from([" ", "  ", "\n\t"])
+ENDS = st.sampled_from(["\n", "\r\n"])
+
+
+@st.composite
+def boxes(draw, name: str) -> str:
+    """A box, written in some way, in some frame."""
+    gap, quote, between = draw(SPACES), draw(QUOTES), draw(SEPARATORS)
+    numbers = [length(each) for each in draw(POSES)]
+    form = draw(st.sampled_from(["", ' relative_to="f"', " frame = 'f'"]))
+    pose = draw(st.sampled_from([f"<pose{form}>{gap if '?' not in gap else ''}{between.join(numbers)}</pose>", ""]))
+    size = between.join(length(each) for each in draw(SIZES))
+    geometry = f"<geometry>{gap}<box><size>{size}</size></box></geometry>"
+    visual = f"<visual name={quote}v{quote}>{geometry}</visual>"
+    inertial = draw(st.sampled_from(["", "<inertial><mass>2</mass></inertial>"]))
+    link = f"<link name={quote}l{quote}>{inertial}{gap}{visual}<collision name='c'>{geometry}</collision></link>"
+    return f"{draw(SPACES)}<model name = {quote}{name}{quote} >{gap}{pose}{link}{gap}</model>{draw(SPACES)}"
+
+
+@st.composite
+def worlds(draw) -> str:
+    """A world with three boxes and a frame."""
+    frame = f"<frame name='f'><pose>{' '.join(length(each) for each in draw(POSES))}</pose></frame>"
+    parts = [draw(boxes(name)) for name in ("a", "b&amp;c", "d")]
+    text = f"<?xml version='1.0'?>\n<sdf version='1.9'>\n<world name='w'>{frame}{''.join(parts)}\n</world>\n</sdf>\n"
+    return text.replace("\n", draw(ENDS))
+
+
+def places(world) -> dict[str, tuple[float, ...]]:
+    return {each.name: each.pose for each in placed_links(world.world)}
+
+
+def close(some, others, tolerance: float = 1e-6) -> bool:
+    """Whether transforms are the same; a quaternion and its negative are."""
+    straight = all(abs(a - b) <= tolerance for a, b in zip(some[:3], others[:3], strict=True))
+    return straight and abs(abs(sum(a * b for a, b in zip(some[3:], others[3:], strict=True))) - 1) <= tolerance
+
+
+@settings(max_examples=40)
+@given(worlds(), POSES, st.sampled_from(["a", "b&c", "d"]))
+def test_what_is_moved_is_there_and_all_else_where_it_was(text, pose, name):
+    before = world_text(text)
+    after = change(before, [Change(name, pose=pose)])
+    wanted = world_text(
+        f"<sdf version='1.9'><world name='w'><model name='m'><pose>{' '.join(map(length, pose))}</pose>"
+        "<link name='l'/></model></world></sdf>"
+    )
+    assert close(after.things[name].place, wanted.things["m"].place, 1e-5)
+    for other in {"a", "b&c", "d"} - {name}:
+        assert after.things[other].place == before.things[other].place
+    element = before.things[name].element
+    start = element.offset
+    behind = len(text) - text.index("</model>", start)
+    assert after.text[:start] == text[:start]
+    assert after.text[-behind:] == text[-behind:]
+
+
+@settings(max_examples=40)
+@given(worlds(), SIZES, st.booleans())
+def test_sizes_and_names_and_back_again_give_the_same_text(text, size, twice):
+    before = world_text(text)
+    old = before.things["a"].shape.size
+    names = ["a", "d"] if twice else ["a"]
+    after = change(before, [Change(name, new_name=f"new {name}", size=size) for name in names])
+    assert after.things["new a"].shape.size == size
+    masses = [each.links[0].inertial for each in before.world.models]
+    back = [Change(f"new {name}", new_name=name, size=before.things[name].shape.size) for name in names]
+    again = change(after, back)
+    assert again.things["a"].shape.size == old
+    if not any(masses):
+        assert again.text == text
+
+
+@settings(max_examples=40)
+@given(worlds(), st.tuples(NUMBERS, NUMBERS, NUMBERS))
+def test_copies_deleted_give_the_same_text(text, offset):
+    before = world_text(text)
+    copied, names = copy(before, ["a", "b&c", "d"], offset)
+    assert names == ["a_2", "b&c_2", "d_2"]
+    for name, new in zip(["a", "b&c", "d"], names, strict=True):
+        there = before.things[name].place
+        moved = (*(a + b for a, b in zip(there[:3], offset, strict=True)), *there[3:])
+        assert close(copied.things[new].place, moved, 1e-5)
+        assert before.things[name].element.text() == copied.things[name].element.text()
+    assert "".join(delete(copied, names).text.split()) == "".join(text.split())
+
+
+@settings(max_examples=40)
+@given(worlds())
+def test_groups_taken_apart_are_where_they_were(text):
+    before = world_text(text)
+    grouped = group(before, ["a", "d"], "g")
+    assert set(grouped.things) == {"g", "b&c"}
+    there, apart = places(before), ungroup(grouped, "g")[0]
+    for name, pose in places(apart).items():
+        assert close(pose, there[name], 1e-5)
+    for name, pose in places(grouped).items():
+        assert close(pose, there[name.removeprefix("g::")], 1e-5)

@@ -1,0 +1,251 @@
+"""Changing what stands in a world: only what is said changes, wherever and however it is written."""
+
+from __future__ import annotations
+
+import difflib
+from math import cos, pi, sin
+
+import pytest
+
+from linkwright.geometry.single import rotate
+from linkwright.sdf.editing import Change, EditError, change, copy, delete
+from tests.sdf.editing.texts import BOX, PLAIN, inside, world_text
+
+
+def difference(before: str, after: str) -> list[str]:
+    """The lines that are gone and those that are new, without blanks around them."""
+    lines = difflib.ndiff(before.splitlines(), after.splitlines())
+    return [f"{line[0]} {line[1:].strip()}" for line in lines if line[0] in "+-"]
+
+
+def changed(text: str, *changes: Change) -> list[str]:
+    before = world_text(text)
+    return difference(before.text, change(before, changes).text)
+
+
+def test_what_stands_in_a_world_is_told():
+    things = world_text(PLAIN).things
+    assert list(things) == ["ground_plane", "box", "lamp"]
+    assert [thing.kind for thing in things.values()] == ["model", "model", "light"]
+    assert things["ground_plane"].static
+    assert things["box"].shape.kind == "box"
+    assert things["box"].shape.size == (0.5, 0.5, 0.5)
+    assert things["box"].shape.colour == (0.9, 0.4, 0.1, 1.0)
+    assert things["lamp"].place[:3] == (0, 0, 3)
+
+
+def test_of_a_pose_only_the_numbers_change_that_are_others():
+    assert changed(PLAIN, Change("box", pose=(2.0, 1.5, 0.25, 0, 0, pi / 2))) == [
+        "- <pose>2 0 0.250 0 0 0</pose>",
+        "+ <pose>2 1.5 0.250 0 0 1.570796327</pose>",
+    ]
+
+
+def test_a_pose_that_is_not_there_is_written_where_poses_are():
+    assert changed(PLAIN, Change("ground_plane", pose=(0, 0, -1, 0, 0, 0))) == [
+        "- <include><uri>model://ground_plane</uri></include>",
+        "+ <include><uri>model://ground_plane</uri><pose>0 0 -1 0 0 0</pose></include>",
+    ]
+    text = inside('    <model name="m">\n      <link name="l"/>\n    </model>\n')
+    moved = change(text, [Change("m", pose=(1, 0, 0, 0, 0, 0))])
+    assert '<model name="m">\n      <pose>1 0 0 0 0 0</pose>\n      <link name="l"/>\n' in moved.text
+
+
+@pytest.mark.parametrize(
+    ("written", "result"),
+    [
+        ('<pose degrees="true">1 2 3 0 0 90</pose>', '<pose degrees="true">4 2 3 0 0 45</pose>'),
+        ('<pose relative_to="">1 2 3\n 0 0 0</pose>', '<pose relative_to="">4 2 3\n 0 0 0.785398163</pose>'),
+        ("<pose><!-- x -->1 2 3 0 0 0</pose>", "<pose><!-- x -->4 2 3 0 0 0.785398163</pose>"),
+        ("<pose><![CDATA[1 2 3 0 0 0]]></pose>", "<pose>4 2 3 0 0 0.785398163</pose>"),
+        ("<pose/>", "<pose>4 2 3 0 0 0.785398163</pose>"),
+        (
+            "<pose rotation_format='quat_xyzw'>1 2 3 0 0 0 -1</pose>",
+            "<pose rotation_format='quat_xyzw'>4 2 3 0 0 -0.382683432 -0.923879533</pose>",
+        ),
+    ],
+)
+def test_a_pose_keeps_its_form(written, result):
+    text = inside(f'<model name="m">{written}<link name="l"/></model>')
+    moved = change(text, [Change("m", pose=(4, 2, 3, 0, 0, pi / 4))])
+    assert result in moved.text
+    place = moved.things["m"].place
+    assert (*place[:3], *rotate(place[3:], (1, 0, 0))) == pytest.approx((4, 2, 3, cos(pi / 4), sin(pi / 4), 0))
+
+
+def test_a_thing_ends_where_it_shall_in_whatever_frame_its_pose_is():
+    text = inside(
+        '<frame name="f"><pose>1 0 0 0 0 1.5707963267948966</pose></frame>',
+        '<model name="m"><pose relative_to="f">1 0 0 0 0 0</pose><link name="l"/></model>',
+        '<model name="n" placement_frame="tip"><pose relative_to="m">0 0 1 0 0 0</pose><link name="l"/>',
+        '<link name="tip"><pose>0 0 5 0.5 0 0</pose></link></model>',
+        '<light name="lamp" type="spot"><pose relative_to="m">0 0 2 0 0 0</pose></light>',
+    )
+    wanted = {
+        "n": (7, 8, 9, 0.1, pi / 2, 0.3),
+        "m": (1, 2, 3, 0.1, 0.2, 0.3),
+        "lamp": (4, 5, 6, 0, 0, 1),
+    }
+    moved = change(text, [Change(name, pose=pose) for name, pose in wanted.items()])
+    for name, pose in wanted.items():
+        assert moved.things[name].place[:3] == pytest.approx(pose[:3], abs=1e-8)
+    assert moved.text.count("relative_to") == 3
+    again = change(moved, [Change(name, pose=pose) for name, pose in wanted.items()])
+    for name, thing in again.things.items():
+        assert thing.place == pytest.approx(moved.things[name].place, abs=1e-8)
+
+
+def test_a_frame_that_is_not_there_is_told():
+    text = inside('<model name="m"><pose relative_to="none">1 0 0 0 0 0</pose><link name="l"/></model>')
+    with pytest.raises(EditError, match="'m' stands relative to 'none', which cannot be placed"):
+        change(text, [Change("m", pose=(0, 0, 0, 0, 0, 0))])
+
+
+def test_a_size_is_that_of_collision_visual_and_inertia():
+    assert [line for line in changed(PLAIN, Change("box", size=(0.5, 0.5, 1.0))) if line[0] == "+"] == [
+        "+ <mass>4</mass>",
+        "+ <inertia><ixx>0.416667</ixx><iyy>0.416667</iyy><izz>0.166667</izz></inertia>",
+        *["+ <geometry><box><size>0.5 0.5 1</size></box></geometry>"] * 2,
+    ]
+
+
+@pytest.mark.parametrize("size", [(1, 1), (1, 1, 0), (1, 1, -1), (1, 1, float("nan")), ()])
+def test_what_is_no_size_is_refused(size):
+    with pytest.raises(EditError, match="is no size of a box"):
+        change(world_text(PLAIN), [Change("box", size=size)])
+
+
+def test_what_is_no_simple_shape_has_neither_size_nor_colour():
+    with pytest.raises(EditError, match="'ground_plane' has no size that could be changed"):
+        change(world_text(PLAIN), [Change("ground_plane", size=(1, 1, 1))])
+    with pytest.raises(EditError, match="'ground_plane' has no colour that could be changed"):
+        change(world_text(PLAIN), [Change("ground_plane", colour=(1, 1, 1, 1))])
+
+
+def test_a_colour_takes_the_place_of_a_script():
+    text = PLAIN.replace(
+        "<material><ambient>0.9 0.4 0.1 1</ambient><diffuse>0.9 0.4 0.1 1</diffuse></material>",
+        "<material><script><uri>file://media/gazebo.material</uri><name>Gazebo/Red</name></script></material>",
+    )
+    assert world_text(text).things["box"].shape.colour == (1, 0, 0, 1)
+    after = change(world_text(text), [Change("box", colour=(0, 1, 0, 0.5))])
+    assert "<material><ambient>0 1 0 0.5</ambient><diffuse>0 1 0 0.5</diffuse></material>" in after.text
+    assert after.things["box"].shape.colour == (0, 1, 0, 0.5)
+    assert changed(PLAIN, Change("lamp", colour=(1, 0, 0, 1)))[-1] == "+ <diffuse>1 0 0 1</diffuse>"
+
+
+def test_what_moves_no_more_says_so_and_what_moves_again_has_a_mass():
+    still = change(world_text(PLAIN), [Change("box", static=True), Change("ground_plane", static=False)])
+    assert still.things["box"].static
+    assert not still.things["ground_plane"].static
+    assert "<pose>2 0 0.250 0 0 0</pose>\n      <static>true</static>\n" in still.text
+    bare = PLAIN.replace(PLAIN[PLAIN.index("        <inertial>") : PLAIN.index("        <collision")], "")
+    still = change(world_text(bare), [Change("box", static=True)])
+    moves = change(still, [Change("box", static=False, size=(1.0, 1.0, 1.0))])
+    assert "<static>false</static>" in moves.text
+    assert moves.world.models[0].links[0].inertial.inertia.ixx == pytest.approx(1 / 6, abs=1e-6)
+    with pytest.raises(EditError, match="'lamp' is a light"):
+        change(world_text(PLAIN), [Change("lamp", static=True)])
+
+
+def test_what_refers_to_a_thing_knows_its_new_name():
+    text = inside(
+        '<model name="a"><link name="l"/></model><model name="ab"><link name="l"/></model>',
+        '<model name="b"><pose relative_to="a::l">0 0 1 0 0 0</pose><link name="l"/></model>',
+        "<frame name='f' attached_to='a'><pose relative_to='ab'>0 0 0 0 0 0</pose></frame>",
+        '<joint name="j" type="revolute"><parent>a::l</parent><child> b </child>',
+        '<axis><xyz expressed_in="a">0 0 1</xyz></axis></joint>',
+    )
+    after = change(text, [Change("a", new_name='c "1"')])
+    lines = difference(text.text.replace("><", ">\n<"), after.text.replace("><", ">\n<"))
+    assert [line for line in lines if line[0] == "+"] == [
+        '+ <model name="c &quot;1&quot;">',
+        '+ <pose relative_to="c &quot;1&quot;::l">0 0 1 0 0 0</pose>',
+        "+ <frame name='f' attached_to='c \"1\"'>",
+        "+ <parent>c &quot;1&quot;::l</parent>",
+        '+ <xyz expressed_in="c &quot;1&quot;">0 0 1</xyz>',
+    ]
+    assert change(after, [Change('c "1"', new_name="a")]).text == text.text
+
+
+@pytest.mark.parametrize(
+    ("name", "why"),
+    [
+        ("lamp", "there is something named 'lamp' already"),
+        (" ", "a name cannot be empty"),
+        ("a::b", "means something else"),
+        ("world", "means something else"),
+        ("__x__", "means something else"),
+    ],
+)
+def test_some_names_cannot_be_given(name, why):
+    with pytest.raises(EditError, match=why):
+        change(world_text(PLAIN), [Change("box", new_name=name)])
+
+
+def test_an_include_has_its_name_and_all_else_as_it_is_written():
+    after = change(world_text(PLAIN), [Change("ground_plane", new_name="floor", static=True)])
+    assert "<include><uri>model://ground_plane</uri><name>floor</name></include>" in after.text
+    assert list(after.things) == ["floor", "box", "lamp"]
+
+
+def test_copies_have_free_names_and_stand_beside():
+    text, names = copy(world_text(PLAIN), ["box", "lamp", "ground_plane"], (1, 0, 0))
+    assert names == ["box_2", "lamp_2", "ground_plane_2"]
+    assert text.things["box_2"].place == pytest.approx((3, 0, 0.25, 0, 0, 0, 1))
+    assert text.things["lamp_2"].place[:3] == (1, 0, 3)
+    assert BOX.replace("'box'", "'box_2'").replace(">2 0 0.250", ">3 0 0.250") in text.text
+    again, names = copy(text, ["box_2", "box"], (0, 1, 0))
+    assert names == ["box_3", "box_4"]
+    assert delete(again, ["box_2", "box_3", "box_4", "lamp_2", "ground_plane_2"]).text == PLAIN
+
+
+def test_what_is_deleted_is_gone_with_its_lines_and_nothing_else():
+    assert delete(world_text(PLAIN), ["box"]).text == PLAIN.replace(BOX, "")
+    with pytest.raises(EditError, match="there is no 'crate' in the world's file"):
+        delete(world_text(PLAIN), ["crate"])
+
+
+def test_what_something_refers_to_stays_unless_that_goes_too():
+    text = inside(
+        '<model name="a"><link name="l"/></model>',
+        '<model name="b"><pose relative_to="a">0 0 1 0 0 0</pose><link name="l"/></model>',
+    )
+    with pytest.raises(EditError, match="'a' cannot be deleted: 'b' refers to it"):
+        delete(text, ["a"])
+    assert not delete(text, ["b", "a"]).things
+
+
+def test_line_ends_stay():
+    text = world_text(PLAIN.replace("\n", "\r\n"))
+    after, _ = copy(change(text, [Change("lamp", colour=(1, 1, 1, 1)), Change("box", static=True)]), ["box"], (1, 0, 0))
+    assert "\n" not in after.text.replace("\r\n", "")
+
+
+def test_a_file_that_no_simulator_writes_is_edited_all_the_same():
+    text = (
+        "<?xml version='1.0'?><!DOCTYPE sdf [<!ENTITY size '1 1 1'>]>\n<sdf version='1.6'><world name='w'>"
+        "<model name='m'><link name='l'><collision name='c'><geometry><box><size>&size;</size></box></geometry>"
+        "</collision></link></model></world></sdf>"
+    )
+    after = change(world_text(text), [Change("m", size=(2.0, 2.0, 2.0), pose=(1, 0, 0, 0, 0, 0))])
+    assert "<size>2 2 2</size>" in after.text
+    assert "<model name='m'><pose>1 0 0 0 0 0</pose><link" in after.text
+    entity = text.replace("'1 1 1'", "'<box/>'").replace("<size>&size;</size>", "<size>1 1 1</size>&size;")
+    assert change(world_text(entity), [Change("m", static=True)]).things["m"].static
+
+
+def test_a_thing_that_comes_from_an_entity_is_told():
+    text = (
+        "<?xml version='1.0'?><!DOCTYPE sdf [<!ENTITY m \"<model name='m'><link name='l'/></model>\">]>\n"
+        "<sdf version='1.6'><world name='w'>&m;</world></sdf>"
+    )
+    with pytest.raises(EditError, match="comes from an entity, and cannot be edited"):
+        change(world_text(text), [Change("m", static=True)])
+    with pytest.raises(EditError, match="comes from an entity, and cannot be edited"):
+        delete(world_text(text), ["m"])
+
+
+def test_a_file_without_a_world_is_told():
+    with pytest.raises(EditError, match="there is no world in"):
+        world_text("<sdf version='1.6'><model name='m'><link name='l'/></model></sdf>")

@@ -1,0 +1,107 @@
+"""Groups: models in a model, which stay where they were."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.sdf.editing import EditError, WorldText, add_shape, change, group, ungroup
+from linkwright.sdf.editing.changing import Change
+from linkwright.sdf.frames import placed_links
+from tests.sdf.editing.texts import BOX, PLAIN, inside, world_text
+
+OTHER = BOX.replace("'box'", "'crate'").replace(">2 0 0.250 0 0 0<", ">4 1 0.25 0 0 1.5<")
+TWO = PLAIN.replace(BOX, f"{BOX}    <!-- between -->\n{OTHER}")
+
+
+def links(world: WorldText) -> dict[str, tuple[float, ...]]:
+    return {each.name: each.pose for each in placed_links(world.world)}
+
+
+def test_a_group_is_a_model_of_models_that_stand_where_they_stood():
+    before = world_text(TWO)
+    after = group(before, ["crate", "box"], "pile")
+    assert after.things["pile"].parts == ("box", "crate")
+    assert list(after.things) == ["ground_plane", "pile", "lamp"]
+    assert "    <model name=\"pile\">\n      <pose>3 0.5 0.25 0 0 0</pose>\n      <model name='box'>" in after.text
+    assert "    <!-- between -->\n" in after.text
+    there, now = links(before), links(after)
+    assert now["pile::box::link"] == pytest.approx(there["box::link"])
+    assert now["pile::crate::link"] == pytest.approx(there["crate::link"])
+
+
+def test_a_group_taken_apart_is_what_it_was():
+    before = PLAIN.replace(BOX, BOX + OTHER).replace("0.250", "0.25")
+    text, names = ungroup(group(world_text(before), ["box", "crate"], "pile"), "pile")
+    assert names == ["box", "crate"]
+    assert text.text == before
+
+
+def test_groups_in_groups_and_turned_ones():
+    text, _ = add_shape(group(world_text(TWO), ["box", "crate"], "pile"), "box", (0, 0, 1, 0.1, 0.2, 0.3))
+    text = change(text, [Change("pile", pose=(1, 1, 1, 0.5, 0.6, 0.7))])
+    text = group(text, ["pile", "box"], "heap")
+    there = links(text)
+    text, names = ungroup(text, "heap")
+    assert set(names) == {"pile", "box"}
+    text, names = ungroup(text, "pile")
+    assert names == ["box_2", "crate"]  # 'box' is another now
+    now = links(text)
+    assert now["box_2::link"] == pytest.approx(there["heap::pile::box::link"], abs=1e-8)
+    assert now["crate::link"] == pytest.approx(there["heap::pile::crate::link"], abs=1e-8)
+
+
+def test_what_stands_relative_to_something_stays_where_it_is():
+    text = inside(
+        '<frame name="f"><pose>1 0 0 0 0 1.5</pose></frame>\n',
+        '<model name="a"><pose relative_to="f">1 0 0 0 0 0</pose><link name="l"/></model>\n',
+        '<model name="b" placement_frame="l"><pose relative_to="a">0 0 1 0 0 0</pose>',
+        '<link name="l"><pose>0 3 0 0 0 0</pose></link></model>\n',
+        '<model name="c"><pose relative_to="b::l">0 0 1 0 0 0</pose><link name="l"/></model>\n',
+    )
+    there = links(text)
+    grouped = group(text, ["a", "b"], "g")
+    assert '<pose relative_to="a">0 0 1 0 0 0</pose>' in grouped.text
+    assert '<pose relative_to="g::b::l">0 0 1 0 0 0</pose>' in grouped.text
+    now = links(grouped)
+    for name, moved in (("a::l", "g::a::l"), ("b::l", "g::b::l"), ("c::l", "c::l")):
+        assert now[moved] == pytest.approx(there[name], abs=1e-8)
+    apart, _ = ungroup(grouped, "g")
+    for name, pose in links(apart).items():
+        assert pose == pytest.approx(there[name], abs=1e-8)
+
+
+def test_included_models_can_be_grouped_and_static_ones_are_static():
+    text = world_text(PLAIN.replace(BOX, ""))
+    text, wall = add_shape(text, "wall", (1, 0, 0.5, 0, 0, 0))
+    grouped = group(text, ["ground_plane", wall], "floor")
+    assert grouped.things["floor"].static
+    assert grouped.things["floor"].parts == ("wall", "ground_plane")
+    apart, names = ungroup(grouped, "floor")
+    assert sorted(names) == ["ground_plane", "wall"]
+    assert all(apart.things[name].static for name in names)
+
+
+@pytest.mark.parametrize(
+    ("names", "why"),
+    [
+        (["box"], "two models at least"),
+        (["box", "box"], "two models at least"),
+        (["box", "lamp"], "'lamp' is a light"),
+        (["box", "ground_plane"], "'ground_plane' is static and 'box' is not"),
+        (["box", "none"], "there is no 'none'"),
+    ],
+)
+def test_what_cannot_be_a_group_is_told(names, why):
+    with pytest.raises(EditError, match=why):
+        group(world_text(TWO), names, "g")
+
+
+def test_what_is_no_group_is_not_taken_apart():
+    with pytest.raises(EditError, match="'box' is more than the models in it"):
+        ungroup(world_text(PLAIN), "box")
+    with pytest.raises(EditError, match="'ground_plane' is not a group"):
+        ungroup(world_text(PLAIN), "ground_plane")
+    grouped = group(world_text(TWO), ["box", "crate"], "g").text
+    used = grouped.replace("    <light", '    <frame name="f" attached_to="g"/>\n    <light')
+    with pytest.raises(EditError, match="something refers to it"):
+        ungroup(world_text(used), "g")

@@ -1,0 +1,72 @@
+"""Worlds that Gazebo classic saved: no edit is undone by what ``<state>`` says."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.sdf.editing import Change, add_shape, change, copy, delete, group
+from linkwright.sdf.frames import placed_links
+from tests.sdf.editing.texts import inside
+
+SAVED = inside(
+    '    <model name="m"><pose>9 9 9 0 0 0</pose><link name="a"/><link name="b"/></model>\n',
+    '    <model name="n"><link name="a"/></model>\n',
+    '    <model name="old"><link name="a"/></model>\n',
+    '    <light name="lamp" type="point"/>\n',
+    '    <state world_name="w">\n',
+    '      <model name="m">\n        <pose>1 0 0 0 -0 0</pose>\n',
+    '        <link name="a"><pose>1 0 0 0 0 0</pose></link>\n',
+    '        <link name="b"><pose>2 0 0 0 0 0</pose></link>\n',
+    "      </model>\n",
+    '      <model name="n"><pose>5 0 0 0 0 0</pose></model>\n',
+    '      <light name="lamp"><pose>0 0 3 0 0 0</pose></light>\n',
+    '      <insertions><model name="new"><link name="a"/></model></insertions>\n',
+    "      <deletions><name>old</name></deletions>\n",
+    "    </state>\n",
+)
+
+
+def links(world):
+    return {each.name: each.pose for each in placed_links(world.world)}
+
+
+def test_things_are_where_the_state_says():
+    assert list(SAVED.things) == ["m", "n", "lamp", "new"]
+    assert SAVED.things["m"].place[:3] == (1, 0, 0)
+    assert SAVED.things["lamp"].place[:3] == (0, 0, 3)
+
+
+def test_what_is_moved_is_moved_in_both_places_with_its_links():
+    moved = change(
+        SAVED, [Change("m", pose=(1, 1, 0, 0, 0, 1.5707963267948966)), Change("lamp", pose=(0, 0, 5, 0, 0, 0))]
+    )
+    assert moved.things["m"].place[:3] == (1, 1, 0)
+    assert moved.things["lamp"].place[:3] == (0, 0, 5)
+    assert links(moved)["m::b"][:3] == pytest.approx((1, 2, 0))
+    assert '<model name="m"><pose>1 1 0 0 0 1.570796327</pose>' in moved.text
+    assert "<pose>1 1 0 0 -0 1.570796327</pose>\n" in moved.text
+    inserted = change(SAVED, [Change("new", pose=(0, 3, 0, 0, 0, 0))])
+    assert inserted.things["new"].place[:3] == (0, 3, 0)
+
+
+def test_names_change_and_go_in_the_state_too():
+    assert change(SAVED, [Change("m", new_name="k")]).things["k"].place[:3] == (1, 0, 0)
+    gone = delete(SAVED, ["m", "lamp", "new"])
+    assert list(gone.things) == ["n"]
+    assert gone.state.first("model").attributes == {"name": "n"}
+    assert gone.state.first("light") is None
+
+
+def test_new_things_have_no_name_that_the_state_deletes():
+    text = SAVED.text.replace("<name>old</name>", "<name>box</name>")
+    world, name = add_shape(SAVED.with_text(text), "box", (0, 0, 1, 0, 0, 0))
+    assert name == "box_2"
+    assert world.things["box_2"].place[:3] == (0, 0, 1)
+
+
+def test_copies_and_groups_begin_where_the_state_had_them():
+    copied, names = copy(SAVED, ["n"], (0, 1, 0))
+    assert copied.things[names[0]].place[:3] == (5, 1, 0)
+    grouped = group(SAVED, ["m", "n"], "g")
+    assert links(grouped)["g::n::a"][:3] == (5, 0, 0)
+    assert links(grouped)["g::m::a"][:3] == (1, 0, 0)

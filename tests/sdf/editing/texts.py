@@ -1,0 +1,54 @@
+"""Texts of worlds to edit."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from linkwright.packages import PackageFinder
+from linkwright.sdf.editing import WorldText
+from linkwright.sdf.resources import ResourceFinder
+
+BOX = """\
+    <model name='box'><!-- in single quotes -->
+      <pose>2 0 0.250 0 0 0</pose>
+      <link name="link">
+        <inertial>
+          <mass>2</mass>
+          <inertia><ixx>0.1</ixx><iyy>0.1</iyy><izz>0.1</izz></inertia>
+        </inertial>
+        <collision name="collision">
+          <geometry><box><size>0.5 0.5 0.5</size></box></geometry>
+        </collision>
+        <visual name="visual">
+          <geometry><box><size>0.5 0.5 0.5</size></box></geometry>
+          <material><ambient>0.9 0.4 0.1 1</ambient><diffuse>0.9 0.4 0.1 1</diffuse></material>
+        </visual>
+      </link>
+    </model>
+"""
+PLAIN = f"""\
+<?xml version="1.0"?>
+<!-- -- dashes, which XML forbids -->
+<sdf version="1.6">
+  <world name="w">
+    <include><uri>model://ground_plane</uri></include>
+
+    <!-- the box -->
+{BOX}
+    <light type="point" name="lamp">
+      <pose>0 0 3 0 0 0</pose>
+    </light>
+  </world>
+</sdf>
+"""
+
+
+def world_text(text: str, models: str = "") -> WorldText:
+    """A world of a text, with the models that come with the program and those of a folder."""
+    packages = PackageFinder(start=Path("/nonexistent"), environment={})
+    return WorldText(text, Path("/nowhere/w.world"), ResourceFinder(packages, {"GZ_SIM_RESOURCE_PATH": models}))
+
+
+def inside(*parts: str, version: str = "1.9") -> WorldText:
+    """A world with some parts."""
+    return world_text(f'<sdf version="{version}">\n  <world name="w">\n{"".join(parts)}  </world>\n</sdf>\n')
