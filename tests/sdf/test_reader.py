@@ -382,3 +382,36 @@ def test_tags_may_stand_anywhere():
         element = Element(rule.tag, {"name": "n"})
         element.children += [Element(tag, {"name": "n", "type": "x", "value": "y"}) for tag in tags]
         reader_of(rule, NEWEST).read(element, element, SdfReport())
+
+
+def test_an_ampersand_that_begins_no_entity_is_one_and_bytes_that_are_no_utf_8_are_latin_1():
+    plugin = '<plugin name="ü" filename="x"><y>1 &amp; 2 & 3</y></plugin>'
+    text = f'<sdf version="1.6"><world name="a & b">{plugin}</world></sdf>'
+    document, warnings = parse_as_gazebo(text.encode("latin-1"), "test.world")
+    assert [each.code for each in warnings] == ["XML104", "XML206"]
+    sdf = read(document).sdf
+    assert sdf is not None
+    found = sdf.worlds[0]
+    assert found.name == "a & b"
+    assert found.plugins[0].name == "ü"
+    assert found.plugins[0].element.first("y").text() == "1 & 2 & 3"
+
+
+def test_points_that_cannot_be_read_are_left_out():
+    text = "<polyline><point/><point>1 x</point><point>1 2</point></polyline>"
+    shape = f'<link name="l"><visual name="v"><geometry>{text}</geometry></visual></link>'
+    document, _ = parse_as_gazebo(f'<sdf version="1.6"><model name="m">{shape}</model></sdf>', "test.sdf")
+    sdf = read(document).sdf
+    assert sdf is not None
+    assert sdf.models[0].links[0].visuals[0].geometry == (shapes.Polyline(((1.0, 2.0),)),)
+
+
+def test_files_of_gazebo_classic_have_gazebo_as_their_root_or_models_in_names_of_links():
+    links = '<link name="base"/><link name="laser::link"/>'
+    joint = '<joint name="laser::j" type="fixed"><parent>base</parent><child>laser::link</child></joint>'
+    text = f'<gazebo version="1.3"><model name="m">{links}{joint}</model></gazebo>'
+    document, _ = parse_as_gazebo(text, "test.sdf")
+    reading = read(document)
+    assert reading.sdf is not None
+    assert reading.diagnostics == ()
+    assert [each.name for each in reading.sdf.models[0].links] == ["base", "laser::link"]

@@ -18,6 +18,8 @@ from linkwright.graph import Graph
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 
 _EMPTY = "empty"
+_LEFT_OUT = frozenset({"SDF150", "SDF160", "SDF161"})
+"""The codes of what is unknown or not to be found."""
 _PARAMETERS: dict[str, Any] = {
     "world": _EMPTY,
     "publish_rate": 10.0,
@@ -79,7 +81,10 @@ class Simulator(SingleNode):
         with starting(self._node):
             said = {name: self._node.declare_parameter(name, value).value for name, value in _PARAMETERS.items()}
             loaded = load_world(words[0] if words else said["world"])
-            self._log(each for each in loaded.diagnostics if each.severity is Severity.ERROR)
+            remarkable = (
+                each for each in loaded.diagnostics if each.severity is Severity.ERROR or each.code in _LEFT_OUT
+            )
+            self._log(remarkable)
             simulation = Simulation(loaded.world, loaded.finder, step=said["step"] or None)
             self.server = SimulationServer(simulation, self._node, ServerOptions(said["seed"], said["usual_names"]))
             self._reports = Reports(self.server, self._node, said["publish_rate"])
@@ -116,9 +121,12 @@ class Simulator(SingleNode):
         self._reports.publish_state(paused=self.runner.paused)
 
     def _log(self, findings: Iterable[Diagnostic]) -> None:
-        """Log what is wrong with the world, and what of it is left out."""
+        """Log what is wrong with the world, and what of it is left out, each once."""
         logger = self._node.get_logger()
+        first: dict[str, Diagnostic] = {}
         for each in findings:
+            first.setdefault(str(each.message), each)
+        for each in first.values():
             place = f"{each.span}: " if each.span else ""
             hint = f" ({each.hint})" if each.hint else ""
             text = f"{place}{each.message}{hint}"

@@ -71,7 +71,7 @@ class Frames:
 
     def __contains__(self, name: str) -> bool:
         head, colon, tail = name.partition(SEPARATOR)
-        if not colon:
+        if not colon or name in self.named:  # old files have '::' in names of links
             return name in self._roots or name in self.named
         return isinstance(self.named.get(head), Model) and tail in self.inside(head)
 
@@ -115,6 +115,18 @@ class Frames:
         """
         return compose(self.pose(pose.relative_to or absent), transform_of(pose.pose))
 
+    def in_link(self, pose: RawPose, link: str) -> Transform:
+        """Where a part of a link is in the frame of the link.
+
+        One that stands relative to a frame that is not there stands in the link, as libsdformat has it; `check` tells.
+
+        Raises:
+            FrameError: the link cannot be placed.
+        """
+        if not pose.relative_to or pose.relative_to not in self:
+            return transform_of(pose.pose)
+        return compose(invert(self.pose(link)), self.placed(pose))
+
     def axis(self, joint: Joint, axis: Axis) -> Vector3:
         """The direction of an axis in the frame of its joint.
 
@@ -139,12 +151,12 @@ class Frames:
             seen[name] = None
             if name == WORLD or (name == "" and isinstance(self.owner, World)):
                 return WORLD
-            head, colon, tail = name.partition(SEPARATOR)
-            if colon:
-                return f"{head}{SEPARATOR}{self.inside(head).link(tail)}"
             if name in ("", MODEL):
                 return self._canonical_link()
             found = self.named.get(name)
+            head, colon, tail = name.partition(SEPARATOR)
+            if found is None and colon:
+                return f"{head}{SEPARATOR}{self.inside(head).link(tail)}"
             if found is None:
                 raise FrameError(name)
             if isinstance(found, Link):
@@ -167,10 +179,10 @@ class Frames:
 
     def _base(self, name: str) -> str:
         """The frame in which the pose of another is given."""
-        head, colon, _ = name.partition(SEPARATOR)
-        if colon:
-            return head
         found = self.named.get(name)
+        head, colon, _ = name.partition(SEPARATOR)
+        if found is None and colon:
+            return head
         if found is None:
             raise FrameError(name)
         absent = found.attached_to if isinstance(found, Frame) else found.child if isinstance(found, Joint) else ""
@@ -178,10 +190,10 @@ class Frames:
 
     def _in_base(self, name: str) -> Transform:
         """Where a frame stands in that in which its pose is given."""
-        head, colon, tail = name.partition(SEPARATOR)
-        if colon:
+        found = self.named.get(name)
+        if found is None:
+            head, _, tail = name.partition(SEPARATOR)
             return self.inside(head).pose(tail)
-        found = self.named[name]
         pose = transform_of(found.pose.pose)
         if isinstance(found, Model) and found.placement_frame:
             return compose(pose, invert(self.inside(name).pose(found.placement_frame)))
@@ -196,6 +208,7 @@ class PlacedLink:
         name: with the models that it is in: ``robot::arm::tip``.
         link: what is written about it.
         model: the model that it is directly in.
+        frames: those of that model.
         pose: where its frame stands in the world.
         static: whether its model, or one around that, never moves.
     """
@@ -203,6 +216,7 @@ class PlacedLink:
     name: str
     link: Link
     model: Model
+    frames: Frames
     pose: Transform
     static: bool
 
@@ -233,7 +247,8 @@ def links_of(model: Model, frames: Frames, pose: Transform, name: str, *, static
     """
     static = static or model.static
     for link in model.links:
-        yield PlacedLink(f"{name}{SEPARATOR}{link.name}", link, model, compose(pose, frames.pose(link.name)), static)
+        place = compose(pose, frames.pose(link.name))
+        yield PlacedLink(f"{name}{SEPARATOR}{link.name}", link, model, frames, place, static)
     for inner in model.models:
         place = compose(pose, frames.pose(inner.name))
         path = f"{name}{SEPARATOR}{inner.name}"

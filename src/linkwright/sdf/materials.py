@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from linkwright.schema import AttributeRule, ElementRule
-from linkwright.sdf.values import COLOR, NUMBER, TEXT, TRUTH, Color, made, value, values
+from linkwright.sdf.values import COLOR, NUMBER, TEXT, TRUTH, Color, made, readable, value, values
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,7 +114,7 @@ MATERIAL = made(
     value("double_sided", TRUTH, "whether it is seen from within too", default="false"),
     value("render_order", NUMBER, "which of two surfaces in one place is drawn over the other", default="0"),
     made(
-        MaterialScript,
+        readable(MaterialScript),
         "script",
         "a material of Gazebo classic by its name",
         values("uri", TEXT, "a folder or file of material scripts, or one of its textures"),

@@ -18,8 +18,11 @@ from linkwright.sdf.report import NEWEST, SdfReport
 from linkwright.sdf.worlds import SDF, Sdf
 from linkwright.xmltree import Document, Element
 
+_OLD_ROOT = "gazebo"
+"""The root of SDF 1.0 to 1.2."""
 _VERSION = re.compile(r"1\.([0-9]{1,2})").fullmatch
 _OLDEST_MINOR = 3
+_NEWEST_FLAT_MINOR = 7
 _DEEPEST = 200
 """Elements in elements; a model of ten models in each other has twenty."""
 _NAMED = frozenset({"world", "model", "link", "joint", "frame", "light", "actor"})
@@ -27,28 +30,30 @@ _SIBLINGS = ("visual", "collision", "sensor", "light")
 _OTHER_FORMATS = {
     "robot": phrase("a URDF file"),
     "mujoco": phrase("a MuJoCo model"),
-    "gazebo": phrase("SDF of a version before 1.3, whose root was <gazebo>"),
+    "gazebo:world": phrase("a world of Gazebo before 1.0"),
     "COLLADA": phrase("a COLLADA mesh"),
     "launch": phrase("a launch file"),
 }
 
 WITHOUT_EFFECT = {
     "world": {"audio", "gui", "population"},
-    "physics": {"bullet", "dart", "ode", "profile", "simbody"},
-    "scene": {"fog", "sky", "cloud"},
-    "model": {"gripper", "battery"},
+    "physics": {"bullet", "dart", "dt", "ode", "profile", "simbody", "update_rate"},
+    "scene": {"cloud", "fog", "shadow_caster_material_name", "shadow_caster_render_back_faces", "sky"},
+    "model": {"battery", "frame", "gripper", "joint"},
     "link": {
         "acceleration",
         "audio_sink",
         "audio_source",
         "battery",
+        "collision",
         "must_be_base_link",
         "particle_emitter",
         "projector",
         "velocity",
         "wrench",
     },
-    "inertial": {"fluid_added_mass"},
+    "collision": {"auto_inertia_params"},
+    "inertial": {"auto_inertia_params", "fluid_added_mass"},
     "visual": {"meta"},
     "mesh": {"optimization", "convex_decomposition"},
     "heightmap": {"use_terrain_paging"},
@@ -68,6 +73,7 @@ WITHOUT_EFFECT = {
         "wireless_transmitter",
     },
     "imu": {"topic", "noise"},
+    "orientation_reference_frame": {"grav_dir_x"},
     "noise": {"rate", "accel"},
     "light": {"visualize"},
     "limit": {"cfm", "erp"},
@@ -88,7 +94,7 @@ WITHOUT_EFFECT = {
     },
     "torsional": {"ode"},
     "spherical_coordinates": {"surface_axis_equatorial", "surface_axis_polar"},
-    "state": {"joint", "plugin", "real_time", "wall_time"},
+    "state": {"joint", "joint_deletions", "joint_insertions", "plugin", "real_time", "wall_time"},
     "road": {"material"},
     "metal": {"subsurface"},
 }
@@ -114,7 +120,7 @@ def read(document: Document) -> Reading:
     """Read an SDF document; it never raises for what the document says."""
     report = SdfReport()
     root = document.root
-    if root.tag != "sdf":
+    if root.tag != "sdf" and not (root.tag == _OLD_ROOT and "version" in root.attributes):
         _explain_root(root, report)
         return Reading(None, report.in_order())
     _check_version(root, report)
@@ -130,8 +136,9 @@ def read(document: Document) -> Reading:
 def read_element(element: Element, rule: ElementRule, report: SdfReport) -> Any:
     """The object of an element that is not nested too deeply, with all that is wrong in it told."""
     found = reader_of(rule, NEWEST).read(element, element, report)
+    flat = _is_flat(element)
     for each, each_rule in _known(element, rule):
-        _check_names(each, each_rule, report)
+        _check_names(each, each_rule, report, flat=flat)
         for child in each.elements():
             if child.tag not in each_rule.child_rules and not _is_let_be(child, each_rule):
                 report.unknown_element(child, each_rule)
@@ -198,7 +205,13 @@ def _is_let_be(element: Element, rule: ElementRule) -> bool:
     return ":" in element.tag or element.tag in WITHOUT_EFFECT.get(rule.tag, ())
 
 
-def _check_names(element: Element, rule: ElementRule, report: SdfReport) -> None:
+def _is_flat(root: Element) -> bool:
+    """Whether names may have '::' in them: up to SDF 1.7, whose included models became part of what included them."""
+    found = _VERSION(root.attributes.get("version", "").strip())
+    return found is not None and int(found[1]) <= _NEWEST_FLAT_MINOR
+
+
+def _check_names(element: Element, rule: ElementRule, report: SdfReport, *, flat: bool) -> None:
     """Tell of names that come twice, among all that poses may refer to and among shapes and sensors of one kind.
 
     Names that mean something else to poses are told of as well.
@@ -211,7 +224,9 @@ def _check_names(element: Element, rule: ElementRule, report: SdfReport) -> None
         if name is None or not (child.tag in _NAMED or child.tag in _SIBLINGS):
             continue
         space = child.tag if child.tag in _SIBLINGS else ""
-        if not space and (SEPARATOR in name or name == WORLD or (name.startswith("__") and name.endswith("__"))):
+        if not space and (
+            (SEPARATOR in name and not flat) or name == WORLD or (name.startswith("__") and name.endswith("__"))
+        ):
             report.reserved(child, name)
         before = first.setdefault((space, name), child)
         if before is not child:

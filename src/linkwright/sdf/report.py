@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import isfinite
 from typing import Any
 
 from linkwright.diagnostics import Note, Phrase, counted, did_you_mean, joined, nearest, phrase, term
@@ -149,6 +150,8 @@ def _miscounted(told: dict[str, Any], text: str, count: int, element: Element) -
         found = len(numbers(text))
     except ValueError:
         return phrase("{place} is not {count} numbers: '{value}'", **told, count=count), vector_hint(text, count)
+    if found == count and not all(map(isfinite, numbers(text))):
+        return phrase("{place} is not {count} numbers: '{value}'", **told, count=count), None
     if found == count:
         return phrase("the quaternion in {place} has no length: '{value}'", **told), phrase("no rotation is 0 0 0 1")
     message = counted(

@@ -148,7 +148,7 @@ class _Library:
     def _look(self, script: MaterialScript, visual: Visual) -> Look | None:
         source = None if visual.element is None else visual.element.source
         beside = Path() if source is None else Path(source.name).parent
-        found = {uri: self._finder.file(uri.strip(), beside) for uri in script.uris if uri.strip()}
+        found = {uri: self._finder.file(uri.strip(), beside) for uri in script.uris if uri and uri.strip()}
         places = {uri: place for uri, place in found.items() if not isinstance(place, Missing)}
         for file in (file for place in places.values() for file in _scripts(place)):
             look = self._read(file).get(script.name)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere
 from linkwright.geometry.vectors import Vector3
-from linkwright.sdf.values import INTEGER, NUMBER, TEXT, TRUTH, VECTOR2, VECTOR3, made, value, values
+from linkwright.sdf.values import INTEGER, NUMBER, TEXT, TRUTH, VECTOR2, VECTOR3, made, readable, value, values
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,7 +147,13 @@ def _if(kind: type) -> Callable[[Shape], Shape | None]:
 _RADIUS = value("radius", NUMBER, "radius", "m", default="1", usual=True)
 _LENGTH = value("length", NUMBER, "length along z", "m", default="1", usual=True)
 _HALF = value("radius", NUMBER, "radius", "m", default="0.5", usual=True)
-_URI = value("uri", TEXT, "model://MODEL/PATH, package://PACKAGE/PATH, file://PATH or a path from the file", default="")
+_URI = value(
+    "uri",
+    TEXT,
+    "model://MODEL/PATH, package://PACKAGE/PATH, file://PATH or a path from the file",
+    default="",
+    required=True,
+)
 
 GEOMETRY = made(
     _shape,
@@ -235,7 +241,7 @@ GEOMETRY = made(
         get=_if(Image),
     ),
     made(
-        Polyline,
+        readable(Polyline),
         "polyline",
         "a polygon raised to a height; several of them cut holes into each other",
         values("point", VECTOR2, "a corner: x and y in metres"),

@@ -1,7 +1,8 @@
 """XML text as the simulators' parser takes it, which is not quite as XML says.
 
-tinyxml2 knows no namespaces and ends a comment at ``-->`` alone; blanks and comments before the XML declaration do not
-trouble it either. Such files work for their users, so they are read, with a warning.
+tinyxml2 knows no namespaces and ends a comment at ``-->`` alone; blanks and comments before the XML declaration, an
+``&`` that begins no entity and bytes that are no UTF-8 do not trouble it either. Such files work for their users, so
+they are read, with a warning.
 """
 
 from __future__ import annotations
@@ -13,10 +14,13 @@ from dataclasses import replace
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, Severity, SourceText, phrase
 from linkwright.xmltree import Comment, Document, Element, parse
 from linkwright.xmltree.decoding import decode
-from linkwright.xmltree.nodes import Node
+from linkwright.xmltree.nodes import Node, Text
 
-_UNDECLARED, _EMPTY = "XML205", "XML105"
+_UNDECLARED, _EMPTY, _NOT_TEXT = "XML205", "XML105", "XML104"
 _OUTSIDE_TAGS = re.compile(r"<!--(.*?)-->|<!\[CDATA\[.*?\]\]>", re.DOTALL)
+_BARE_AMPERSAND = re.compile(r"&(?!(?:#[0-9]+|#x[0-9a-fA-F]+|[A-Za-z_][\w.-]*);)")
+_STAND_IN = "\x7f"
+"""What is read in place of an ``&`` that begins no entity; as long, and allowed."""
 _LATE_DECLARATION = re.compile(r"(?:\s|<!--.*?-->)+(<\?xml\s[^>]*\?>)", re.DOTALL)
 
 
@@ -26,10 +30,10 @@ def parse_as_gazebo(text: str | bytes, name: str) -> tuple[Document, tuple[Diagn
     Raises:
         LinkwrightError: it is not XML (XML###).
     """
-    if isinstance(text, bytes):
-        text = decode(text, name)
-    source = SourceText(name, text)
     warnings: list[Diagnostic] = []
+    if isinstance(text, bytes):
+        text, warnings = _decoded(text, name)
+    source = SourceText(name, text)
     read_as = text
     late = _LATE_DECLARATION.match(text)
     if late:
@@ -42,10 +46,44 @@ def parse_as_gazebo(text: str | bytes, name: str) -> tuple[Document, tuple[Diagn
         warnings.append(_forbidden(phrase("'--' is not allowed inside a comment"), source, at, 2))
         for found in dashed:
             read_as = read_as[: found.start(1)] + found[1].replace("-", "=") + read_as[found.end(1) :]
+    bare = [each.start() for each in _BARE_AMPERSAND.finditer(_tags_alone(text))]
+    if bare and _STAND_IN not in text:
+        warnings.append(_forbidden(phrase("'&' does not begin an entity"), source, bare[0], 1))
+        for at in bare:
+            read_as = read_as[:at] + _STAND_IN + read_as[at + 1 :]
     document, undeclared = _parsed(text, name, read_as)
+    if bare:
+        _put_back(document.root)
     for comment in _comments(document) if dashed else ():
         comment.data = text[comment.offset + 4 : text.index("-->", comment.offset + 4)]
     return document, (*warnings, *undeclared)
+
+
+def _decoded(data: bytes, name: str) -> tuple[str, list[Diagnostic]]:
+    """The text of a file; bytes that are not in its encoding are taken for Latin-1."""
+    try:
+        return decode(data, name), []
+    except LinkwrightError as error:
+        found = error.diagnostics[0]
+        if found.code != _NOT_TEXT or b"\0" in data:
+            raise
+        hint = phrase("it is read as Latin-1; save the file as UTF-8")
+        return data.decode("latin-1"), [replace(found, severity=Severity.WARNING, hint=hint)]
+
+
+def _tags_alone(text: str) -> str:
+    """The text with blanks in place of comments and CDATA."""
+    return _OUTSIDE_TAGS.sub(lambda found: " " * len(found[0]), text)
+
+
+def _put_back(root: Element) -> None:
+    """Put an ``&`` where another character was read for one."""
+    for element in root.walk():
+        for name, value in element.attributes.items():
+            element.attributes[name] = value.replace(_STAND_IN, "&")
+        for child in element.children:
+            if isinstance(child, Text):
+                child.data = child.data.replace(_STAND_IN, "&")
 
 
 def _parsed(text: str, name: str, read_as: str) -> tuple[Document, tuple[Diagnostic, ...]]:

@@ -9,12 +9,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable
-from math import radians
+from math import isfinite, radians
 from typing import Any
 
 from linkwright.geometry.single import Pose, Quaternion, rpy_from_quaternion
 from linkwright.geometry.vectors import Vector3
-from linkwright.schema import AttributeRule, ElementRule, ValueType
+from linkwright.schema import UNREADABLE, AttributeRule, ElementRule, ValueType
 
 _NUMBER = re.compile(r"[+-]?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|inf(?:inity)?|nan)", re.IGNORECASE)
 _TRUTH = {"true": True, "1": True, "false": False, "0": False}
@@ -66,13 +66,20 @@ def _truth(text: str) -> bool:
         raise ValueError(text) from None
 
 
+def _finite(text: str) -> tuple[float, ...]:
+    found = numbers(text)
+    if not all(map(isfinite, found)):
+        raise ValueError(text)
+    return found
+
+
 def _vector3(text: str) -> Vector3:
-    x, y, z = numbers(text)
+    x, y, z = _finite(text)
     return x, y, z
 
 
 def _vector2(text: str) -> tuple[float, float]:
-    x, y = numbers(text)
+    x, y = _finite(text)
     return x, y
 
 
@@ -91,7 +98,7 @@ def _time(text: str) -> float:
 
 
 def _pose_numbers(text: str) -> tuple[float, ...]:
-    found = numbers(text)
+    found = _finite(text)
     if len(found) not in (6, 7):
         raise ValueError(text)
     return found
@@ -164,6 +171,22 @@ def name_of(meaning: str = "its name, unique among its kind in the model or worl
 def made(kind: Callable[..., Any], tag: str, meaning: str, *children: ElementRule, **details: Any) -> ElementRule:
     """An element with parts, of which an object is made; what is wrong in one part leaves the others."""
     return ElementRule(tag, meaning, children=children, make=kind, keeps=True, **details)
+
+
+def readable(kind: Callable[..., Any]) -> Callable[..., Any]:
+    """What makes an object of parts, among them `values`: without those that are empty or could not be read."""
+
+    def make(**parts: Any) -> Any:
+        return kind(
+            **{
+                name: tuple(each for each in part if each is not None and each is not UNREADABLE)
+                if isinstance(part, tuple)
+                else part
+                for name, part in parts.items()
+            }
+        )
+
+    return make
 
 
 def pose_of(found: tuple[float, ...], degrees: bool, rotation_format: str) -> Pose:

@@ -28,6 +28,7 @@ from linkwright.sdf.values import (
     Color,
     made,
     name_of,
+    readable,
     value,
     values,
 )
@@ -298,7 +299,7 @@ STATE = ElementRule(
         ),
         made(Insertions, "insertions", "what was put in after the start", MODEL, LIGHT, default=Insertions()),
         made(
-            Deletions,
+            readable(Deletions),
             "deletions",
             "what was taken out after the start",
             values("name", TEXT, "its name"),
@@ -379,7 +380,7 @@ WORLD = ElementRule(
                 values("point", VECTOR3, "a point that it goes through"),
             ),
             many=True,
-            make=Road,
+            make=readable(Road),
             keeps=True,
             located=True,
             field="roads",

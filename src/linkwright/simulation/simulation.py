@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from math import inf, isfinite
 from typing import Any
 
@@ -18,39 +18,19 @@ from linkwright.sdf.saved import as_saved
 from linkwright.sdf.worlds import World, gravity_of, physics_of
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.scene.bodies import COLLISION_GROUP
+from linkwright.simulation.scene.compiling import compiled, count_links, refused_models
 from linkwright.simulation.scene.meshes import MeshLibrary
 from linkwright.simulation.scene.scene import Scene
 from linkwright.simulation.schedule import Schedule, Task
 
 NANOSECONDS = 1_000_000_000
 
-_MANY_LINKS, _MOST_LINKS = 1000, 10_000
-"""From how many links on MuJoCo is given memory for all pairs of them, and how many there may be."""
-_BYTES_A_PAIR, _BYTES = 3, 1 << 28
 _AWAKE = -11
 """What MuJoCo counts up from for trees of bodies until they may sleep: one more than ``mjMINAWAKE`` below zero."""
 _SERVO_SPEED = 2.0
 """How fast a servo moves in rad/s or m/s where nothing says it."""
 _BEYOND = 1e10
 """A position or velocity that is no less, in m, rad, m/s or rad/s, is taken for an explosion, as MuJoCo does."""
-
-
-def count_links(models: Iterable[Model]) -> int:
-    """How many links models have, if so many can be simulated.
-
-    Raises:
-        LinkwrightError: SIM105 they are too many.
-    """
-    count = sum(_links_in(model) for model in models)
-    if count > _MOST_LINKS:
-        message = phrase("a world of {count} links is more than can be simulated", count=count)
-        hint = phrase("at most {most}; shapes that never move may be in one link", most=_MOST_LINKS)
-        raise LinkwrightError(Diagnostic("SIM105", message, hint=hint))
-    return count
-
-
-def _links_in(model: Model) -> int:
-    return len(model.links) + sum(_links_in(inner) for inner in model.models)
 
 
 class UnstableError(LinkwrightError):
@@ -87,15 +67,24 @@ class Simulation:
         self._said_step = step
         self._meshes = MeshLibrary(finder)
         self.scene = Scene(self.world, self._meshes, step)
+        self.revision = 0
+        try:
+            made = compiled(self.scene)
+        except LinkwrightError:
+            refused = refused_models(self.world, finder)
+            if not refused:
+                raise
+            self._meshes = MeshLibrary(finder)
+            self.scene = Scene(self.world, self._meshes, step, refused)
+            made = compiled(self.scene)
         self.step = _whole_step(self.scene.step)
         self.time = 0
         self.schedule = Schedule()
-        self.revision = 0
         self._bodies: dict[str, int] = {}
         self._joints: dict[str, tuple[int, int]] = {}
         self._changed = False
         self._current = False
-        self._take(*self._made(None))
+        self._take(*made)
 
     @property
     def seconds(self) -> float:
@@ -135,7 +124,7 @@ class Simulation:
         """
         before, self.world, self.finder = self.world, as_saved(world), finder
         self._meshes.look_in(finder)
-        self.scene.set_physics(self.world, self._said_step or physics_of(self.world).max_step_size)
+        self.scene.set_physics(self.world, self._said_step or self.scene.step_of(self.world))
         self.step = round(self.scene.step * NANOSECONDS)
         self._changed |= _outlook(before) != _outlook(self.world)
 
@@ -229,7 +218,7 @@ class Simulation:
     def renew(self) -> None:
         """Bring MuJoCo's model up to the scene."""
         if self._changed:
-            self._take(*self._made((self.model, self.data)))
+            self._take(*compiled(self.scene, (self.model, self.data)))
             self._bodies, self._joints = {}, {}
             self._changed, self._current = False, False
             self.revision += 1
@@ -244,24 +233,6 @@ class Simulation:
             mujoco.mj_camlight(model, data)
             mujoco.mj_comVel(model, data)
             self._current = True
-
-    def _made(self, before: tuple[Any, Any] | None) -> tuple[Any, Any]:
-        """MuJoCo's model of the scene, with the state that there was before."""
-        self.scene.settle()
-        count = count_links(each.model for each in self.scene.models.values())
-        if count > _MANY_LINKS:
-            self.scene.spec.memory = _BYTES_A_PAIR * count * count + _BYTES
-        try:
-            if before is not None:
-                model, data = self.scene.spec.recompile(*before)
-                return model, data
-            model = self.scene.spec.compile()
-            return model, self._mujoco.MjData(model)
-        except (ValueError, self._mujoco.FatalError) as error:
-            said = str(error).removeprefix("Error: ").splitlines()[0]
-            raise LinkwrightError(
-                Diagnostic("SIM104", phrase("MuJoCo cannot take this world: {said}", said=foreign(said)))
-            ) from None
 
     def _take(self, model: Any, data: Any) -> None:
         """Go on with a model of MuJoCo and its state."""

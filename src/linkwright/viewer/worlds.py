@@ -6,11 +6,11 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 
 from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere
-from linkwright.geometry.single import Transform, compose, invert, rotation_from_z
+from linkwright.geometry.single import Transform, compose, rotation_from_z
 from linkwright.sdf.frames import Frames, PlacedLink, links_of
 from linkwright.sdf.links import Collision, Visual
 from linkwright.sdf.materials import Material
-from linkwright.sdf.poses import SEPARATOR, RawPose
+from linkwright.sdf.poses import RawPose
 from linkwright.sdf.scripts import gazebo_look, painted
 from linkwright.sdf.shapes import (
     Cone,
@@ -73,15 +73,14 @@ class _Builder:
         for model in world.models:
             inside = frames.inside(model.name)
             for placed in links_of(model, inside, frames.pose(model.name), model.name):
-                self._link(placed, _inside(inside, placed))
+                self._link(placed)
         return self._made
 
-    def _link(self, placed: PlacedLink, frames: Frames) -> None:
-        link, made = placed.link, self._made
-        base = invert(frames.pose(link.name))
+    def _link(self, placed: PlacedLink) -> None:
+        link, frames, made = placed.link, placed.frames, self._made
 
         def pose(raw: RawPose) -> Transform:
-            return compose(base, frames.placed(raw, link.name))
+            return frames.in_link(raw, link.name)
 
         made.poses.append(placed.pose)
         made.links.append(
@@ -182,13 +181,6 @@ class _Builder:
             if text not in problems:
                 problems.append(text)
         return located.url
-
-
-def _inside(frames: Frames, placed: PlacedLink) -> Frames:
-    """The frames of the model that a link is directly in, from those of the outermost."""
-    for name in placed.name.split(SEPARATOR)[1:-1]:
-        frames = frames.inside(name)
-    return frames
 
 
 def _look(material: Material) -> tuple[Sequence[float] | None, str]:

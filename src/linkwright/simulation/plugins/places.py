@@ -7,9 +7,8 @@ from collections.abc import Iterator
 from linkwright.geometry.single import Transform, compose, invert
 from linkwright.sdf.frames import FrameError, Frames, transform_of
 from linkwright.sdf.joints import Joint
-from linkwright.sdf.links import Link
 from linkwright.sdf.models import Model
-from linkwright.sdf.poses import SEPARATOR, RawPose
+from linkwright.sdf.poses import SEPARATOR
 from linkwright.sdf.worlds import World
 from linkwright.simulation.plugins.plugin import PlacedSensor, PluginPlace
 
@@ -49,7 +48,7 @@ def _sensors(model: Model, path: str, frames: Frames) -> Iterator[PlacedSensor]:
     for link in model.links:
         for sensor in link.sensors:
             name = SEPARATOR.join((path, link.name, sensor.name))
-            pose = in_link(frames, link, sensor.pose)
+            pose = frames.in_link(sensor.pose, link.name)
             yield PlacedSensor(name, sensor, f"{path}{SEPARATOR}{link.name}", "", pose)
     for joint in model.joints:
         for sensor in joint.sensors:
@@ -60,13 +59,6 @@ def _sensors(model: Model, path: str, frames: Frames) -> Iterator[PlacedSensor]:
                 continue
             name = SEPARATOR.join((path, joint.name, sensor.name))
             yield PlacedSensor(name, sensor, f"{path}{SEPARATOR}{child}", f"{path}{SEPARATOR}{joint.name}", pose)
-
-
-def in_link(frames: Frames, link: Link, raw: RawPose) -> Transform:
-    """Where a part of a link is in its frame."""
-    if not raw.relative_to:
-        return transform_of(raw.pose)
-    return compose(invert(frames.pose(link.name)), frames.placed(raw, link.name))
 
 
 def _joint_in_link(frames: Frames, joint: Joint, link: str) -> Transform:

@@ -19,7 +19,6 @@ from linkwright.sdf.models import Model
 from linkwright.sdf.poses import SEPARATOR
 from linkwright.simulation.plugins.node import Output
 from linkwright.simulation.plugins.odometry import transform_stamped
-from linkwright.simulation.plugins.places import in_link
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
 _QUEUE = 100
@@ -137,7 +136,7 @@ class GzPoses(SimulatedPlugin[PoseParameters]):
                 (said.publish_sensor_pose, link.sensors),
             ):
                 for part in parts if wanted else ():
-                    pose = in_link(frames, link, part.pose)
+                    pose = frames.in_link(part.pose, link.name)
                     yield _Part(f"{name}{SEPARATOR}{part.name}", name, partial(_same, pose))
         for inner in model.models:
             name, inside = f"{path}{SEPARATOR}{inner.name}", frames.inside(inner.name)

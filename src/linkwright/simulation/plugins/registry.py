@@ -31,6 +31,8 @@ _SYSTEMS = (
     *("air-pressure", "air-speed", "magnetometer", "forcetorque", "logical-camera", "label", "wheel-slip"),
     *("follow-actor", "log", "log-playback", "elevator", "model-photo-shoot"),
 )
+_NONE = ("", "__default__")
+"""What files have that were written by programs, in place of the library of no plugin."""
 _BUILT_IN = frozenset(
     (
         *(f"gz-sim-{name}-system" for name in _SYSTEMS),
@@ -53,7 +55,7 @@ def is_of_gz(filename: str) -> bool:
 
 def needs_nothing(filename: str) -> bool:
     """Whether what a library does is a part of the simulation itself."""
-    return library_name(filename) in _BUILT_IN
+    return filename in _NONE or library_name(filename) in _BUILT_IN
 
 
 def plugin_class(filename: str) -> PluginClass | None:

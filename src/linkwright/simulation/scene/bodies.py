@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable
 from math import isfinite
 from typing import Any
@@ -69,7 +70,8 @@ class BodyWriter:
         tensor = np.array(
             [[about.ixx, about.ixy, about.ixz], [about.ixy, about.iyy, about.iyz], [about.ixz, about.iyz, about.izz]]
         )
-        tensor = turn @ tensor @ turn.T
+        with np.errstate(invalid="ignore", over="ignore"):
+            tensor = turn @ tensor @ turn.T
         mass = inertial.mass
         if not (isfinite(mass) and mass >= _LEAST_MASS):
             message = phrase(
@@ -135,9 +137,10 @@ class BodyWriter:
 
     def add_visuals(self, body: Any, link: Link, frames: Frames, *, fixed: bool) -> None:
         """Add what is seen of a link, which touches nothing."""
+        counts: Counter[str] = Counter()
         for visual in link.visuals:
-            pose = _pose_in_link(frames, link, visual.pose)
-            for geom in self._geoms(body, visual, pose, fixed=fixed, collision=False):
+            pose = frames.in_link(visual.pose, link.name)
+            for geom in self._geoms(body, visual, pose, counts, fixed=fixed):
                 geom.group = VISUAL_GROUP
                 geom.contype = geom.conaffinity = 0
                 if visual.material is not None:
@@ -147,10 +150,11 @@ class BodyWriter:
 
     def add_collisions(self, body: Any, link: Link, frames: Frames, *, fixed: bool) -> None:
         """Add what touches of a link."""
+        counts: Counter[str] = Counter()
         for collision in link.collisions:
-            pose = _pose_in_link(frames, link, collision.pose)
+            pose = frames.in_link(collision.pose, link.name)
             surface = collision.surface
-            for geom in self._geoms(body, collision, pose, fixed=fixed, collision=True):
+            for geom in self._geoms(body, collision, pose, counts, fixed=fixed):
                 geom.group = COLLISION_GROUP
                 geom.contype, geom.conaffinity = surface.category_bitmask, surface.collide_bitmask
                 apply_surface(geom, surface)
@@ -158,8 +162,10 @@ class BodyWriter:
                     self.unsaid.add(geom.name)
 
     def _geoms(
-        self, body: Any, part: Visual | Collision, pose: Transform, *, fixed: bool, collision: bool
+        self, body: Any, part: Visual | Collision, pose: Transform, counts: Counter[str], *, fixed: bool
     ) -> Iterable[Any]:
+        """The geoms of a shape, with their names; `counts` has how many there are of each name of a part."""
+        collision = isinstance(part, Collision)
         simple = add_shape(body, part.geometry, pose, fixed=fixed)
         if simple is not None:
             geoms = [simple]
@@ -167,7 +173,9 @@ class BodyWriter:
             geoms = self._meshes.collisions(body, part.geometry, pose, part.element, fixed=fixed)
         else:
             geoms = self._meshes.visuals(body, part.geometry, pose, part.element)
-        for index, geom in enumerate(geoms):
+        for geom in geoms:
+            index = counts[part.name]
+            counts[part.name] += 1
             suffix = f"#{index}" if index else ""
             geom.name = f"{body.name}::{part.name}#{'collision' if collision else 'visual'}{suffix}"
         return geoms
@@ -185,7 +193,7 @@ def _worked_out(link: Link, frames: Frames) -> Inertial | None:
     for collision in link.collisions:
         if isinstance(collision.geometry, Box | Capsule | Cylinder | Sphere):
             density = collision.density or link.inertial.density or _WATER
-            pose = pose_of(_pose_in_link(frames, link, collision.pose))
+            pose = pose_of(frames.in_link(collision.pose, link.name))
             parts.append(shape_properties(collision.geometry, density).moved(pose))
     whole = combine(parts)
     if not whole.mass > 0:
@@ -195,16 +203,10 @@ def _worked_out(link: Link, frames: Frames) -> Inertial | None:
     return Inertial(whole.mass, RawPose(Pose((x, y, z))), Inertia(ixx, iyy, izz, ixy, ixz, iyz))
 
 
-def _pose_in_link(frames: Frames, link: Link, raw: RawPose) -> Transform:
-    if not raw.relative_to:
-        return transform_of(raw.pose)
-    return compose(invert(frames.pose(link.name)), frames.placed(raw, link.name))
-
-
 def _colour(visual: Visual) -> list[float]:
     material = visual.material
     red, green, blue, alpha = (material.diffuse if material is not None else None) or (0.7, 0.7, 0.7, 1.0)
-    return [red, green, blue, alpha * (1.0 - visual.transparency)]
+    return [min(max(each, 0.0), 1.0) for each in (red, green, blue, alpha * (1.0 - visual.transparency))]
 
 
 def _set_first(thing: Any, name: str, value: float) -> None:

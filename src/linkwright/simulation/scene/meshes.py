@@ -206,7 +206,7 @@ class MeshLibrary:
 
     def _path(self, shape: Shape, element: Element | None) -> Path | None:
         """The file of a shape; None for a shape without one, or one that is not there, which is told once."""
-        if not isinstance(shape, Mesh | Heightmap):
+        if not isinstance(shape, Mesh | Heightmap) or not shape.uri:
             return None
         source = element.source if element is not None else None
         folder = Path(source.name).parent if source is not None else Path()
@@ -255,4 +255,5 @@ def _joined(parts: Sequence[Triangles]) -> tuple[Array, Any]:
 
 
 def _flat(values: Any, kind: Any = np.float32) -> list[Any]:
-    return list(np.asarray(values, dtype=kind).ravel().tolist())
+    with np.errstate(over="ignore"):  # MuJoCo refuses what is too great, and says so
+        return list(np.asarray(values, dtype=kind).ravel().tolist())

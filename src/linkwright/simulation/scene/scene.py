@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import combinations
 from math import isfinite
+from types import MappingProxyType
 from typing import Any
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, Severity, phrase
 from linkwright.geometry.single import IDENTITY, Transform, compose, invert, rotate
-from linkwright.sdf.frames import Frames
+from linkwright.sdf.frames import FrameError, Frames
 from linkwright.sdf.models import Model
 from linkwright.sdf.poses import SEPARATOR, WORLD
 from linkwright.sdf.worlds import World, gravity_of, physics_of
@@ -20,7 +21,10 @@ from linkwright.simulation.scene.meshes import MeshLibrary
 from linkwright.simulation.scene.shapes import set_pose
 from linkwright.simulation.scene.structure import HeldLink, PlacedJoint, Structure, structure_of
 from linkwright.simulation.scene.wheels import make_omnidirectional, make_rolling, make_sliding
+from linkwright.xmltree import Element
 
+_USUAL_STEP = 0.001
+"""In s, where a world says none that there can be."""
 _ANCHORS_APART = 0.1
 """How far from each other in m the two points are that hold the axis of a hinge that closes a loop."""
 _LOOP_STEPS = 4.0
@@ -59,6 +63,7 @@ class Scene:
         world: with its includes resolved, and as it was saved (`linkwright.sdf.saved`).
         meshes: where meshes come from.
         step: the time step in s; that of the world by default.
+        refused: names of models that are left out, and why.
 
     Attributes:
         spec: the specification.
@@ -68,8 +73,15 @@ class Scene:
         bodies: the bodies of the specification, by the names of the links.
     """
 
-    def __init__(self, world: World, meshes: MeshLibrary, step: float | None = None) -> None:
-        self.step = step or physics_of(world).max_step_size
+    def __init__(
+        self,
+        world: World,
+        meshes: MeshLibrary,
+        step: float | None = None,
+        refused: Mapping[str, Phrase] = MappingProxyType({}),
+    ) -> None:
+        self._findings: list[Diagnostic] = []
+        self.step = step or self.step_of(world)
         self.models: dict[str, SceneModel] = {}
         self.joints: dict[str, PlacedJoint] = {}
         self.bodies: dict[str, Any] = {}
@@ -88,8 +100,33 @@ class Scene:
         self._set_options(world)
         frames = Frames(world)
         for model in world.models:
-            if model.name not in self.models:  # `check` tells of a second one
-                self.add(model, model.name, frames.pose(model.name))
+            if model.name in refused:
+                message = phrase("model '{name}' is left out: {why}", name=model.name, why=refused[model.name])
+                self._warn("SIM117", message, model.element)
+            elif model.name not in self.models:  # `check` tells of a second one
+                self._add_or_tell(model, frames)
+
+    def step_of(self, world: World) -> float:
+        """The time step that a world says, in s; a millisecond where it says 0, which is told."""
+        physics = physics_of(world)
+        if physics.max_step_size:
+            return physics.max_step_size
+        message = phrase("the time step is 0 s; the world is simulated in steps of {step} s", step=_USUAL_STEP)
+        self._warn("SIM106", message, physics.element)
+        return _USUAL_STEP
+
+    def _add_or_tell(self, model: Model, frames: Frames) -> None:
+        try:
+            self.add(model, model.name, frames.pose(model.name))
+        except FrameError as error:
+            told = {"name": model.name, "frame": error.name}
+            message = phrase("model '{name}' is left out: '{frame}' in it has no place", **told)
+            self._warn("SIM116", message, model.element)
+
+    def _warn(self, code: str, message: Phrase, element: Element | None) -> None:
+        span = element.span() if element is not None else None
+        source = element.source if element is not None else None
+        self._findings.append(Diagnostic(code, message, severity=Severity.WARNING, span=span, source=source))
 
     def set_physics(self, world: World, step: float) -> None:
         """Take gravity from another world, and another time step in s; models stay as they are."""
@@ -118,7 +155,7 @@ class Scene:
     @property
     def diagnostics(self) -> list[Diagnostic]:
         """What could not be taken over."""
-        return [*self._writer.diagnostics, *self._meshes.diagnostics]
+        return [*self._findings, *self._writer.diagnostics, *self._meshes.diagnostics]
 
     def add(self, model: Model, name: str, pose: Transform) -> SceneModel:
         """Add a model.
@@ -269,7 +306,7 @@ class Scene:
         set_pose(body, compose(invert(above), placed.pose))
         fixed = placed.static or (joint is None and link.kinematic)
         if not fixed:
-            self._writer.give_mass(body, link, Frames(placed.model))
+            self._writer.give_mass(body, link, placed.frames)
             body.gravcomp = 0.0 if link.gravity else 1.0
             if joint is None:
                 body.add_freejoint().name = f"{placed.name}#free"
@@ -278,9 +315,8 @@ class Scene:
                 self.joints[joint.name] = joint
         else:
             body.explicitinertial, body.ipos = True, [0.0, 0.0, 0.0]  # else MuJoCo 3 puts it where its rays miss it
-        frames = Frames(placed.model)
-        self._writer.add_visuals(body, link, frames, fixed=fixed)
-        self._writer.add_collisions(body, link, frames, fixed=fixed)
+        self._writer.add_visuals(body, link, placed.frames, fixed=fixed)
+        self._writer.add_collisions(body, link, placed.frames, fixed=fixed)
         return body
 
     def _mimicry(self, joint: PlacedJoint | None, model: str) -> Iterator[Any]:

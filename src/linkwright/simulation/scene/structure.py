@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from linkwright.geometry.single import Transform, compose
 from linkwright.geometry.vectors import Vector3
@@ -11,6 +11,9 @@ from linkwright.sdf.frames import FrameError, Frames, PlacedLink, links_of
 from linkwright.sdf.joints import Axis, Joint
 from linkwright.sdf.models import Model
 from linkwright.sdf.poses import SEPARATOR, WORLD
+
+_LEAST = 1e-9
+"""An axis that is no longer points nowhere."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,16 +71,19 @@ def structure_of(model: Model, name: str, pose: Transform) -> Structure:
     """
     frames = Frames(model)
     links = {each.name: each for each in links_of(model, frames, pose, name)}
-    joints: list[PlacedJoint] = []
+    joints: dict[str, PlacedJoint] = {}
     for owner, inner, place, path in _models(model, frames, pose, name):
         for joint in owner.joints:
             try:
                 placed = _placed(joint, inner, place, path)
             except FrameError:
                 continue  # `check` tells of it
-            if placed.child in links and (placed.parent in links or placed.parent == WORLD):
-                joints.append(placed)
-    return _trees(links, joints)
+            ends_are_there = placed.child in links and (placed.parent in links or placed.parent == WORLD)
+            if ends_are_there and placed.parent != placed.child:
+                while placed.name in joints:  # MuJoCo has no two of a name; `check` tells
+                    placed = replace(placed, name=f"{placed.name}~")
+                joints[placed.name] = placed
+    return _trees(links, joints.values())
 
 
 def _models(model: Model, frames: Frames, pose: Transform, path: str) -> Iterator[tuple[Model, Frames, Transform, str]]:
@@ -91,9 +97,15 @@ def _models(model: Model, frames: Frames, pose: Transform, path: str) -> Iterato
 def _placed(joint: Joint, frames: Frames, pose: Transform, path: str) -> PlacedJoint:
     ends = [frames.link(end) for end in (joint.parent, joint.child)]
     parent, child = (end if end == WORLD else f"{path}{SEPARATOR}{end}" for end in ends)
-    axes = tuple((axis, frames.axis(joint, axis)) for axis in (joint.axis, joint.axis2) if axis is not None)
+    said = [axis for axis in (joint.axis, joint.axis2) if axis is not None]
+    axes = tuple((axis, _direction(frames.axis(joint, axis))) for axis in said)
     name = f"{path}{SEPARATOR}{joint.name}"
     return PlacedJoint(name, joint, parent, child, compose(pose, frames.pose(joint.name)), axes)
+
+
+def _direction(said: Vector3) -> Vector3:
+    """Where an axis points: along z where it says nowhere, as libsdformat has it; `check` tells."""
+    return said if sum(each * each for each in said) > _LEAST**2 else (0.0, 0.0, 1.0)
 
 
 def _trees(links: dict[str, PlacedLink], joints: Iterable[PlacedJoint]) -> Structure:

@@ -13,9 +13,10 @@ from linkwright.sdf.models import Model
 from linkwright.sdf.poses import AT_ORIGIN
 from linkwright.sdf.resources import ResourceFinder
 from linkwright.sdf.worlds import World, physics_of
+from linkwright.simulation.scene.compiling import count_links
 from linkwright.simulation.scene.scene import SceneModel
 from linkwright.simulation.server.carrying import Motion
-from linkwright.simulation.simulation import Simulation, count_links
+from linkwright.simulation.simulation import Simulation
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, ha
 from linkwright.packages import PackageFinder
 from linkwright.sdf.resources import ResourceFinder
 from linkwright.sdf.worlds import World
-from linkwright.simulation.simulation import count_links
+from linkwright.simulation.scene.compiling import count_links
 from linkwright.xmltree import Overlay
 
 _FILE = "file://"

@@ -24,6 +24,7 @@ from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, FrameName, Se
 from linkwright.simulation.plugins.sensors.clouds import fill_camera_cloud
 from linkwright.simulation.plugins.sensors.pictures import (
     ENCODINGS,
+    OF_DEPTHS,
     USUAL_ENCODING,
     PixelNoise,
     fill_camera_info,
@@ -94,8 +95,9 @@ class CameraPlugin(SensorPlugin[P], Generic[P]):
         encoding = ENCODINGS.get(camera.image.format.upper())
         if encoding is None:
             encoding = USUAL_ENCODING
-            unknown = phrase("'{format}' is no format of pictures; bgr8 is taken", format=camera.image.format)
-            self.node.logger.warning(unknown)
+            if camera.image.format.upper() not in OF_DEPTHS:
+                unknown = phrase("'{format}' is no format of pictures; bgr8 is taken", format=camera.image.format)
+                self.node.logger.warning(unknown)
         pose = compose(self.sensor.pose, transform_of(camera.pose.pose))
         return Eye(camera, optics_of(camera), pose, PixelNoise(camera.noise, generator), encoding)
 

@@ -23,6 +23,8 @@ ENCODINGS = {
     "BAYER_GRBG8": "bayer_grbg8", "BAYER_RGGR8": "bayer_rggb8",
 }  # fmt: skip
 """The formats of SDF, and what ROS calls them."""
+OF_DEPTHS = frozenset({"R_FLOAT16", "R_FLOAT32", "FLOAT32"})
+"""The formats that cameras of depths have in files for gz, which say nothing of colours."""
 USUAL_ENCODING = "bgr8"
 """For formats that are unknown."""
 _GREY = np.array([0.299, 0.587, 0.114], np.float32)

@@ -1,0 +1,88 @@
+"""A scene as MuJoCo's model, and what of a world MuJoCo cannot take."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import Any
+from warnings import catch_warnings, simplefilter
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, foreign, phrase
+from linkwright.sdf.models import Model
+from linkwright.sdf.resources import ResourceFinder
+from linkwright.sdf.worlds import World
+from linkwright.simulation.library import load_mujoco
+from linkwright.simulation.scene.meshes import MeshLibrary
+from linkwright.simulation.scene.scene import Scene
+
+_MANY_LINKS, _MOST_LINKS = 1000, 10_000
+"""From how many links on MuJoCo is given memory for all pairs of them, and how many there may be."""
+_BYTES_A_PAIR, _BYTES = 3, 1 << 28
+
+
+def count_links(models: Iterable[Model]) -> int:
+    """How many links models have, if so many can be simulated.
+
+    Raises:
+        LinkwrightError: SIM105 they are too many.
+    """
+    count = sum(_links_in(model) for model in models)
+    if count > _MOST_LINKS:
+        message = phrase("a world of {count} links is more than can be simulated", count=count)
+        hint = phrase("at most {most}; shapes that never move may be in one link", most=_MOST_LINKS)
+        raise LinkwrightError(Diagnostic("SIM105", message, hint=hint))
+    return count
+
+
+def _links_in(model: Model) -> int:
+    return len(model.links) + sum(_links_in(inner) for inner in model.models)
+
+
+def compiled(scene: Scene, before: tuple[Any, Any] | None = None) -> tuple[Any, Any]:
+    """MuJoCo's model and data of a scene.
+
+    Args:
+        scene: what is simulated.
+        before: the model and data that there were, whose state is kept.
+
+    Raises:
+        LinkwrightError: SIM104 MuJoCo cannot take it.
+    """
+    mujoco = load_mujoco()
+    scene.settle()
+    count = count_links(each.model for each in scene.models.values())
+    if count > _MANY_LINKS:
+        scene.spec.memory = _BYTES_A_PAIR * count * count + _BYTES
+    try:
+        with catch_warnings():
+            simplefilter("ignore")  # of MuJoCo; what matters `check` tells, or the simulation where it goes wrong
+            if before is not None:
+                model, data = scene.spec.recompile(*before)
+                return model, data
+            model = scene.spec.compile()
+            return model, mujoco.MjData(model)
+    except (ValueError, mujoco.FatalError) as error:
+        said = str(error).removeprefix("Error: ").splitlines()[0]
+        raise LinkwrightError(
+            Diagnostic("SIM104", phrase("MuJoCo cannot take this world: {said}", said=foreign(said)))
+        ) from None
+
+
+def refused_models(world: World, finder: ResourceFinder) -> dict[str, Phrase]:
+    """The models that MuJoCo cannot take even alone, with its words.
+
+    Args:
+        world: with its includes resolved, and as it was saved.
+        finder: where its meshes are.
+    """
+    found = {model.name: _refusal(replace(world, models=(model,)), finder) for model in world.models}
+    return {name: why for name, why in found.items() if why is not None}
+
+
+def _refusal(world: World, finder: ResourceFinder) -> Phrase | None:
+    """Why MuJoCo cannot take a world; None if it can."""
+    try:
+        compiled(Scene(world, MeshLibrary(finder)))
+    except LinkwrightError as error:
+        return error.diagnostics[0].message
+    return None

@@ -1,0 +1,138 @@
+"""Worlds that are not as they should be are simulated as far as they go, and what is left out is told once."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.packages import PackageFinder
+from linkwright.sdf.reader import read
+from linkwright.sdf.resources import ResourceFinder
+from linkwright.sdf.text import parse_as_gazebo
+from linkwright.simulation.simulation import Simulation
+from tests.simulation.worlds import GROUND
+
+BOX = "<geometry><box><size>1 1 1</size></box></geometry>"
+LINK = f'<link name="link"><collision name="c">{BOX}</collision></link>'
+CRATE = f'<model name="crate"><pose>0 0 2 0 0 0</pose>{LINK}</model>'
+CIRCLE = '<link name="a"><pose relative_to="b"/></link><link name="b"><pose relative_to="a"/></link>'
+
+
+def begun(*parts: str, version: str = "1.9") -> Simulation:
+    """A simulation of a world, whatever is wrong with it, after ten milliseconds."""
+    text = f'<sdf version="{version}"><world name="test">{GROUND}{"".join(parts)}</world></sdf>'
+    document, _ = parse_as_gazebo(text.encode(), "test.world")
+    sdf = read(document).sdf
+    assert sdf is not None
+    simulation = Simulation(sdf.worlds[0], ResourceFinder(PackageFinder(), {}))
+    simulation.advance(10_000_000)
+    return simulation
+
+
+def told(simulation: Simulation) -> list[str]:
+    return [each.code for each in simulation.scene.diagnostics]
+
+
+@pytest.mark.parametrize(
+    "broken",
+    [
+        f'<model name="m">{CIRCLE}</model>',
+        '<model name="m"><pose relative_to="nowhere"/><link name="a"/></model>',
+        '<model name="m" placement_frame="nowhere"><link name="a"/></model>',
+    ],
+)
+def test_a_model_without_a_place_is_left_out(broken):
+    simulation = begun(CRATE, broken)
+    assert list(simulation.scene.models) == ["ground", "crate"]
+    assert told(simulation) == ["SIM116"]
+
+
+def test_a_model_that_mujoco_cannot_take_is_left_out():
+    points = "".join(f"<point>{x} {y}</point>" for x, y in ((0, 0), ("1e200", 0), ("1e200", "1e200")))
+    shape = f"<geometry><polyline>{points}<height>1</height></polyline></geometry>"
+    simulation = begun(CRATE, f'<model name="m"><link name="l"><collision name="c">{shape}</collision></link></model>')
+    assert list(simulation.scene.models) == ["ground", "crate"]
+    assert told(simulation) == ["SIM117"]
+
+
+def test_a_part_that_stands_relative_to_nothing_stands_in_its_link():
+    collision = f'<collision name="c"><pose relative_to="gone">0 0 0.25 0 0 0</pose>{BOX}</collision>'
+    simulation = begun(f'<model name="m"><static>true</static><link name="l">{collision}</link></model>')
+    model = simulation.model
+    assert model.geom("m::l::c#collision").pos.tolist() == [0, 0, 0.25]
+
+
+def test_a_time_step_of_nothing_is_a_millisecond():
+    simulation = begun(CRATE, "<physics type='ode'><max_step_size>0</max_step_size></physics>")
+    assert simulation.step == 1_000_000
+    assert told(simulation) == ["SIM106"]
+
+
+def test_shapes_and_joints_of_one_name_are_all_there():
+    links = "".join(f'<link name="{name}"><collision name="c">{BOX}</collision></link>' for name in "abd")
+    joints = "".join(
+        f'<joint name="j" type="revolute"><parent>a</parent><child>{child}</child><axis/></joint>' for child in "bd"
+    )
+    twice = f'<link name="e"><collision name="c">{BOX}</collision><collision name="c">{BOX}</collision></link>'
+    simulation = begun(f'<model name="m"><pose>0 0 3 0 0 0</pose>{links}{twice}{joints}</model>')
+    assert simulation.model.body("m::e").geomnum == 2
+    assert sorted(simulation.scene.joints) == ["m::j", "m::j~"]
+
+
+def test_a_joint_without_a_direction_turns_about_z_and_one_of_a_link_with_itself_is_none():
+    ends = '<link name="a"/><link name="b"/>'
+    first = '<joint name="j" type="revolute"><parent>a</parent><child>b</child><axis><xyz>0 0 0</xyz></axis></joint>'
+    second = '<joint name="k" type="revolute"><parent>a</parent><child>a</child><axis/></joint>'
+    simulation = begun(f'<model name="m"><pose>0 0 3 0 0 0</pose>{ends}{first}{second}</model>')
+    assert list(simulation.scene.joints) == ["m::j"]
+    assert simulation.model.joint("m::j").axis.tolist() == [0, 0, 1]
+
+
+def test_links_of_old_files_have_the_names_of_models_that_were_in_them():
+    joint = '<joint name="laser::j" type="revolute"><parent>base</parent><child>laser::link</child><axis/></joint>'
+    links = '<link name="base"/><link name="laser::link"><pose>0 0 1 0 0 0</pose></link>'
+    simulation = begun(f'<model name="m"><pose>0 0 3 0 0 0</pose>{links}{joint}</model>', version="1.6")
+    assert simulation.joint_state("m::laser::j")[0] == pytest.approx(0, abs=1e-6)
+    assert simulation.link_pose("m::laser::link")[2] == pytest.approx(4, abs=1e-2)
+
+
+_NUMBERS = ["0", "-1", "nan", "inf", "1e300", "-1e300", "1e-300", "", "x", "1 2 3", "1e9"]
+_PARTS = """
+<pose>{}</pose>
+<pose>0 0 {} 0 0 0</pose>
+<static>{}</static>
+<link name="b"><inertial><mass>{}</mass><inertia><ixx>{}</ixx></inertia></inertial></link>
+<link name="a"/>
+<link name="c"><collision name="c"><geometry><box><size>{} 1 {}</size></box></geometry></collision></link>
+<link name="d"><collision name="c"><geometry><sphere><radius>{}</radius></sphere></geometry></collision></link>
+<visual name="v"><geometry><polyline><point>{} 0</point><point>1 {}</point></polyline></geometry></visual>
+<visual name="w"><geometry><cone><radius>{}</radius><length>1</length></cone></geometry></visual>
+<joint name="j" type="revolute"><parent>a</parent><child>b</child><axis><xyz>0 {} 1</xyz></axis></joint>
+<joint name="i" type="prismatic"><parent>a</parent><child>d</child><axis><limit><lower>{}</lower></limit></axis></joint>
+<joint name="k" type="screw"><parent>b</parent><child>c</child><thread_pitch>{}</thread_pitch><axis/></joint>
+<joint name="l" type="ball"><parent>c</parent><child>a</child></joint>
+<frame name="g" attached_to="{}"/>
+<model name="m"><link name="a"/></model>
+""".strip().splitlines()
+
+
+@st.composite
+def broken_models(draw: st.DrawFn) -> str:
+    """A model of parts that mostly fit together, with values that mostly do not."""
+    parts = draw(st.lists(st.sampled_from(_PARTS), min_size=1, max_size=6))
+    filled = [part.format(*(draw(st.sampled_from(_NUMBERS)) for _ in range(part.count("{}")))) for part in parts]
+    filled = [f'<link name="{each}">{part}</link>' if "<visual" in part else part for each, part in enumerate(filled)]
+    return f'<model name="m">{"".join(filled)}</model>'
+
+
+@settings(max_examples=60, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
+@given(broken_models())
+def test_whatever_a_model_says_there_is_a_simulation_or_a_clear_error(broken: str):
+    codes: set[str] = set()
+    try:
+        assert "crate" in begun(CRATE, broken).scene.models
+    except LinkwrightError as error:
+        codes = {each.code for each in error.diagnostics}
+    assert codes <= {"SIM120", "SIM121"}
