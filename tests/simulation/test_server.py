@@ -190,6 +190,27 @@ async def test_the_world_is_told_to_who_comes_late_with_all_that_came(tmp_path):
         assert 'name="ground_plane"' in worlds[-1].data
 
 
+async def test_actors_and_roads_are_told_as_models_that_look_like_them(tmp_path):
+    ball = "<geometry><sphere><radius>0.5</radius></sphere></geometry>"
+    actor = (
+        f'<actor name="walker"><link name="head"><visual name="v">{ball}</visual></link><script>'
+        '<trajectory id="0" type="walk"><waypoint><time>0</time><pose>2 0 1 0 0 0</pose></waypoint></trajectory>'
+        "</script></actor>"
+    )
+    road = '<road name="lane"><point>0 0 0</point><point>4 0 0</point></road>'
+    async with simulator(tmp_path, actor, road) as it:
+        worlds = it.hear("std_msgs/msg/String", "/world_description", LATCHED)
+        await eventually(lambda: bool(worlds))
+        assert '<model name="walker">' in worlds[-1].data
+        assert '<model name="lane">' in worlds[-1].data
+        assert "<actor" not in worlds[-1].data
+        poses = it.hear("tf2_msgs/msg/TFMessage", "/world_poses")
+        await eventually(lambda: bool(poses))
+        [transform] = poses[-1].transforms
+        assert transform.child_frame_id == "walker::head"
+        assert transform.transform.translation.x == pytest.approx(2.0)
+
+
 async def test_poses_are_of_what_can_move_and_sent_to_who_listens(tmp_path):
     async with simulator(tmp_path, box("one", "1 0 9 0 0 0")) as it:
         poses = it.hear("tf2_msgs/msg/TFMessage", "/world_poses")

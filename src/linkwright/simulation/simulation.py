@@ -19,6 +19,7 @@ from linkwright.sdf.worlds import World, gravity_of, physics_of
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.scene.bodies import COLLISION_GROUP
 from linkwright.simulation.scene.compiling import compiled, count_links, refused_models
+from linkwright.simulation.scene.figures import let_walk
 from linkwright.simulation.scene.meshes import MeshLibrary
 from linkwright.simulation.scene.scene import Scene
 from linkwright.simulation.schedule import Schedule, Task
@@ -228,6 +229,7 @@ class Simulation:
         self.renew()
         if not self._current:
             mujoco, model, data = self._mujoco, self.model, self.data
+            let_walk(self.scene.figures, model, data, self.seconds)
             mujoco.mj_kinematics(model, data)
             mujoco.mj_comPos(model, data)
             mujoco.mj_camlight(model, data)

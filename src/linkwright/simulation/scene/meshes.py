@@ -206,13 +206,17 @@ class MeshLibrary:
 
     def _path(self, shape: Shape, element: Element | None) -> Path | None:
         """The file of a shape; None for a shape without one, or one that is not there, which is told once."""
-        if not isinstance(shape, Mesh | Heightmap) or not shape.uri:
+        return self.file(shape.uri, element) if isinstance(shape, Mesh | Heightmap) else None
+
+    def file(self, uri: str, element: Element | None) -> Path | None:
+        """The file that an element names; None for one that is not there, which is told once."""
+        if not uri:
             return None
         source = element.source if element is not None else None
         folder = Path(source.name).parent if source is not None else Path()
-        key = (shape.uri, folder)
+        key = (uri, folder)
         if key not in self._files:
-            found = self._finder.file(shape.uri, folder)
+            found = self._finder.file(uri, folder)
             if isinstance(found, Missing):
                 self._warn(Diagnostic("SIM112", found.reason, hint=found.hint), element)
                 self._files[key] = None

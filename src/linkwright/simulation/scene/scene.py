@@ -17,6 +17,7 @@ from linkwright.sdf.poses import SEPARATOR, WORLD
 from linkwright.sdf.worlds import World, gravity_of, physics_of
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.scene.bodies import SECOND_AXIS, BodyWriter, hinge_anchors
+from linkwright.simulation.scene.figures import draw, figures_of
 from linkwright.simulation.scene.meshes import MeshLibrary
 from linkwright.simulation.scene.shapes import set_pose
 from linkwright.simulation.scene.structure import HeldLink, PlacedJoint, Structure, structure_of
@@ -71,6 +72,7 @@ class Scene:
         models: by their names, in the order in which they came.
         joints: the joints of models that move, by name.
         bodies: the bodies of the specification, by the names of the links.
+        figures: actors and roads, which are seen and touch nothing.
     """
 
     def __init__(
@@ -105,6 +107,9 @@ class Scene:
                 self._warn("SIM117", message, model.element)
             elif model.name not in self.models:  # `check` tells of a second one
                 self._add_or_tell(model, frames)
+        self.figures = figures_of(world, meshes)
+        for figure in self.figures:
+            draw(figure, self.spec, self._writer)
 
     def step_of(self, world: World) -> float:
         """The time step that a world says, in s; a millisecond where it says 0, which is told."""

@@ -66,7 +66,9 @@ class Reports:
             replace(each.model, name=each.name, pose=RawPose(pose_of(each.pose)), placement_frame="")
             for each in simulation.scene.models.values()
         )
-        world = with_addresses(replace(simulation.world, models=models), Path.cwd(), self._address)
+        figures = tuple(replace(each.model, pose=RawPose(pose_of(each.pose))) for each in simulation.scene.figures)
+        world = replace(simulation.world, models=(*models, *figures), actors=(), roads=())
+        world = with_addresses(world, Path.cwd(), self._address)
         self._description.publish(String(data=save(world)))
 
     def watch(self, factor: Callable[[], float]) -> None:

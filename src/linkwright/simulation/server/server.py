@@ -27,6 +27,7 @@ from linkwright.simulation.plugins.ros_element import node_of
 from linkwright.simulation.scene.scene import SceneModel
 from linkwright.simulation.server.carrying import motion_of, resume
 from linkwright.simulation.server.changes import Coming, changes_to, check, come_into, surroundings
+from linkwright.simulation.server.unsimulated import unsimulated
 from linkwright.simulation.simulation import Simulation
 
 _WORLD = ""
@@ -82,6 +83,9 @@ class SimulationServer:
     def start(self) -> None:
         """Load the plugins of the world and of its models."""
         self._tell(self.simulation.scene.diagnostics)
+        names = unsimulated(self.simulation.world)
+        if names:
+            self.node.get_logger().info(phrase("elements that are not simulated: {names}", names=joined(names)))
         self._load(_WORLD, of_world(self.simulation.world), "")
         for scene_model in tuple(self.simulation.scene.models.values()):
             self._load(scene_model.name, of_model(self.simulation.world, scene_model.model, scene_model.name), "")

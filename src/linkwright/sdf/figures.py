@@ -1,0 +1,57 @@
+"""What is seen and touches nothing: the figures of actors, and roads, as models that simulators draw."""
+
+from __future__ import annotations
+
+from math import atan2, hypot
+
+from linkwright.geometry.shapes import Box, Cylinder
+from linkwright.geometry.single import Pose
+from linkwright.geometry.vectors import Vector3
+from linkwright.sdf.actors import Actor
+from linkwright.sdf.links import Link, Visual
+from linkwright.sdf.materials import Material
+from linkwright.sdf.models import Model
+from linkwright.sdf.poses import RawPose
+from linkwright.sdf.shapes import Mesh
+from linkwright.sdf.worlds import Road
+
+_SKIN = "skin"
+"""The link that the skin of a figure is on."""
+_THICKNESS = 0.01
+"""Of a road, in m."""
+_ASPHALT = Material(ambient=(0.2, 0.2, 0.2, 1.0), diffuse=(0.25, 0.25, 0.25, 1.0))
+
+
+def figure_of(actor: Actor, hips: Vector3 = (0.0, 0.0, 0.0)) -> Model:
+    """The figure of an actor: what its links look like, and its skin.
+
+    Args:
+        actor: what is written about it.
+        hips: where the first joint of the skeleton is in the mesh of the skin, in its metres: Gazebo puts that at the
+            pose of the actor.
+    """
+    links = [Link(link.name, pose=link.pose, visuals=link.visuals, element=link.element) for link in actor.links]
+    if actor.skin is not None:
+        scale = actor.skin.scale
+        x, y, z = (-scale * each for each in hips)
+        mesh = Mesh(actor.skin.filename, (scale, scale, scale))
+        visual = Visual(_SKIN, mesh, RawPose(Pose((x, y, z))), element=actor.element)
+        links.append(Link(_SKIN, visuals=(visual,), element=actor.element))
+    return Model(actor.name, static=True, links=tuple(links), element=actor.element)
+
+
+def road_of(road: Road) -> Model:
+    """A road as it is seen: a strip along its points, as wide as it says, whose top is at their height."""
+    visuals: list[Visual] = []
+    for start, end in zip(road.points, road.points[1:], strict=False):
+        (x, y, z), (dx, dy, dz) = start, (end[0] - start[0], end[1] - start[1], end[2] - start[2])
+        length = hypot(dx, dy, dz)
+        if not length or not road.width > 0:
+            continue
+        middle = (x + dx / 2, y + dy / 2, z + dz / 2 - _THICKNESS / 2)
+        pose = RawPose(Pose(middle, (0.0, -atan2(dz, hypot(dx, dy)), atan2(dy, dx))))
+        visuals.append(Visual(f"part{len(visuals)}", Box((length, road.width, _THICKNESS)), pose, _ASPHALT))
+        bend = RawPose(Pose((end[0], end[1], end[2] - _THICKNESS / 2)))
+        visuals.append(Visual(f"part{len(visuals)}", Cylinder(road.width / 2, _THICKNESS), bend, _ASPHALT))
+    link = Link("link", visuals=tuple(visuals[:-1]), element=road.element)
+    return Model(road.name or "road", static=True, links=(link,), element=road.element)

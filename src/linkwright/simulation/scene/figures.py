@@ -1,0 +1,157 @@
+"""What is seen and touches nothing: actors that walk, and roads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.geometry.single import IDENTITY, Transform, compose
+from linkwright.geometry.vectors import Vector3
+from linkwright.sdf.actors import Actor
+from linkwright.sdf.figures import figure_of, road_of
+from linkwright.sdf.frames import FrameError, Frames, PlacedLink, links_of
+from linkwright.sdf.models import Model
+from linkwright.sdf.walking import Walk
+from linkwright.sdf.worlds import World
+from linkwright.simulation.scene.bodies import BodyWriter
+from linkwright.simulation.scene.meshes import MeshLibrary
+from linkwright.simulation.scene.shapes import set_pose
+from linkwright.xmltree import Element
+from linkwright.xmltree.reader import parse_file
+
+T = TypeVar("T", Actor, Model)
+_OF_GZ = ("gz-sim", "ignition-gazebo")
+"""What libraries of gz are called."""
+_INVERSE = "INV_BIND_MATRIX"
+_NUMBERS_OF_A_MATRIX = 16
+_FLAT = 1e-12
+"""A matrix whose determinant is no greater cannot be turned round."""
+
+
+@dataclass(slots=True)
+class Figure:
+    """An actor or a road of a scene.
+
+    Attributes:
+        model: what it looks like.
+        pose: where the model stands at time 0.
+        walk: where an actor goes; None for what stands still.
+        origin: where the points of the walk are, in the world.
+        links: its links, placed in the frame of the model.
+    """
+
+    model: Model
+    pose: Transform
+    walk: Walk | None
+    origin: Transform
+    links: tuple[PlacedLink, ...]
+
+    def pose_at(self, seconds: float) -> Transform:
+        """Where it is at a time of the world."""
+        return self.pose if self.walk is None else compose(self.origin, self.walk.pose(seconds))
+
+
+def figures_of(world: World, meshes: MeshLibrary) -> list[Figure]:
+    """The actors and roads of a world; those that cannot be placed are left out, and `check` tells.
+
+    In a world for gz the points of walks are in the frame of the actor, in one for Gazebo classic in that of the world.
+
+    Args:
+        world: with its includes resolved.
+        meshes: where skins are.
+    """
+    relative = any(library in plugin.filename for plugin in world.plugins for library in _OF_GZ)
+    frames, found = Frames(world), []
+    taken = {model.name for model in world.models}
+    for actor in world.actors:
+        actor = _renamed(actor, taken)
+        try:
+            pose = frames.placed(actor.pose)
+            model = figure_of(actor, _hips(actor, meshes))
+            links = tuple(links_of(model, Frames(model), IDENTITY, actor.name))
+        except FrameError:
+            continue
+        walk = Walk(actor.script)
+        origin = pose if relative else IDENTITY
+        begin = compose(origin, walk.pose(0.0)) if walk.is_somewhere else pose
+        found.append(Figure(model, begin, walk if walk.is_somewhere else None, origin, links))
+    for road in world.roads:
+        model = _renamed(road_of(road), taken)
+        links = tuple(links_of(model, Frames(model), IDENTITY, model.name))
+        found.append(Figure(model, IDENTITY, None, IDENTITY, links))
+    return found
+
+
+def _renamed(thing: T, taken: set[str]) -> T:
+    """An actor or road with a name that nothing else has."""
+    while thing.name in taken:
+        thing = replace(thing, name=f"{thing.name}~")
+    taken.add(thing.name)
+    return thing
+
+
+def draw(figure: Figure, spec: Any, writer: BodyWriter) -> None:
+    """Add the bodies of a figure to a specification of MuJoCo: nothing moves them, and they touch nothing."""
+    for placed in figure.links:
+        body = spec.worldbody.add_body(name=placed.name, mocap=figure.walk is not None)
+        set_pose(body, compose(figure.pose, placed.pose))
+        body.explicitinertial, body.ipos = True, [0.0, 0.0, 0.0]
+        writer.add_visuals(body, placed.link, placed.frames, fixed=True)
+
+
+def let_walk(figures: Iterable[Figure], model: Any, data: Any, seconds: float) -> None:
+    """Put actors where they are at a time of the world, in MuJoCo's data."""
+    for figure in figures:
+        if figure.walk is None:
+            continue
+        pose = figure.pose_at(seconds)
+        for placed in figure.links:
+            x, y, z, qx, qy, qz, qw = compose(pose, placed.pose)
+            place = model.body(placed.name).mocapid[0]
+            data.mocap_pos[place] = x, y, z
+            data.mocap_quat[place] = qw, qx, qy, qz
+
+
+def _hips(actor: Actor, meshes: MeshLibrary) -> Vector3:
+    """Where the skeleton of a skin begins, in the metres of its mesh; its origin where it has none."""
+    if actor.skin is None:
+        return (0.0, 0.0, 0.0)
+    path = meshes.file(actor.skin.filename, actor.element)
+    return skeleton_begins(path) if path is not None and path.suffix.lower() == ".dae" else (0.0, 0.0, 0.0)
+
+
+def skeleton_begins(path: Path) -> Vector3:
+    """Where the first joint of the skeleton in a COLLADA file is in the pose that its skin was made in, in m."""
+    try:
+        root = parse_file(path).root
+    except LinkwrightError:
+        return (0.0, 0.0, 0.0)
+    skin = next((each for each in root.walk() if each.tag == "skin"), None)
+    matrix = None if skin is None else _first_matrix(skin)
+    if matrix is None:
+        return (0.0, 0.0, 0.0)
+    unit = next((each for each in root.walk() if each.tag == "unit"), None)
+    scale = float(unit.attributes.get("meter", "1")) if unit is not None else 1.0
+    x, y, z = (np.linalg.inv(matrix)[:3, 3] * scale).tolist()
+    return x, y, z
+
+
+def _first_matrix(skin: Element) -> Any:
+    """The first matrix that takes from the mesh to a joint; None where there is none that can be turned round."""
+    named = (each.attributes.get("source", "") for each in skin.walk() if each.attributes.get("semantic") == _INVERSE)
+    wanted = next(named, "").removeprefix("#")
+    source = next((each for each in skin.elements("source") if each.attributes.get("id") == wanted), None)
+    array = None if source is None else source.first("float_array")
+    try:
+        numbers = [float(each) for each in array.text().split()[:_NUMBERS_OF_A_MATRIX]] if array is not None else []
+    except ValueError:
+        return None
+    if len(numbers) < _NUMBERS_OF_A_MATRIX or not np.isfinite(numbers).all():
+        return None
+    matrix = np.array(numbers).reshape(4, 4)
+    return matrix if abs(np.linalg.det(matrix)) > _FLAT else None

@@ -1,0 +1,51 @@
+"""Elements of a world that SDF has and that are not simulated."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from linkwright.sdf.models import Model
+from linkwright.sdf.reader import OPEN
+from linkwright.sdf.worlds import World
+from linkwright.xmltree import Element
+
+_NOWHERE = frozenset(
+    {"audio_source", "fluid_added_mass", "gripper", "particle_emitter", "population", "projector", "soft_contact"}
+)
+_IN = frozenset({("actor", "animation"), ("actor", "plugin"), ("geometry", "image")})
+"""What is simulated elsewhere, with the element in which it is not."""
+
+
+def unsimulated(world: World) -> list[str]:
+    """The elements of a world with its models that are not simulated, each kind once, as ``<projector>``."""
+    found: dict[str, None] = {}
+    for root in _roots(world):
+        pending = [root]
+        while pending:
+            element = pending.pop()
+            for child in element.elements():
+                if child.tag in _NOWHERE:
+                    found[f"<{child.tag}>"] = None
+                elif (element.tag, child.tag) in _IN:
+                    found[f"<{child.tag}> in <{element.tag}>"] = None
+                elif child.tag not in OPEN and child.tag != "state":
+                    pending.append(child)
+    return sorted(found)
+
+
+def _roots(world: World) -> Iterator[Element]:
+    """The elements of the world and of all that comes from other files."""
+    if world.element is not None:
+        yield world.element
+    own = None if world.element is None else world.element.source
+    models = (*world.models, *(inner for model in world.models for inner in _inside(model)))
+    elements = [*(model.element for model in models), *(actor.element for actor in world.actors)]
+    for element in elements:
+        if element is not None and element.source is not own:
+            yield element
+
+
+def _inside(model: Model) -> Iterator[Model]:
+    for inner in model.models:
+        yield inner
+        yield from _inside(inner)

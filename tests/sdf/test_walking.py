@@ -1,0 +1,89 @@
+"""Where figures are while they walk."""
+
+from __future__ import annotations
+
+from math import pi, sqrt
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from linkwright.geometry.single import Pose, quaternion_from_rpy
+from linkwright.sdf.actors import Script, Trajectory, Waypoint
+from linkwright.sdf.poses import RawPose
+from linkwright.sdf.walking import Walk
+
+
+def path(*points: tuple[float, float, float, float], tension: float = 0.0) -> Trajectory:
+    """A trajectory through points: time, x, y, yaw."""
+    waypoints = (Waypoint(time, RawPose(Pose((x, y, 1.0), (0.0, 0.0, yaw)))) for time, x, y, yaw in points)
+    return Trajectory(tension=tension, waypoints=tuple(waypoints))
+
+
+STRAIGHT = path((0, 0, 0, 0), (2, 4, 0, 0))
+
+
+def at(walk: Walk, seconds: float) -> tuple[float, float]:
+    x, y, *_ = walk.pose(seconds)
+    return x, y
+
+
+def test_a_walk_that_loops_begins_again_and_one_that_does_not_ends_where_it_ends():
+    again, once = Walk(Script(trajectories=(STRAIGHT,))), Walk(Script(loop=False, trajectories=(STRAIGHT,)))
+    assert at(again, 1) == at(once, 1) == pytest.approx((2, 0))
+    assert at(again, 2) == at(once, 2) == pytest.approx((4, 0))
+    assert at(again, 3) == pytest.approx((2, 0))
+    assert at(once, 3) == pytest.approx((4, 0))
+
+
+def test_a_walk_waits_where_it_begins():
+    late = Walk(Script(delay_start=5, trajectories=(STRAIGHT,)))
+    assert at(late, 4) == (0, 0)
+    assert at(late, 6) == pytest.approx((2, 0))
+    never = Walk(Script(auto_start=False, trajectories=(STRAIGHT,)))
+    assert at(never, 100) == (0, 0)
+
+
+def test_trajectories_follow_each_other():
+    walk = Walk(Script(trajectories=(STRAIGHT, path((0, 4, 0, 0), (2, 4, 4, 0)))))
+    assert at(walk, 3) == pytest.approx((4, 2))
+    assert at(walk, 5) == pytest.approx((2, 0))
+
+
+def test_the_first_point_is_where_it_begins_whatever_its_time():
+    assert at(Walk(Script(trajectories=(path((1, 0, 0, 0), (2, 4, 0, 0)),))), 1) == pytest.approx((2, 0))
+
+
+def test_without_points_it_is_nowhere():
+    assert not Walk(Script()).is_somewhere
+    assert not Walk(Script(trajectories=(Trajectory(),))).is_somewhere
+
+
+def test_a_path_is_round_and_with_tension_straight():
+    corner = [(0.0, 0.0, 0.0, 0.0), (1.0, 1.0, 0.0, 0.0), (2.0, 1.0, 1.0, 0.0)]
+    # Catmull-Rom: from (0, 0) to (1, 0) with the tangents (0.5, 0) and (0.5, 0.5), in the middle of the way
+    x, y = at(Walk(Script(trajectories=(path(*corner),))), 0.5)
+    assert (x, y) == pytest.approx((0.5, -0.0625))
+    x, y = at(Walk(Script(trajectories=(path(*corner, tension=1.0),))), 0.5)
+    assert (x, y) == pytest.approx((0.5, 0.0))
+
+
+def test_it_turns_evenly_on_the_short_way():
+    walk = Walk(Script(trajectories=(path((0, 0, 0, 0), (1, 0, 0, pi / 2)),)))
+    assert walk.pose(0.5)[3:] == pytest.approx(quaternion_from_rpy((0, 0, pi / 4)))
+    walk = Walk(Script(trajectories=(path((0, 0, 0, 3), (1, 0, 0, -3)),)))
+    assert abs(walk.pose(0.5)[5]) == pytest.approx(1.0)
+
+
+coordinates = st.floats(-100, 100)
+points = st.tuples(st.floats(0.1, 10), coordinates, coordinates, st.floats(-4, 4))
+
+
+@given(st.lists(points, min_size=1, max_size=6), st.floats(0, 1), st.floats(0, 100))
+def test_it_passes_through_all_points_and_is_always_somewhere(steps, tension, seconds):
+    times = [sum(step[0] for step in steps[:count]) for count in range(len(steps))]
+    trajectory = path(*((time, *step[1:]) for time, step in zip(times, steps, strict=True)), tension=tension)
+    walk = Walk(Script(loop=False, trajectories=(trajectory,)))
+    for time, (_, x, y, _yaw) in zip(times, steps, strict=True):
+        assert at(walk, time) == pytest.approx((x, y), abs=1e-6)
+    assert sqrt(sum(each * each for each in walk.pose(seconds)[3:])) == pytest.approx(1.0)

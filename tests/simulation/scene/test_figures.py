@@ -1,0 +1,119 @@
+"""Actors and roads: they are seen and touch nothing."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from linkwright.simulation.casting import GROUPS, cast
+from linkwright.simulation.scene.bodies import VISUAL_GROUP
+from linkwright.simulation.scene.figures import skeleton_begins
+from linkwright.simulation.server.unsimulated import unsimulated
+from tests.simulation.worlds import GROUND, box, simulated
+
+BALL = "<geometry><sphere><radius>0.5</radius></sphere></geometry>"
+LINK = f'<link name="head"><pose>0 0 1 0 0 0</pose><visual name="v">{BALL}</visual></link>'
+PATH = (
+    "<script><loop>true</loop><trajectory id='0' type='walk'>"
+    "<waypoint><time>0</time><pose>2 0 0 0 0 0</pose></waypoint>"
+    "<waypoint><time>2</time><pose>6 0 0 0 0 0</pose></waypoint></trajectory></script>"
+)
+ACTOR = f'<actor name="walker"><pose>0 1 0 0 0 0</pose>{LINK}{PATH}</actor>'
+GZ = '<plugin filename="gz-sim-physics-system" name="gz::sim::systems::Physics"/>'
+SECOND = 1_000_000_000
+
+
+def test_an_actor_is_where_its_path_is_at_the_time_of_the_world():
+    simulation = simulated(GROUND, ACTOR)
+    assert simulation.link_pose("walker::head")[:3] == pytest.approx((2, 0, 1))
+    simulation.advance(SECOND)
+    assert simulation.link_pose("walker::head")[:3] == pytest.approx((4, 0, 1))
+    simulation.advance(2 * SECOND)
+    assert simulation.link_pose("walker::head")[:3] == pytest.approx((4, 0, 1))
+    simulation.reset()
+    assert simulation.link_pose("walker::head")[:3] == pytest.approx((2, 0, 1))
+
+
+def test_in_worlds_for_gz_a_path_is_in_the_frame_of_the_actor():
+    simulation = simulated(GROUND, GZ, ACTOR)
+    assert simulation.link_pose("walker::head")[:3] == pytest.approx((2, 1, 1))
+
+
+def test_an_actor_without_a_path_stands_where_it_stands():
+    simulation = simulated(GROUND, f'<actor name="walker"><pose>0 1 0 0 0 0</pose>{LINK}<script/></actor>')
+    simulation.advance(SECOND // 100)
+    assert simulation.link_pose("walker::head")[:3] == pytest.approx((0, 1, 1))
+
+
+def test_an_actor_goes_through_what_stands_in_its_way():
+    simulation = simulated(GROUND, box("crate", pose="4 0 0.5 0 0 0"), ACTOR)
+    simulation.advance(2 * SECOND)
+    assert simulation.link_pose("crate::link")[:2] == pytest.approx((4, 0), abs=1e-4)
+
+
+def test_rays_that_see_visuals_meet_an_actor_where_it_is():
+    simulation = simulated(GROUND, ACTOR)
+    simulation.advance(SECOND)
+    simulation.refresh()
+    groups = np.zeros(GROUPS, dtype=np.uint8)
+    groups[VISUAL_GROUP] = 1
+    origin, ray = np.array([0.0, 0.0, 1.0]), np.array([[1.0, 0.0, 0.0]])
+    distances, _ = cast(simulation.model, simulation.data, origin, ray, groups, apart_from=-1, reach=10.0)
+    assert distances[0] == pytest.approx(3.5)
+
+
+def test_figures_of_one_name_are_all_there():
+    road = '<road name="ground"><point>0 0 0</point><point>1 0 0</point></road>'
+    simulation = simulated(GROUND, ACTOR, road, road)
+    assert [figure.model.name for figure in simulation.scene.figures] == ["walker", "ground~", "ground~~"]
+
+
+def test_a_road_is_a_strip_along_its_points_that_nothing_touches():
+    road = '<road name="r"><width>2</width><point>0 0 0.02</point><point>4 0 0.02</point><point>4 3 0.02</point></road>'
+    simulation = simulated(GROUND, road)
+    body = simulation.model.body("r::link")
+    assert body.geomnum == 3  # two straight parts, and the bend between them
+    first = simulation.model.geom("r::link::part0#visual")
+    assert first.size.tolist() == pytest.approx([2, 1, 0.005])
+    assert first.pos.tolist() == pytest.approx([2, 0, 0.015])
+    assert not first.contype[0]
+
+
+DAE = """<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+  <asset><unit meter="0.1"/><up_axis>Z_UP</up_axis></asset>
+  <library_controllers><controller id="c"><skin source="#mesh">
+    <source id="names"><Name_array id="n" count="1">Hips</Name_array></source>
+    <source id="binds"><float_array id="b" count="16">{matrix}</float_array></source>
+    <joints><input semantic="JOINT" source="#names"/><input semantic="INV_BIND_MATRIX" source="#binds"/></joints>
+  </skin></controller></library_controllers>
+</COLLADA>
+"""
+
+
+@pytest.mark.parametrize(
+    ("matrix", "begins"),
+    [
+        ("1 0 0 -1 0 1 0 -2 0 0 1 -9 0 0 0 1", (0.1, 0.2, 0.9)),
+        ("0 " * 16, (0, 0, 0)),
+        ("1 2 3", (0, 0, 0)),
+        ("nan " * 16, (0, 0, 0)),
+        ("x " * 16, (0, 0, 0)),
+    ],
+)
+def test_a_skin_stands_where_its_skeleton_begins(tmp_path: Path, matrix, begins):
+    file = tmp_path / "walk.dae"
+    file.write_text(DAE.format(matrix=matrix))
+    assert skeleton_begins(file) == pytest.approx(begins)
+
+
+def test_what_is_not_simulated_is_named_once():
+    more = (
+        '<model name="m"><static>true</static><link name="l"><projector name="p"/><projector name="q"/></link></model>'
+        '<population name="p"><model name="can"/></population>'
+    )
+    walker = ACTOR.replace("<script>", '<animation name="walk"/><plugin name="p" filename="libwalk.so"/><script>')
+    found = unsimulated(simulated(GROUND, more, walker).world)
+    assert found == ["<animation> in <actor>", "<plugin> in <actor>", "<population>", "<projector>"]
