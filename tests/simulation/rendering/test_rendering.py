@@ -51,6 +51,17 @@ def test_walls_are_as_far_as_they_are(make):
     assert np.abs(depth[:, 100:] - 3.0).max() < 1e-3
 
 
+def test_distances_are_the_same_with_colours_and_without(make):
+    simulation = simulated(FLOOR, block("box", "2 0.5 0 0 0 0", "0.5 0.5 0.5", colour="1 0 0 1"))
+    renderer, optics, pose = make(simulation), optics_of(CAMERA), (0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
+    both = renderer.render(optics, pose, Wanted.DEPTH | Wanted.COLOUR)
+    alone = renderer.render(optics, pose, Wanted.DEPTH)
+    again = renderer.render(optics, pose, Wanted.DEPTH | Wanted.COLOUR)
+    assert (alone.depth == both.depth).all()
+    assert alone.colour is None
+    assert (again.colour == both.colour).all()
+
+
 def test_the_floor_goes_on_to_the_horizon(make):
     pose = (0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
     optics = optics_of(CAMERA)

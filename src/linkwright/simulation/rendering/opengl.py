@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import sys
 import threading
+from collections.abc import Callable
 from ctypes.util import find_library
 from importlib import import_module
 from typing import Any
@@ -36,6 +37,8 @@ _FARTHER = 4.0
 """How far the ground is drawn, in farthest distances of the camera: its edges are not in the picture."""
 _ROUNDING = 1e-6
 """The share of its size that a geom may be beside of what is seen by rounding alone."""
+_QUADS, _LIT_QUADS = 1, 4
+"""Into how many squares a side of a box is cut each way: light is computed at their corners."""
 _SPARE_GEOMS = 100
 """Room in the list of what is drawn beside the geoms of the model."""
 
@@ -61,6 +64,7 @@ class OpenGlRenderer:
         self._size = (640, 480)
         self._gl = _context_class(backend)(*self._size)
         self._gl.make_current()
+        self._mask_colours: Callable[..., None] = import_module("OpenGL.raw.GL.VERSION.GL_1_0").glColorMask
         self._option = mujoco.MjvOption()
         for groups in (
             "geomgroup",
@@ -120,6 +124,8 @@ class OpenGlRenderer:
         model.vis.quality.offsamples = 0
         model.vis.quality.shadowsize = 0
         model.vis.global_.offwidth, model.vis.global_.offheight = self._size
+        even = _is_the_same_everywhere(lights_of(simulation, np.zeros(3)))
+        model.vis.quality.numquads = _QUADS if even else _LIT_QUADS
         model.stat.extent = 1.0
         if self._draw_context is not None:
             self._draw_context.free()
@@ -153,7 +159,7 @@ class OpenGlRenderer:
         finally:
             model.geom_group[:] = groups
         lights = lights_of(simulation, axes[:, 2])
-        if all(each.light.type == "directional" for each in lights):
+        if _is_the_same_everywhere(lights):
             self._flatten_planes(hole, np.array(pose[:3]))
         _, down, forwards = axes.T
         self._set_lights(lights)
@@ -210,8 +216,12 @@ class OpenGlRenderer:
         if not wanted & (Wanted.COLOUR | Wanted.DEPTH):
             return None, None
         rect = self._mujoco.MjrRect(0, 0, hole.width, hole.height)
-        self._mujoco.mjr_render(rect, self._scene, self._draw_context)
-        colour: Pixels | None = np.empty((hole.height, hole.width, 3), np.uint8) if Wanted.COLOUR in wanted else None
+        colour: Pixels | None = None
+        if Wanted.COLOUR in wanted:
+            colour = np.empty((hole.height, hole.width, 3), np.uint8)
+            self._mujoco.mjr_render(rect, self._scene, self._draw_context)
+        else:
+            self._draw_without_colours(rect)
         raw = np.empty((hole.height, hole.width), np.float32)
         self._mujoco.mjr_readPixels(colour, raw, rect, self._draw_context)
         nothing = raw <= 0
@@ -223,9 +233,21 @@ class OpenGlRenderer:
         if Wanted.DEPTH not in wanted:
             return colour, None
         near, far = np.float32(hole.near), np.float32(hole.far)
-        depth = far * near / (near + raw * (far - near))
-        depth[nothing] = np.inf
-        return colour, np.ascontiguousarray(depth[::-1])
+        raw *= far - near
+        raw += near
+        np.divide(far * near, raw, out=raw)
+        np.copyto(raw, np.inf, where=nothing)
+        return colour, np.ascontiguousarray(raw[::-1])
+
+    def _draw_without_colours(self, rect: Any) -> None:
+        """Draw how far away everything is: neither light nor colours are computed."""
+        lights, self._scene.nlight = self._scene.nlight, 0
+        self._mask_colours(False, False, False, False)
+        try:
+            self._mujoco.mjr_render(rect, self._scene, self._draw_context)
+        finally:
+            self._mask_colours(True, True, True, True)
+            self._scene.nlight = lights
 
     def _draw_geoms(self, hole: Optics) -> Pixels:
         flags, scene = self._mujoco.mjtRndFlag, self._scene
@@ -258,6 +280,10 @@ def _beside(simulation: Simulation, hole: Optics, origin: Array, axes: Array) ->
             outside |= sign * along - slope * ahead > reach * np.hypot(1.0, slope)
     endless = reach == 0
     return outside & ~endless
+
+
+def _is_the_same_everywhere(lights: list[PlacedLight]) -> bool:
+    return all(each.light.type == "directional" for each in lights)
 
 
 def _is_textured(model: Any, geom: int) -> bool:
