@@ -12,7 +12,7 @@ from linkwright.sdf.cameras import Camera, Clip, Distortion, Intrinsics, Picture
 from linkwright.simulation.rendering.choice import WAYS, make_renderer
 from linkwright.simulation.rendering.optics import Optics, distorted, optics_of, undistorted
 from linkwright.simulation.rendering.renderer import Wanted
-from linkwright.simulation.simulation import Simulation
+from linkwright.simulation.simulation import NANOSECONDS, Simulation
 from tests.simulation.sensors.rooms import block
 from tests.simulation.worlds import model, simulated
 
@@ -213,3 +213,43 @@ def test_focal_lengths_may_be_given_instead_of_an_angle():
     assert (optics.fx, optics.fy, optics.cx, optics.cy) == (500.0, 520.0, 310.0, 250.0)
     assert not optics.is_pinhole
     assert optics_of(CAMERA) == Optics(160, 120, pytest.approx(80.0), pytest.approx(80.0), 80.0, 60.0, 0.05, 50.0)
+
+
+def floating(name: str, pose: str, size: float = 0.5) -> str:
+    """A box that nothing pulls: it rests until it is put elsewhere."""
+    return (
+        f'<model name="{name}"><pose>{pose}</pose><link name="link"><gravity>false</gravity>'
+        f'<visual name="v"><geometry><box><size>{size} {size} {size}</size></box></geometry></visual></link></model>'
+    )
+
+
+def test_what_rests_and_moves_again_is_where_it_is(make):
+    simulation = simulated(floating("one", "2 0 0 0 0 0"), floating("two", "3 1 0 0 0 0"))
+    renderer, optics = make(simulation), optics_of(CAMERA)
+
+    def seen():
+        """The world now, of a renderer that has seen it before and of one that has not."""
+        return tuple(each.render(optics, IDENTITY, Wanted.DEPTH).depth for each in (renderer, make(simulation)))
+
+    for place in (None, (2.5, -0.5, 0.3, 0.0, 0.0, 0.0, 1.0), (-2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)):
+        if place is not None:
+            simulation.set_model_pose("one", place)
+        for _ in range(3):
+            known, new = seen()
+            assert (known == new).all()
+            simulation.advance(NANOSECONDS // 5)
+    assert np.isfinite(known).any()
+    simulation.reset()
+    known, new = seen()
+    assert known[60, 80] == pytest.approx(1.75, abs=1e-3)
+    assert (known == new).all()
+
+
+def test_a_box_that_rests_around_a_camera_hides_nothing_from_it(make):
+    simulation = simulated(floating("housing", "0 0 0 0 0 0", 0.06), block("wall", "3.5 0 0 0 0 0", "1 20 20"))
+    renderer, optics = make(simulation), optics_of(CAMERA)
+    beside = (-2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
+    for _ in range(3):
+        assert renderer.render(optics, IDENTITY, Wanted.DEPTH).depth[60, 80] == pytest.approx(3.0, abs=1e-3)
+        assert renderer.render(optics, beside, Wanted.DEPTH).depth[60, 80] == pytest.approx(1.97, abs=1e-3)
+        simulation.advance(NANOSECONDS // 5)

@@ -63,14 +63,27 @@ class Optics:
         Args:
             axes: right, down and forwards, as columns.
         """
-        across, down = self._slopes
+        across, down = self.slopes
         directions = np.empty((len(across), 3), np.float32)
         for index, (right, below, forwards) in enumerate(axes.astype(np.float32)):
             directions[:, index] = across * right + down * below + forwards
         return directions  # type: ignore[return-value]  # 32 bits are enough here
 
     @cached_property
-    def _slopes(self) -> tuple[Array, Array]:
+    def columns(self) -> tuple[float, float]:
+        """How far to the right pixels look at a distance of 1: the least and the most of all."""
+        across, _ = self.slopes
+        return float(across.min()), float(across.max())
+
+    @cached_property
+    def rows(self) -> tuple[float, float]:
+        """How far down pixels look at a distance of 1: the least and the most of all."""
+        _, down = self.slopes
+        return float(down.min()), float(down.max())
+
+    @cached_property
+    def slopes(self) -> tuple[Array, Array]:
+        """How far to the right and down each pixel looks at a distance of 1: shape (height * width,), float32."""
         across, down, _ = np.ascontiguousarray(self.rays.T, dtype=np.float32)
         return across, down
 

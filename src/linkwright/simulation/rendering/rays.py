@@ -12,6 +12,7 @@ from linkwright.geometry.arrays import Array
 from linkwright.geometry.single import Transform
 from linkwright.simulation.rendering.casting import Caster, Hits
 from linkwright.simulation.rendering.lights import PlacedLight, lights_of
+from linkwright.simulation.rendering.movable import View
 from linkwright.simulation.rendering.optics import Optics
 from linkwright.simulation.rendering.renderer import Picture, Wanted, axes_of
 from linkwright.simulation.simulation import Simulation
@@ -36,7 +37,7 @@ class RayRenderer:
         """What a camera sees now."""
         axes = axes_of(pose)
         origin, rays = np.array(pose[:3]), optics.directions(axes)
-        hits = self._caster.cast(origin, rays, optics.near)
+        hits = self._caster.cast(View(optics, origin, axes, rays), normals=Wanted.COLOUR in wanted)
         unseen = ~((hits.distances >= optics.near) & (hits.distances <= optics.far))
         np.copyto(hits.distances, np.inf, where=unseen)
         np.copyto(hits.geoms, -1, where=unseen)
