@@ -53,7 +53,7 @@ describe("the frame loop", () => {
 
   it("draws the first frame coarsely, for speed, and a fine one soon after", () => {
     const fine: boolean[] = [];
-    const loop = new FrameLoop((each) => fine.push(each));
+    const loop = new FrameLoop(({ smooth }) => fine.push(smooth));
     loop.invalidate();
     run(100);
     expect(loop.settled).toBe(false);
@@ -66,10 +66,46 @@ describe("the frame loop", () => {
 
   it("draws coarsely while a slow machine moves, finely when it stands still", () => {
     const fine: boolean[] = [];
-    const loop = new FrameLoop((each) => fine.push(each));
+    const loop = new FrameLoop(({ smooth }) => fine.push(smooth));
     run(3000, () => loop.invalidate(), 100);
     expect(fine.at(-1)).toBe(false);
     run(1000);
     expect(fine.at(-1)).toBe(true);
+  });
+
+  it("draws fewer pixels of what moves, and all of them again once the machine keeps up for long", () => {
+    const shares: number[] = [];
+    const loop = new FrameLoop(({ share }) => shares.push(share));
+    run(5000, () => loop.invalidate(), 30);
+    expect(shares.at(-1)).toBe(0.5);
+    run(15_000, () => loop.invalidate());
+    expect(shares.at(-1)).toBe(0.7);
+    run(1000);
+    expect(shares.at(-1)).toBe(1);
+  });
+
+  it("shows what is beside the scene with its frames, and draws none for it alone", () => {
+    const draw = vi.fn();
+    const show = vi.fn();
+    const loop = new FrameLoop(draw);
+    loop.invalidate();
+    run(1000);
+    draw.mockClear();
+    run(1000, () => loop.beside(show));
+    expect(draw).not.toHaveBeenCalled();
+    expect(show.mock.calls.length).toBeGreaterThan(27);
+    expect(show.mock.calls.length).toBeLessThan(32);
+    loop.beside(show);
+    expect(loop.settled).toBe(false);
+    run(100);
+    expect(loop.settled).toBe(true);
+    const times: number[] = [];
+    const [shown, drawn] = [show.mock.calls.length, loop.framesDrawn];
+    run(1000, () => {
+      loop.beside(() => times.push(now));
+      loop.invalidate();
+    });
+    expect(new Set(times).size).toBe(loop.framesDrawn - drawn);
+    expect(show.mock.calls.length).toBe(shown);
   });
 });

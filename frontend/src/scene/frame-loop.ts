@@ -4,16 +4,35 @@ import { Signal } from "../state/signal";
 const TOLERANCE_MS = 4;
 /** With nothing drawn for this long the scene counts as idle. */
 const IDLE_AFTER_MS = 600;
-/** A frame that comes this long after it was due was held up by the ones before it. */
-const LATE_MS = 30;
-/** So many more late frames than timely ones make moving pictures coarse. */
+/** A frame that comes this long after it was due was held up by the ones before it: most of a tick of the screen. */
+const LATE_MS = 12;
+/** So many more late frames than timely ones make moving pictures coarser. */
 const LATE_FRAMES = 4;
+/** So many timely frames without a late one let them be finer again; twice as many the next time. */
+const TIMELY_FRAMES = 300;
 /** After a coarse frame, how long nothing must move until a fine one is drawn. */
 const STILL_AFTER_MS = 250;
 
+/** How finely a frame is drawn: with smooth edges or without, and on what share of the canvas's pixels along a side. */
+export interface Detail {
+  readonly smooth: boolean;
+  readonly share: number;
+}
+
+export const FINEST: Detail = { smooth: true, share: 1 };
+const DETAILS: readonly Detail[] = [
+  FINEST,
+  { smooth: false, share: 1 },
+  { smooth: false, share: 0.7 },
+  { smooth: false, share: 0.5 },
+];
+
 /**
  * Draws on demand: nothing while nothing changes, never more often than the rate. Where the machine does not keep up,
- * as software renderers, moving frames are drawn coarsely and a fine one follows when the scene stands still.
+ * as software renderers, moving frames are drawn more and more coarsely, and a fine one follows when the scene stands still.
+ *
+ * What is shown beside the scene at a rate of its own, as pictures of cameras, changes with the frames: browsers put
+ * the whole page together for each change, which without a GPU costs as much as the scene does.
  */
 export class FrameLoop {
   /** A frame was drawn. */
@@ -21,19 +40,25 @@ export class FrameLoop {
   /** Largest number of frames a second. */
   rate = 30;
   private requestedAt: number | null = null;
+  private readonly besides = new Set<() => void>();
+  private ticks = false;
   private lastMs = -Infinity;
   private lateness = 0;
-  private coarse = false;
+  private timely = 0;
+  private patience = TIMELY_FRAMES;
+  /** In `DETAILS`, of moving pictures. */
+  private level = 0;
   private lastIsFine = false;
   private stillTimer = 0;
+  private drawnAt = -Infinity;
   private recent: number[] = [];
   private count = 0;
 
-  constructor(private readonly draw: (fine: boolean) => void) {}
+  constructor(private readonly draw: (detail: Detail) => void) {}
 
-  /** Nothing changed since the last frame, and that was a fine one. */
+  /** Nothing changed since the last frame, beside the scene neither, and that was a fine one. */
   get settled(): boolean {
-    return this.requestedAt === null && this.lastIsFine;
+    return this.requestedAt === null && this.besides.size === 0 && this.lastIsFine;
   }
 
   get framesDrawn(): number {
@@ -43,46 +68,76 @@ export class FrameLoop {
   /** Frames drawn in the last second, or null when the scene is idle. */
   framesPerSecond(nowMs: number): number | null {
     this.recent = this.recent.filter((at) => nowMs - at < 1000);
-    return nowMs - this.lastMs > IDLE_AFTER_MS ? null : this.recent.length;
+    return nowMs - this.drawnAt > IDLE_AFTER_MS ? null : this.recent.length;
   }
 
   /** Something changed: a frame is due. */
   invalidate(): void {
     if (this.requestedAt !== null) return;
     this.requestedAt = performance.now();
+    this.askForTick();
+  }
+
+  /** Has something shown beside the scene when the next frame is due; the scene is not drawn for it. */
+  beside(show: () => void): void {
+    this.besides.add(show);
+    this.askForTick();
+  }
+
+  private askForTick(): void {
+    if (this.ticks) return;
+    this.ticks = true;
     requestAnimationFrame(this.tick);
   }
 
   private readonly tick = (): void => {
     const now = performance.now();
     const interval = 1000 / Math.max(1, this.rate);
+    this.ticks = false;
     if (now - this.lastMs < interval - TOLERANCE_MS) {
-      requestAnimationFrame(this.tick);
+      this.askForTick();
       return;
     }
-    this.judge(now - Math.max(this.requestedAt ?? now, this.lastMs + interval));
+    const due = this.lastMs + interval;
+    this.lastMs = now;
+    const besides = [...this.besides];
+    this.besides.clear();
+    for (const show of besides) show();
+    if (this.requestedAt === null) return;
+    this.judge(now - Math.max(this.requestedAt, due));
     this.requestedAt = null;
     // The first frame must come soon.
-    const fine = !this.coarse && this.count > 0;
-    this.paint(now, fine);
+    const level = Math.max(this.level, this.count > 0 ? 0 : 1);
+    this.paint(now, level);
     clearTimeout(this.stillTimer);
-    if (!fine) this.stillTimer = window.setTimeout(() => this.stand(), STILL_AFTER_MS);
+    if (level > 0) this.stillTimer = window.setTimeout(() => this.stand(), STILL_AFTER_MS);
   };
 
   private judge(delay: number): void {
-    this.lateness = Math.max(0, this.lateness + (delay > LATE_MS ? 1 : -1));
-    if (this.lateness >= LATE_FRAMES) this.coarse = true;
+    const late = delay > LATE_MS;
+    this.lateness = Math.max(0, this.lateness + (late ? 1 : -1));
+    this.timely = late ? 0 : this.timely + 1;
+    if (this.lateness >= LATE_FRAMES) this.move(1);
+    else if (this.timely >= this.patience && this.level > 0) {
+      this.patience *= 2;
+      this.move(-1);
+    }
+  }
+
+  private move(coarser: number): void {
+    this.level = Math.min(this.level + coarser, DETAILS.length - 1);
+    this.lateness = this.timely = 0;
   }
 
   private stand(): void {
-    if (this.requestedAt === null) this.paint(performance.now(), true);
+    if (this.requestedAt === null) this.paint(performance.now(), 0);
   }
 
-  private paint(now: number, fine: boolean): void {
-    this.lastMs = now;
+  private paint(now: number, level: number): void {
+    this.drawnAt = now;
     this.recent.push(now);
-    this.draw(fine);
-    this.lastIsFine = fine;
+    this.draw(DETAILS[level] ?? FINEST);
+    this.lastIsFine = level === 0;
     this.count += 1;
     this.drawn.emit();
   }

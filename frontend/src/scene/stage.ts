@@ -1,4 +1,4 @@
-import { Box3, Group, type Object3D } from "three";
+import { Box3, Group, type Camera, type Object3D } from "three";
 import type { DisplayState } from "../state/displays";
 import type { Session } from "../state/session";
 import type { Span } from "../state/views/fit";
@@ -10,7 +10,7 @@ import { RobotModelDrawing } from "./displays/robot-model";
 import { WorldDrawing } from "./displays/world";
 import { Flash } from "./flash";
 import { FocalShape } from "./focal-shape";
-import { FrameLoop } from "./frame-loop";
+import { FINEST, FrameLoop, type Detail } from "./frame-loop";
 import { InspectLayer } from "./inspect/inspect-layer";
 import { SERVED, type MeshFiles } from "./meshes/mesh-files";
 import { MeshLibrary } from "./meshes/mesh-library";
@@ -18,6 +18,8 @@ import { Outline } from "./outline";
 import { Picker } from "./picker";
 import type { Interaction } from "./picking";
 import { Viewport } from "./viewport";
+
+const UNSMOOTHED: Detail = { ...FINEST, smooth: false };
 
 interface DrawnDisplay {
   display: DisplayState;
@@ -29,7 +31,7 @@ interface DrawnDisplay {
 export class Stage {
   readonly viewport: Viewport;
   readonly picker: Picker;
-  readonly loop = new FrameLoop((fine) => this.draw(fine));
+  readonly loop = new FrameLoop((detail) => this.draw(detail));
   private readonly meshes: MeshLibrary;
   private readonly drawings = new Map<string, DrawnDisplay>();
   private readonly outline: Outline;
@@ -49,7 +51,7 @@ export class Stage {
   ) {
     this.meshes = new MeshLibrary(files);
     // A resized canvas is empty until it is drawn: at once, or it would flicker.
-    this.viewport = new Viewport(container, () => this.draw(false));
+    this.viewport = new Viewport(container, () => this.draw(UNSMOOTHED));
     this.picker = new Picker(this.viewport, session, () => this.enabled());
     this.outline = new Outline(this.viewport);
     const invalidate = (): void => this.loop.invalidate();
@@ -97,7 +99,7 @@ export class Stage {
     this.aids.visible = false;
     const picture = this.viewport.picture(scale);
     this.aids.visible = true;
-    this.draw(true);
+    this.draw(FINEST);
     return picture;
   }
 
@@ -175,7 +177,9 @@ export class Stage {
       else if (Drawing && display.supported) {
         const { session, meshes, panels } = this;
         const invalidate = (): void => this.loop.invalidate();
-        const drawing = new Drawing({ display, session, meshes, panels, invalidate, camera: () => this.viewport.camera });
+        const beside = (show: () => void): void => this.loop.beside(show);
+        const camera = (): Camera => this.viewport.camera;
+        const drawing = new Drawing({ display, session, meshes, panels, invalidate, beside, camera });
         this.drawings.set(display.id, { display, drawing, pacing: new Pacing(invalidate) });
         this.viewport.scene.add(drawing.root);
         drawing.interactionChanged?.(this.interaction);
@@ -199,8 +203,9 @@ export class Stage {
     this.loop.invalidate();
   }
 
-  private draw(fine: boolean): void {
+  private draw(detail: Detail): void {
     const { view } = this.session;
+    this.viewport.share = detail.share;
     this.viewport.aim(view);
     this.focalShape.place(view);
     let settled = true;
@@ -215,7 +220,7 @@ export class Stage {
     if (settled) this.fitFirst();
     this.marks.update();
     this.outline.set(this.selectedObjects());
-    this.viewport.render(fine);
+    this.viewport.render(detail.smooth);
     this.outline.render();
     this.flash.render();
     this.drawElsewhere();

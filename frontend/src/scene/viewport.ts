@@ -33,10 +33,11 @@ export class Viewport {
   private inUse: PerspectiveCamera | OrthographicCamera = this.perspective;
   readonly renderer: WebGLRenderer;
   private readonly smoothing = new Smoothing();
+  private part = 1;
   private readonly light = new DirectionalLight(0xffffff, (1 - AMBIENT) * Math.PI);
 
   constructor(readonly container: HTMLElement, resized: () => void) {
-    this.renderer = new WebGLRenderer({ antialias: false, powerPreference: "high-performance" });
+    this.renderer = makeRenderer();
     // Asking whether the shaders compiled waits for them; only we could do something about it.
     this.renderer.debug.checkShaderErrors = import.meta.env.DEV;
     this.renderer.outputColorSpace = LinearSRGBColorSpace;
@@ -74,6 +75,13 @@ export class Viewport {
       .setPosition(...seen.position);
     this.inUse.updateMatrixWorld(true);
     this.light.position.set(...seen.back);
+  }
+
+  /** The share of the screen's pixels along a side that is drawn; the picture is as large as before. */
+  set share(share: number) {
+    if (share === this.part) return;
+    this.part = share;
+    this.fit();
   }
 
   /** Of the canvas, pixels. */
@@ -119,7 +127,15 @@ export class Viewport {
   private fit(): void {
     const width = Math.max(1, this.container.clientWidth);
     const height = Math.max(1, this.container.clientHeight);
-    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, LARGEST_PIXEL_RATIO));
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, LARGEST_PIXEL_RATIO) * this.part);
     this.renderer.setSize(width, height);
   }
+}
+
+/** Nothing is seen through the canvas, which spares the browser to draw what is behind it; three.js does not offer that. */
+function makeRenderer(): WebGLRenderer {
+  const canvas = document.createElement("canvas");
+  const options = { antialias: false, powerPreference: "high-performance" } as const;
+  const context = canvas.getContext("webgl2", { ...options, alpha: false });
+  return new WebGLRenderer(context ? { ...options, canvas, context } : options);
 }

@@ -15,6 +15,8 @@ export interface DrawingContext {
   readonly panels: PanelHost;
   /** Asks for a frame. */
   readonly invalidate: () => void;
+  /** Has something shown beside the scene together with the next frame, see `FrameLoop.beside`. */
+  readonly beside: (show: () => void) => void;
   /** The camera of the 3-D view, as it stands now. */
   readonly camera: () => Camera;
 }

@@ -10,11 +10,12 @@ import type { Drawing, DrawingContext } from "./drawing";
 export class ImageDrawing implements Drawing {
   readonly root = new Group();
   readonly isElsewhere = true;
-  private readonly picture = new PictureCanvas();
+  private readonly picture: PictureCanvas;
   private readonly panel: OwnPanel;
   private frame: ImageFrame | null = null;
 
   constructor(context: DrawingContext) {
+    this.picture = new PictureCanvas(context.beside);
     this.panel = new OwnPanel(context, "image", this.picture.canvas);
     this.panel.say(strings.pictures.none);
     this.panel.match();

@@ -1,14 +1,22 @@
 import type { ImageFrame } from "../../protocol";
 
+/** An image that is to be painted. */
+interface Waiting {
+  picture: ImageFrame | ImageBitmap;
+  done: (shown: boolean) => void;
+}
+
 /** The newest image of a display, on a canvas of its size. */
 export class PictureCanvas {
   readonly canvas = document.createElement("canvas");
   private readonly context: CanvasRenderingContext2D;
   private taken = 0;
-  private shown = 0;
+  private newest = 0;
   private painted = 0;
+  private waiting: Waiting | null = null;
 
-  constructor() {
+  /** `soon` says when images are painted: the newest of those that came by then. */
+  constructor(private readonly soon: (paint: () => void) => void = (paint) => paint()) {
     this.canvas.width = this.canvas.height = 0;
     const context = this.canvas.getContext("2d", { willReadFrequently: true });
     if (!context) throw new Error("This browser gives no 2D canvas");
@@ -28,24 +36,18 @@ export class PictureCanvas {
   take(frame: ImageFrame, done: (shown: boolean) => void): void {
     const turn = ++this.taken;
     if (frame.encoding !== "file") {
-      this.paint(turn, frame.columns, frame.rows, () => {
-        this.context.putImageData(new ImageData(pixels(frame), frame.columns, frame.rows), 0, 0);
-      });
-      done(true);
+      this.hold(turn, { picture: frame, done });
       return;
     }
     createImageBitmap(new Blob([frame.data as Uint8Array<ArrayBuffer>])).then(
-      (bitmap) => {
-        this.paint(turn, bitmap.width, bitmap.height, () => this.context.drawImage(bitmap, 0, 0));
-        bitmap.close();
-        done(true);
-      },
+      (bitmap) => this.hold(turn, { picture: bitmap, done }),
       () => done(false),
     );
   }
 
   clear(): void {
-    this.shown = this.taken;
+    this.newest = this.taken;
+    this.drop();
     this.canvas.width = this.canvas.height = 0;
   }
 
@@ -54,14 +56,42 @@ export class PictureCanvas {
     return this.isEmpty ? [] : [...this.context.getImageData(x, y, 1, 1).data];
   }
 
-  private paint(turn: number, width: number, height: number, draw: () => void): void {
-    if (turn < this.shown || width === 0 || height === 0) return;
-    this.shown = turn;
-    if (this.canvas.width !== width) this.canvas.width = width;
-    if (this.canvas.height !== height) this.canvas.height = height;
-    draw();
-    this.painted += 1;
+  private hold(turn: number, waiting: Waiting): void {
+    const isOld = turn < this.newest;
+    if (!isOld) {
+      this.newest = turn;
+      this.drop();
+    }
+    if (isOld || waiting.picture.width === 0 || waiting.picture.height === 0) {
+      if (isBitmap(waiting.picture)) waiting.picture.close();
+      return;
+    }
+    this.waiting = waiting;
+    this.soon(this.paint);
   }
+
+  private drop(): void {
+    if (this.waiting && isBitmap(this.waiting.picture)) this.waiting.picture.close();
+    this.waiting = null;
+  }
+
+  private readonly paint = (): void => {
+    const { waiting, canvas, context } = this;
+    if (!waiting) return;
+    const { picture, done } = waiting;
+    const [width, height] = isBitmap(picture) ? [picture.width, picture.height] : [picture.columns, picture.rows];
+    if (canvas.width !== width) canvas.width = width;
+    if (canvas.height !== height) canvas.height = height;
+    if (isBitmap(picture)) context.drawImage(picture, 0, 0);
+    else context.putImageData(new ImageData(pixels(picture), width, height), 0, 0);
+    this.drop();
+    this.painted += 1;
+    done(true);
+  };
+}
+
+function isBitmap(picture: ImageFrame | ImageBitmap): picture is ImageBitmap {
+  return "close" in picture;
 }
 
 /** Red, green, blue and alpha of each pixel. */
