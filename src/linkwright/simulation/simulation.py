@@ -83,6 +83,7 @@ class Simulation:
         self.schedule = Schedule()
         self._bodies: dict[str, int] = {}
         self._joints: dict[str, tuple[int, int]] = {}
+        self._pushes: dict[str, dict[str, Array]] = {}
         self._changed = False
         self._current = False
         self._take(*made)
@@ -113,6 +114,8 @@ class Simulation:
         Raises:
             KeyError: there is none of that name.
         """
+        for held in self.scene.models[name].structure.links:
+            self._pushes.pop(held.link.name, None)
         self.scene.remove(name)
         self._changed = True
 
@@ -246,6 +249,7 @@ class Simulation:
         """Put everything back to where it was at the start; time begins anew."""
         self.refresh()
         self._mujoco.mj_resetData(self.model, self.data)
+        self._pushes.clear()
         self.time = 0
         self._current = False
         self.schedule.restart()
@@ -446,14 +450,28 @@ class Simulation:
         self.data.joint(name).qfrc_applied[0] = force
 
     def push(
-        self, link: str, force: Vector3 | Sequence[float], torque: Vector3 | Sequence[float] = (0.0, 0.0, 0.0)
+        self,
+        link: str,
+        force: Vector3 | Sequence[float],
+        torque: Vector3 | Sequence[float] = (0.0, 0.0, 0.0),
+        *,
+        by: str = "",
     ) -> None:
         """Let a force in N and a torque in N m act on the centre of mass of a link, in the axes of the world.
 
-        They act until they are set anew.
+        They act until they are set anew. What several push with adds up; `by` is who pushes.
         """
         self.refresh()
-        self.data.body(link).xfrc_applied[:] = (*force, *torque)
+        acting = self._pushes.setdefault(link, {})
+        acting[by] = np.array((*force, *torque))
+        self.data.body(link).xfrc_applied[:] = sum(acting.values())
+
+    def set_gravity(self, gravity: Vector3) -> None:
+        """Let gravity act otherwise, in m/s2 in the axes of the world."""
+        self.refresh()
+        self.scene.spec.option.gravity = gravity
+        self.model.opt.gravity[:] = gravity
+        self.data.tree_asleep[self.data.tree_asleep >= 0] = _AWAKE
 
 
 def _whole_step(step: float) -> int:

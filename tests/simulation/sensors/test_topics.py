@@ -117,6 +117,24 @@ async def test_a_laser_of_ros_1_has_its_topic_and_frame():
         assert not log
 
 
+@pytest.mark.parametrize(
+    "library",
+    ["block_laser", "range", "velodyne_laser"],
+)
+async def test_other_lasers_of_ros_1_have_the_messages_that_they_had(library: str):
+    said = plugin(f"libgazebo_ros_{library}.so", "<topicName>/told</topicName><frameName>hokuyo</frameName>")
+    async with served(WALL, carrier(sensor("ray", f"<ray>{RAYS}</ray>" + said))) as (server, graph, log):
+        (message,) = await heard(server, graph, "/told")
+        assert message.header.frame_id == "hokuyo"
+        if library == "range":
+            assert (message.range, message.radiation_type) == (2.0, message.ULTRASOUND)
+        elif library == "block_laser":
+            assert [(each.x, each.y, each.z) for each in message.points] == [pytest.approx((2.0, 0.0, 0.0))]
+        else:
+            assert (message.width, [each.name for each in message.fields]) == (1, ["x", "y", "z", "intensity"])
+        assert not log
+
+
 async def test_a_lidar_of_gz_has_points_beside_its_scan():
     text = carrier(sensor("gpu_lidar", f"<topic>lidar</topic><lidar>{RAYS}</lidar>"))
     async with served(WALL, text) as (server, graph, log):

@@ -14,6 +14,7 @@ from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, phrase
 from linkwright.messages import get_message
+from linkwright.simulation.plugins.entities import told
 from linkwright.simulation.server.server import SimulationServer
 from linkwright.simulation.server.worlds import LoadedWorld, load_world
 
@@ -101,13 +102,6 @@ class WorldLoader:
         response.world.name = self.loaded.world.name
         response.world.world_resource = get_message("simulation_interfaces/msg/Resource")(uri=str(self.loaded.path))
         return response
-
-
-def told(finding: Diagnostic) -> str:
-    """A finding in one line: where, what, and what to do about it."""
-    place = f"{finding.span}: " if finding.span else ""
-    hint = f" ({finding.hint})" if finding.hint else ""
-    return f"{place}{finding.message}{hint}"
 
 
 def _result(finding: Diagnostic) -> int:

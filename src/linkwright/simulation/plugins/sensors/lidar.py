@@ -7,7 +7,7 @@ Source: gazebo_ros_pkgs for ROS 2 (types of output, the middle row of several, w
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Generic, TypeVar
+from typing import Any, ClassVar, Generic, TypeVar
 
 import numpy as np
 
@@ -52,6 +52,32 @@ class _LidarPlugin(SensorPlugin[P], Generic[P]):
         """What was measured as points, shape (n, 3), in its frame; what has no distance is not finite."""
         with np.errstate(invalid="ignore"):  # 0 times infinity
             return self.lidar.directions * scan.ranges.reshape(-1, 1)
+
+    def finite(self, scan: Scan, least_intensity: float = 0.0) -> tuple[Any, Any]:
+        """What was measured as points, shape (n, 3), and their intensities; without what has no distance."""
+        points, intensities = self.points(scan), scan.intensities.ravel()
+        kept = np.isfinite(scan.ranges.ravel())
+        return points[kept], np.maximum(intensities[kept], least_intensity)
+
+    def old_cloud(self, frame: str, scan: Scan, least_intensity: float = 0.0) -> Any:
+        """What was measured as ``sensor_msgs/msg/PointCloud``."""
+        message = self.message("sensor_msgs/msg/PointCloud", frame)
+        points, intensities = self.finite(scan, least_intensity)
+        point, channel = get_message("geometry_msgs/msg/Point32"), get_message("sensor_msgs/msg/ChannelFloat32")
+        message.points = [point(x=float(x), y=float(y), z=float(z)) for x, y, z in points]
+        message.channels = [channel(name="intensity", values=intensities.astype(np.float32))]
+        return message
+
+    def range_message(self, frame: str, scan: Scan, radiation: str) -> Any:
+        """The least distance."""
+        message = self.message("sensor_msgs/msg/Range", frame)
+        lidar = self.lidar
+        spans = [angles.last - angles.first for angles in (lidar.horizontal, lidar.vertical)]
+        message.radiation_type = _RADIATIONS.get(radiation.lower(), 1)
+        message.field_of_view = float(max(spans))
+        message.min_range, message.max_range = float(lidar.range_min), float(lidar.range_max)
+        message.range = float(scan.ranges.min())
+        return message
 
 
 class _OneLidar(_LidarPlugin[P], OneTopic[P], Generic[P]):
@@ -98,33 +124,16 @@ class ClassicRaySensor(_OneLidar[RayParameters]):
     def _scan(self, scan: Scan) -> Any:
         return self.scan_message(self._frame, scan, self.parameters.min_intensity)
 
-    def _finite(self, scan: Scan) -> tuple[Any, Any]:
-        points, intensities = self.points(scan), scan.intensities.ravel()
-        kept = np.isfinite(scan.ranges.ravel())
-        return points[kept], np.maximum(intensities[kept], self.parameters.min_intensity)
-
     def _cloud(self, scan: Scan) -> Any:
         message = self.message(_CLOUD, self._frame)
-        fill_lidar_cloud(message, *self._finite(scan))
+        fill_lidar_cloud(message, *self.finite(scan, self.parameters.min_intensity))
         return message
 
     def _old_cloud(self, scan: Scan) -> Any:
-        message = self.message("sensor_msgs/msg/PointCloud", self._frame)
-        points, intensities = self._finite(scan)
-        point, channel = get_message("geometry_msgs/msg/Point32"), get_message("sensor_msgs/msg/ChannelFloat32")
-        message.points = [point(x=float(x), y=float(y), z=float(z)) for x, y, z in points]
-        message.channels = [channel(name="intensity", values=intensities.astype(np.float32))]
-        return message
+        return self.old_cloud(self._frame, scan, self.parameters.min_intensity)
 
     def _range(self, scan: Scan) -> Any:
-        message = self.message("sensor_msgs/msg/Range", self._frame)
-        lidar = self.lidar
-        spans = [angles.last - angles.first for angles in (lidar.horizontal, lidar.vertical)]
-        message.radiation_type = _RADIATIONS.get(self.parameters.radiation_type, 1)
-        message.field_of_view = float(max(spans))
-        message.min_range, message.max_range = float(lidar.range_min), float(lidar.range_max)
-        message.range = float(scan.ranges.min())
-        return message
+        return self.range_message(self._frame, scan, self.parameters.radiation_type)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -140,10 +149,11 @@ class OldLaser(_OneLidar[LaserParameters]):
 
     PARAMETERS = LaserParameters
     IGNORED = ("gaussianNoise", "hokuyoMinIntensity")
+    KIND: ClassVar[str] = _SCAN
 
     def make_topics(self) -> None:
         """Make the topic."""
-        self.output = self.node.publisher(_SCAN, self.parameters.topic_name, SENSOR_DATA_QOS.depth)
+        self.output = self.node.publisher(self.KIND, self.parameters.topic_name, SENSOR_DATA_QOS.depth)
 
     @property
     def rate(self) -> float:
@@ -152,7 +162,72 @@ class OldLaser(_OneLidar[LaserParameters]):
 
     def measure(self) -> None:
         """Measure and publish."""
-        self.output.publish(self.scan_message(self.classic_frame(), self.lidar.measure()))
+        self.output.publish(self.told(self.classic_frame(), self.lidar.measure()))
+
+    def told(self, frame: str, scan: Scan) -> Any:
+        """The message of what was measured."""
+        return self.scan_message(frame, scan)
+
+
+class OldBlockLaser(OldLaser):
+    """``libgazebo_ros_block_laser.so`` of ROS 1: points."""
+
+    KIND = "sensor_msgs/msg/PointCloud"
+
+    def told(self, frame: str, scan: Scan) -> Any:
+        """The message of what was measured."""
+        return self.old_cloud(frame, scan)
+
+
+@dataclass(frozen=True, kw_only=True)
+class RangeParameters(LaserParameters):
+    """Of ``gazebo_ros_range``."""
+
+    topic_name: str = parameter("range", aliases=("topicName",))
+    radiation: str = "ultrasound"
+
+
+class OldRange(OldLaser):
+    """``libgazebo_ros_range.so`` of ROS 1: the least distance."""
+
+    PARAMETERS = RangeParameters
+    IGNORED = ("gaussianNoise", "fov")
+    KIND = "sensor_msgs/msg/Range"
+
+    def told(self, frame: str, scan: Scan) -> Any:
+        """The message of what was measured."""
+        return self.range_message(frame, scan, getattr(self.parameters, "radiation", ""))
+
+
+@dataclass(frozen=True, kw_only=True)
+class VelodyneParameters(LaserParameters):
+    """Of ``gazebo_ros_velodyne_laser``."""
+
+    topic_name: str = parameter("~/out", aliases=("topicName",))
+    min_intensity: float = 0.0
+    organize_cloud: bool = False
+
+
+class Velodyne(_OneLidar[VelodyneParameters]):
+    """``libgazebo_ros_velodyne_laser.so`` of velodyne_simulator: points with x, y, z and intensity."""
+
+    PARAMETERS = VelodyneParameters
+    IGNORED = ("min_range", "max_range", "gaussianNoise")
+
+    def make_topics(self) -> None:
+        """Make the topic."""
+        self.output = self.node.publisher(_CLOUD, self.parameters.topic_name, SENSOR_QOS)
+
+    def measure(self) -> None:
+        """Measure and publish."""
+        said, scan = self.parameters, self.lidar.measure()
+        message = self.message(_CLOUD, self.classic_frame())
+        if said.organize_cloud:
+            intensities = np.maximum(scan.intensities.ravel(), said.min_intensity)
+            fill_lidar_cloud(message, self.points(scan), intensities, height=self.lidar.vertical.count)
+        else:
+            fill_lidar_cloud(message, *self.finite(scan, said.min_intensity))
+        self.output.publish(message)
 
 
 class GzLidar(_LidarPlugin[NoParameters]):

@@ -1,0 +1,151 @@
+"""Models and links of a simulation as services of gazebo_ros name them: where they are, and how they are put elsewhere.
+
+Source: gazebo_ros_pkgs for ROS 2 (``gazebo_ros_state``) and its messages.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection
+from typing import Any
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, phrase
+from linkwright.geometry.single import IDENTITY, Transform, compose, invert, normalized, rotate
+from linkwright.messages import Quaternion, Vector3, get_message
+from linkwright.sdf.poses import SEPARATOR, WORLD
+from linkwright.simulation.simulation import Simulation
+
+_WHOLE_WORLD = ("", WORLD, "map", "/map")
+"""Names of the frame of the world."""
+
+
+class Entities:
+    """The models and links of a simulation.
+
+    Args:
+        simulation: the world.
+    """
+
+    def __init__(self, simulation: Simulation) -> None:
+        self._simulation = simulation
+
+    def link(self, name: str) -> str:
+        """A link by its full name, ``model::link``, or by its own where only one model has such.
+
+        Raises:
+            LinkwrightError: SIM141 there is none.
+        """
+        return self._one(name, self._simulation.scene.bodies)
+
+    def joint(self, name: str) -> str:
+        """A joint by its full name, ``model::joint``, or by its own where only one model has such.
+
+        Raises:
+            LinkwrightError: SIM141 there is none.
+        """
+        return self._one(name, self._simulation.scene.joints)
+
+    def model(self, name: str) -> str:
+        """A model.
+
+        Raises:
+            LinkwrightError: SIM141 there is none.
+        """
+        if name not in self._simulation.scene.models:
+            raise _nothing(name, self._simulation.scene.models)
+        return name
+
+    def frame(self, name: str) -> Transform:
+        """Where a model or link is in the world.
+
+        Raises:
+            LinkwrightError: SIM141 there is no such thing.
+        """
+        if name in _WHOLE_WORLD:
+            return IDENTITY
+        if name in self._simulation.scene.models:
+            return self._simulation.model_pose(name)
+        return self._simulation.link_pose(self.link(name))
+
+    def state(self, name: str, reference: str = "") -> Any:
+        """Where a model or link is and how it moves: a message ``gazebo_msgs/msg/EntityState``.
+
+        Args:
+            name: of the model or link.
+            reference: the model or link whose frame that is told in.
+
+        Raises:
+            LinkwrightError: SIM141 there is no such thing.
+        """
+        simulation = self._simulation
+        is_model = name in simulation.scene.models
+        link = simulation.scene.models[name].structure.links[0].link.name if is_model else self.link(name)
+        pose = simulation.model_pose(name) if is_model else simulation.link_pose(link)
+        linear, angular = simulation.link_velocity(link)
+        into = invert(self.frame(reference))
+        message = get_message("gazebo_msgs/msg/EntityState")(name=name, reference_frame=reference or WORLD)
+        message.pose = pose_message(compose(into, pose))
+        message.twist.linear = Vector3(*rotate(into[3:], tuple(linear.tolist())))
+        message.twist.angular = Vector3(*rotate(into[3:], tuple(angular.tolist())))
+        return message
+
+    def put(self, state: Any) -> None:
+        """Put a model where a message ``gazebo_msgs/msg/EntityState`` says, and let it move so.
+
+        Raises:
+            LinkwrightError: SIM141 there is no such thing; SIM103 it is fixed to the world.
+        """
+        name, frame = self.model(state.name), self.frame(state.reference_frame)
+        self._simulation.set_model_pose(name, compose(frame, transform_in(state.pose)))
+        linear, angular = (rotate(frame[3:], numbers(each)) for each in (state.twist.linear, state.twist.angular))
+        self._simulation.set_model_velocity(name, linear, angular)
+
+    def _one(self, name: str, known: Collection[str]) -> str:
+        if name in known:
+            return name
+        found = [each for each in known if each.endswith(f"{SEPARATOR}{name}")]
+        if len(found) == 1:
+            return found[0]
+        raise _nothing(name, (*self._simulation.scene.models, *known))
+
+
+def _nothing(name: str, known: Collection[str]) -> LinkwrightError:
+    message = phrase("there is no model or link '{name}'", name=name)
+    return LinkwrightError(Diagnostic("SIM141", message, hint=did_you_mean(name, known)))
+
+
+def answered(response: Any, work: Callable[[], str]) -> Any:
+    """A response with whether something worked and what it says, or why it did not; some have no such text."""
+    try:
+        response.success, message = True, work()
+    except LinkwrightError as error:
+        response.success, message = False, told(error.diagnostics[0])
+    if hasattr(response, "status_message"):
+        response.status_message = message
+    return response
+
+
+def told(finding: Diagnostic) -> str:
+    """A finding in one line: where, what, and what to do about it."""
+    place = f"{finding.span}: " if finding.span else ""
+    hint = f" ({finding.hint})" if finding.hint else ""
+    return f"{place}{finding.message}{hint}"
+
+
+def pose_message(pose: Transform) -> Any:
+    """A pose as ``geometry_msgs/msg/Pose``."""
+    point = get_message("geometry_msgs/msg/Point")(*pose[:3])
+    return get_message("geometry_msgs/msg/Pose")(point, Quaternion(*pose[3:]))
+
+
+def transform_in(message: Any) -> Transform:
+    """A pose as it is in messages; one without an orientation is not turned."""
+    turn = message.orientation
+    quaternion = (turn.x, turn.y, turn.z, turn.w)
+    if not any(quaternion):
+        quaternion = (0.0, 0.0, 0.0, 1.0)
+    return (*numbers(message.position), *normalized(*quaternion))
+
+
+def numbers(vector: Any) -> tuple[float, float, float]:
+    """The three numbers of a message."""
+    return vector.x, vector.y, vector.z

@@ -1,0 +1,66 @@
+"""Pushing a link: ``libgazebo_ros_force.so``.
+
+Source: gazebo_ros_pkgs for ROS 2 and ROS 1 (parameters, topic; a force acts on the centre of mass until the next
+message).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from linkwright.diagnostics import phrase
+from linkwright.geometry.single import rotate
+from linkwright.simulation.plugins.entities import numbers
+from linkwright.simulation.plugins.parameters import parameter
+from linkwright.simulation.plugins.plugin import SimulatedPlugin
+
+_STILL = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+
+
+@dataclass(frozen=True, kw_only=True)
+class ForceParameters:
+    """Of the plugin."""
+
+    link_name: str = parameter(aliases=("bodyName",))
+    force_frame: str = "world"
+    topic_name: str = parameter("gazebo_ros_force", aliases=("topicName",))
+
+
+class ClassicForce(SimulatedPlugin[ForceParameters]):
+    """``libgazebo_ros_force.so``."""
+
+    PARAMETERS = ForceParameters
+
+    def start(self) -> None:
+        """Find the link, and listen.
+
+        Raises:
+            LinkwrightError: SIM133 there is no such link; SIM160 the frame is neither that of the world nor the link's.
+        """
+        said = self.parameters
+        self._link = self.link(said.link_name)
+        if said.force_frame not in ("world", "link"):
+            raise self.refused(
+                phrase("plugin '{plugin}': <force_frame> is either 'world' or 'link'", plugin=self.place.name)
+            )
+        self.simulation.keep_awake(self._link)
+        self._wrench = _STILL
+        self.node.subscribe("geometry_msgs/msg/Wrench", said.topic_name, self._told)
+        self.every(0.0, self._push)
+
+    def reset(self) -> None:
+        """Push nothing."""
+        self._wrench = _STILL
+        self._push()
+
+    def _told(self, message: Any) -> None:
+        self._wrench = (numbers(message.force), numbers(message.torque))
+        self._push()
+
+    def _push(self) -> None:
+        force, torque = self._wrench
+        if self.parameters.force_frame == "link":
+            turn = self.simulation.link_pose(self._link)[3:]
+            force, torque = rotate(turn, force), rotate(turn, torque)
+        self.simulation.push(self._link, force, torque, by=self.node.name)

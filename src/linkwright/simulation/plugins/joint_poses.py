@@ -1,0 +1,68 @@
+"""Joints put where a trajectory says: ``libgazebo_ros_joint_pose_trajectory.so``.
+
+Source: gazebo_ros_pkgs for ROS 2 and ROS 1 (topic, parameters; joints jump from point to point, and each point comes so
+long after the one before as the ``time_from_start`` of that one says).
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass
+from typing import Any
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.sdf.poses import WORLD
+from linkwright.simulation.plugins.entities import Entities
+from linkwright.simulation.plugins.parameters import parameter
+from linkwright.simulation.plugins.plugin import SimulatedPlugin
+from linkwright.simulation.simulation import NANOSECONDS
+
+
+@dataclass(frozen=True, kw_only=True)
+class JointPoseParameters:
+    """Of the plugin."""
+
+    update_rate: float = parameter(100.0, aliases=("updateRate",))
+    topic_name: str = parameter("set_joint_trajectory", aliases=("topicName",))
+
+
+class ClassicJointPoses(SimulatedPlugin[JointPoseParameters]):
+    """``libgazebo_ros_joint_pose_trajectory.so``."""
+
+    PARAMETERS = JointPoseParameters
+    IGNORED = ("serviceName",)
+
+    def start(self) -> None:
+        """Listen."""
+        self.reset()
+        self.node.subscribe("trajectory_msgs/msg/JointTrajectory", self.parameters.topic_name, self._told, 1)
+        self.every(self.parameters.update_rate, self._move)
+
+    def reset(self) -> None:
+        """Follow nothing."""
+        self._points = deque[Any]()
+        self._joints: list[str] = []
+        self._due = 0
+
+    def _told(self, message: Any) -> None:
+        try:
+            if message.header.frame_id not in (WORLD, "map", "/map"):
+                Entities(self.simulation).link(message.header.frame_id)
+            self._joints = [self.joint(name) for name in message.joint_names]
+        except LinkwrightError as error:
+            self.node.logger.warning(error.diagnostics[0].message)
+            return
+        for joint in self._joints:
+            self.simulation.keep_awake(self.simulation.scene.joints[joint].child)
+        self._points = deque(message.points)
+        stamp = message.header.stamp
+        self._due = max(int(stamp.sec) * NANOSECONDS + int(stamp.nanosec), self.simulation.time)
+
+    def _move(self) -> None:
+        """Put the joints where the point says that is due."""
+        if not self._points or self.simulation.time < self._due:
+            return
+        point = self._points.popleft()
+        for joint, position in zip(self._joints, point.positions, strict=False):
+            self.simulation.set_joint_position(joint, float(position))
+        self._due += int(point.time_from_start.sec) * NANOSECONDS + int(point.time_from_start.nanosec)

@@ -1,0 +1,83 @@
+"""Where everything is, and services that tell and change it: ``libgazebo_ros_state.so``.
+
+Source: gazebo_ros_pkgs for ROS 2 (topics, services, the rate). The simulator itself answers ``/get_entity_state`` and
+``/set_entity_state``; with this plugin they are in its namespace too.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from linkwright.messages import Header, get_message
+from linkwright.sdf.poses import SEPARATOR, WORLD
+from linkwright.simulation.plugins.entities import Entities, answered
+from linkwright.simulation.plugins.parameters import parameter
+from linkwright.simulation.plugins.plugin import SimulatedPlugin
+
+
+@dataclass(frozen=True, kw_only=True)
+class StateParameters:
+    """Of the plugin."""
+
+    update_rate: float = parameter(100.0, aliases=("updateRate",))
+
+
+class ClassicState(SimulatedPlugin[StateParameters]):
+    """``libgazebo_ros_state.so``, of a world."""
+
+    PARAMETERS = StateParameters
+
+    def start(self) -> None:
+        """Make topics and services."""
+        node = self.node
+        self._entities = Entities(self.simulation)
+        self._models = node.publisher("gazebo_msgs/msg/ModelStates", "model_states", 1)
+        self._links = node.publisher("gazebo_msgs/msg/LinkStates", "link_states", 1)
+        if node.name.count("/") > 1:  # the simulator has those without a namespace
+            node.service("gazebo_msgs/srv/GetEntityState", "get_entity_state", self._get)
+            node.service("gazebo_msgs/srv/SetEntityState", "set_entity_state", self._set)
+        node.service("gazebo_msgs/srv/SetModelConfiguration", "set_joint_positions", self._set_joints)
+        self.every(self.parameters.update_rate, self._publish)
+
+    def _publish(self) -> None:
+        models = self.simulation.scene.models
+        if self._models.is_wanted:
+            self._models.publish(self._told("gazebo_msgs/msg/ModelStates", list(models)))
+        if self._links.is_wanted:
+            links = [held.link.name for model in models.values() for held in model.structure.links]
+            self._links.publish(self._told("gazebo_msgs/msg/LinkStates", links))
+
+    def _told(self, kind: str, names: list[str]) -> Any:
+        states = [self._entities.state(name) for name in names]
+        return get_message(kind)(names, [each.pose for each in states], [each.twist for each in states])
+
+    def _get(self, request: Any, response: Any) -> Any:
+        response.header = Header(self.stamp(), request.reference_frame or WORLD)
+
+        def get() -> str:
+            response.state = self._entities.state(request.name, request.reference_frame)
+            return ""
+
+        return answered(response, get)
+
+    def _set(self, request: Any, response: Any) -> Any:
+        def put() -> str:
+            self._entities.put(request.state)
+            return ""
+
+        return answered(response, put)
+
+    def _set_joints(self, request: Any, response: Any) -> Any:
+        if len(request.joint_names) != len(request.joint_positions):
+            response.status_message = "set_joint_positions: joint name and position list have different lengths"
+            return response
+
+        def put() -> str:
+            model = self._entities.model(request.model_name)
+            joints = [self._entities.joint(f"{model}{SEPARATOR}{name}") for name in request.joint_names]
+            for joint, position in zip(joints, request.joint_positions, strict=True):
+                self.simulation.set_joint_position(joint, float(position))
+            return "set_joint_positions: success"
+
+        return answered(response, put)

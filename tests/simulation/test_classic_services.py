@@ -1,0 +1,169 @@
+"""Plugins of Gazebo classic that push, tell and ask: force, state, properties, trajectories of joints."""
+
+from __future__ import annotations
+
+import asyncio
+from math import pi
+
+import pytest
+
+from linkwright.messages import get_message, get_service
+from linkwright.testing import Recording
+from tests.simulation.test_joint_controllers import arm
+from tests.simulation.test_joint_trajectory import trajectory
+from tests.simulation.test_plugins import SECOND, robot, served
+from tests.simulation.worlds import GROUND, box
+from tests.waiting import SECONDS
+
+STATE = (
+    '<plugin name="states" filename="libgazebo_ros_state.so"><ros><namespace>/world</namespace></ros>'
+    "<update_rate>10</update_rate></plugin>"
+)
+PROPERTIES = '<plugin name="properties" filename="libgazebo_ros_properties.so"/>'
+
+
+async def ask(graph, server, kind: str, service_name: str, /, **fields):
+    """Ask a service, which answers between two chunks of time."""
+    service = get_service(kind)
+    node = graph.create_node("asker")
+    answer = node.create_client(service, service_name).call_async(service.Request(**fields))
+    await graph.settle()
+    server.advance(SECOND // 1000)
+    response = await asyncio.wait_for(answer, SECONDS)
+    node.destroy_node()
+    return response
+
+
+def pushed(more: str = "", name: str = "push", yaw: float = 0.0) -> str:
+    """A box of 2 kg, far from all else, that is pushed."""
+    plugin = (
+        f'<plugin name="{name}" filename="libgazebo_ros_force.so"><link_name>link</link_name>'
+        f"<ros><remapping>gazebo_ros_force:={name}</remapping></ros>{more}</plugin>"
+    )
+    return box("crate", f"0 0 0 0 0 {yaw}", "1 1 1", 2.0).replace("</model>", f"{plugin}</model>")
+
+
+async def push(graph, topic: str, force: tuple[float, float, float]) -> None:
+    """Send a wrench."""
+    message = get_message("geometry_msgs/msg/Wrench")()
+    message.force.x, message.force.y, message.force.z = force
+    node = graph.create_node("hand")
+    node.create_publisher("geometry_msgs/msg/Wrench", topic, 10).publish(message)
+    await graph.settle()
+    node.destroy_node()
+
+
+@pytest.mark.parametrize(("frame", "way"), [("world", (1.0, 0.0)), ("link", (0.0, 1.0))])
+async def test_a_force_acts_in_the_axes_of_the_world_or_of_the_link(frame, way):
+    text = pushed(f"<force_frame>{frame}</force_frame>", yaw=pi / 2)
+    async with served("<gravity>0 0 0</gravity>", text) as (server, graph, log):
+        await push(graph, "/push", (4.0, 0.0, 0.0))
+        server.advance(SECOND)
+        assert server.simulation.model_pose("crate")[:2] == pytest.approx(way, abs=2e-3)
+        server.reset()
+        server.advance(SECOND)
+        assert server.simulation.model_pose("crate")[:2] == pytest.approx((0.0, 0.0), abs=1e-9)
+        assert not log
+
+
+async def test_forces_of_several_add_up():
+    names = "<bodyName>link</bodyName><topicName>two</topicName>"
+    second = f'<plugin name="two" filename="libgazebo_ros_force.so">{names}</plugin>'
+    text = pushed().replace("</model>", f"{second}</model>")
+    async with served("<gravity>0 0 0</gravity>", text) as (server, graph, log):
+        await push(graph, "/push", (4.0, 0.0, 0.0))
+        await push(graph, "/two", (0.0, 2.0, 0.0))
+        server.advance(SECOND)
+        assert server.simulation.model_pose("crate")[:2] == pytest.approx((1.0, 0.5), abs=2e-3)
+        assert not log
+
+
+async def test_a_force_in_another_frame_is_refused():
+    async with served(pushed("<force_frame>map</force_frame>")) as (server, _, log):
+        assert not server.plugins("crate")
+        assert [each.text for each in log if "<force_frame> is either" in each.text]
+
+
+async def test_states_of_all_models_and_links_are_told():
+    async with served(GROUND, robot(), STATE) as (server, graph, log):
+        models, links = (Recording(graph, server.node, f"/world/{each}") for each in ("model_states", "link_states"))
+        server.advance(SECOND)
+        await graph.settle()
+        assert len(models) == len(links) == 10
+        assert models.last.name == ["ground", "mbot"]
+        assert links.last.name[:3] == ["ground::link", "mbot::base_link", "mbot::left_wheel"]
+        assert models.last.pose[1].position.z == pytest.approx(0.11, abs=2e-3)
+        assert links.last.pose[2].position.y == pytest.approx(0.19, abs=1e-3)
+        assert links.last.twist[2].linear.x == pytest.approx(0.0, abs=1e-3)
+        assert not log
+
+
+async def test_services_of_states_are_in_the_namespace_of_the_plugin():
+    async with served(GROUND, robot(), STATE) as (server, graph, _):
+        state = get_message("gazebo_msgs/msg/EntityState")(name="mbot")
+        state.pose.position.x, state.pose.position.z = 2.0, 0.11
+        answer = await ask(graph, server, "gazebo_msgs/srv/SetEntityState", "/world/set_entity_state", state=state)
+        assert answer.success
+        answer = await ask(graph, server, "gazebo_msgs/srv/GetEntityState", "/world/get_entity_state", name="mbot")
+        assert answer.state.pose.position.x == pytest.approx(2.0, abs=1e-3)
+        answer = await ask(graph, server, "gazebo_msgs/srv/GetEntityState", "/world/get_entity_state", name="who")
+        assert not answer.success
+
+
+async def test_joints_are_put_by_a_service():
+    held = arm("").replace("0 1 0", "0 0 1")
+    kind, name = "gazebo_msgs/srv/SetModelConfiguration", "/world/set_joint_positions"
+    async with served(held, STATE) as (server, graph, _):
+        given = {"model_name": "arm", "joint_names": ["shoulder"]}
+        answer = await ask(graph, server, kind, name, joint_positions=[0.7], **given)
+        assert (answer.success, answer.status_message) == (True, "set_joint_positions: success")
+        assert server.simulation.joint_state("arm::shoulder")[0] == pytest.approx(0.7, abs=1e-6)
+        answer = await ask(graph, server, kind, name, joint_positions=[0.7, 0.8], **given)
+        assert (answer.success, "different lengths" in answer.status_message) == (False, True)
+        answer = await ask(graph, server, kind, name, model_name="legs")
+        assert (answer.success, answer.status_message) == (False, "there is no model or link 'legs'")
+
+
+async def test_properties_are_told_and_gravity_is_set():
+    async with served(GROUND, arm(""), box("crate", "5 0 1 0 0 0", "1 1 1", 3.0), PROPERTIES) as (server, graph, log):
+        answer = await ask(
+            graph, server, "gazebo_msgs/srv/GetModelProperties", "/get_model_properties", model_name="arm"
+        )
+        assert (answer.canonical_link_name, answer.joint_names) == ("arm::link", ["shoulder"])
+        kind = "gazebo_msgs/srv/GetLinkProperties"
+        answer = await ask(graph, server, kind, "/get_link_properties", link_name="crate::link")
+        assert (answer.mass, answer.ixx, answer.gravity_mode) == (3.0, pytest.approx(0.5), True)
+        kind = "gazebo_msgs/srv/GetJointProperties"
+        answer = await ask(graph, server, kind, "/get_joint_properties", joint_name="arm::shoulder")
+        assert (answer.type, len(answer.position), answer.success) == (answer.REVOLUTE, 1, True)
+        kind = "gazebo_msgs/srv/SetPhysicsProperties"
+        up = get_message("geometry_msgs/msg/Vector3")(z=1.0)
+        assert (await ask(graph, server, kind, "/set_physics_properties", gravity=up)).success
+        answer = await ask(graph, server, "gazebo_msgs/srv/GetPhysicsProperties", "/get_physics_properties")
+        assert (answer.time_step, answer.gravity.z) == (0.001, 1.0)
+        begin = server.simulation.link_velocity("crate::link")[0][2]
+        server.advance(SECOND)
+        assert server.simulation.link_velocity("crate::link")[0][2] - begin == pytest.approx(1.0, abs=1e-6)
+        assert not log
+
+
+async def test_joints_jump_from_point_to_point():
+    plugin = '<plugin name="poses" filename="libgazebo_ros_joint_pose_trajectory.so"/>'
+    async with served(arm(plugin).replace("0 1 0", "0 0 1")) as (server, graph, log):
+        message = trajectory((1.0, 0.3), (1.0, 0.6), (0.0, 0.9))
+        message.header.frame_id = "world"
+        node = graph.create_node("planner")
+        publisher = node.create_publisher("trajectory_msgs/msg/JointTrajectory", "/set_joint_trajectory", 1)
+        publisher.publish(message)
+        await graph.settle()
+        seen = []
+        for _ in range(3):
+            server.advance(SECOND // 2)
+            seen.append(server.simulation.joint_state("arm::shoulder")[0])
+            server.advance(SECOND // 2)
+        assert seen == pytest.approx([0.3, 0.6, 0.9], abs=1e-6)
+        message.joint_names = ["elbow"]
+        publisher.publish(message)
+        await graph.settle()
+        server.advance(SECOND)
+        assert [each.text for each in log] == ["plugin 'poses': no joint 'elbow' moves"]
