@@ -10,7 +10,13 @@ import pytest
 from linkwright.sdf.sensors import ForceTorque
 from linkwright.sdf.worlds import SphericalCoordinates
 from linkwright.simulation.sensors.contact import ContactSensor
-from linkwright.simulation.sensors.earth import AltimeterSensor, Globe, MagnetometerSensor, NavsatSensor
+from linkwright.simulation.sensors.earth import (
+    AltimeterSensor,
+    Globe,
+    MagnetometerSensor,
+    NavsatSensor,
+    standard_pressure,
+)
 from linkwright.simulation.sensors.force_torque import ForceTorqueSensor
 from linkwright.simulation.sensors.imu import ImuSensor
 from linkwright.simulation.sensors.mount import Mount
@@ -154,6 +160,11 @@ def test_a_receiver_tells_how_fast_it_goes():
     fix = NavsatSensor(Mount(simulation, "box::link"), None, SphericalCoordinates(elevation=100.0), CHANCE).measure()
     assert fix.altitude == pytest.approx(600 - 9.81 / 2, abs=0.01)
     assert fix.velocity == pytest.approx([0, 0, -9.81], abs=1e-6)
+
+
+@pytest.mark.parametrize(("altitude", "pressure"), [(0.0, 101325.0), (1000.0, 89876.3), (11000.0, 22699.9)])
+def test_the_pressure_of_the_air_is_that_of_the_standard_atmosphere(altitude: float, pressure: float):
+    assert standard_pressure(altitude) == pytest.approx(pressure, rel=1e-5)
 
 
 def test_an_altimeter_counts_from_where_it_began():

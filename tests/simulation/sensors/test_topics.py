@@ -182,6 +182,44 @@ async def test_an_imu_of_ros_1_names_its_link():
         assert not log
 
 
+async def test_contacts_of_gz_are_told_while_something_touches():
+    said = sensor("contact", "<contact><collision>collision</collision><topic>/touched</topic></contact>", rate=100)
+    text = box("crate", "0 0 0.7 0 0 0", "1 1 1", 2.0).replace("</link>", f"{said}</link>")
+    async with served(GROUND, text) as (server, graph, log):
+        recording = Recording(graph, server.node, "/touched")
+        server.advance(SECOND // 10)
+        await graph.settle()
+        assert len(recording) == 0
+        server.advance(2 * SECOND)
+        await graph.settle()
+        (contact,) = recording.last.contacts
+        assert (contact.collision1.name, contact.collision1.type) == ("crate::link::collision", 5)
+        assert contact.collision2.name == "ground::link::collision"
+        assert len(contact.wrenches) == len(contact.depths) == len(contact.positions) == len(contact.normals)
+        up = sum(each.body_1_wrench.force.z for each in contact.wrenches)
+        assert up == pytest.approx(2.0 * 9.81, rel=0.02)
+        assert sum(each.body_2_wrench.force.z for each in contact.wrenches) == pytest.approx(-up)
+        assert not log
+
+
+async def test_heights_and_pressures_of_gz():
+    noise = (
+        '<air_pressure><reference_altitude>100</reference_altitude><pressure><noise type="gaussian"><stddev>2</stddev>'
+    )
+    sensors = (
+        sensor("altimeter", "<topic>height</topic>"),
+        sensor("air_pressure", f"<topic>air</topic>{noise}</noise></pressure></air_pressure>", name="baro"),
+    )
+    text = box("crate", "0 0 50 0 0 0", "1 1 1", 2.0).replace("</link>", "".join(sensors) + "</link>")
+    async with served(text) as (server, graph, log):
+        height, air = await heard(server, graph, "/height", "/air", duration=SECOND)
+        assert (height.vertical_position, height.vertical_velocity) == pytest.approx((-4.905, -9.81), abs=0.01)
+        assert (height.vertical_reference, height.header.frame_id) == (50.0, "crate/link/eye")
+        assert air.fluid_pressure == pytest.approx(99606.0, abs=20.0)
+        assert air.variance == 4.0
+        assert not log
+
+
 async def test_a_bumper_tells_what_it_touches():
     said = sensor("contact", "<contact><collision>collision</collision></contact>" + plugin("libgazebo_ros_bumper.so"))
     async with served(GROUND, box("one", "0 0 0.5 0 0 0").replace("</link>", said + "</link>")) as (server, graph, log):

@@ -1,6 +1,7 @@
-"""Sensors of where something is on earth: satellite receivers, altimeters, magnetometers.
+"""Sensors of where something is on earth: satellite receivers, altimeters, barometers, magnetometers.
 
-Source: the ellipsoid of WGS 84 (NIMA TR8350.2), and how the element ``<spherical_coordinates>`` lays the world upon it.
+Source: the ellipsoid of WGS 84 (NIMA TR8350.2), and how the element ``<spherical_coordinates>`` lays the world upon it;
+the standard atmosphere of ISO 2533 up to 11 km.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ import numpy as np
 from linkwright.geometry.arrays import Array, quaternion_inverse, rotate
 from linkwright.geometry.vectors import Vector3
 from linkwright.sdf.noise import NoiseXyz
-from linkwright.sdf.sensors import Altimeter, Navsat
+from linkwright.sdf.sensors import AirPressure, Altimeter, Navsat
 from linkwright.sdf.worlds import SphericalCoordinates
 from linkwright.simulation.sensors.mount import Mount
 from linkwright.simulation.sensors.noise import NoiseSource, VectorNoise
@@ -23,6 +24,10 @@ _FLATTENING = 1 / 298.257223563
 _E2 = _FLATTENING * (2 - _FLATTENING)
 _TURNS = 5
 """How often the latitude is improved: each turn leaves less than a hundredth of the error."""
+_EARTH, _GRAVITY = 6356766.0, 9.80665
+"""Of the standard atmosphere: the radius of the earth in m, and gravity in m/s2."""
+_SEA_PRESSURE, _SEA_TEMPERATURE, _LAPSE, _AIR = 101325.0, 288.15, 0.0065, 287.05287
+"""Pressure in Pa and temperature in K at the sea, K lost with each m, and the gas constant of air in J/(kg K)."""
 EARTH_FIELD: Vector3 = (5.5645e-6, 22.8758e-6, -42.3884e-6)
 """The magnetic field of worlds that say nothing of it, in tesla: SDFormat's default."""
 
@@ -149,6 +154,41 @@ class AltimeterSensor:
         height = np.array(self._mount.pose()[2] - self.reference)
         velocity = np.array(self._mount.velocity()[0][2])
         return float(self._position_noise.apply(height)), float(self._velocity_noise.apply(velocity))
+
+
+class Barometer:
+    """Measures the pressure of the air at its height.
+
+    Args:
+        mount: where it is.
+        said: the altitude of the world's zero, and noise in Pa; None for sea level and no noise.
+        generator: where its noise comes from.
+
+    Attributes:
+        noise: its noise.
+    """
+
+    def __init__(self, mount: Mount, said: AirPressure | None, generator: np.random.Generator) -> None:
+        said = said or AirPressure()
+        self.noise = NoiseSource(said.noise, generator)
+        self._mount = mount
+        self._altitude = said.reference_altitude
+
+    def measure(self) -> float:
+        """The pressure in Pa.
+
+        Raises:
+            KeyError: its link is gone.
+        """
+        pressure = standard_pressure(self._altitude + self._mount.pose()[2])
+        return float(self.noise.apply(np.array(pressure)))
+
+
+def standard_pressure(altitude: float) -> float:
+    """The pressure in Pa of the standard atmosphere at an altitude in m."""
+    height = _EARTH * altitude / (_EARTH + altitude)
+    warmth = max(1.0 - _LAPSE * height / _SEA_TEMPERATURE, 0.0)
+    return float(_SEA_PRESSURE * warmth ** (_GRAVITY / (_AIR * _LAPSE)))
 
 
 class MagnetometerSensor:

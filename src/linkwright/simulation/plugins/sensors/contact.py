@@ -1,21 +1,24 @@
-"""Contacts: ``gazebo_ros_bumper``.
+"""Contacts: ``gazebo_ros_bumper``, and ``contact`` of gz.
 
-Source: gazebo_ros_pkgs for ROS 2 and ROS 1 (parameters, topics, the frame that forces are told in).
+Source: gazebo_ros_pkgs for ROS 2 and ROS 1 (parameters, topics, the frame that forces are told in), gz-sim (topic, when
+there is a message), ros_gz (messages).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 from linkwright.geometry.arrays import Array
 from linkwright.messages import get_message
 from linkwright.sdf.poses import WORLD
-from linkwright.simulation.plugins.parameters import parameter
+from linkwright.simulation.plugins.parameters import NoParameters, parameter
 from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, OneTopic, vector
 from linkwright.simulation.sensors.contact import Contact, ContactSensor
 
-_TYPE = "gazebo_msgs/msg/ContactsState"
+P = TypeVar("P")
+_TYPE, _CONTACTS = "gazebo_msgs/msg/ContactsState", "ros_gz_interfaces/msg/Contacts"
+_NO_TOPIC = "__default_topic__"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,16 +29,20 @@ class BumperParameters:
     topic_name: str = parameter("bumper_states", aliases=("bumperTopicName", "bumper_topic_name"))
 
 
-class ClassicBumper(OneTopic[BumperParameters]):
-    """``libgazebo_ros_bumper.so``: positions and forces are those in the world, whatever frame the message names."""
-
-    PARAMETERS = BumperParameters
+class _Contacts(OneTopic[P], Generic[P]):
+    """What touches a collision."""
 
     def make_sensor(self) -> None:
         """Make what listens to the collision that the sensor names."""
         said = self.sensor.sensor.contact
         named = [] if said is None or said.collision == "__default__" else [said.collision]
-        self._sensor = ContactSensor(self.mount, named)
+        self.contacts = ContactSensor(self.mount, named)
+
+
+class ClassicBumper(_Contacts[BumperParameters]):
+    """``libgazebo_ros_bumper.so``: positions and forces are those in the world, whatever frame the message names."""
+
+    PARAMETERS = BumperParameters
 
     def make_topics(self) -> None:
         """Make the topic."""
@@ -44,8 +51,43 @@ class ClassicBumper(OneTopic[BumperParameters]):
     def measure(self) -> None:
         """Measure and publish, also where nothing touches."""
         message = self.message(_TYPE, self.parameters.frame_name)
-        message.states = [_state(contact) for contact in self._sensor.measure()]
+        message.states = [_state(contact) for contact in self.contacts.measure()]
         self.output.publish(message)
+
+
+class GzContact(_Contacts[NoParameters]):
+    """``contact`` of gz: says nothing while nothing touches."""
+
+    def make_topics(self) -> None:
+        """Make the topic: that of ``<contact>``, or the one that gz gives the sensor."""
+        said = self.sensor.sensor.contact
+        named = "" if said is None or said.topic == _NO_TOPIC else said.topic
+        usual = "" if named else "/contacts"
+        self.output = self.node.publisher(_CONTACTS, named or self.gz_topic("contact"), usual=usual)
+
+    def measure(self) -> None:
+        """Measure, and publish where something touches."""
+        touching = self.contacts.measure()
+        if touching:
+            message = self.message(_CONTACTS, "")
+            message.contacts = [_contact(each) for each in touching]
+            self.output.publish(message)
+
+
+def _contact(contact: Contact) -> Any:
+    """Positions, normals and forces in the axes of the world."""
+    message = get_message("ros_gz_interfaces/msg/Contact")()
+    for entity, name in ((message.collision1, contact.collision1), (message.collision2, contact.collision2)):
+        entity.name, entity.type = name, entity.COLLISION
+    message.positions = [vector(each) for each in contact.positions]
+    message.normals = [vector(each) for each in contact.normals]
+    message.depths = [float(each) for each in contact.depths]
+    for force, torque in zip(contact.forces, contact.torques, strict=True):
+        pair = get_message("ros_gz_interfaces/msg/JointWrench")()
+        pair.body_1_name.data, pair.body_2_name.data = contact.collision1, contact.collision2
+        pair.body_1_wrench, pair.body_2_wrench = wrench(force, torque), wrench(-force, -torque)
+        message.wrenches.append(pair)
+    return message
 
 
 def _state(contact: Contact) -> Any:

@@ -1,6 +1,6 @@
-"""Where something is on earth: ``gazebo_ros_gps_sensor``, and ``navsat`` and ``magnetometer`` of gz.
+"""Where something is on earth: ``gazebo_ros_gps_sensor``, and what gz has for places, fields, heights and pressures.
 
-Source: gazebo_ros_pkgs for ROS 2 (topics, covariances), gz-sensors (topics).
+Source: gazebo_ros_pkgs for ROS 2 (topics, covariances), gz-sensors (topics), ros_gz (messages).
 """
 
 from __future__ import annotations
@@ -9,11 +9,13 @@ from typing import Any, Generic, TypeVar
 
 from linkwright.simulation.plugins.parameters import NoParameters
 from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, FrameName, OneTopic, SensorPlugin, vector
-from linkwright.simulation.sensors.earth import Fix, MagnetometerSensor, NavsatSensor
+from linkwright.simulation.sensors.earth import AltimeterSensor, Barometer, Fix, MagnetometerSensor, NavsatSensor
 
 P = TypeVar("P")
 _FIX = "sensor_msgs/msg/NavSatFix"
 _FIELD = "sensor_msgs/msg/MagneticField"
+_HEIGHT = "ros_gz_interfaces/msg/Altimeter"
+_PRESSURE = "sensor_msgs/msg/FluidPressure"
 _DIAGONAL_KNOWN = 2
 
 
@@ -88,4 +90,41 @@ class GzMagnetometer(OneTopic[NoParameters]):
         message = self.message(_FIELD, self.gz_frame())
         message.magnetic_field = vector(self._sensor.measure())
         message.magnetic_field_covariance = self._sensor.noise.covariance.copy()
+        self.output.publish(message)
+
+
+class GzAltimeter(OneTopic[NoParameters]):
+    """``altimeter`` of gz."""
+
+    def make_sensor(self) -> None:
+        """Make the altimeter."""
+        self._sensor = AltimeterSensor(self.mount, self.sensor.sensor.altimeter, self.random)
+
+    def make_topics(self) -> None:
+        """Make the topic."""
+        self.output = self.gz_output(_HEIGHT, "altimeter")
+
+    def measure(self) -> None:
+        """Measure and publish."""
+        message = self.message(_HEIGHT, self.gz_frame())
+        message.vertical_position, message.vertical_velocity = self._sensor.measure()
+        message.vertical_reference = self._sensor.reference
+        self.output.publish(message)
+
+
+class GzAirPressure(OneTopic[NoParameters]):
+    """``air_pressure`` of gz."""
+
+    def make_sensor(self) -> None:
+        """Make the barometer."""
+        self._sensor = Barometer(self.mount, self.sensor.sensor.air_pressure, self.random)
+
+    def make_topics(self) -> None:
+        """Make the topic."""
+        self.output = self.gz_output(_PRESSURE, "air_pressure")
+
+    def measure(self) -> None:
+        """Measure and publish."""
+        message = self.message(_PRESSURE, self.gz_frame())
+        message.fluid_pressure, message.variance = self._sensor.measure(), self._sensor.noise.variance
         self.output.publish(message)
