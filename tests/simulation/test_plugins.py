@@ -13,7 +13,7 @@ from linkwright.sdf.text import parse_as_gazebo
 from linkwright.simulation.plugins.parameters import parameter, parameters_from
 from linkwright.simulation.plugins.registry import is_of_gz, library_name, needs_nothing
 from linkwright.simulation.plugins.ros_element import node_of
-from linkwright.simulation.server.server import SimulationServer
+from linkwright.simulation.server.server import ServerOptions, SimulationServer
 from linkwright.testing import Recording
 from tests.simulation.worlds import GROUND, box, mbot, model, simulated
 
@@ -95,11 +95,11 @@ def test_a_plugin_that_names_no_namespace_has_that_of_its_robot():
 
 
 @asynccontextmanager
-async def served(*parts: str):
+async def served(*parts: str, options: ServerOptions | None = None):
     """A simulation of a world of models on a graph, and what it logs."""
     log: list[LogRecord] = []
     graph = Graph(on_log=log.append)
-    server = SimulationServer(simulated(*parts), graph.create_node("gazebo"))
+    server = SimulationServer(simulated(*parts), graph.create_node("gazebo"), options)
     server.start()
     yield server, graph, log
     server.close()

@@ -29,6 +29,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--step", metavar="S", type=positive, default=0.0, help="the time step (default: the world's)")
     parser.add_argument("--seed", metavar="N", type=int, default=0, help="what noise follows from (default: 0)")
     parser.add_argument("--pause", action="store_true", help="begin paused")
+    parser.add_argument("--gazebo-mistakes", action="store_true", help="let plugins make the known mistakes of Gazebo")
     add_viewer_options(parser)
 
 
@@ -54,6 +55,7 @@ def run(arguments: argparse.Namespace) -> int:
         seed=arguments.seed,
         paused=arguments.pause,
         headless=arguments.headless,
+        gazebo_mistakes=arguments.gazebo_mistakes,
     )
     if arguments.robot is not None:
         model = load_model(path, parse_assignments(arguments.values), finder)

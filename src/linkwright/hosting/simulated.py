@@ -51,6 +51,7 @@ class SimulatedWorld:
         seed: what all random numbers follow from.
         paused: whether it begins paused.
         headless: whether there is no page.
+        gazebo_mistakes: whether plugins make the known mistakes of Gazebo.
     """
 
     world: str
@@ -65,6 +66,7 @@ class SimulatedWorld:
     seed: int = 0
     paused: bool = False
     headless: bool = False
+    gazebo_mistakes: bool = False
 
     @classmethod
     def of(cls, world: str, description: Description, found: Inference) -> SimulatedWorld:
@@ -90,6 +92,7 @@ class SimulatedWorld:
             "seed": self.seed,
             "pause": self.paused,
             "usual_names": True,
+            "gazebo_mistakes": self.gazebo_mistakes,
             **(robot if self.text else {}),
         }
 

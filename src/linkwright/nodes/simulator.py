@@ -29,6 +29,7 @@ _PARAMETERS: dict[str, Any] = {
     "pause": False,
     "seconds": 0.0,
     "usual_names": False,
+    "gazebo_mistakes": False,
     "robot_description": "",
     "robot_name": "",
     "robot_pose": [0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
@@ -54,6 +55,8 @@ class Simulator(SingleNode):
         never.
     ``usual_names``
         whether topics of gz have their usual names too.
+    ``gazebo_mistakes``
+        whether plugins make the known mistakes of Gazebo, too: see docs/simulation.md.
     ``robot_description``, ``robot_name``, ``robot_pose``, ``robot_namespace``
         a robot that is there from the start: URDF or SDF, and x, y, z in m and roll, pitch, yaw in rad.
 
@@ -86,7 +89,8 @@ class Simulator(SingleNode):
             )
             self._log(remarkable)
             simulation = Simulation(loaded.world, loaded.finder, step=said["step"] or None)
-            self.server = SimulationServer(simulation, self._node, ServerOptions(said["seed"], said["usual_names"]))
+            how = ServerOptions(said["seed"], said["usual_names"], said["gazebo_mistakes"])
+            self.server = SimulationServer(simulation, self._node, how)
             self._reports = Reports(self.server, self._node, said["publish_rate"])
             self.runner = Runner(
                 self.server,

@@ -1,7 +1,7 @@
 """Differential drive: ``libgazebo_ros_diff_drive.so`` and that of ROS 1 and gz.
 
 Source: gazebo_ros_pkgs for ROS 2 and gz-sim (parameters, topics, defaults, the limiter, odometry). Other than there a
-robot that drives backward has a negative velocity in its odometry.
+robot that drives backward has a negative velocity in its odometry of wheels, unless Gazebo's mistakes are asked for.
 """
 
 from __future__ import annotations
@@ -199,7 +199,8 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
             self._topics.publish(stamp, pose, *planar_velocity(pose, *self.simulation.link_velocity(self.first_link)))
         else:
             forward, turning = self._speeds()
-            self._topics.publish(stamp, self._place.transform, forward, 0.0, turning)
+            told = abs(forward) if self.gazebo_mistakes else forward
+            self._topics.publish(stamp, self._place.transform, told, 0.0, turning)
 
     def _drive(self) -> None:
         """Bring the wheels nearer to the command, by no more than they may speed up in m/s2 at their rims."""

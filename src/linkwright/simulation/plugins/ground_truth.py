@@ -62,7 +62,8 @@ class GzOdometryParameters:
 class ClassicPose(SimulatedPlugin[ClassicPoseParameters]):
     """``libgazebo_ros_p3d.so``: a link in the world or in the frame of another link.
 
-    Velocities are in the axes of the world, or of that other link; gazebo_ros_p3d turns those the wrong way.
+    Velocities are in the axes of the world, or of that other link; gazebo_ros_p3d turns those the wrong way, which is
+    done where Gazebo's mistakes are asked for.
     """
 
     PARAMETERS = ClassicPoseParameters
@@ -89,7 +90,8 @@ class ClassicPose(SimulatedPlugin[ClassicPoseParameters]):
         if self._reference:
             frame, (moving, turning) = simulation.link_pose(self._reference), simulation.link_velocity(self._reference)
             pose = compose(invert(frame), pose)
-            linear, angular = _turned_back(frame, linear - moving), _turned_back(frame, angular - turning)
+            turned = _turned_on if self.gazebo_mistakes else _turned_back
+            linear, angular = turned(frame, linear - moving), turned(frame, angular - turning)
         x, y, z = (a + b for a, b in zip(pose[:3], said.xyz_offset, strict=True))
         moved = (x, y, z, *quaternion_multiply(self._turn, pose[3:]))
         linear, angular = _with_noise(self._random, said.gaussian_noise, linear, angular)
@@ -144,6 +146,12 @@ def _turned_back(frame: Transform, vector: Array) -> Array:
     """A vector in the axes of the world in those of a frame."""
     x, y, z = vector
     return np.array(rotate(quaternion_inverse(frame[3:]), (float(x), float(y), float(z))))
+
+
+def _turned_on(frame: Transform, vector: Array) -> Array:
+    """A vector turned by the rotation of a frame."""
+    x, y, z = vector
+    return np.array(rotate(frame[3:], (float(x), float(y), float(z))))
 
 
 def _with_noise(random: np.random.Generator, deviation: float, linear: Array, angular: Array) -> tuple[Array, Array]:

@@ -103,6 +103,10 @@ class Environment(Protocol):
     def simulation(self) -> Simulation:
         """The simulation."""
 
+    @property
+    def gazebo_mistakes(self) -> bool:
+        """Whether known mistakes of Gazebo are made, too."""
+
     def random(self, name: str) -> np.random.Generator:
         """Random numbers of its own for whatever has a name; the same for the same seed."""
 
@@ -117,6 +121,7 @@ class SimulatedPlugin(Generic[P]):
         node: what it has of ROS.
         parameters: what it is given.
         simulation: the simulation.
+        gazebo_mistakes: whether known mistakes of Gazebo are made, too; each is named where it is.
     """
 
     PARAMETERS: ClassVar[type[Any]] = NoParameters
@@ -127,6 +132,7 @@ class SimulatedPlugin(Generic[P]):
         self.node = node
         self.parameters = parameters
         self.simulation = environment.simulation
+        self.gazebo_mistakes = environment.gazebo_mistakes
         self._environment = environment
         self._tasks: list[Task] = []
 

@@ -42,10 +42,12 @@ class ServerOptions:
         seed: what all random numbers follow from.
         usual_names: whether topics of gz, such as ``/model/robot/cmd_vel``, have their usual names too: ``/cmd_vel``
             for the first robot that has one.
+        gazebo_mistakes: whether plugins make the known mistakes of Gazebo.
     """
 
     seed: int = 0
     usual_names: bool = False
+    gazebo_mistakes: bool = False
 
 
 class SimulationServer:
@@ -90,6 +92,11 @@ class SimulationServer:
         for scene_model in tuple(self.simulation.scene.models.values()):
             self._load(scene_model.name, of_model(self.simulation.world, scene_model.model, scene_model.name), "")
         self._changed()
+
+    @property
+    def gazebo_mistakes(self) -> bool:
+        """Whether plugins make the known mistakes of Gazebo."""
+        return self._options.gazebo_mistakes
 
     def random(self, name: str) -> np.random.Generator:
         """Random numbers of its own for whatever has a name; the same for the same seed."""

@@ -218,7 +218,7 @@ class ClassicCamera(CameraPlugin[CameraParameters]):
         if cloud.is_wanted and picture.depth is not None and picture.colour is not None:
             message = self.message(CLOUD, self._frame)
             points = points_of(eye.optics, limited(picture.depth, nearest, farthest))
-            fill_camera_cloud(message, points, picture.colour)
+            fill_camera_cloud(message, points, picture.colour, swapped=self.gazebo_mistakes)
             cloud.publish(message)
 
     def _publish_info(self, output: Output, eye: Eye) -> None:

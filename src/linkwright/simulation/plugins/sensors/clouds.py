@@ -28,8 +28,10 @@ def fill_lidar_cloud(message: Any, points: Points, intensities: Points, *, heigh
     message.is_dense = bool(np.isfinite(rows).all())
 
 
-def fill_camera_cloud(message: Any, points: Points, colour: Points) -> None:
+def fill_camera_cloud(message: Any, points: Points, colour: Points, *, swapped: bool = False) -> None:
     """Put the points of a picture, shape (height, width, 3), and their colours into a PointCloud2.
+
+    With `swapped` red and blue change places, as Gazebo classic has them.
 
     Source of the layout: ``gazebo_ros_camera``, 32 bytes a point with the colour at 16.
     """
@@ -37,7 +39,8 @@ def fill_camera_cloud(message: Any, points: Points, colour: Points) -> None:
     rows = np.zeros((height * width, 8), np.float32)
     rows[:, :3] = points.reshape(-1, 3)
     bytes_of = rows.view(np.uint8).reshape(height * width, 32)
-    bytes_of[:, 16:19] = colour.reshape(-1, 3)[:, ::-1]  # as PCL packs them: blue is the lowest byte
+    # As PCL packs them, blue is the lowest byte.
+    bytes_of[:, 16:19] = colour.reshape(-1, 3)[:, :: 1 if swapped else -1]
     message.fields = list(_fields(("x", 0), ("y", 4), ("z", 8), ("rgb", 16)))
     _fill(message, rows, height)
     message.is_dense = False

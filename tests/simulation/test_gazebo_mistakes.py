@@ -1,0 +1,53 @@
+"""Mistakes of Gazebo that are made on request only."""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+import pytest
+
+from linkwright.messages import get_message
+from linkwright.simulation.plugins.sensors.clouds import fill_camera_cloud
+from linkwright.simulation.server.server import ServerOptions
+from linkwright.testing import Recording
+from tests.simulation.test_diff_drive import classic
+from tests.simulation.test_movers import drive, moving_box, planar
+from tests.simulation.test_plugins import robot, served
+from tests.simulation.worlds import GROUND
+
+BOTH = pytest.mark.parametrize("mistaken", [False, True])
+
+
+@BOTH
+async def test_the_sign_of_the_velocity_backward(mistaken):
+    options = ServerOptions(gazebo_mistakes=mistaken)
+    async with served(GROUND, robot(classic(source=0)), options=options) as (server, graph, _):
+        odometry = Recording(graph, server.node, "/odom")
+        await drive(server, graph, -0.3, seconds=2.0)
+        told = odometry.last
+        assert told.twist.twist.linear.x == pytest.approx(0.3 if mistaken else -0.3, abs=0.01)
+        assert told.pose.pose.position.x < -0.3
+
+
+@BOTH
+async def test_velocities_in_the_frame_of_another_link(mistaken):
+    p3d = (
+        '<plugin name="p3d" filename="libgazebo_ros_p3d.so"><ros><remapping>odom:=told</remapping></ros>'
+        "<body_name>link</body_name><frame_name>frame</frame_name><update_rate>10</update_rate></plugin>"
+    )
+    turned = f'<link name="frame"><pose>0 0 0 0 0 {pi / 2}</pose></link>'
+    fixed = '<joint name="held" type="fixed"><parent>world</parent><child>frame</child></joint>'
+    text = moving_box(planar() + p3d).replace("</model>", f"{turned}{fixed}</model>")
+    async with served(GROUND, text, options=ServerOptions(gazebo_mistakes=mistaken)) as (server, graph, _):
+        told = Recording(graph, server.node, "/told")
+        await drive(server, graph, 0.5)
+        velocity = told.last.twist.twist.linear
+        assert (velocity.x, velocity.y) == pytest.approx((0.0, 0.5 if mistaken else -0.5), abs=0.01)
+
+
+@BOTH
+def test_the_colours_of_points(mistaken):
+    cloud = get_message("sensor_msgs/msg/PointCloud2")()
+    fill_camera_cloud(cloud, np.zeros((1, 1, 3)), np.array([[[1, 2, 3]]], np.uint8), swapped=mistaken)
+    assert list(bytes(cloud.data)[16:19]) == ([1, 2, 3] if mistaken else [3, 2, 1])
