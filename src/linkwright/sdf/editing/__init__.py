@@ -1,7 +1,7 @@
 """Losslessly editing worlds: text in, text out, and only what an edit is about is different."""
 
 from linkwright.sdf.editing.adding import NewShape, add_include, add_light, add_shape
-from linkwright.sdf.editing.changing import Change, change, copy, delete
+from linkwright.sdf.editing.changing import Change, change, copy, delete, pose_of_thing
 from linkwright.sdf.editing.errors import EditError
 from linkwright.sdf.editing.grouping import group, ungroup
 from linkwright.sdf.editing.text import Thing, WorldText
@@ -19,5 +19,6 @@ __all__ = [
     "copy",
     "delete",
     "group",
+    "pose_of_thing",
     "ungroup",
 ]

@@ -113,7 +113,7 @@ def copy(world: WorldText, names: Sequence[str], offset: Sequence[float]) -> tup
         free = world.free_name(name, taken)
         taken |= {free}
         x, y, z = (a + b for a, b in zip(thing.place[:3], offset, strict=True))
-        moves.append((free, Pose((x, y, z), _written_pose(thing).rpy)))
+        moves.append((free, Pose((x, y, z), pose_of_thing(thing).rpy)))
         edits.append(_copied(thing, free))
     world = world.edited(edits)
     for name, pose in sorted(moves, key=lambda move: _depth(world, move[0])):
@@ -155,8 +155,11 @@ def pose_in_world(numbers: Sequence[float]) -> Pose:
 
 
 def pose_of_thing(thing: Thing) -> Pose:
-    """Where a thing is in the world, as numbers: those of the file where they say just that."""
-    return _written_pose(thing)
+    """Where a thing is in the world: by the numbers of the file where they say just that."""
+    own = thing.pose
+    if own.pose.quaternion is None and not own.relative_to and transform_of(own.pose) == thing.place:
+        return own.pose
+    return writing.pose_from(thing.place)
 
 
 def moved(world: WorldText, thing: Thing, pose: Pose) -> list[Replacement]:
@@ -360,17 +363,6 @@ def _copied(thing: Thing, name: str) -> Replacement:
 
 
 # --- places --------------------------------------------------------------------------------------------------------
-
-
-def _written_pose(thing: Thing) -> Pose:
-    own = thing.pose
-    if own.pose.quaternion is None and not own.relative_to and _same(transform_of(own.pose), thing.place):
-        return own.pose
-    return writing.pose_from(thing.place)
-
-
-def _same(some: Transform, other: Transform) -> bool:
-    return all(a == b for a, b in zip(some, other, strict=True))
 
 
 def _local(world: WorldText, thing: Thing, pose: Pose) -> Pose:

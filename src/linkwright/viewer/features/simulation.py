@@ -6,7 +6,7 @@ Source of their names: gazebo_ros and simulation_interfaces.
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
@@ -17,17 +17,17 @@ from typing import Any, ClassVar
 from msgspec.structs import replace
 
 from linkwright.descriptions import examine, examine_world, is_world
-from linkwright.diagnostics import LinkwrightError, Phrase, phrase
-from linkwright.graph import Client, DurabilityPolicy, EndpointKind, QoSProfile
-from linkwright.messages import get_message, get_service
+from linkwright.diagnostics import LinkwrightError, phrase
+from linkwright.graph import DurabilityPolicy, EndpointKind, QoSProfile
+from linkwright.messages import get_message
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
+from linkwright.viewer.features.simulation_services import SimulationServices, refuse
 from linkwright.viewer.protocol.message import ServerMessage
 from linkwright.viewer.protocol.simulation import (
     ControlSimulation,
     DeleteModel,
     DragModel,
     PushLink,
-    SimulationNotice,
     SimulationStatus,
     SpawnModel,
 )
@@ -70,7 +70,7 @@ class SimulationFeature(PageFeature):
         super().__init__(viewer)
         self._listening = False
         self._subscriptions: list[Any] = []
-        self._clients: dict[str, Client[Any, Any]] = {}
+        self._services = SimulationServices(self.context)
         self._status = _ABSENT
         self._drags: dict[Page, _Drag] = {}
         self._spawning: set[asyncio.Task[None]] = set()
@@ -101,13 +101,13 @@ class SimulationFeature(PageFeature):
             case ControlSimulation(action):
                 kind, name = _ACTIONS[action]
                 fields = {"steps": 1} if action == "step" else {}
-                self._ask(page, kind, name, fields)
+                self._services.ask(page, kind, name, fields)
             case SpawnModel(address, position):
                 task = asyncio.get_running_loop().create_task(self._spawn(page, address, position))
                 self._spawning.add(task)
                 task.add_done_callback(self._spawning.discard)
             case DeleteModel(model):
-                self._ask(page, "gazebo_msgs/srv/DeleteEntity", "/delete_entity", {"name": model})
+                self._services.ask(page, "gazebo_msgs/srv/DeleteEntity", "/delete_entity", {"name": model})
             case DragModel():
                 self._drag(page, message)
             case PushLink():
@@ -158,62 +158,26 @@ class SimulationFeature(PageFeature):
         with suppress(ValueError):  # the node may have been destroyed before
             for subscription in self._subscriptions:
                 self.context.node.destroy_subscription(subscription)
-            for client in self._clients.values():
-                self.context.node.destroy_client(client)
+        self._services.close()
         self._subscriptions.clear()
-        self._clients.clear()
         self._drags.clear()
 
     # --- what it is asked for ----------------------------------------------------------------------------------
-
-    def _ask(
-        self,
-        page: Page,
-        kind: str,
-        name: str,
-        fields: dict[str, Any],
-        answered: Callable[[Any], None] = lambda _: None,
-        refused: Phrase | None = None,
-    ) -> None:
-        """Call a service; the page is told when there is none, or when it refuses: `refused` where it says no more."""
-        client = self._clients.get(name)
-        if client is None:
-            client = self._clients[name] = self.context.node.create_client(get_service(kind), name)
-        if not client.service_is_ready():
-            answered(None)
-            self._refuse(page, phrase("there is no service '{name}'", name=name))
-            return
-        future = client.call_async(client.srv_type.Request(**fields))
-
-        def done(_: Any) -> None:
-            response = future.result()
-            result = getattr(response, "result", None)
-            if getattr(response, "success", True) is False:
-                without_reason = refused or phrase("'{name}' failed", name=name)
-                self._refuse(page, getattr(response, "status_message", "") or without_reason)
-            elif result is not None and result.error_message:
-                self._refuse(page, result.error_message)
-            answered(response)
-
-        future.add_done_callback(done)
-
-    def _refuse(self, page: Page, text: str | Phrase) -> None:
-        page.send(SimulationNotice(str(text)))
 
     async def _spawn(self, page: Page, address: str, position: list[float]) -> None:
         try:
             text = await asyncio.to_thread(self._text_of, address.strip())
         except LinkwrightError as error:
             found = error.diagnostics[0]
-            self._refuse(page, f"{found.span}: {found.message}" if found.span else found.message)
+            refuse(page, f"{found.span}: {found.message}" if found.span else found.message)
             return
         if text is None:
-            self._refuse(page, phrase("there is no model in '{address}'", address=address))
+            refuse(page, phrase("there is no model in '{address}'", address=address))
             return
         fields: dict[str, Any] = {"xml": text}
         if _is_vector(position):
             fields["initial_pose"] = _pose(position)
-        self._ask(page, "gazebo_msgs/srv/SpawnEntity", "/spawn_entity", fields)
+        self._services.ask(page, "gazebo_msgs/srv/SpawnEntity", "/spawn_entity", fields)
 
     def _text_of(self, address: str) -> str | None:
         """The description at an address; None for a world without a model.
@@ -236,7 +200,7 @@ class SimulationFeature(PageFeature):
         if message.begins:
             drag = self._drags[page] = _Drag(message.model)
             fields = {"name": message.model, "reference_frame": "world"}
-            self._ask(
+            self._services.ask(
                 page, "gazebo_msgs/srv/GetEntityState", "/get_entity_state", fields, partial(self._held, page, drag)
             )
         known = self._drags.get(page)
@@ -265,7 +229,7 @@ class SimulationFeature(PageFeature):
             self._put(page, drag)
 
         fixed = phrase("'{model}' cannot be moved: it is fixed to the world, or gone", model=drag.model)
-        self._ask(page, "gazebo_msgs/srv/SetEntityState", "/set_entity_state", {"state": state}, put, fixed)
+        self._services.ask(page, "gazebo_msgs/srv/SetEntityState", "/set_entity_state", {"state": state}, put, fixed)
 
     def _push(self, page: Page, message: PushLink) -> None:
         if not (_is_vector(message.point) and _is_vector(message.force)):
@@ -275,7 +239,7 @@ class SimulationFeature(PageFeature):
         wrench.force.x, wrench.force.y, wrench.force.z = message.force
         fields = {"link_name": message.link, "reference_frame": "world", "reference_point": point, "wrench": wrench}
         fields["duration"] = get_message("builtin_interfaces/msg/Duration")(0, _PUSH_NS)
-        self._ask(page, "gazebo_msgs/srv/ApplyLinkWrench", "/apply_link_wrench", fields)
+        self._services.ask(page, "gazebo_msgs/srv/ApplyLinkWrench", "/apply_link_wrench", fields)
 
 
 def _is_vector(numbers: Sequence[float]) -> bool:

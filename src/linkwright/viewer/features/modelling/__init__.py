@@ -1,0 +1,1 @@
+"""Modelling a world in the page."""

@@ -1,0 +1,181 @@
+"""A world that is edited: its text, what that was before, and the file that it is saved into."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+from linkwright.descriptions import is_world
+from linkwright.diagnostics import foreign, phrase
+from linkwright.packages import PackageFinder
+from linkwright.sdf.editing import EditError, WorldText
+from linkwright.sdf.resources import ResourceFinder
+from linkwright.whole_files import write_whole_file
+from linkwright.xmltree.decoding import UTF_8, decoded
+from linkwright.xmltree.reader import read_bytes
+
+_XACRO = ".xacro"
+_NAMELESS = "world.sdf"
+_MOST_STEPS = 200
+"""Of undo."""
+_INSTALLED = Path(__file__).parents[3]
+"""What is in here comes with the program, and is not the user's to write."""
+
+
+class EditedWorld:
+    """A world that is edited.
+
+    Args:
+        text: of the world.
+        path: the file from whose folder its addresses start; it need not be there.
+        packages: where packages are, and so models.
+        content: what is in the file that it is saved into, `path`; None for a world without one.
+
+    Attributes:
+        world: the world now.
+        path: see above.
+
+    Raises:
+        LinkwrightError: it is not XML.
+        EditError: there is no world in it.
+    """
+
+    def __init__(self, text: str, path: Path, packages: PackageFinder, content: bytes | None = None) -> None:
+        self.path = path
+        self.world = WorldText(text, path, ResourceFinder(packages))
+        self._before: list[str] = []
+        self._after: list[str] = []
+        self._content = content
+        self._saved = text
+        self._encoding, self._mark = UTF_8, b""
+        if content is not None:
+            self._encoding = decoded(content, str(path)).encoding
+            self._mark = content[: len(content) - len(text.encode(self._encoding))]
+
+    @classmethod
+    def of_file(cls, path: Path, packages: PackageFinder) -> EditedWorld:
+        """The world of a file.
+
+        One that xacro makes, and one that comes with the program, have no file to be saved into.
+
+        Raises:
+            LinkwrightError: it cannot be read or expanded.
+            EditError: there is no world in it.
+        """
+        if path.suffix == _XACRO:
+            from linkwright.xacro import expand
+            from linkwright.xmltree import write
+
+            return cls(write(expand(str(path), packages=packages).document), path.with_suffix(""), packages)
+        content = read_bytes(path)
+        text = decoded(content, str(path)).text
+        return cls(text, path, packages, None if path.resolve().is_relative_to(_INSTALLED) else content)
+
+    @classmethod
+    def of_text(cls, text: str, packages: PackageFinder) -> EditedWorld:
+        """A world that is in no file, such as that of a simulator elsewhere.
+
+        Raises:
+            LinkwrightError: it is not XML.
+            EditError: there is no world in it.
+        """
+        return cls(text, Path.cwd() / _NAMELESS, packages)
+
+    @property
+    def file(self) -> Path | None:
+        """The file that it is saved into; None where the user has to name one."""
+        return None if self._content is None else self.path
+
+    @property
+    def unsaved(self) -> bool:
+        """Whether the text is not that of the file."""
+        return self.world.text != self._saved
+
+    @property
+    def can_undo(self) -> bool:
+        """Whether there is a change to be taken back."""
+        return bool(self._before)
+
+    @property
+    def can_redo(self) -> bool:
+        """Whether a change was taken back."""
+        return bool(self._after)
+
+    @property
+    def is_outdated(self) -> bool:
+        """Whether the file says something else than when it was read or saved."""
+        if self._content is None:
+            return False
+        try:
+            return self.path.read_bytes() != self._content
+        except OSError:
+            return False  # there is none, or it cannot be read: what is here is all there is
+
+    def edit(self, change: Callable[[WorldText], WorldText]) -> None:
+        """Change the world, in one step of undo.
+
+        Raises:
+            EditError: it cannot be changed so.
+        """
+        changed = change(self.world)
+        if changed.text != self.world.text:
+            self._before = [*self._before[1 - _MOST_STEPS :], self.world.text]
+            self._after.clear()
+            self.world = changed
+
+    def undo(self) -> None:
+        """Take the last change back; nothing where there is none."""
+        if self._before:
+            self._after.append(self.world.text)
+            self.world = self.world.with_text(self._before.pop())
+
+    def redo(self) -> None:
+        """Make the change again that was taken back last; nothing where there is none."""
+        if self._after:
+            self._before.append(self.world.text)
+            self.world = self.world.with_text(self._after.pop())
+
+    def save(self, name: str | None) -> None:
+        """Save it.
+
+        Args:
+            name: another file, absolute, from ``~`` or from the folder of the world; None for its own.
+
+        Raises:
+            EditError: it is not saved; the text says why.
+        """
+        target = self.path if name is None else self._named(name)
+        if target == self.path and self._content is not None:
+            if self.is_outdated:
+                raise EditError(
+                    phrase("'{path}' was changed by another program: save as another file", path=str(target))
+                )
+        elif name is None:
+            raise EditError(phrase("this world has no file of its own: say as which it is saved"))
+        elif os.path.lexists(target):
+            raise EditError(phrase("there is a file '{path}' already", path=str(target)))
+        content = self._mark + self.world.text.encode(self._encoding, "xmlcharrefreplace")
+        try:
+            write_whole_file(target, content)
+        except OSError as error:
+            reason = foreign(error.strerror or error)
+            raise EditError(phrase("cannot write '{path}': {reason}", path=str(target), reason=reason)) from None
+        self._content, self._saved = content, self.world.text
+        if target != self.path:
+            self.path = target
+            self.world = WorldText(self.world.text, target, self.world.finder)
+
+    def _named(self, name: str) -> Path:
+        """The file that the user names.
+
+        Raises:
+            EditError: it is not the name of a world.
+        """
+        try:
+            path = Path(os.path.normpath(self.path.absolute().parent / Path(name.strip()).expanduser()))
+        except (ValueError, RuntimeError):  # the latter where there is no such user
+            path = Path()
+        if "\0" in name or not is_world(path.name) or path.suffix == _XACRO:
+            raise EditError(phrase("'{name}' is no name of a world: let it end in .world or .sdf", name=name))
+        return path

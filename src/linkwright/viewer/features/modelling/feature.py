@@ -1,0 +1,250 @@
+"""Modelling a world in the page: its text is edited, and the simulation makes its world that of the text.
+
+The text is that of the file that the parameter ``world`` of the viewer's node names; where it names none, what the
+simulator tells about its world. All pages edit one text, one thing after the other.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from functools import partial
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from linkwright.diagnostics import LinkwrightError, phrase
+from linkwright.graph import DurabilityPolicy, ParameterDescriptor, QoSProfile
+from linkwright.messages import get_message
+from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
+from linkwright.viewer.features.simulation_services import SimulationServices, refuse
+from linkwright.viewer.protocol.message import PageMessage, ServerMessage
+from linkwright.viewer.protocol.modelling import (
+    AddThing,
+    AskModels,
+    ChangeThings,
+    CopyThings,
+    DeleteThings,
+    GroupThings,
+    ModellingState,
+    RedoWorld,
+    SaveWorld,
+    SetModelling,
+    UndoWorld,
+    UngroupThing,
+)
+from linkwright.viewer.web.audience import Page
+
+if TYPE_CHECKING:
+    from linkwright.viewer.features.modelling.edited_world import EditedWorld
+
+_DESCRIPTION = "/world_description"
+_LATCHED = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+_EMPTY, _LOAD = "std_srvs/srv/Empty", "simulation_interfaces/srv/LoadWorld"
+_PATIENCE = 30.0
+"""Seconds that an answer of the simulation, or its description, is waited for."""
+
+
+class ModellingFeature(PageFeature):
+    """Tells pages what stands in the world, and edits it as they ask."""
+
+    RECEIVES: ClassVar[tuple[type, ...]] = (
+        AddThing,
+        AskModels,
+        ChangeThings,
+        CopyThings,
+        DeleteThings,
+        GroupThings,
+        RedoWorld,
+        SaveWorld,
+        SetModelling,
+        UndoWorld,
+        UngroupThing,
+    )
+
+    def __init__(self, viewer: FeatureHost) -> None:
+        super().__init__(viewer)
+        node = self.context.node
+        about = ParameterDescriptor(description="the file of the world that is simulated", read_only=True)
+        self._name = str(node.declare_parameter("world", "", about).value)
+        self._services = SimulationServices(self.context)
+        self._listening = False
+        self._available = False
+        self._active = False
+        self._edited: EditedWorld | None = None
+        self._waiting: asyncio.Queue[tuple[Page, PageMessage]] = asyncio.Queue()
+        self._worker: asyncio.Task[None] | None = None
+
+    def opening(self) -> list[ServerMessage]:
+        """Whether the world can be edited, and what stands in it where somebody edits it."""
+        if not self._listening:
+            self._listening = True
+            self.context.graph_changes.listen(self._review)
+            self._available = self._is_available()
+        return [self._state()]
+
+    def page_gone(self, page: Page) -> None:  # noqa: ARG002
+        """Stop listening after the last page; what was edited stays."""
+        if self._listening and len(self.context.pages) == 0:
+            self._listening = False
+            self.context.graph_changes.ignore(self._review)
+
+    def close(self) -> None:
+        """End for good."""
+        self.context.graph_changes.ignore(self._review)
+        self._services.close()
+        if self._worker is not None:
+            self._worker.cancel()
+
+    def receive(self, page: Page, message: Any) -> None:
+        """Do what a page asks for, after all that pages asked for before."""
+        self._waiting.put_nowait((page, message))
+        if self._worker is None:
+            self._worker = asyncio.get_running_loop().create_task(self._work())
+
+    # --- what pages are told -----------------------------------------------------------------------------------
+
+    def _is_available(self) -> bool:
+        """Whether there is a simulation whose world is known."""
+        return bool(self.context.node.get_publishers_info_by_topic(_DESCRIPTION))
+
+    def _review(self) -> None:
+        available = self._is_available()
+        if available != self._available:
+            self._available = available
+            self._tell()
+
+    def _state(self) -> ModellingState:
+        edited = self._edited
+        if edited is None:
+            return ModellingState(self._available, self._active, None, False, False, False, [])
+        from linkwright.viewer.features.modelling.things import things_of
+
+        file = None if edited.file is None else str(edited.file)
+        things = things_of(edited.world)
+        return ModellingState(
+            self._available, self._active, file, edited.unsaved, edited.can_undo, edited.can_redo, things
+        )
+
+    def _tell(self) -> None:
+        self.context.pages.publish(self._state())
+
+    # --- what they ask for -------------------------------------------------------------------------------------
+
+    async def _work(self) -> None:
+        """Do what was asked for, one thing after the other: reading a large world takes a while."""
+        from linkwright.sdf.editing import EditError
+
+        while True:
+            page, message = await self._waiting.get()
+            try:
+                await self._do(page, message)
+            except EditError as error:
+                refuse(page, error.message)
+            except LinkwrightError as error:
+                found = error.diagnostics[0]
+                refuse(page, f"{found.span}: {found.message}" if found.span else found.message)
+            except Exception as error:  # noqa: BLE001  # a mistake of ours is no reason to edit no more
+                self.context.node.get_logger().error(f"The world cannot be edited: {type(error).__name__}: {error}")
+                refuse(page, f"{type(error).__name__}: {error}")
+
+    async def _do(self, page: Page, message: PageMessage) -> None:
+        if isinstance(message, AskModels):
+            from linkwright.viewer.features.modelling.things import choices
+
+            page.send(await asyncio.to_thread(choices, self.context.finder))
+        elif isinstance(message, SetModelling):
+            await self._set_active(page, message.active)
+        elif isinstance(message, SaveWorld):
+            edited = await self._world()
+            await asyncio.to_thread(edited.save, message.path)
+            self._tell()
+        else:
+            edited = await self._world()
+            await asyncio.to_thread(_edit(edited, message))
+            self._tell()
+            if self._waiting.empty():
+                await self._load(page, edited)
+
+    async def _set_active(self, page: Page, active: bool) -> None:
+        if active == self._active:
+            return
+        if active:
+            await self._world()
+            await self._ask(page, _EMPTY, "/pause_physics")
+            await self._ask(page, _EMPTY, "/reset_simulation")
+        else:
+            await self._ask(page, _EMPTY, "/unpause_physics")
+        self._active = active
+        self._tell()
+
+    async def _world(self) -> EditedWorld:
+        """The world that is edited, read again where its file was changed and nothing here is unsaved."""
+        from linkwright.viewer.features.modelling.edited_world import EditedWorld
+
+        edited, packages = self._edited, self.context.finder
+        if edited is not None and edited.file is not None:
+            if not edited.unsaved and await asyncio.to_thread(lambda: edited.is_outdated):
+                self._edited = await asyncio.to_thread(EditedWorld.of_file, edited.file, packages)
+        elif edited is None and self._name:
+            from linkwright.viewer.features.modelling.things import world_file
+
+            path = await asyncio.to_thread(world_file, self._name, packages)
+            self._edited = await asyncio.to_thread(EditedWorld.of_file, path, packages)
+        elif edited is None:
+            self._edited = await asyncio.to_thread(EditedWorld.of_text, await self._described(), packages)
+        assert self._edited is not None, "one of these is so"
+        return self._edited
+
+    async def _described(self) -> str:
+        """What the simulator tells about its world.
+
+        Raises:
+            EditError: it tells nothing.
+        """
+        from linkwright.sdf.editing import EditError
+
+        node = self.context.node
+        told: asyncio.Future[str] = asyncio.get_running_loop().create_future()
+
+        def take(message: Any) -> None:
+            if not told.done():
+                told.set_result(message.data)
+
+        subscription = node.create_subscription(get_message("std_msgs/msg/String"), _DESCRIPTION, take, _LATCHED)
+        try:
+            return await asyncio.wait_for(told, _PATIENCE if self._is_available() else 0)
+        except asyncio.TimeoutError:
+            raise EditError(phrase("there is no world to edit: no simulation tells about its own")) from None
+        finally:
+            node.destroy_subscription(subscription)
+
+    async def _load(self, page: Page, edited: EditedWorld) -> None:
+        """Have the simulation make its world that of the text."""
+        resource = get_message("simulation_interfaces/msg/Resource")
+        named = resource(uri=str(edited.path.absolute()), resource_string=edited.world.text)
+        fields = {"world_resource": named, "ignore_missing_or_unsupported_assets": True}
+        await self._ask(page, _LOAD, "/load_world", fields)
+
+    async def _ask(self, page: Page, kind: str, name: str, fields: dict[str, Any] | None = None) -> None:
+        """Call a service and wait for its answer."""
+        done: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+
+        def answered(_: Any) -> None:
+            if not done.done():
+                done.set_result(None)
+
+        self._services.ask(page, kind, name, fields or {}, answered)
+        try:
+            await asyncio.wait_for(done, _PATIENCE)
+        except asyncio.TimeoutError:
+            refuse(page, phrase("'{name}' did not answer", name=name))
+
+
+def _edit(edited: EditedWorld, message: PageMessage) -> Callable[[], None]:
+    """What a message does to a world; heavy, for a thread."""
+    from linkwright.viewer.features.modelling.things import changed
+
+    if isinstance(message, UndoWorld):
+        return edited.undo
+    if isinstance(message, RedoWorld):
+        return edited.redo
+    return partial(edited.edit, partial(changed, message=message))

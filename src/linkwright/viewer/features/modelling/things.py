@@ -1,0 +1,124 @@
+"""What pages are told about a world that is edited, and what their messages do to it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from linkwright.diagnostics import phrase
+from linkwright.packages import PackageFinder
+from linkwright.sdf.editing import (
+    Change,
+    EditError,
+    Thing,
+    WorldText,
+    add_include,
+    add_light,
+    add_shape,
+    change,
+    copy,
+    delete,
+    group,
+    pose_of_thing,
+    ungroup,
+)
+from linkwright.sdf.models import Include
+from linkwright.sdf.resources import Missing, ResourceFinder, model_file
+from linkwright.viewer.protocol.message import PageMessage
+from linkwright.viewer.protocol.modelling import (
+    AddThing,
+    ChangeThings,
+    CopyThings,
+    DeleteThings,
+    GroupThings,
+    ModelChoice,
+    ModelChoices,
+    ThingChange,
+    UngroupThing,
+    WorldThing,
+)
+
+
+def things_of(world: WorldText) -> list[WorldThing]:
+    """The models and lights of a world."""
+    return [_thing(each) for each in world.things.values()]
+
+
+def _thing(thing: Thing) -> WorldThing:
+    pose, shape = pose_of_thing(thing), thing.shape
+    colour = shape.colour if shape is not None else thing.light.diffuse if thing.light is not None else None
+    return WorldThing(
+        name=thing.name,
+        kind=thing.kind,
+        pose=[*pose.xyz, *pose.rpy],
+        static=thing.static,
+        shape=shape.kind if shape is not None else None,
+        size=list(shape.size) if shape is not None else [],
+        colour=list(colour) if colour is not None else None,
+        address=thing.written.uri.strip() if isinstance(thing.written, Include) else None,
+        parts=list(thing.parts),
+    )
+
+
+def choices(packages: PackageFinder) -> ModelChoices:
+    """The models on the search path."""
+    found = ResourceFinder(packages).models()
+    names = sorted(name for name, folder in found.items() if not isinstance(model_file(folder), Missing))
+    return ModelChoices([ModelChoice(name, f"model://{name}") for name in names])
+
+
+def world_file(name: str, packages: PackageFinder) -> Path:
+    """The file of a world, by its path or by a name on the search path.
+
+    Raises:
+        EditError: there is none.
+    """
+    path = Path(name).expanduser()
+    if path.is_file():
+        return path.absolute()
+    known = ResourceFinder(packages).worlds()
+    found = known.get(name) or known.get(name.partition(".")[0])
+    if found is None:
+        raise EditError(phrase("there is no world '{name}'", name=name))
+    return found
+
+
+def changed(world: WorldText, message: PageMessage) -> WorldText:
+    """A world with what a page asks for.
+
+    Raises:
+        EditError: it cannot be.
+    """
+    match message:
+        case AddThing("model", address, pose, _):
+            return add_include(world, address, pose)[0]
+        case AddThing("box" | "cylinder" | "sphere" | "wall" | "ramp" as kind, _, pose, size):
+            return add_shape(world, kind, pose, size)[0]
+        case AddThing("point_light", _, pose, _):
+            return add_light(world, "point", pose)[0]
+        case AddThing("directional_light", _, pose, _):
+            return add_light(world, "directional", pose)[0]
+        case AddThing(_, _, pose, _):
+            return add_light(world, "spot", pose)[0]
+        case ChangeThings(changes):
+            return change(world, map(_change, changes))
+        case CopyThings(names, offset):
+            return copy(world, names, offset)[0]
+        case DeleteThings(names):
+            return delete(world, names)
+        case GroupThings(names, name):
+            return group(world, names, name)
+        case UngroupThing(name):
+            return ungroup(world, name)[0]
+        case _:
+            raise TypeError(f"{type(message).__name__} changes no world")
+
+
+def _change(wanted: ThingChange) -> Change:
+    return Change(
+        wanted.name,
+        pose=None if wanted.pose is None else tuple(wanted.pose),
+        size=None if wanted.size is None else tuple(wanted.size),
+        new_name=wanted.new_name,
+        static=wanted.static,
+        colour=None if wanted.colour is None else tuple(wanted.colour),
+    )
