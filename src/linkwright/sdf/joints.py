@@ -95,7 +95,7 @@ class Joint:
         axis: its first axis; None for a joint that has none.
         axis2: its second, of joints of two.
         thread_pitch: of a screw, in metres for each revolution (``screw_thread_pitch``); None where not given.
-        gearbox_ratio: of a gearbox, how often the parent turns while the child turns once.
+        gearbox_ratio: of a gearbox, how often the child turns, the other way round, while the parent turns once.
         gearbox_reference_body: of a gearbox, the link that both turn against.
         sensors: force-torque sensors.
     """
@@ -251,7 +251,10 @@ JOINT = ElementRule(
             get=unwritten,
         ),
         value(
-            "gearbox_ratio", NUMBER, "how often the parent of a gearbox turns for one turn of the child", default="1"
+            "gearbox_ratio",
+            NUMBER,
+            "how often the child of a gearbox turns, the other way round, for one turn of its parent",
+            default="1",
         ),
         value("gearbox_reference_body", TEXT, "the link that both sides of a gearbox turn against", default=""),
         made(

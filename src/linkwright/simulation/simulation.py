@@ -19,7 +19,7 @@ from linkwright.sdf.worlds import World, gravity_of, physics_of
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.scene.bodies import COLLISION_GROUP
 from linkwright.simulation.scene.compiling import compiled, count_links, refused_models
-from linkwright.simulation.scene.figures import let_walk
+from linkwright.simulation.scene.figures import let_walk, put_kinematic
 from linkwright.simulation.scene.meshes import MeshLibrary
 from linkwright.simulation.scene.scene import Scene
 from linkwright.simulation.schedule import Schedule, Task
@@ -389,12 +389,18 @@ class Simulation:
         return self._is_free(self._root(name)[0])
 
     def set_model_pose(self, name: str, pose: Transform) -> None:
-        """Put a model elsewhere; it stands still there.
+        """Put a model elsewhere; it stands still there. Kinematic links move only so.
 
         Raises:
             KeyError: there is no such model.
             LinkwrightError: SIM103 it cannot be moved, as it is fixed to the world.
         """
+        self.refresh()
+        scene_model = self.scene.models[name]
+        moved = compose(pose, invert(scene_model.pose))
+        if put_kinematic(scene_model.structure, moved, self.model, self.data):
+            self._current = False
+            return
         if not self.moves_freely(name):
             raise LinkwrightError(Diagnostic("SIM103", phrase("'{name}' is fixed to the world", name=name)))
         root, offset = self._root(name)

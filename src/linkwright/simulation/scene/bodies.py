@@ -22,6 +22,7 @@ from linkwright.sdf.joints import Axis
 from linkwright.sdf.links import Collision, Inertia, Inertial, Link, Visual
 from linkwright.sdf.poses import RawPose
 from linkwright.simulation.library import load_mujoco
+from linkwright.simulation.scene.couplings import THREAD
 from linkwright.simulation.scene.meshes import MeshLibrary
 from linkwright.simulation.scene.shapes import add_shape
 from linkwright.simulation.scene.structure import PlacedJoint
@@ -121,6 +122,9 @@ class BodyWriter:
                 axis=list(rotate(in_child[3:], direction)),
             )
             self._limit(joint, axis, endless=kind == "continuous")
+            if kind == "screw":
+                place, along = list(in_child[:3]), list(rotate(in_child[3:], direction))
+                body.add_joint(name=placed.name + THREAD, type=kinds.mjJNT_SLIDE, pos=place, axis=along)
 
     def _limit(self, joint: Any, axis: Axis, *, endless: bool) -> None:
         limit, dynamics = axis.limit, axis.dynamics

@@ -21,6 +21,7 @@ from linkwright.sdf.worlds import World
 from linkwright.simulation.scene.bodies import BodyWriter
 from linkwright.simulation.scene.meshes import MeshLibrary
 from linkwright.simulation.scene.shapes import set_pose
+from linkwright.simulation.scene.structure import Structure
 from linkwright.xmltree import Element
 from linkwright.xmltree.reader import parse_file
 
@@ -111,10 +112,30 @@ def let_walk(figures: Iterable[Figure], model: Any, data: Any, seconds: float) -
             continue
         pose = figure.pose_at(seconds)
         for placed in figure.links:
-            x, y, z, qx, qy, qz, qw = compose(pose, placed.pose)
-            place = model.body(placed.name).mocapid[0]
-            data.mocap_pos[place] = x, y, z
-            data.mocap_quat[place] = qw, qx, qy, qz
+            _put(int(model.body(placed.name).mocapid[0]), compose(pose, placed.pose), data)
+
+
+def put_kinematic(structure: Structure, moved: Transform, model: Any, data: Any) -> bool:
+    """Put the kinematic links of a model elsewhere, in MuJoCo's data; whether there are any.
+
+    Args:
+        structure: the links of the model.
+        moved: from the frame in which they were at first to that in which they are to be.
+        model: MuJoCo's model.
+        data: its data.
+    """
+    links = [held.link for held in structure.links]
+    driven = {int(model.body(link.name).mocapid[0]): link for link in links}
+    driven.pop(-1, None)
+    for place, link in driven.items():
+        _put(place, compose(moved, link.pose), data)
+    return bool(driven)
+
+
+def _put(place: int, pose: Transform, data: Any) -> None:
+    x, y, z, qx, qy, qz, qw = pose
+    data.mocap_pos[place] = x, y, z
+    data.mocap_quat[place] = qw, qx, qy, qz
 
 
 def _hips(actor: Actor, meshes: MeshLibrary) -> Vector3:

@@ -17,6 +17,7 @@ from linkwright.sdf.poses import SEPARATOR, WORLD
 from linkwright.sdf.worlds import World, gravity_of, physics_of
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.scene.bodies import SECOND_AXIS, BodyWriter, hinge_anchors
+from linkwright.simulation.scene.couplings import geared, threaded
 from linkwright.simulation.scene.figures import draw, figures_of
 from linkwright.simulation.scene.meshes import MeshLibrary
 from linkwright.simulation.scene.shapes import set_pose
@@ -185,8 +186,12 @@ class Scene:
                 added.parts.append(body)
         for held in structure.links:
             added.parts += self._mimicry(held.joint, name)
+            if held.joint is not None and held.joint.name in self.joints:
+                added.parts += threaded(self.spec, held.joint)
         for joint in structure.loops:
             added.parts += self._closed(joint, poses)
+            if joint.joint.type == "gearbox":
+                added.parts += geared(self.spec, joint, self._moving(name))
         added.parts += self._strangers(structure)
         return added
 
@@ -307,9 +312,12 @@ class Scene:
         parent, above = self.spec.worldbody, IDENTITY
         if joint is not None and joint.parent != WORLD:
             parent, above = self.bodies[joint.parent], poses[joint.parent]
-        body = self.bodies[placed.name] = parent.add_body(name=placed.name)
+        driven = (
+            joint is None and link.kinematic and not placed.static
+        )  # it moves where it is put, and nothing moves it
+        body = self.bodies[placed.name] = parent.add_body(name=placed.name, mocap=driven)
         set_pose(body, compose(invert(above), placed.pose))
-        fixed = placed.static or (joint is None and link.kinematic)
+        fixed = placed.static or driven
         if not fixed:
             self._writer.give_mass(body, link, placed.frames)
             body.gravcomp = 0.0 if link.gravity else 1.0
@@ -323,6 +331,11 @@ class Scene:
         self._writer.add_visuals(body, link, placed.frames, fixed=fixed)
         self._writer.add_collisions(body, link, placed.frames, fixed=fixed)
         return body
+
+    def _moving(self, model: str) -> list[PlacedJoint]:
+        """The joints of a model that move."""
+        held = self.models[model].structure.links
+        return [each.joint for each in held if each.joint is not None and each.joint.name in self.joints]
 
     def _mimicry(self, joint: PlacedJoint | None, model: str) -> Iterator[Any]:
         """What makes axes of a joint follow those of others."""

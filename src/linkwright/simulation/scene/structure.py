@@ -113,7 +113,8 @@ def _trees(links: dict[str, PlacedLink], joints: Iterable[PlacedJoint]) -> Struc
     loops: list[PlacedJoint] = []
     held: dict[str, list[str]] = {}
     for joint in joints:
-        if joint.child in holding or _holds(holding, joint.child, joint.parent):
+        is_taken = joint.child in holding or _holds(holding, joint.child, joint.parent)
+        if is_taken or joint.joint.type == "gearbox":  # which couples joints, and holds nothing
             loops.append(joint)
         else:
             holding[joint.child] = joint

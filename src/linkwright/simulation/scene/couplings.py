@@ -1,0 +1,59 @@
+"""Joints that move together: the thread of a screw, and gears."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from math import tau
+from typing import Any
+
+from linkwright.geometry.single import rotate
+from linkwright.geometry.vectors import Vector3
+from linkwright.simulation.library import load_mujoco
+from linkwright.simulation.scene.structure import PlacedJoint
+
+THREAD = "#thread"
+"""What the name of the joint ends in along which a screw moves while it turns."""
+_STEPS = 4.0
+"""The time constant of what couples joints, in steps."""
+
+
+def threaded(spec: Any, joint: PlacedJoint) -> Iterator[Any]:
+    """What lets a screw move along its axis, by its pitch (m a revolution) each time it has turned round."""
+    if joint.joint.type == "screw" and joint.axes:
+        pitch = joint.joint.thread_pitch or 0.0
+        yield _coupled(spec, joint.name + THREAD, joint.name, pitch / tau)
+
+
+def geared(spec: Any, gear: PlacedJoint, joints: Iterable[PlacedJoint]) -> Iterator[Any]:
+    """What turns the child of a gearbox ``-gearbox_ratio`` times as far as its parent (SDFormat, ``joint.sdf``).
+
+    Args:
+        spec: the specification.
+        gear: the gearbox.
+        joints: those that move; both links turn about such a joint.
+    """
+    holding = {each.child: each for each in joints if each.axes}
+    parent, child = holding.get(gear.parent), holding.get(gear.child)
+    if parent is None or child is None or not gear.axes:
+        return
+    first, second = gear.axes[0], gear.axes[-1]
+    along = _sign(_in_world(gear, first[1]), parent) * _sign(_in_world(gear, second[1]), child)
+    yield _coupled(spec, child.name, parent.name, -gear.joint.gearbox_ratio * along)
+
+
+def _coupled(spec: Any, follower: str, leader: str, factor: float) -> Any:
+    equality = spec.add_equality(type=load_mujoco().mjtEq.mjEQ_JOINT)
+    equality.name1, equality.name2 = follower, leader
+    equality.data[:5] = [0.0, factor, 0.0, 0.0, 0.0]
+    equality.solref = [_STEPS * spec.option.timestep, 1.0]
+    return equality
+
+
+def _in_world(joint: PlacedJoint, direction: Vector3) -> Vector3:
+    return rotate(joint.pose[3:], direction)
+
+
+def _sign(direction: Vector3, joint: PlacedJoint) -> float:
+    """Whether a joint turns about a direction, 1, or against it, -1."""
+    axis = _in_world(joint, joint.axes[0][1])
+    return -1.0 if sum(a * b for a, b in zip(axis, direction, strict=True)) < 0.0 else 1.0

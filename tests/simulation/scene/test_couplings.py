@@ -1,0 +1,66 @@
+"""Screws, gears, and links that move where they are put."""
+
+from __future__ import annotations
+
+from math import tau
+
+import pytest
+
+from tests.simulation.worlds import box, simulated
+
+SECOND = 1_000_000_000
+BODY = "<inertial><mass>1</mass><inertia><ixx>.1</ixx><iyy>.1</iyy><izz>.1</izz></inertia></inertial>"
+
+
+def wheel(name: str, y: float, axis: str) -> str:
+    """A wheel on a fixed axle."""
+    return (
+        f'<link name="{name}"><pose>0 {y} 0 0 0 0</pose>{BODY}</link><joint name="{name}_axle" type="revolute">'
+        f"<parent>world</parent><child>{name}</child><axis><xyz>{axis}</xyz></axis></joint>"
+    )
+
+
+def gears(ratio: float, axis: str = "1 0 0", first: bool = False) -> str:
+    gearbox = (
+        '<joint name="gears" type="gearbox"><parent>a</parent><child>b</child>'
+        f"<gearbox_ratio>{ratio}</gearbox_ratio><gearbox_reference_body>world</gearbox_reference_body>"
+        "<axis><xyz>1 0 0</xyz></axis><axis2><xyz>1 0 0</xyz></axis2></joint>"
+    )
+    wheels = wheel("a", 0, "1 0 0") + wheel("b", 1, axis)
+    return f'<model name="m">{gearbox + wheels if first else wheels + gearbox}</model>'
+
+
+@pytest.mark.parametrize("first", [True, False])
+@pytest.mark.parametrize(("axis", "turns"), [("1 0 0", 1.5), ("-1 0 0", -1.5)])
+def test_the_child_of_a_gearbox_turns_minus_its_ratio_times_as_far(axis, turns, first):
+    simulation = simulated(gears(-1.5, axis, first))
+    simulation.push_joint("m::a_axle", 1.0)
+    simulation.advance(SECOND)
+    turned, _ = simulation.joint_state("m::a_axle")
+    assert turned > 0.1
+    assert simulation.joint_state("m::b_axle")[0] == pytest.approx(turns * turned, abs=1e-3)
+
+
+def test_a_screw_moves_by_its_pitch_each_time_it_has_turned_round():
+    screw = (
+        f'<model name="m"><link name="nut">{BODY}</link><joint name="screw" type="screw"><parent>world</parent>'
+        "<child>nut</child><screw_thread_pitch>0.01</screw_thread_pitch><axis><xyz>0 0 1</xyz></axis></joint></model>"
+    )
+    simulation = simulated(screw, gravity="0 0 0")
+    simulation.push_joint("m::screw", 1.0)
+    simulation.advance(SECOND)
+    turned, _ = simulation.joint_state("m::screw")
+    assert turned > 1.0
+    assert simulation.link_pose("m::nut")[2] == pytest.approx(0.01 * turned / tau, abs=1e-4)
+
+
+def test_a_kinematic_model_stays_where_it_is_put_and_pushes_what_is_in_its_way():
+    shape = '<collision name="c"><geometry><box><size>1 1 1</size></box></geometry></collision>'
+    lift = f'<model name="lift"><pose>0 0 0.5 0 0 0</pose><link name="l"><kinematic>1</kinematic>{shape}</link></model>'
+    simulation = simulated(lift, box("crate", pose="0 0 1.5 0 0 0"))
+    simulation.advance(SECOND // 10)
+    assert simulation.model_pose("lift")[:3] == pytest.approx((0, 0, 0.5))
+    simulation.set_model_pose("lift", (0.0, 0.0, 0.52, 0.0, 0.0, 0.0, 1.0))
+    simulation.advance(SECOND)
+    assert simulation.model_pose("lift")[:3] == pytest.approx((0, 0, 0.52))
+    assert simulation.model_pose("crate")[2] == pytest.approx(1.52, abs=5e-3)
