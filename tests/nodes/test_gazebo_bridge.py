@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from io import BytesIO
 from pathlib import Path
 
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
+from linkwright.graph import DurabilityPolicy, QoSProfile
 from linkwright.messages import get_message
 from linkwright.nodes import NodeOptions
 from linkwright.nodes.gazebo.bridge import BridgedTopic, ImageBridge, ParameterBridge, topic_of_word, topics_of_file
@@ -143,3 +145,114 @@ async def test_images(stage):
     await stage.graph.settle()
     assert [message.width for message in images] == [4]
     bridge.close()
+
+
+async def test_a_lazy_bridge_listens_only_while_somebody_hears_it(stage, tmp_path: Path):
+    kind = "std_msgs/msg/String"
+    path = tmp_path / "bridge.yaml"
+    path.write_text(
+        f"- ros_topic_name: ros\n  gz_topic_name: gz\n  ros_type_name: {kind}\n  gz_type_name: gz.msgs.StringMsg\n"
+        "  direction: GZ_TO_ROS\n  lazy: true\n  publisher_queue: 3\n  subscriber_queue: 4\n",
+        encoding="utf-8",
+    )
+    ParameterBridge(stage.graph, stage.options({"config_file": str(path)}))
+    source = publisher(stage, kind, "/gz")
+    await stage.graph.settle()
+    assert source.get_subscription_count() == 0
+    heard_by = stage.node.create_subscription(get_message(kind), "/ros", lambda message: None, 10)
+    await stage.graph.settle()
+    assert source.get_subscription_count() == 1
+    (told,) = stage.node.get_publishers_info_by_topic("/ros")
+    assert told.qos_profile.depth == 3
+    stage.node.destroy_subscription(heard_by)
+    await stage.graph.settle()
+    assert source.get_subscription_count() == 0
+
+
+async def test_parameters_override_the_quality_of_service(stage):
+    kind = "tf2_msgs/msg/TFMessage"
+    word = f"/model/robot/pose_static@{kind}[gz.msgs.Pose_V"
+    overrides = {"qos_overrides": {"/tf_static": {"publisher": {"durability": "transient_local"}}}}
+    options = NodeOptions(
+        arguments=[word], remappings=[("/model/robot/pose_static", "/tf_static")], parameters=overrides
+    )
+    ParameterBridge(stage.graph, options)
+    publisher(stage, kind, "/model/robot/pose_static").publish(get_message(kind)())
+    await stage.graph.settle()
+    late = []
+    latched = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    stage.node.create_subscription(get_message(kind), "/tf_static", late.append, latched)
+    await stage.graph.settle()
+    assert len(late) == 1
+
+
+async def test_poses_become_what_is_asked_for(stage, said):
+    transform = get_message("geometry_msgs/msg/TransformStamped")()
+    transform.header.frame_id, transform.transform.translation.x = "robot", 2.0
+    kinds = ("Pose", "PoseStamped", "Transform", "PoseArray")
+    results = {kind: heard(stage, f"geometry_msgs/msg/{kind}", f"/{kind}") for kind in kinds}
+    words = [f"/one@geometry_msgs/msg/{kind}[gz.msgs.Pose" for kind in kinds[:3]]
+    for kind, word in zip(kinds[:3], words, strict=True):
+        name = f"bridge_{kind.lower()}"
+        ParameterBridge(stage.graph, NodeOptions(name=name, arguments=[word], remappings=[("/one", f"/{kind}")]))
+    word = "/many@geometry_msgs/msg/PoseArray[gz.msgs.Pose_V"
+    ParameterBridge(stage.graph, NodeOptions(arguments=[word], remappings=[("/many", "/PoseArray")]))
+    publisher(stage, "geometry_msgs/msg/TransformStamped", "/one").publish(transform)
+    publisher(stage, "tf2_msgs/msg/TFMessage", "/many").publish(get_message("tf2_msgs/msg/TFMessage")([transform]))
+    await stage.graph.settle()
+    assert results["Pose"][0].position.x == results["PoseStamped"][0].pose.position.x == 2.0
+    assert results["Transform"][0].translation.x == results["PoseArray"][0].poses[0].position.x == 2.0
+    assert results["PoseStamped"][0].header.frame_id == results["PoseArray"][0].header.frame_id == "robot"
+    word = "/one@geometry_msgs/msg/Pose]gz.msgs.Pose"
+    ParameterBridge(stage.graph, NodeOptions(name="back", arguments=[word]))
+    assert said("WARN") == [
+        "/one is not bridged: geometry_msgs/msg/Pose does not become geometry_msgs/msg/TransformStamped"
+    ]
+
+
+async def test_names_of_gz_may_be_in_the_namespace_of_the_bridge(stage):
+    kind = "std_msgs/msg/String"
+    ros = heard(stage, kind, "/ros")
+    options = NodeOptions(
+        arguments=[f"chatter@{kind}[gz.msgs.StringMsg"],
+        namespace="/demo",
+        parameters={"expand_gz_topic_names": True},
+        remappings=[("chatter", "/ros")],
+    )
+    ParameterBridge(stage.graph, options)
+    publisher(stage, kind, "/demo/chatter").publish(get_message(kind)(data="hello"))
+    await stage.graph.settle()
+    assert [message.data for message in ros] == ["hello"]
+
+
+@pytest.mark.parametrize(("encoding", "pixel"), [("rgb8", [200, 100, 50]), ("bgr8", [50, 100, 200]), ("mono8", [120])])
+async def test_images_are_there_as_jpeg_while_somebody_listens(stage, encoding, pixel):
+    images = pytest.importorskip("PIL.Image")
+    kind = "sensor_msgs/msg/Image"
+    ImageBridge(stage.graph, NodeOptions(arguments=["/camera"]))
+    camera = publisher(stage, kind, "/camera")
+    await stage.graph.settle()
+    assert camera.get_subscription_count() == 0
+    pictures = heard(stage, "sensor_msgs/msg/CompressedImage", "/camera/compressed")
+    await stage.graph.settle()
+    step = 8 * len(pixel)
+    camera.publish(get_message(kind)(width=8, height=8, encoding=encoding, step=step, data=pixel * 64))
+    await stage.graph.settle()
+    camera.publish(get_message(kind)(width=8, height=8, encoding="16UC1", step=16, data=[0] * 128))
+    await stage.graph.settle()
+    (picture,) = pictures
+    assert picture.format.startswith(f"{encoding}; jpeg compressed")
+    shown = images.open(BytesIO(bytes(picture.data)))
+    found = shown.getpixel((4, 4))
+    expected = [120] if encoding == "mono8" else [200, 100, 50]
+    assert list(found if isinstance(found, tuple) else (found,)) == pytest.approx(expected, abs=6)
+
+
+@pytest.mark.parametrize(
+    ("more", "message"), [("publisher_queue: many", "'publisher_queue' is no number"), ("lazy: 3", "'lazy' is neither")]
+)
+def test_settings_of_a_topic_that_are_none(more, message, tmp_path: Path):
+    path = tmp_path / "bridge.yaml"
+    path.write_text(f"- topic_name: a\n  ros_type_name: b/msg/C\n  gz_type_name: c\n  {more}\n", encoding="utf-8")
+    with pytest.raises(LinkwrightError, match=message):
+        topics_of_file(str(path))

@@ -6,6 +6,7 @@ from contextlib import asynccontextmanager
 
 import pytest
 
+from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import CLOCK_QOS, DurabilityPolicy, Graph, QoSProfile
 from linkwright.messages import get_message, get_service
 from linkwright.nodes.options import NodeOptions
@@ -224,3 +225,21 @@ async def test_a_robot_can_be_there_from_the_start(tmp_path):
     there = {"robot_description": URDF, "robot_name": "r", "robot_pose": [1.0, 2.0, 0.5, 0.0, 0.0, 0.0]}
     async with simulator(tmp_path, **there) as it:
         assert it.simulator.server.simulation.model_pose("r")[:3] == (1.0, 2.0, 0.5)
+
+
+async def test_a_world_may_be_given_as_text_or_by_the_names_of_ros_gz(tmp_path):
+    text = f'<sdf version="1.7"><world name="told">{box("crate", "0 0 1 0 0 0")}</world></sdf>'
+    async with simulator(tmp_path, world_sdf_string=text) as it:
+        answer = await it.ask("gazebo_msgs/srv/GetModelList", "/get_model_list")
+        assert answer.model_names == ["crate"]
+    path = tmp_path / "other.sdf"
+    path.write_text(text.replace("crate", "chest"), encoding="utf-8")
+    async with simulator(tmp_path, world_sdf_file=str(path)) as it:
+        answer = await it.ask("gazebo_msgs/srv/GetModelList", "/get_model_list")
+        assert answer.model_names == ["chest"]
+
+
+async def test_a_world_that_is_given_as_text_and_is_none_is_told_of(tmp_path):
+    with pytest.raises(LinkwrightError, match="world_sdf_string"):
+        async with simulator(tmp_path, world_sdf_string="<sdf"):
+            pass

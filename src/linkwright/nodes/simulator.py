@@ -22,6 +22,8 @@ _LEFT_OUT = frozenset({"SDF150", "SDF160", "SDF161"})
 """The codes of what is unknown or not to be found."""
 _PARAMETERS: dict[str, Any] = {
     "world": _EMPTY,
+    "world_sdf_file": "",
+    "world_sdf_string": "",
     "publish_rate": 10.0,
     "real_time_factor": 0.0,
     "step": 0.0,
@@ -44,6 +46,8 @@ class Simulator(SingleNode):
 
     ``world``
         the file; the only argument of its command line that is none of ROS's means the same. ``empty``: a plane.
+    ``world_sdf_file``, ``world_sdf_string``
+        as gzserver of ros_gz_sim has them: the file, or the text of the world.
     ``publish_rate``
         how often a simulated second ``/clock`` tells the time, in Hz.
     ``real_time_factor``
@@ -83,7 +87,9 @@ class Simulator(SingleNode):
         self.finished: asyncio.Future[int] = loop.create_future()
         with starting(self._node):
             said = {name: self._node.declare_parameter(name, value).value for name, value in _PARAMETERS.items()}
-            loaded = load_world(words[0] if words else said["world"])
+            text = said["world_sdf_string"] or None
+            file = "world_sdf_string" if text else said["world_sdf_file"] or said["world"]
+            loaded = load_world(words[0], None) if words else load_world(file, text)
             remarkable = (
                 each for each in loaded.diagnostics if each.severity is Severity.ERROR or each.code in _LEFT_OUT
             )

@@ -13,17 +13,27 @@ from typing import Any
 import yaml
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
-from linkwright.graph import Graph, MessageInfo, Publisher, QoSProfile, ReliabilityPolicy
+from linkwright.graph import Graph, MessageInfo, Node, Publisher, QoSProfile, ReliabilityPolicy, Subscription
+from linkwright.graph.endpoints.event_types import PublisherEventCallbacks, QoSMatchedInfo
+from linkwright.graph.names.rules import join
+from linkwright.graph.parameters.qos_overrides import QoSOverridingOptions
+from linkwright.graph.qos.profile import QoSPolicyKind
 from linkwright.input_files import read_text
 from linkwright.messages import get_message
+from linkwright.nodes.gazebo.compressed import compressed
+from linkwright.nodes.gazebo.conversions import TYPES_OF_GZ, conversion
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 
 _DIRECTIONS = {"[": "GZ_TO_ROS", "]": "ROS_TO_GZ", "@": "BIDIRECTIONAL"}
 _IMAGE = ("sensor_msgs/msg/Image", "gz.msgs.Image")
 _CLOCK = "rosgraph_msgs/msg/Clock"
-_OF_GZ = {"gz.msgs.Twist": "geometry_msgs/msg/Twist"}
-"""The type that a topic of gz has in the graph, for types that bridges turn into more than one of ROS."""
-_LISTENING = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
+_COMPRESSED = "sensor_msgs/msg/CompressedImage"
+_Side = tuple[Node, str, str]
+"""A node, a topic and its type."""
+_OVERRIDABLE = QoSOverridingOptions(
+    (QoSPolicyKind.DEPTH, QoSPolicyKind.DURABILITY, QoSPolicyKind.HISTORY, QoSPolicyKind.RELIABILITY)
+)
+_QUEUE = 10
 
 
 @dataclass(frozen=True)
@@ -36,6 +46,8 @@ class BridgedTopic:
         ros_type: such as ``sensor_msgs/msg/Imu``.
         gz_type: such as ``gz.msgs.IMU``.
         direction: ``GZ_TO_ROS``, ``ROS_TO_GZ`` or ``BIDIRECTIONAL``.
+        publisher_queue, subscriber_queue: how many messages wait on each way out and in.
+        lazy: whether messages are taken only while somebody listens on the other side; None for what the node says.
     """
 
     ros_topic: str
@@ -43,9 +55,36 @@ class BridgedTopic:
     ros_type: str
     gz_type: str
     direction: str = "BIDIRECTIONAL"
+    publisher_queue: int = _QUEUE
+    subscriber_queue: int = _QUEUE
+    lazy: bool | None = None
+
+
+class _Way:
+    """Messages on their way from a topic of one node to that of another.
+
+    Args:
+        listen: makes the subscription.
+        lazy: whether there is one only while somebody hears what is sent on.
+    """
+
+    def __init__(self, listen: Callable[[], Subscription[Any]], *, lazy: bool) -> None:
+        self._listen = listen
+        self._subscription = None if lazy else listen()
+
+    def matched(self, info: QoSMatchedInfo) -> None:
+        """Listen while somebody hears it."""
+        if info.current_count and self._subscription is None:
+            self._subscription = self._listen()
+        elif not info.current_count and self._subscription is not None:
+            self._subscription.destroy()
+            self._subscription = None
 
 
 class _Bridge(SingleNode):
+    _lazy = False
+    _expands = False
+
     def _connect(self, graph: Graph, topics: Sequence[BridgedTopic]) -> None:
         # Names of gz are not remapped: that side is a node of its own, hidden.
         self._gz_node = graph.create_node(f"_{self._node.get_name()}_gz", namespace=self._node.get_namespace())
@@ -60,35 +99,57 @@ class _Bridge(SingleNode):
 
     def _join(self, topic: BridgedTopic) -> None:
         try:
-            ros_class = get_message(topic.ros_type)
+            get_message(topic.ros_type)
         except LinkwrightError:
             self._node.get_logger().warning(f"{topic.ros_topic} is not bridged: there is no type {topic.ros_type}")
             return
-        gz_class = get_message(_OF_GZ.get(topic.gz_type, topic.ros_type))
-        gz_topic = "/" + topic.gz_topic.lstrip("/")
+        gz_type = TYPES_OF_GZ.get(topic.gz_type, topic.ros_type)
+        gz_topic = "/" + self._gz_name(topic.gz_topic).lstrip("/")
         same_name = self._node.resolve_topic_name(topic.ros_topic) == gz_topic
-        if (same_name and ros_class is gz_class) or topic.ros_type == _CLOCK:  # the simulation publishes /clock itself
+        if (same_name and topic.ros_type == gz_type) or topic.ros_type == _CLOCK:  # the simulation publishes /clock
             return
-        if topic.direction in ("GZ_TO_ROS", "BIDIRECTIONAL") and not (same_name and topic.direction == "BIDIRECTIONAL"):
-            publisher = self._node.create_publisher(ros_class, topic.ros_topic, 10)
-            take = self._handing_on(publisher, _conversion(gz_class, ros_class))
-            self._gz_node.create_subscription(gz_class, gz_topic, take, _LISTENING)
-        if topic.direction in ("ROS_TO_GZ", "BIDIRECTIONAL"):
-            publisher = self._gz_node.create_publisher(gz_class, gz_topic, 10)
-            take = self._handing_on(publisher, _conversion(ros_class, gz_class))
-            self._node.create_subscription(ros_class, topic.ros_topic, take, _LISTENING)
+        to_ros, to_gz = (topic.direction in (way, "BIDIRECTIONAL") for way in ("GZ_TO_ROS", "ROS_TO_GZ"))
+        ros, gz = (self._node, topic.ros_topic, topic.ros_type), (self._gz_node, gz_topic, gz_type)
+        if to_ros and not (same_name and to_gz):
+            self._hand_on(topic, gz, ros)
+        if to_gz:
+            self._hand_on(topic, ros, gz)
 
-    def _handing_on(
-        self, publisher: Publisher[Any], convert: Callable[[Any], Any]
-    ) -> Callable[[Any, MessageInfo], None]:
-        self._publishers.append(publisher)
+    def _gz_name(self, name: str) -> str:
+        """The name of a topic of gz, in the node's namespace if that is asked for."""
+        return join(self._node.get_namespace(), name) if self._expands and not name.startswith("/") else name
+
+    def _hand_on(self, topic: BridgedTopic, source: _Side, target: _Side) -> None:
+        """Hand messages on from a topic of one side to one of the other."""
+        (listening, source_topic, source_type), (sending, target_topic, target_type) = source, target
+        convert = conversion(source_type, target_type)
+        if convert is None:
+            text = f"{topic.ros_topic} is not bridged: {source_type} does not become {target_type}"
+            self._node.get_logger().warning(text)
+            return
+        lazy = self._lazy if topic.lazy is None else topic.lazy
+        publishers: list[Publisher[Any]] = []
 
         def take(message: Any, info: MessageInfo) -> None:
             # What was sent by the bridge comes back where messages go both ways.
             if all(info.publisher_gid != each.gid for each in self._publishers):
-                publisher.publish(convert(message))
+                publishers[0].publish(convert(message))
 
-        return take
+        def listen() -> Subscription[Any]:
+            profile = QoSProfile(topic.subscriber_queue, reliability=ReliabilityPolicy.BEST_EFFORT)
+            return listening.create_subscription(source_type, source_topic, take, profile)
+
+        way = _Way(listen, lazy=lazy)
+        events = PublisherEventCallbacks(matched=way.matched) if lazy else None
+        publisher: Publisher[Any] = sending.create_publisher(
+            target_type,
+            target_topic,
+            topic.publisher_queue,
+            event_callbacks=events,
+            qos_overriding_options=_OVERRIDABLE if sending is self._node else None,
+        )
+        publishers.append(publisher)
+        self._publishers.append(publisher)
 
 
 class ParameterBridge(_Bridge):
@@ -104,19 +165,46 @@ class ParameterBridge(_Bridge):
         self._node, words = create_node(graph, options, self.DEFAULT_NAME)
         with starting(self._node):
             path = str(self._node.declare_parameter("config_file", "").value)
+            self._lazy = bool(self._node.declare_parameter("lazy", False).value)
+            self._expands = bool(self._node.declare_parameter("expand_gz_topic_names", False).value)
             topics = [topic_of_word(word) for word in words]
             topics += topics_of_file(path) if path else []
             self._connect(graph, topics)
 
 
 class ImageBridge(_Bridge):
-    """The running bridge for the images whose topics are its arguments."""
+    """The running bridge for the images whose topics are its arguments; also as JPEG, where somebody listens."""
 
     DEFAULT_NAME = "ros_gz_image"
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, words = create_node(graph, options, self.DEFAULT_NAME)
         self._connect(graph, [BridgedTopic(word, word, *_IMAGE, "GZ_TO_ROS") for word in words])
+        for word in words:
+            self._compress(word)
+
+    def _compress(self, topic: str) -> None:
+        """Publish pictures as JPEG too, while somebody listens."""
+        name = f"{self._node.resolve_topic_name(topic)}/compressed"
+
+        def take(image: Any) -> None:
+            try:
+                message = compressed(image)
+            except ModuleNotFoundError as error:
+                text = phrase(
+                    "pictures are not compressed: {name} is missing, which linkwright[image] brings", name=error.name
+                )
+                self._node.get_logger().warning(text, once=True)
+                return
+            if message is not None:
+                publisher.publish(message)
+
+        def listen() -> Subscription[Any]:
+            profile = QoSProfile(1, reliability=ReliabilityPolicy.BEST_EFFORT)
+            return self._gz_node.create_subscription(_IMAGE[0], "/" + topic.lstrip("/"), take, profile)
+
+        events = PublisherEventCallbacks(matched=_Way(listen, lazy=True).matched)
+        publisher: Publisher[Any] = self._node.create_publisher(_COMPRESSED, name, _QUEUE, event_callbacks=events)
 
 
 def topic_of_word(word: str) -> BridgedTopic:
@@ -168,7 +256,14 @@ def _topic_of(entry: Any, number: int, path: str) -> BridgedTopic:
     if direction not in _DIRECTIONS.values():
         reason = phrase("entry {number} has no such direction as '{value}'", number=number, value=str(direction))
         raise _no_topics(path, reason)
-    return BridgedTopic(ros_topic, gz_topic, _full(ros_type), _modern(gz_type), direction)
+    queues = [entry.get(f"{side}_queue", _QUEUE) for side in ("publisher", "subscriber")]
+    for side, value in zip(("publisher", "subscriber"), queues, strict=True):
+        if not isinstance(value, int) or isinstance(value, bool) or value < 0:
+            raise _no_topics(path, phrase("entry {number}: '{key}' is no number", number=number, key=f"{side}_queue"))
+    lazy = entry.get("lazy")
+    if lazy is not None and not isinstance(lazy, bool):
+        raise _no_topics(path, phrase("entry {number}: '{key}' is neither true nor false", number=number, key="lazy"))
+    return BridgedTopic(ros_topic, gz_topic, _full(ros_type), _modern(gz_type), direction, queues[0], queues[1], lazy)
 
 
 def _no_topics(path: str, reason: Any) -> LinkwrightError:
@@ -183,12 +278,3 @@ def _full(ros_type: str) -> str:
 
 def _modern(gz_type: str) -> str:
     return gz_type.replace("ignition.msgs.", "gz.msgs.")
-
-
-def _conversion(source: type[Any], target: type[Any]) -> Callable[[Any], Any]:
-    """What makes a message of one type from one of the other: a twist may have a header."""
-    if source is target:
-        return lambda message: message
-    if hasattr(source(), "twist"):
-        return lambda message: message.twist
-    return lambda message: target(twist=message)

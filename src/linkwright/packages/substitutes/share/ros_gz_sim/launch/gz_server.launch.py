@@ -9,7 +9,7 @@ from launch import LaunchDescription
 
 ARGUMENTS = {
     "world_sdf_file": ("", "The world: path of a file"),
-    "world_sdf_string": ("", "Not used"),
+    "world_sdf_string": ("", "The world: its text in SDF"),
     "container_name": ("ros_gz_container", "Not used"),
     "create_own_container": ("False", "Not used"),
     "use_composition": ("False", "Not used"),
@@ -18,8 +18,8 @@ ARGUMENTS = {
 
 def start(context):
     """Return the server with the world that was given."""
-    world = LaunchConfiguration("world_sdf_file").perform(context)
-    parameters = {"world": world} if world else {}
+    given = {name: LaunchConfiguration(name).perform(context) for name in ("world_sdf_file", "world_sdf_string")}
+    parameters = {name: value for name, value in given.items() if value}
     return [Node(package="ros_gz_sim", executable="gzserver", output="screen", parameters=[parameters])]
 
 

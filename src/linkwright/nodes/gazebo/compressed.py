@@ -1,0 +1,40 @@
+"""Pictures as JPEG, which image_bridge publishes beside those that it hands on.
+
+Source: the plugin ``compressed`` of image_transport (the topic, the format's name, the quality).
+"""
+
+from __future__ import annotations
+
+from io import BytesIO
+from typing import Any
+
+import numpy as np
+
+from linkwright.messages import get_message
+
+_QUALITY = 95
+_CHANNELS = {"rgb8": 3, "bgr8": 3, "mono8": 1}
+
+
+def compressed(image: Any) -> Any | None:
+    """A picture as ``sensor_msgs/msg/CompressedImage``; None for one whose pixels JPEG does not have.
+
+    Raises:
+        ModuleNotFoundError: Pillow is not installed.
+    """
+    channels = _CHANNELS.get(image.encoding)
+    if channels is None or not image.width or not image.height:
+        return None
+    from PIL import Image  # not above: an extra
+
+    rows = np.frombuffer(bytes(image.data), np.uint8).reshape(image.height, image.step)
+    pixels = rows[:, : image.width * channels].reshape(image.height, image.width, channels)
+    pixels = pixels[:, :, ::-1] if image.encoding == "bgr8" else pixels
+    file = BytesIO()
+    Image.fromarray(np.ascontiguousarray(pixels[:, :, 0] if channels == 1 else pixels)).save(
+        file, "JPEG", quality=_QUALITY
+    )
+    message = get_message("sensor_msgs/msg/CompressedImage")(header=image.header)
+    message.format = f"{image.encoding}; jpeg compressed {'mono8' if channels == 1 else 'bgr8'}"
+    message.data = file.getvalue()
+    return message
