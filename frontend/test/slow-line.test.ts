@@ -36,3 +36,15 @@ it("forgets what is drawn no more", () => {
   data.forgotten.emit({ display: "cloud", key: null });
   expect(line.reduced).toEqual([]);
 });
+
+it("does not tell of images that nobody sees a difference in", () => {
+  const data = store();
+  const line = new SlowLine(data as unknown as DisplayDataStore, () => 0);
+  const image = (quality: number): DisplayData["content"] => ({
+    kind: "image_frame", width: 64, height: 48, columns: 64, rows: 48, encoding: "file", data: new Uint8Array(9), camera: null, quality,
+  });
+  data.received.emit({ ...cloud(1), content: image(85) });
+  expect(line.reduced).toEqual([]);
+  data.received.emit({ ...cloud(1), content: image(70) });
+  expect(line.reduced).toHaveLength(1);
+});

@@ -25,6 +25,14 @@ export interface ImageFrame {
   kind: "image_frame";
 }
 
+/** How many pixels of the screen the panel of an Image display has, 0 while it is not seen; more are not needed. */
+export interface PictureSize {
+  display: string;
+  width: number;
+  height: number;
+  type: "picture_size";
+}
+
 /** Map: the cells row by row from the origin's corner, each the byte of its int8 value. */
 export interface OccupancyMap {
   width: number;

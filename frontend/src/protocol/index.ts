@@ -40,7 +40,7 @@ import type {
 import type { DisplayProperties, DisplayStatus, PropertyChanged, SetProperty, Tree } from "./displays";
 import type { AskExport, ExportFailed, ExportReady } from "./export";
 import type { EffortRings, PointMarks, PolygonLine, PoseMarks, RangeCone, Screw } from "./geometry";
-import type { ImageFrame, OccupancyMap } from "./images";
+import type { ImageFrame, OccupancyMap, PictureSize } from "./images";
 import type { CenterJoints, JointPositions, Joints, RandomizeJoints, SetJoint, SetJoints } from "./joints";
 import type { InteractiveMarkerMoved, InteractiveMarkerShape, MarkerFeedback, MarkersChanged } from "./markers";
 import type {
@@ -219,6 +219,7 @@ export type PageMessage =
   | MoveDisplays
   | NewConfiguration
   | OpenConfiguration
+  | PictureSize
   | PointChosen
   | PoseChosen
   | PushLink

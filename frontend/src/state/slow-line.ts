@@ -4,6 +4,8 @@ import { Signal } from "./signal";
 
 /** Over so long contents are counted for their rate, ms. */
 const COUNTED_MS = 3000;
+/** A WebP of all pixels that is better than this looks as the image itself. */
+const NOTICED_QUALITY = 70;
 
 /** How a display's content was made smaller. */
 export type Reduction =
@@ -48,7 +50,7 @@ export class SlowLine {
 
 function reductionOf(content: DisplayData["content"]): Reduction | null {
   if (content.kind === "cloud_points") return content.step > 1 ? { kind: "points", step: content.step } : null;
-  if (content.kind !== "image_frame" || content.quality === 0) return null;
+  if (content.kind !== "image_frame" || content.quality === 0 || content.quality > NOTICED_QUALITY) return null;
   const { columns, rows, width, height, quality } = content;
   return { kind: "image", columns, rows, width, height, quality };
 }

@@ -8,9 +8,11 @@ import numpy as np
 
 from linkwright.messages import get_message
 from linkwright.viewer import RvizConfig
+from linkwright.viewer.protocol.images import PictureSize
 from tests.viewer.contents import contents
 from tests.viewer.images.test_images import Image, image
 from tests.viewer.scene import page, world
+from tests.waiting import eventually
 
 CameraInfo = get_message("sensor_msgs/msg/CameraInfo")
 CompressedImage = get_message("sensor_msgs/msg/CompressedImage")
@@ -60,6 +62,54 @@ async def test_an_image_is_sent():
         assert fields["data"].tolist() == [1, 2, 3]
         assert fields["camera"] is None
         assert w.status("Image") == {"Topic": ("ok", "1 messages received")}
+
+
+async def test_no_more_pixels_are_sent_than_the_panel_has():
+    async with world(config("Image")) as w:
+        display = w.display("Image")
+
+        async def sizes() -> list[tuple[int, int]]:
+            await w.settle()
+            return [(each.fields["columns"], each.fields["rows"]) for each in contents(display)]
+
+        publisher = w.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
+        publisher.publish(image("mono8", 64, 48, bytes(64 * 48)))
+        assert await sizes() == [(64, 48)]
+        display.receive(PictureSize(display.id, 30, 18))
+        publisher.publish(image("mono8", 64, 48, bytes(64 * 48)))
+        assert await sizes() == [(32, 24)]
+        display.receive(PictureSize(display.id, 40, 48))  # the last image is shown again, with more of it
+        assert await sizes() == [(64, 48)]
+
+
+async def test_nothing_is_sent_while_no_panel_is_seen():
+    async with world(config("Image")) as w:
+        display = w.display("Image")
+        display.receive(PictureSize(display.id, 0, 0))
+        publisher = w.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
+        publisher.publish(picture(1, 2, 3))
+        await w.settle()
+        assert contents(display) == []
+        display.receive(PictureSize(display.id, 3, 1))
+        (content,) = contents(display)
+        assert content.fields["data"].tolist() == [1, 2, 3]
+
+
+async def test_of_all_panels_the_largest_counts(monkeypatch):
+    async with world(config("Image")) as w, page(w.viewer) as first:
+        display = w.display("Image")
+        told: list[PictureSize] = []
+        monkeypatch.setattr(display, "receive", told.append)
+
+        async def heard(width: int, height: int) -> None:
+            await eventually(lambda: told and told[-1] == PictureSize(display.id, width, height))
+
+        await first.send("picture_size", display=display.id, width=30, height=18)
+        await heard(30, 18)
+        async with page(w.viewer) as second:
+            await second.send("picture_size", display=display.id, width=20, height=50)
+            await heard(30, 50)
+        await heard(30, 18)
 
 
 async def test_an_encoding_that_is_not_known_is_said():

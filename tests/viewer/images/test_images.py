@@ -137,6 +137,23 @@ def test_a_large_image_is_thinned():
     assert thinned.pixels[1].tolist() == [20, 22, 24, 26, 28]
 
 
+@pytest.mark.parametrize("step", [2, 3, 16, 99])
+def test_a_reduced_picture_has_the_mean_of_squares(step):
+    pixels = np.full((40, 65, 3), 255, np.uint8)
+    pixels[:2, :2, 1] = [[0, 10], [20, 30]]
+    reduced = Picture(pixels).reduced(step)
+    step = min(step, 16)
+    assert (reduced.height, reduced.width) == (40 // step, 65 // step)
+    assert reduced.pixels[0, 0].tolist() == [255, pixels[:step, :step, 1].sum() // step**2, 255]
+    assert (reduced.pixels[1:] == 255).all()
+
+
+def test_a_picture_is_not_reduced_to_nothing():
+    picture = Picture(np.zeros((2, 9), np.uint8))
+    assert picture.reduced(1) is picture
+    assert picture.reduced(3) is picture
+
+
 def test_grey_and_translucent_pictures_have_rgb():
     assert Picture(np.array([[7]], np.uint8)).rgb().tolist() == [[[7, 7, 7]]]
     assert Picture(np.array([[[1, 2, 3, 4]]], np.uint8)).rgb().tolist() == [[[1, 2, 3]]]

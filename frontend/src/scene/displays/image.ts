@@ -13,12 +13,16 @@ export class ImageDrawing implements Drawing {
   private readonly picture: PictureCanvas;
   private readonly panel: OwnPanel;
   private frame: ImageFrame | null = null;
+  private readonly resizing = new ResizeObserver(() => this.tellSize());
+  private readonly stopListening: () => void;
 
-  constructor(context: DrawingContext) {
+  constructor(private readonly context: DrawingContext) {
     this.picture = new PictureCanvas(context.beside);
     this.panel = new OwnPanel(context, "image", this.picture.canvas);
     this.panel.say(strings.pictures.none);
     this.panel.match();
+    this.resizing.observe(this.panel.element);
+    this.stopListening = context.session.connection.on("tree", () => this.tellSize());
   }
 
   propertiesChanged(): void {
@@ -54,6 +58,21 @@ export class ImageDrawing implements Drawing {
   }
 
   dispose(): void {
+    this.resizing.disconnect();
+    this.stopListening();
     this.panel.close();
+  }
+
+  /** More pixels than the panel has need not come. */
+  private tellSize(): void {
+    const { display, session } = this.context;
+    const pixels = (points: number): number => Math.ceil(points * window.devicePixelRatio);
+    const { clientWidth, clientHeight } = this.panel.element;
+    session.connection.send({
+      type: "picture_size",
+      display: display.id,
+      width: pixels(clientWidth),
+      height: pixels(clientHeight),
+    });
   }
 }

@@ -27,7 +27,7 @@ from linkwright.viewer.images import (
     has_range,
     picture_of,
 )
-from linkwright.viewer.protocol.images import CameraModel, ImageFrame
+from linkwright.viewer.protocol.images import CameraModel, ImageFrame, PictureSize
 
 _ENCODINGS: dict[int, Literal["grey", "rgb", "rgba"]] = {1: "grey", 3: "rgb", 4: "rgba"}
 MOST_PIXELS = 2_100_000
@@ -94,6 +94,10 @@ class ImageTopicDisplay(TopicDisplay):
         shrink = partial(self._compressor.compressed, content)
         self.send(content, frame=frame.removeprefix("/"), pose=pose, stamp_ns=stamp_ns, shrink=shrink)
 
+    def reduction(self, width: int, height: int) -> int:  # noqa: ARG002 - of this many pixels
+        """Of how many pixels along a side pages are sent the mean."""
+        return 1
+
     def _source(self) -> ImageSource:
         return ImageSource.of(self.properties.text(TOPIC))
 
@@ -118,7 +122,7 @@ class ImageTopicDisplay(TopicDisplay):
                 raise BadImageError(f"The image is in no format that browsers read: '{message.format}'")
             return ImageFrame(0, 0, 0, 0, "file", data, camera)
         picture = picture_of(message, self.ranges)
-        shown = picture.thinned(MOST_PIXELS)
+        shown = picture.reduced(self.reduction(picture.width, picture.height)).thinned(MOST_PIXELS)
         return ImageFrame(
             width=picture.width,
             height=picture.height,
@@ -167,6 +171,21 @@ class ImageDisplay(ImageTopicDisplay):
     TRANSFORMED = False
 
     _ranged = False
+    _panel: PictureSize | None = None
+    """The largest panel of pages; None while no page has told its own."""
+
+    def receive(self, message: Any) -> None:
+        """Send no more pixels than panels show, and nothing while none is seen."""
+        before, self._panel = self._panel, message
+        if before is not None and (message.width > before.width or message.height > before.height):
+            self.show_again()
+
+    def reduction(self, width: int, height: int) -> int:
+        """So many that panels still show all pixels that are sent."""
+        panel = self._panel
+        if panel is None or panel.width <= 0 or panel.height <= 0:
+            return 1
+        return max(1, int(max(width / panel.width, height / panel.height)))
 
     def schema(self) -> Schema:
         """The properties; those of the range only for images that have one."""
@@ -176,6 +195,8 @@ class ImageDisplay(ImageTopicDisplay):
 
     def take_image(self, message: Any, pose: Pose | None) -> None:  # noqa: ARG002 - images have no place
         """Show an image."""
+        if self._panel is not None and (self._panel.width <= 0 or self._panel.height <= 0):
+            return
         ranged = has_range(getattr(message, "encoding", ""))
         if ranged != self._ranged:
             self._ranged = ranged

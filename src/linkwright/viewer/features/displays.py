@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from typing import ClassVar
+from weakref import WeakKeyDictionary
 
 from linkwright.graph import DurabilityPolicy, Node, ReliabilityPolicy
 from linkwright.viewer.config.former_names import GROUP
 from linkwright.viewer.config.schema import PropertySpec
 from linkwright.viewer.displays.base.display import ViewerDisplay
 from linkwright.viewer.displays.catalogue import display_classes
-from linkwright.viewer.features.page_feature import PageFeature
+from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
 from linkwright.viewer.protocol.configuration import DisplayChoices, DisplayClass, TopicChoice
 from linkwright.viewer.protocol.displays import SetProperty
+from linkwright.viewer.protocol.images import PictureSize
 from linkwright.viewer.protocol.markers import MarkerFeedback
 from linkwright.viewer.protocol.points import AskPoint, PointFields
 from linkwright.viewer.protocol.robot import MeshStatus
@@ -21,15 +23,35 @@ from linkwright.viewer.web.audience import Page
 class DisplaysFeature(PageFeature):
     """Passes messages of pages on to displays."""
 
-    RECEIVES: ClassVar[tuple[type, ...]] = (SetProperty, MeshStatus, MarkerFeedback)
+    RECEIVES: ClassVar[tuple[type, ...]] = (SetProperty, MeshStatus, MarkerFeedback, PictureSize)
 
-    def receive(self, page: Page, message: SetProperty | MeshStatus | MarkerFeedback) -> None:
+    def __init__(self, viewer: FeatureHost) -> None:
+        super().__init__(viewer)
+        self._sizes: WeakKeyDictionary[ViewerDisplay, dict[Page, PictureSize]] = WeakKeyDictionary()
+
+    def receive(self, page: Page, message: SetProperty | MeshStatus | MarkerFeedback | PictureSize) -> None:
         """Set a property, or hand the message to its display, unless that was removed meanwhile."""
         manager = self.managers.of(page)
         if isinstance(message, SetProperty):
             manager.set_property(page, message.id, message.value)
         elif display := manager.display(message.display):
-            display.receive(message)
+            if isinstance(message, PictureSize):
+                self._sizes.setdefault(display, {})[page] = message
+                self._tell_size(display)
+            else:
+                display.receive(message)
+
+    def page_gone(self, page: Page) -> None:
+        """Make pictures for the panels of the other pages alone."""
+        for display, sizes in list(self._sizes.items()):
+            if sizes.pop(page, None) is not None and sizes:
+                self._tell_size(display)
+
+    def _tell_size(self, display: ViewerDisplay) -> None:
+        """Tell a display the size of the largest panel that shows it."""
+        sizes = self._sizes[display].values()
+        width, height = max(each.width for each in sizes), max(each.height for each in sizes)
+        display.receive(PictureSize(display.id, width, height))
 
 
 class PointsFeature(PageFeature):

@@ -16,6 +16,9 @@ from numpy.typing import NDArray
 
 Pixels = NDArray[np.uint8]
 
+_LARGEST_STEP = 16
+"""So many times so many values of 8 bits make one of 16 bits."""
+
 
 class BadImageError(ValueError):
     """A message cannot be shown as an image; the text is for the status row ``Image``."""
@@ -51,6 +54,25 @@ class Picture:
         if self.pixels.ndim == 2:
             return np.repeat(self.pixels[..., np.newaxis], 3, axis=2)
         return self.pixels[..., :3]
+
+    def reduced(self, step: int) -> Picture:
+        """One pixel for each square of so many by so many, the mean of them; what is left at the edges is left out.
+
+        Args:
+            step: more than 16 counts as 16.
+        """
+        step = min(step, _LARGEST_STEP)
+        height, width = self.height // step, self.width // step
+        if step == 1 or height == 0 or width == 0:
+            return self
+        whole = self.pixels[: height * step, : width * step]
+        rows = whole[::step].astype(np.uint16)
+        for row in range(1, step):
+            rows += whole[row::step]
+        total = rows[:, ::step].copy()
+        for column in range(1, step):
+            total += rows[:, column::step]
+        return Picture((total // step**2).astype(np.uint8))
 
     def thinned(self, most_pixels: int) -> Picture:
         """Every second, third, ... pixel of each row and column, so that there are at most so many."""

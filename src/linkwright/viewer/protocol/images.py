@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Literal
 
 from linkwright.viewer.protocol.binary import Bytes
-from linkwright.viewer.protocol.message import DataContent, Record
+from linkwright.viewer.protocol.message import DataContent, PageMessage, Record
 
 
 class CameraModel(Record):
@@ -41,6 +41,14 @@ class ImageFrame(DataContent):
     data: Bytes
     camera: CameraModel | None = None
     quality: int = 0
+
+
+class PictureSize(PageMessage):
+    """How many pixels of the screen the panel of an Image display has, 0 while it is not seen; more are not needed."""
+
+    display: str
+    width: int
+    height: int
 
 
 class OccupancyMap(DataContent):
