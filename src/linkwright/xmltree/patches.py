@@ -46,9 +46,11 @@ class StartTag:
 
 def apply(text: str, edits: Iterable[Replacement]) -> str:
     """A text with replacements made, which must not overlap."""
-    for edit in sorted(edits, key=lambda edit: (edit.start, edit.end), reverse=True):
-        text = text[: edit.start] + edit.text + text[edit.end :]
-    return text
+    parts, at = [], 0
+    for edit in sorted(edits, key=lambda edit: (edit.start, edit.end)):
+        parts += [text[at : edit.start], edit.text]
+        at = edit.end
+    return "".join([*parts, text[at:]])
 
 
 def escaped(value: str) -> str:

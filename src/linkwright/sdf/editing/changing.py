@@ -71,24 +71,15 @@ def change(world: WorldText, changes: Iterable[Change]) -> WorldText:
         EditError: something cannot be changed so.
     """
     changes = list(changes)
-    alone: list[Replacement] = []
-    moves: list[tuple[str, Pose]] = []
+    values: list[Replacement] = []
+    poses: dict[str, Pose] = {}
     for each in changes:
-        thing = world.thing(each.name)
-        alone += _values(thing, each)
+        values += _values(world.thing(each.name), each)
         if each.pose is not None:
-            pose = pose_in_world(each.pose)
-            if thing.pose.relative_to:
-                moves.append((each.name, pose))
-            else:
-                alone += moved(world, thing, pose)
-    world = world.edited(alone)
-    for name, pose in sorted(moves, key=lambda move: _depth(world, move[0])):
-        world = world.edited(moved(world, world.thing(name), pose))
-    for each in changes:
-        if each.new_name is not None and each.new_name != each.name:
-            world = _renamed(world, world.thing(each.name), each.new_name)
-    return world
+            poses[each.name] = pose_in_world(each.pose)
+    world = _with_poses(world, poses, values)
+    names = {each.name: each.new_name for each in changes if each.new_name not in (None, each.name)}
+    return _with_names(world, {old: new for old, new in names.items() if new is not None})
 
 
 def copy(world: WorldText, names: Sequence[str], offset: Sequence[float]) -> tuple[WorldText, list[str]]:
@@ -107,18 +98,17 @@ def copy(world: WorldText, names: Sequence[str], offset: Sequence[float]) -> tup
     """
     if len(offset) != 3 or not all(map(isfinite, offset)):
         raise EditError(phrase("an offset has three numbers"))
-    edits, taken, moves = [], world.taken, []
+    edits: list[Replacement] = []
+    poses: dict[str, Pose] = {}
+    taken = set(world.taken)
     for name in dict.fromkeys(names):
         thing = world.thing(name)
         free = world.free_name(name, taken)
-        taken |= {free}
+        taken.add(free)
         x, y, z = (a + b for a, b in zip(thing.place[:3], offset, strict=True))
-        moves.append((free, Pose((x, y, z), pose_of_thing(thing).rpy)))
+        poses[free] = Pose((x, y, z), pose_of_thing(thing).rpy)
         edits.append(_copied(thing, free))
-    world = world.edited(edits)
-    for name, pose in sorted(moves, key=lambda move: _depth(world, move[0])):
-        world = world.edited(moved(world, world.thing(name), pose))
-    return world, [name for name, _ in moves]
+    return _with_poses(world.edited(edits), poses), list(poses)
 
 
 def delete(world: WorldText, names: Iterable[str]) -> WorldText:
@@ -336,13 +326,17 @@ def _static(thing: Thing, static: bool, size: Sequence[float] | None) -> list[Re
 # --- names ---------------------------------------------------------------------------------------------------------
 
 
-def _renamed(world: WorldText, thing: Thing, name: str) -> WorldText:
-    world.check_name(name)
-    edits = _named(thing, name)
-    edits += renamed_references(world, {thing.name: name})
-    for entry in state_of(world, thing.name):
-        edits += writing.set_attribute(entry, "name", name)
-    return world.edited(edits)
+def _with_names(world: WorldText, names: dict[str, str]) -> WorldText:
+    edits: list[Replacement] = []
+    for old, new in names.items():
+        thing = world.thing(old)
+        world.check_name(new)
+        edits += _named(thing, new)
+        for entry in state_of(world, old):
+            edits += writing.set_attribute(entry, "name", new)
+    if len(set(names.values())) < len(names):
+        raise EditError(phrase("two things cannot have one name"))
+    return world.edited([*edits, *renamed_references(world, names)])
 
 
 def _named(thing: Thing, name: str) -> list[Replacement]:
@@ -363,6 +357,16 @@ def _copied(thing: Thing, name: str) -> Replacement:
 
 
 # --- places --------------------------------------------------------------------------------------------------------
+
+
+def _with_poses(world: WorldText, poses: dict[str, Pose], edits: Sequence[Replacement] = ()) -> WorldText:
+    """Other edits, and things in other places: what stands relative to something comes after that."""
+    alone = [name for name in poses if not world.thing(name).pose.relative_to]
+    edits = [*edits, *(edit for name in alone for edit in moved(world, world.thing(name), poses[name]))]
+    world = world.edited(edits)
+    for name in sorted(poses.keys() - set(alone), key=lambda name: (_depth(world, name), name)):
+        world = world.edited(moved(world, world.thing(name), poses[name]))
+    return world
 
 
 def _local(world: WorldText, thing: Thing, pose: Pose) -> Pose:

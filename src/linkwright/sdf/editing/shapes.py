@@ -84,7 +84,9 @@ def _is_at(pose: RawPose, shape: tuple[ShapeKind, tuple[float, ...]]) -> bool:
 
 
 def _close(some: tuple[tuple[float, ...], ...], others: tuple[tuple[float, ...], ...]) -> bool:
-    return len(some) == len(others) and bool(np.allclose(some, others, rtol=0.0, atol=1e-6))
+    return len(some) == len(others) and all(
+        abs(a - b) <= 1e-6 for one, other in zip(some, others, strict=True) for a, b in zip(one, other, strict=True)
+    )
 
 
 def _colour(material: Material | None) -> Color | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -106,6 +107,8 @@ class WorldText:
         self._findings = (*reading.diagnostics, *self._included.diagnostics)
         self.world: World = as_saved(resolved)
         self.frames = Frames(self.world)
+        self._models = {each.name: each for each in reversed(self.world.models)}
+        self._lights = {each.name: each for each in reversed(self.world.lights)}
         self.things: Mapping[str, Thing] = dict(self._things())
 
     @property
@@ -159,7 +162,7 @@ class WorldText:
             found = error.diagnostics[0]
             raise EditError(phrase("the text would not be SDF: {reason}", reason=found.message)) from None
 
-    def free_name(self, wanted: str, taken: frozenset[str] | None = None) -> str:
+    def free_name(self, wanted: str, taken: AbstractSet[str] | None = None) -> str:
         """A name that nothing has: the wanted one, or with a number behind it."""
         taken = self.taken if taken is None else taken
         if wanted not in taken:
@@ -202,11 +205,11 @@ class WorldText:
         assert element is not None, "it was read from the text"
         found = self._included.things.get(id(element)) if isinstance(written, Include) else written
         if isinstance(found, Model):
-            model = next((each for each in self.world.models if each.name == found.name), found)
+            model = self._models.get(found.name, found)
             shape = simple_shape(written) if isinstance(written, Model) else None
             return Thing(found.name, "model", element, written, model, None, self._place(model), shape)
         if isinstance(found, Light):
-            light = next((each for each in self.world.lights if each.name == found.name), found)
+            light = self._lights.get(found.name, found)
             return Thing(found.name, "light", element, written, None, light, self._place(light), None)
         if isinstance(written, Include) and found is None:
             name = written.name or written.uri.strip().rstrip("/").rpartition("/")[2]
