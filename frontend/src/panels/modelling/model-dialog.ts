@@ -1,4 +1,4 @@
-import { button, h } from "../../dom";
+import { h } from "../../dom";
 import { icon } from "../../icons";
 import type { ModelChoice } from "../../protocol";
 import { Dialog } from "../../shell/dialog";
@@ -52,10 +52,9 @@ export class ModelDialog {
   }
 
   private row(model: ModelChoice): HTMLElement {
-    const choose = (): void => this.choose(model);
-    const row = button(model.address, choose, "choice-row", icon("shapeBox"), h("span", {}, h("strong", {}, model.name), h("small", {}, model.address)));
-    row.setAttribute("role", "option");
-    row.setAttribute("aria-label", model.name);
+    const { name, address } = model;
+    const parts = [icon("library"), h("strong", {}, name), h("span", { class: "about" }, address)];
+    const row = h("div", { class: "choice-row", role: "option", tabIndex: -1, onClick: () => this.choose(model) }, ...parts);
     row.addEventListener("dblclick", () => {
       if (this.accept()) this.dialog.close();
     });
@@ -73,6 +72,7 @@ export class ModelDialog {
   }
 
   private keyed(event: KeyboardEvent): void {
+    if (event.key === "Enter" && event.target !== this.search && this.accept()) this.dialog.close();
     const step = event.key === "ArrowDown" ? 1 : event.key === "ArrowUp" ? -1 : 0;
     const at = this.shown.findIndex((model) => model === this.chosen) + step;
     const next = this.shown[at];

@@ -77,12 +77,16 @@ export class ModellingBar {
     const placing: Placing = { kind, address: "" };
     const made = tool(kind === "wall" ? words.addWall : words.add(words.kinds[kind]), name, () => undefined);
     made.setAttribute("aria-label", words.kinds[kind]);
+    let wasDropped = false;
     made.addEventListener("click", (event) => {
+      if (wasDropped) return;
       if (event.detail === 0) modelling.dropped.emit({ placing, at: null });
       else modelling.place(modelling.placing?.kind === kind ? null : placing);
     });
     made.addEventListener("pointerup", ({ clientX: x, clientY: y }) => {
       if (!(document.elementFromPoint(x, y) instanceof HTMLCanvasElement)) return;
+      wasDropped = true; // a click follows
+      setTimeout(() => (wasDropped = false));
       modelling.dropped.emit({ placing, at: { x, y } });
     });
     // Else a finger that drags would scroll, and the button would hear no more of it.

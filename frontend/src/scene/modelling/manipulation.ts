@@ -8,6 +8,9 @@ import { Gizmo } from "./gizmo";
 import { thingMatrix, thingPose } from "./thing-pose";
 import { worldFrame } from "./world-frame";
 
+/** m or rad: what is less is no change. */
+const NOTHING = 1e-8;
+
 /** Shows things moved in the world, by what their poses are premultiplied. */
 export type Displace = (moved: ReadonlyMap<string, Matrix4>) => void;
 
@@ -38,7 +41,7 @@ export class Manipulation {
     const { gizmo } = this;
     if (gizmo.held) {
       if (event.type === "move") this.move(event);
-      else if (event.type === "up" && event.button === "left") this.letGo(event);
+      else if (event.type === "up" && event.button === "left") return this.letGo(event);
       return true;
     }
     if (event.type === "down" && event.button === "left") return gizmo.grab(event);
@@ -68,27 +71,36 @@ export class Manipulation {
     else this.carry(things, main);
   }
 
-  private letGo(event: ToolEvent): void {
+  /** False for a mere click, which is for what is behind the handle. */
+  private letGo(event: ToolEvent): boolean {
+    const { changes } = this;
     this.gizmo.release(event);
-    this.modelling.change(this.changes);
     this.changes = [];
+    this.modelling.change(changes);
     this.update();
+    return changes.length > 0;
   }
 
   /** All go with the thing that the gizmo is on. */
   private carry(things: readonly WorldThing[], main: WorldThing): void {
     const to = worldFrame(this.stage).invert().multiply(this.gizmo.pose);
     const by = to.multiply(thingMatrix(main.pose).invert());
-    this.changes = things.map(({ name, pose }) => ({ name, pose: thingPose(by.clone().multiply(thingMatrix(pose))) }));
+    const moved = things.map(({ name, pose }) => ({ name, pose: thingPose(by.clone().multiply(thingMatrix(pose))) }));
+    this.changes = same(moved.flatMap(({ pose }) => pose), things.flatMap(({ pose }) => pose)) ? [] : moved;
     this.displace(new Map(things.map(({ name }) => [name, by])));
   }
 
   private scale(thing: WorldThing, step: number): void {
     const { name, shape, size, pose } = thing;
     if (shape === null) return;
-    const change = resized(thing, scaledSize(shape, size, this.gizmo.scale, step));
-    const stretched = new Matrix4().scale(new Vector3(...stretch(shape, size, change.size ?? size)));
-    this.changes = [change];
+    const next = scaledSize(shape, size, this.gizmo.scale, step);
+    const change = resized(thing, next);
+    const stretched = new Matrix4().scale(new Vector3(...stretch(shape, size, next)));
+    this.changes = same(size, next) ? [] : [change];
     this.displace(new Map([[name, thingMatrix(change.pose ?? pose).multiply(stretched).multiply(thingMatrix(pose).invert())]]));
   }
+}
+
+function same(some: readonly number[], others: readonly number[]): boolean {
+  return some.every((value, i) => Math.abs(value - (others[i] ?? NaN)) < NOTHING);
 }

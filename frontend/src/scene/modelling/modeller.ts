@@ -31,7 +31,10 @@ export class Modeller {
     this.placer = new Placer(stage, modelling);
     modelling.changed.on(() => this.follow());
     modelling.selectionChanged.on(() => this.select());
-    modelling.toolChanged.on(() => this.manipulation.update());
+    modelling.toolChanged.on(() => {
+      this.manipulation.update();
+      this.hint();
+    });
     modelling.dropped.on(({ placing, at }) => this.drop(placing, at));
     simulation.refused.on(() => this.displace(new Map()));
     for (const signal of [frames.posesChanged, frames.tableChanged]) {
@@ -84,6 +87,12 @@ export class Modeller {
     if (!(found?.drawing instanceof WorldDrawing)) return null;
     const name = modelOf(found.hit.key);
     return this.session.modelling.find(name) && !found.drawing.isFlat(found.hit.key) ? name : null;
+  }
+
+  private hint(): void {
+    const { modelling, tools } = this.session;
+    const words = strings.modelling;
+    if (modelling.placing) tools.hint = modelling.placing.kind === "wall" ? words.wallHint : words.placeHint;
   }
 
   private openMenu(event: ToolEvent): void {
