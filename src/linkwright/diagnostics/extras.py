@@ -12,9 +12,14 @@ EXTRAS = {
     "diagram": "pygraphviz",
     "image": "PIL",
     "mesh": "trimesh",
+    "parquet": "pyarrow",
+    "ray": "ray",
     "sim": "mujoco",
 }
-"""Name of the extra -> the module that is missing without it; ``linkwright[all]`` has them all (decision 0022)."""
+"""Name of the extra -> the module that is missing without it."""
+
+APART = frozenset({"parquet", "ray"})
+"""Extras that ``linkwright[all]`` is without; it has all others (decision 0022)."""
 
 _BY_MODULE = {module: extra for extra, module in EXTRAS.items()}
 

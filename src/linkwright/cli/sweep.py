@@ -1,0 +1,163 @@
+"""``linkwright sweep``: run a scenario over parameters and seeds."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+import time
+import traceback
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from linkwright.assignments import parse_assignments
+from linkwright.cli.endings import FINDINGS, FINE, say
+from linkwright.cli.numbers import positive_int
+from linkwright.diagnostics import Diagnostic, LinkwrightError, counted, display_path, phrase
+from linkwright.diagnostics.translation import localized
+from linkwright.interruption import INTERRUPTED
+
+if TYPE_CHECKING:
+    from linkwright.sweep.scenario import Scenario
+    from linkwright.sweep.sweep import Runner
+    from linkwright.sweep.table import Table
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    parser.add_argument("file", metavar="FILE", help="a Python file with a function below @scenario(...)")
+    parser.add_argument(
+        "values",
+        metavar="NAME:=VALUES",
+        nargs="*",
+        default=[],
+        help="other values of a parameter than the file says, with commas between them",
+    )
+    parser.add_argument(
+        "--seeds", metavar="N", type=positive_int, help="so many seeds, from 0 on, whatever the file says"
+    )
+    parser.add_argument(
+        "--workers", metavar="N", type=positive_int, help="so many processes at once (default: one for each processor)"
+    )
+    parser.add_argument(
+        "--out",
+        metavar="TABLE",
+        help="the table, .csv or .parquet; the summary goes beside it (default: the name of FILE, .csv)",
+    )
+    parser.add_argument("--resume", action="store_true", help="go on with a sweep that was interrupted")
+    parser.add_argument(
+        "--rerun", metavar="ROW", type=positive_int, help="run one row again, and print what it comes to"
+    )
+    parser.add_argument(
+        "--ray", metavar="ADDRESS", help="run it on a Ray cluster: auto, local, HOST:PORT or ray://HOST:PORT"
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run what is to be run; 1 when a run failed, 130 when it was interrupted."""
+    from linkwright.sweep.plan import planned, with_values
+    from linkwright.sweep.running import prepare
+    from linkwright.sweep.sweep import Sweep
+    from linkwright.sweep.table import check_format
+
+    path = Path(arguments.file).absolute()
+    table_path = Path(arguments.out or f"{path.stem}.csv").absolute()
+    check_format(table_path)
+    began_in = Path.cwd()
+    scenario = with_values(prepare(path), parse_assignments(arguments.values), arguments.seeds)
+    if arguments.rerun is not None:
+        return _rerun(scenario, arguments.rerun)
+    os.chdir(began_in)  # the folder of the scenario is that of its processes
+    words = ["linkwright", "sweep", arguments.file, *arguments.values]
+    if arguments.seeds is not None:
+        words += ["--seeds", str(arguments.seeds)]
+    began = time.monotonic()
+    sweep = Sweep(scenario, table_path, words)
+    progress = _Progress()
+    table = sweep.run(_runner(arguments, path), resume=arguments.resume, progress=progress.tell)
+    progress.end()
+    missing = len(planned(scenario)) - len(table)
+    _tell(table, time.monotonic() - began, progress.made)
+    for written in (sweep.table, sweep.page):
+        print(localized(phrase("Created file {file}", file=display_path(written))))
+    if missing:
+        left = counted("{count} run is left", "{count} runs are left", missing)
+        say(localized(phrase("{left}; `--resume` goes on", left=left)))
+        return INTERRUPTED
+    return FINDINGS if table.failed else FINE
+
+
+def _runner(arguments: argparse.Namespace, path: Path) -> Runner:
+    if arguments.ray is not None:
+        from linkwright.sweep.ray_workers import run_on_ray
+
+        return lambda runs, report: run_on_ray(path, runs, arguments.ray, report)
+    from linkwright.sweep.workers import run_locally
+
+    workers = arguments.workers or _processors()
+    return lambda runs, report: run_locally(path, runs, workers, report)
+
+
+def _processors() -> int:
+    """How many processors this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def _rerun(scenario: Scenario, row: int) -> int:
+    """Run one row in this process, and print its values and results, or where it fails."""
+    from linkwright.sweep.plan import planned
+    from linkwright.sweep.running import results_of
+
+    runs = planned(scenario)
+    if row > len(runs):
+        message = phrase("there is no row {row}", row=row)
+        hint = phrase("the sweep has rows 1 to {count}", count=len(runs))
+        raise LinkwrightError(Diagnostic("SWEEP112", message, hint=hint))
+    chosen = runs[row - 1]
+    for name, value in {**chosen.parameters, "seed": chosen.seed}.items():
+        print(f"{name}: {value}", flush=True)
+    try:
+        results = results_of(scenario, chosen)
+    except (Exception, SystemExit) as error:  # noqa: BLE001 - a scenario may raise whatever it likes
+        traceback.print_exception(error)
+        return FINDINGS
+    for name, result in results.items():
+        print(f"{name}: {result}")
+    return FINE
+
+
+class _Progress:
+    """One line of a terminal that says how far a sweep has come; elsewhere nothing."""
+
+    def __init__(self) -> None:
+        self.made = 0
+        self._shown = sys.stderr.isatty()
+        self._line = ""
+
+    def tell(self, done: int, count: int, failed: int) -> None:
+        """Show how many are done."""
+        self.made += 1
+        if self._shown:
+            text = phrase("{done} of {count} runs, {failed} failed", done=done, count=count, failed=failed)
+            self._line = localized(text)
+            sys.stderr.write(f"\r{self._line}\x1b[K")
+            sys.stderr.flush()
+
+    def end(self) -> None:
+        """Leave the line."""
+        if self._line:
+            sys.stderr.write("\r\x1b[K")
+
+
+def _tell(table: Table, seconds: float, made: int) -> None:
+    """How it went, to standard error."""
+    told = phrase(
+        "{runs} in {seconds} s, {rate} a second, {failed} failed",
+        runs=counted("{count} run", "{count} runs", made),
+        seconds=f"{seconds:.1f}",
+        rate=f"{made / max(seconds, 1e-9):.1f}",
+        failed=len(table.failed),
+    )
+    say(localized(told))

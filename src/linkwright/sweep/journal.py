@@ -1,0 +1,116 @@
+"""What of a sweep is done, in a file beside its table, line by line, so that it can go on after whatever stopped it."""
+
+from __future__ import annotations
+
+import json
+from io import FileIO
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Any
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, phrase
+from linkwright.sweep.running import Outcome
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
+
+_ENDING = ".unfinished"
+
+
+class Journal:
+    """The outcomes of a sweep that is not finished yet.
+
+    Args:
+        table: the file of the table.
+        fingerprint: that of the plan; a journal of another one is not gone on with.
+        resume: whether to go on with the journal that is there.
+
+    Attributes:
+        path: its file.
+        outcomes: row -> what it came to.
+
+    Raises:
+        LinkwrightError: SWEEP107 there is one, and it is not to be gone on with; SWEEP108 it is of another plan;
+            SWEEP109 there is none.
+    """
+
+    def __init__(self, table: Path, fingerprint: str, *, resume: bool) -> None:
+        self.path = table.with_name(f"{table.name}{_ENDING}")
+        self.outcomes: dict[int, Outcome] = {}
+        self._head = {"plan": fingerprint}
+        self._file: FileIO | None = None
+        there = self.path.exists()
+        if resume:
+            if not there:
+                message = phrase("there is no unfinished sweep '{path}'", path=display_path(table))
+                hint = phrase("leave `--resume` out to begin one")
+                raise LinkwrightError(Diagnostic("SWEEP109", message, hint=hint))
+            self._read()
+        elif there:
+            message = phrase("the sweep '{path}' is not finished", path=display_path(table))
+            hint = phrase("go on with `--resume`, or remove '{path}' to begin anew", path=display_path(self.path))
+            raise LinkwrightError(Diagnostic("SWEEP107", message, hint=hint))
+
+    def __enter__(self) -> Self:
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        known = [self._head, *map(_line, self.outcomes.values())]
+        self._file = self.path.open("wb", buffering=0)
+        try:
+            for each in known:
+                self._write(each)
+        except OSError:
+            self._file.close()
+            raise
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        assert self._file is not None, "it was entered"
+        self._file.close()
+
+    def add(self, outcome: Outcome) -> None:
+        """Keep an outcome.
+
+        Raises:
+            OSError: it cannot be written.
+        """
+        self.outcomes[outcome.row] = outcome
+        self._write(_line(outcome))
+
+    def remove(self) -> None:
+        """Take the file away: the sweep is finished."""
+        self.path.unlink()
+
+    def _write(self, line: dict[str, Any]) -> None:
+        assert self._file is not None, "it was entered"
+        left = f"{json.dumps(line)}\n".encode()
+        try:
+            while left:
+                left = left[self._file.write(left) :]
+        except OSError as error:
+            error.filename = str(self.path)
+            raise
+
+    def _read(self) -> None:
+        lines = self.path.read_text(encoding="utf-8", errors="replace").splitlines()
+        entries = [each for each in map(_parsed, lines) if each is not None]
+        if not entries or entries[0] != self._head:
+            message = phrase("the unfinished sweep '{path}' is of other runs", path=display_path(self.path))
+            hint = phrase("give the same scenario, values and seeds, or remove that file to begin anew")
+            raise LinkwrightError(Diagnostic("SWEEP108", message, hint=hint))
+        for entry in entries[1:]:
+            self.outcomes[entry["row"]] = Outcome(**entry)
+
+
+def _line(outcome: Outcome) -> dict[str, Any]:
+    return {"row": outcome.row, "results": outcome.results, "error": outcome.error}
+
+
+def _parsed(line: str) -> dict[str, Any] | None:
+    """A line; None for one that was being written when the power went."""
+    try:
+        entry = json.loads(line)
+    except ValueError:
+        return None
+    return entry if isinstance(entry, dict) else None

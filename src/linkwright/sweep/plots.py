@@ -1,0 +1,140 @@
+"""Drawings of a sweep as SVG, which needs nothing but a browser."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from html import escape
+from math import ceil, floor, log10
+
+import numpy as np
+
+_WIDTH, _HEIGHT = 360.0, 220.0
+_LEFT, _RIGHT, _TOP, _BOTTOM = 56.0, 12.0, 12.0, 40.0
+_BARS = 24
+_MOST_POINTS = 2000
+"""Of more runs, so many are drawn, taken at equal distances."""
+_RADIUS = 3.0
+
+
+@dataclass(frozen=True)
+class Axis:
+    """Where values come to lie.
+
+    Attributes:
+        low, high: what lies at its two ends.
+        ticks: places with what is written at them.
+        begin, end: where its ends are in the drawing.
+    """
+
+    low: float
+    high: float
+    ticks: Sequence[tuple[float, str]]
+    begin: float
+    end: float
+
+    @classmethod
+    def of_numbers(cls, values: Sequence[float], begin: float, end: float, *, from_zero: bool = False) -> Axis:
+        """One that all values fit on, with round numbers at its ticks."""
+        low, high = min(values), max(values)
+        if from_zero:
+            low = 0.0
+        if low == high:
+            margin = abs(low) * 0.05 or 0.5
+            low, high = low - margin, high + margin
+        step = _round_step((high - low) / 4)
+        if not from_zero:
+            low = floor(low / step) * step
+        high = ceil(high / step) * step
+        ticks = [
+            (low + step * number, f"{low + step * number:.6g}") for number in range(round((high - low) / step) + 1)
+        ]
+        return cls(low, high, [(0.0 if abs(place) < step * 1e-9 else place, text) for place, text in ticks], begin, end)
+
+    @classmethod
+    def of_names(cls, names: Sequence[str], begin: float, end: float) -> Axis:
+        """One with a place for each name, the first at 0."""
+        return cls(-0.5, len(names) - 0.5, [(float(place), name) for place, name in enumerate(names)], begin, end)
+
+    def __call__(self, value: float) -> float:
+        """Where a value lies in the drawing."""
+        return self.begin + (value - self.low) / (self.high - self.low) * (self.end - self.begin)
+
+
+def histogram(values: Sequence[float], label: str) -> str:
+    """How often a result was what."""
+    counts, edges = np.histogram(np.asarray(values, dtype=float), bins=min(_BARS, max(len(set(values)), 5)))
+    across = Axis.of_numbers([float(edges[0]), float(edges[-1])], _LEFT, _WIDTH - _RIGHT)
+    upwards = Axis.of_numbers([float(counts.max())], _HEIGHT - _BOTTOM, _TOP, from_zero=True)
+    bars = []
+    for count, left, right in zip(counts.tolist(), edges[:-1].tolist(), edges[1:].tolist(), strict=True):
+        if count:
+            x, y = across(left), upwards(count)
+            bars.append(
+                f'<rect class="bar" x="{x:.1f}" y="{y:.1f}" width="{max(across(right) - x - 1, 1):.1f}" '
+                f'height="{upwards(0) - y:.1f}"><title>{left:.6g} … {right:.6g}: {count}</title></rect>'
+            )
+    return _drawing(across, upwards, label, "".join(bars))
+
+
+def scatter(
+    across_values: Sequence[object], values: Sequence[float], rows: Sequence[object], across_label: str, label: str
+) -> str:
+    """A result against a parameter, a point for each run, and a line through the means where values recur."""
+    numbers = all(isinstance(each, int | float) and not isinstance(each, bool) for each in across_values)
+    names = [] if numbers else list(dict.fromkeys(map(str, across_values)))
+    places = [float(each) if numbers else float(names.index(str(each))) for each in across_values]  # type: ignore[arg-type]
+    across = (
+        Axis.of_numbers(places, _LEFT, _WIDTH - _RIGHT) if numbers else Axis.of_names(names, _LEFT, _WIDTH - _RIGHT)
+    )
+    upwards = Axis.of_numbers(values, _HEIGHT - _BOTTOM, _TOP)
+    chosen = range(0, len(values), -(-len(values) // _MOST_POINTS))
+    points = "".join(
+        f'<a href="#row-{rows[each]}"><circle class="point" cx="{across(places[each]):.1f}" '
+        f'cy="{upwards(values[each]):.1f}" r="{_RADIUS}"><title>{rows[each]}: '
+        f"{escape(str(across_values[each]))}, {values[each]:.6g}</title></circle></a>"
+        for each in chosen
+    )
+    return _drawing(across, upwards, label, _means(places, values, across, upwards) + points, across_label)
+
+
+def _means(places: Sequence[float], values: Sequence[float], across: Axis, upwards: Axis) -> str:
+    """A line through the means of what lies at the same place; nothing where few values recur."""
+    groups: dict[float, list[float]] = {}
+    for place, value in zip(places, values, strict=True):
+        groups.setdefault(place, []).append(value)
+    if len(groups) < 2 or len(groups) > len(values) / 2:
+        return ""
+    line = " ".join(
+        f"{across(place):.1f},{upwards(sum(each) / len(each)):.1f}" for place, each in sorted(groups.items())
+    )
+    return f'<polyline class="mean" points="{line}"/>'
+
+
+def _drawing(across: Axis, upwards: Axis, label: str, content: str, across_label: str = "") -> str:
+    lines = []
+    for value, text in upwards.ticks:
+        y = upwards(value)
+        lines.append(
+            f'<line class="grid" x1="{_LEFT}" x2="{_WIDTH - _RIGHT}" y1="{y:.1f}" y2="{y:.1f}"/>'
+            f'<text class="tick" x="{_LEFT - 6}" y="{y + 3.5:.1f}" text-anchor="end">{escape(text)}</text>'
+        )
+    for value, text in across.ticks:
+        lines.append(
+            f'<text class="tick" x="{across(value):.1f}" y="{_HEIGHT - _BOTTOM + 15:.1f}" text-anchor="middle">'
+            f"{escape(text if len(text) < 24 else f'…{text[-22:]}')}</text>"
+        )
+    title = f"{label} – {across_label}" if across_label else label
+    below = escape(across_label or label)
+    return (
+        f'<svg viewBox="0 0 {_WIDTH:g} {_HEIGHT:g}" role="img" aria-label="{escape(title)}">{"".join(lines)}'
+        f'<line class="axis" x1="{_LEFT}" x2="{_WIDTH - _RIGHT}" y1="{_HEIGHT - _BOTTOM}" y2="{_HEIGHT - _BOTTOM}"/>'
+        f'<text class="label" x="{(_LEFT + _WIDTH - _RIGHT) / 2}" y="{_HEIGHT - 6}" text-anchor="middle">{below}</text>'
+        f"{content}</svg>"
+    )
+
+
+def _round_step(least: float) -> float:
+    """The next of 1, 2, 5, 10, ... times a power of ten."""
+    power = 10.0 ** floor(log10(least))
+    return next(factor * power for factor in (1.0, 2.0, 5.0, 10.0) if factor * power >= least * (1 - 1e-9))

@@ -1,0 +1,252 @@
+"""What a scenario is, and reading one from its file."""
+
+from __future__ import annotations
+
+import importlib.util
+import inspect
+import linecache
+import sys
+import traceback
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+from typing import TypeVar
+
+from linkwright.diagnostics import (
+    Diagnostic,
+    LinkwrightError,
+    Phrase,
+    Span,
+    display_path,
+    foreign,
+    phrase,
+    quoted_names,
+)
+
+Value = bool | int | float | str
+"""What a parameter may be."""
+
+F = TypeVar("F", bound=Callable[..., Mapping[str, object]])
+
+_DECLARED = "__linkwright_scenario__"
+_MODULE = "linkwright_scenario"
+SEED = "seed"
+COLUMNS = ("row", SEED, "error")
+"""Names of columns that every table has; no parameter or result has them."""
+
+
+@dataclass(frozen=True, slots=True)
+class Uniform:
+    """A number that is drawn for each seed, all from `low` to `high` alike."""
+
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, slots=True)
+class Normal:
+    """A number that is drawn for each seed, normally distributed."""
+
+    mean: float
+    stddev: float
+
+
+Values = Sequence[Value] | Uniform | Normal
+"""What a parameter is run over: each value of a list, or one that is drawn for each seed."""
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """A function that is run once for each combination of values and each seed.
+
+    Attributes:
+        path: its file.
+        function: takes the parameters by name, and ``seed`` if it wants that; returns results by name.
+        parameters: name -> its values.
+        seeds: the seeds.
+    """
+
+    path: Path
+    function: Callable[..., object]
+    parameters: Mapping[str, Values]
+    seeds: Sequence[int]
+
+    @property
+    def takes_seed(self) -> bool:
+        """Whether the function is told the seed."""
+        return SEED in inspect.signature(self.function).parameters
+
+
+def scenario(*, seeds: int | Sequence[int] = 1, **parameters: Values) -> Callable[[F], F]:
+    """Declare what a function is run over by ``linkwright sweep``.
+
+    Example::
+
+        @scenario(friction=[0.4, 1.0], mass=Uniform(0.8, 1.2), seeds=20)
+        def drive(friction, mass, seed):
+            ...
+            return {"distance": ..., "arrived": ...}
+
+    is run forty times: for each friction with each seed, and a mass that is drawn for the seed.
+
+    Args:
+        seeds: how many seeds, from 0 on, or the seeds themselves.
+        parameters: for each parameter of the function a list of values, or what it is drawn from.
+    """
+
+    def declare(function: F) -> F:
+        setattr(function, _DECLARED, (seeds, parameters))
+        return function
+
+    return declare
+
+
+def load_scenario(path: Path) -> Scenario:
+    """The scenario of a file, which is run for that as a module; modules beside it can be imported.
+
+    Raises:
+        LinkwrightError: SWEEP101 it cannot be read; SWEEP102 it cannot be run; SWEEP103 there is no scenario in it, or
+            more than one; SWEEP104 its parameters are not those of the function; SWEEP105 they are no values.
+    """
+    module = _loaded(path)
+    found = [each for each in vars(module).values() if callable(each) and hasattr(each, _DECLARED)]
+    if len(found) != 1:
+        lines = [_span(path, each.__code__.co_firstlineno) for each in found]
+        message = (
+            phrase("there are {count} scenarios in '{path}'", count=len(found), path=display_path(path))
+            if found
+            else phrase("there is no scenario in '{path}'", path=display_path(path))
+        )
+        hint = phrase("put @scenario(...) of `linkwright.sweep` above one function")
+        raise LinkwrightError(Diagnostic("SWEEP103", message, lines[1] if lines else None, hint=hint))
+    function = found[0]
+    seeds, parameters = getattr(function, _DECLARED)
+    span = _span(path, function.__code__.co_firstlineno)
+    _check_names(function, parameters, span)
+    for name, values in parameters.items():
+        check_values(name, values, span)
+    return Scenario(path, function, parameters, _seeds(seeds, span))
+
+
+def check_values(name: str, values: object, span: Span | None = None) -> None:
+    """Refuse what no parameter can be run over.
+
+    Raises:
+        LinkwrightError: SWEEP105.
+    """
+    if isinstance(values, Uniform | Normal):
+        numbers = (values.low, values.high) if isinstance(values, Uniform) else (values.mean, values.stddev)
+        if all(isinstance(each, int | float) and abs(each) < float("inf") for each in numbers):
+            return
+        wrong: Phrase = phrase("parameter '{name}': the numbers that it is drawn by are to be finite", name=name)
+    elif isinstance(values, str) or not isinstance(values, Sequence):
+        wrong = phrase("parameter '{name}' needs a list of values, a Uniform or a Normal", name=name)
+    elif not values:
+        wrong = phrase("parameter '{name}' has no values", name=name)
+    else:
+        bad = [each for each in values if not isinstance(each, bool | int | float | str)]
+        if not bad:
+            return
+        kind = type(bad[0]).__name__
+        wrong = phrase(
+            "a value of parameter '{name}' is no number, text, True or False but {kind}", name=name, kind=kind
+        )
+    raise LinkwrightError(Diagnostic("SWEEP105", wrong, span, hint=phrase("such as {name}=[0.5, 1.0]", name=name)))
+
+
+def _seeds(seeds: object, span: Span) -> Sequence[int]:
+    if isinstance(seeds, int) and not isinstance(seeds, bool) and seeds > 0:
+        return range(seeds)
+    if isinstance(seeds, Sequence) and seeds and all(isinstance(each, int) and each >= 0 for each in seeds):
+        return tuple(seeds)
+    message = phrase("the seeds are to be a positive number of them, or a list of whole numbers from 0 on")
+    raise LinkwrightError(Diagnostic("SWEEP105", message, span, hint=phrase("such as {name}=100", name="seeds")))
+
+
+def _check_names(function: Callable[..., object], parameters: Mapping[str, object], span: Span) -> None:
+    taken = inspect.signature(function).parameters
+    kinds = (inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY)
+    needed = [
+        name
+        for name, each in taken.items()
+        if each.default is each.empty and each.kind in (*kinds, inspect.Parameter.POSITIONAL_ONLY) and name != SEED
+    ]
+    takes_all = any(each.kind is inspect.Parameter.VAR_KEYWORD for each in taken.values())
+    unknown = [name for name in parameters if not takes_all and (name not in taken or taken[name].kind not in kinds)]
+    missing = [name for name in needed if name not in parameters]
+    reserved = [name for name in parameters if name in COLUMNS]
+    if reserved:
+        message = phrase("a parameter cannot be called {names}: that is a column already", names=quoted_names(reserved))
+        hint = phrase("give it another name")
+    elif unknown:
+        message = phrase(
+            "the function '{function}' takes no {names}", function=function.__name__, names=quoted_names(unknown)
+        )
+        hint = phrase("a parameter of the scenario is one of the function")
+    elif missing:
+        message = phrase(
+            "the function '{function}' needs {names}, of which @scenario says nothing",
+            function=function.__name__,
+            names=quoted_names(missing),
+        )
+        hint = phrase("such as {name}=[0.5, 1.0]", name=missing[0])
+    else:
+        return
+    raise LinkwrightError(Diagnostic("SWEEP104", message, span, hint=hint))
+
+
+def _loaded(path: Path) -> ModuleType:
+    spec = importlib.util.spec_from_file_location(_MODULE, path)
+    if path.suffix != ".py" or spec is None or spec.loader is None or not path.is_file():
+        message = phrase("there is no scenario '{path}'", path=display_path(path))
+        hint = phrase("name a Python file, such as drive.py")
+        raise LinkwrightError(Diagnostic("SWEEP101", message, hint=hint))
+    module = importlib.util.module_from_spec(spec)
+    folder = str(path.parent)
+    if folder not in sys.path:
+        sys.path.insert(0, folder)
+    sys.modules[_MODULE] = module
+    linecache.checkcache(str(path))
+    try:
+        spec.loader.exec_module(module)
+    except SyntaxError as error:
+        line, column = error.lineno or 1, error.offset or 1
+        place = Span(display_path(Path(error.filename or path)), line, column, line, column)
+        message = phrase("this is no Python: {reason}", reason=foreign(error.msg))
+        raise LinkwrightError(Diagnostic("SWEEP102", message, place)) from None
+    except OSError as error:
+        if error.filename != str(path):
+            raise _cannot_run(path, error) from None
+        message = phrase("cannot read '{path}': {reason}", path=display_path(path), reason=foreign(error.strerror))
+        raise LinkwrightError(Diagnostic("SWEEP101", message)) from None
+    except LinkwrightError:
+        raise
+    except (Exception, SystemExit) as error:  # noqa: BLE001 - a scenario may raise whatever it likes
+        raise _cannot_run(path, error) from None
+    return module
+
+
+def _cannot_run(path: Path, error: BaseException) -> LinkwrightError:
+    line = line_of(path, error)
+    message = phrase("the scenario cannot be loaded: {reason}", reason=foreign(described(error)))
+    return LinkwrightError(Diagnostic("SWEEP102", message, _span(path, line) if line else None))
+
+
+def line_of(path: Path, error: BaseException) -> int | None:
+    """The line of a file in which an error was raised, or which called what raised it."""
+    lines = [each.lineno for each in traceback.extract_tb(error.__traceback__) if each.filename == str(path)]
+    return lines[-1] if lines else None
+
+
+def described(error: BaseException) -> str:
+    """An error in a line."""
+    if isinstance(error, LinkwrightError):
+        first = error.diagnostics[0]
+        return f"{first.code} {first.span}: {first.message}" if first.span else f"{first.code} {first.message}"
+    said = " ".join(str(error).split())
+    return f"{type(error).__name__}: {said}" if said else type(error).__name__
+
+
+def _span(path: Path, line: int) -> Span:
+    return Span(display_path(path), line, 1, line, 1)

@@ -1,0 +1,75 @@
+"""A sweep from its plan to its table."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+from linkwright.sweep.journal import Journal
+from linkwright.sweep.page import summary
+from linkwright.sweep.plan import Run, fingerprint, planned
+from linkwright.sweep.running import Outcome
+from linkwright.sweep.scenario import Scenario
+from linkwright.sweep.table import Table, written
+from linkwright.whole_files import write_whole_file
+
+Runner = Callable[[Sequence[Run], Callable[[Outcome], None]], None]
+"""Makes runs and reports each when it is done."""
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """What is to be run, and where the results go.
+
+    Attributes:
+        scenario: the scenario.
+        table: the file of the table, whose ending says the format.
+        words: the command line that the sweep is run by, for what the page tells about reruns.
+    """
+
+    scenario: Scenario
+    table: Path
+    words: Sequence[str]
+
+    @property
+    def page(self) -> Path:
+        """The file of the summary."""
+        return self.table.with_suffix(".html")
+
+    def run(self, runner: Runner, *, resume: bool, progress: Callable[[int, int, int], None]) -> Table:
+        """Make all runs that are not done yet, and write table and summary, when it is interrupted as well.
+
+        Args:
+            runner: makes them.
+            resume: whether to go on with what was begun.
+            progress: told how many are done, how many there are to be, and how many failed.
+
+        Returns:
+            The table; what is missing of it was interrupted.
+
+        Raises:
+            LinkwrightError: of the journal, see `Journal`.
+            OSError: a file cannot be written.
+        """
+        runs = planned(self.scenario)
+        with Journal(self.table, fingerprint(self.scenario, runs), resume=resume) as journal:
+            failed = sum(bool(each.error) for each in journal.outcomes.values())
+
+            def done(outcome: Outcome) -> None:
+                nonlocal failed
+                journal.add(outcome)
+                failed += bool(outcome.error)
+                progress(len(journal.outcomes), len(runs), failed)
+
+            with suppress(KeyboardInterrupt):
+                runner([run for run in runs if run.row not in journal.outcomes], done)
+        table = Table.of(runs, journal.outcomes)
+        write_whole_file(self.table, written(table, self.table))
+        command = shlex.join(self.words)
+        write_whole_file(self.page, summary(table, self.scenario.path.name, command, len(runs)))
+        if len(table) == len(runs):
+            journal.remove()
+        return table

@@ -1,0 +1,116 @@
+"""The results of a sweep as one table: CSV or Parquet."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+from linkwright.diagnostics.extras import missing_extra
+from linkwright.sweep.plan import Run
+from linkwright.sweep.running import Outcome, Result
+from linkwright.sweep.scenario import SEED
+
+FORMATS = (".csv", ".parquet")
+
+
+@dataclass(frozen=True)
+class Table:
+    """Rows of a sweep, in the order of their numbers, whichever was finished first.
+
+    Attributes:
+        parameters: the names of parameters, and ``seed``.
+        results: the names of results, in the order in which the rows have them.
+        columns: name -> a value for each row: ``row``, parameters, ``seed``, results, ``error``; None for what is not
+            there.
+    """
+
+    parameters: tuple[str, ...]
+    results: tuple[str, ...]
+    columns: Mapping[str, Sequence[Result]]
+
+    @classmethod
+    def of(cls, runs: Sequence[Run], outcomes: Mapping[int, Outcome]) -> Table:
+        """The table of those runs that are done."""
+        done = [(run, outcomes[run.row]) for run in runs if run.row in outcomes]
+        names = tuple(dict.fromkeys(name for _, outcome in done for name in outcome.results))
+        parameters = tuple(runs[0].parameters) if runs else ()
+        columns: dict[str, list[Result]] = {"row": [run.row for run, _ in done]}
+        columns |= {name: [run.parameters[name] for run, _ in done] for name in parameters}
+        columns[SEED] = [run.seed for run, _ in done]
+        columns |= {name: [outcome.results.get(name) for _, outcome in done] for name in names}
+        columns["error"] = [outcome.error for _, outcome in done]
+        return cls((*parameters, SEED), names, columns)
+
+    def __len__(self) -> int:
+        return len(self.columns["row"])
+
+    @property
+    def failed(self) -> list[int]:
+        """The places of the rows with an error."""
+        return [place for place, error in enumerate(self.columns["error"]) if error]
+
+
+def check_format(path: Path) -> None:
+    """Refuse a file that no table can be written to, before anything is run.
+
+    Raises:
+        LinkwrightError: SWEEP110 its ending is none of a table; SWEEP111 pyarrow is not installed.
+    """
+    if path.suffix not in FORMATS:
+        message = phrase("'{path}' is no file for a table", path=str(path))
+        raise LinkwrightError(Diagnostic("SWEEP110", message, hint=phrase("its name is to end in .csv or .parquet")))
+    if path.suffix == ".parquet":
+        _pyarrow()
+
+
+def written(table: Table, path: Path) -> bytes:
+    """The bytes of a table in the format that the name of its file says."""
+    return _parquet(table) if path.suffix == ".parquet" else _csv(table)
+
+
+def _csv(table: Table) -> bytes:
+    """CSV with a line of names; numbers as Python writes them, which lose nothing."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(table.columns)
+    writer.writerows([_cell(each) for each in row] for row in zip(*table.columns.values(), strict=True))
+    return text.getvalue().encode()
+
+
+def _cell(value: Result) -> str:
+    if value is None:
+        return ""
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def _parquet(table: Table) -> bytes:
+    arrow = _pyarrow()
+    import pyarrow.parquet as pq  # type: ignore[import-not-found, import-untyped, unused-ignore]
+
+    columns = {name: arrow.array(_alike(values)) for name, values in table.columns.items()}
+    file = io.BytesIO()
+    pq.write_table(arrow.table(columns), file)
+    return file.getvalue()
+
+
+def _alike(values: Sequence[Result]) -> list[Result]:
+    """Values of one type, as a column of Parquet has: floats where some are, texts where they differ otherwise."""
+    kinds = {type(each) for each in values if each is not None}
+    if len(kinds) < 2:
+        return list(values)
+    if kinds == {int, float}:
+        return [None if each is None else float(each) for each in values]
+    return [None if each is None else _cell(each) for each in values]
+
+
+def _pyarrow() -> Any:
+    try:
+        import pyarrow as pa  # type: ignore[import-not-found, import-untyped, unused-ignore]
+    except ModuleNotFoundError as error:
+        raise missing_extra("SWEEP111", error) from None
+    return pa

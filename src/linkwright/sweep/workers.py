@@ -1,0 +1,147 @@
+"""Processes of this machine that run a scenario."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import sys
+import threading
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager, suppress
+from multiprocessing.connection import Connection, wait
+from pathlib import Path
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.sweep.plan import Run
+from linkwright.sweep.running import Outcome, prepare, run_once
+from linkwright.sweep.scenario import described
+
+MOST_ATTEMPTS = 2
+"""A run whose process dies is tried once more."""
+
+_PATIENCE = 10.0
+"""Seconds for a process that was told to end, before it is killed."""
+
+Report = Callable[[Outcome], None]
+
+
+def run_locally(path: Path, runs: Iterable[Run], workers: int, report: Report) -> None:
+    """Run a scenario in processes of their own.
+
+    Where one of them dies, another takes its place, and its run is tried once more.
+
+    Args:
+        path: the scenario's file.
+        runs: what is to be run.
+        workers: how many processes there are at once.
+        report: told of each run when it is done, in the order in which they come to an end.
+    """
+    waiting = deque(runs)
+    attempts: dict[int, int] = {}
+    busy: dict[Connection, _Worker] = {}
+    idle: list[_Worker] = []
+    try:
+        while waiting or busy:
+            while waiting and len(busy) < workers:
+                worker = idle.pop() if idle else _Worker(path)
+                worker.take(waiting.popleft())
+                busy[worker.connection] = worker
+            for ready in wait(list(busy)):
+                worker = busy.pop(ready)  # type: ignore[call-overload]  # connections only were waited for
+                outcome = worker.outcome()
+                if outcome is not None:
+                    idle.append(worker)
+                    report(outcome)
+                    continue
+                run, died = worker.run, worker.end()
+                attempts[run.row] = attempts.get(run.row, 0) + 1
+                if attempts[run.row] < MOST_ATTEMPTS:
+                    waiting.appendleft(run)
+                else:
+                    report(Outcome(run.row, error=f"the process that ran it {died}, twice"))
+    finally:
+        for worker in (*busy.values(), *idle):
+            worker.stop()
+        for worker in (*busy.values(), *idle):
+            worker.end()
+
+
+class _Worker:
+    """A process that makes one run after the other, and the connection to it."""
+
+    def __init__(self, path: Path) -> None:
+        spawn = multiprocessing.get_context("spawn")
+        self.connection, theirs = spawn.Pipe()
+        self.run = Run(0, {}, 0)
+        self._process = spawn.Process(target=_serve, args=(path, theirs), daemon=True)
+        with _no_interrupt():
+            self._process.start()
+        theirs.close()
+
+    def take(self, run: Run) -> None:
+        """Have it make a run."""
+        self.run = run
+        with suppress(OSError):  # it has died; that is found out by who waits for the outcome
+            self.connection.send(run)
+
+    def outcome(self) -> Outcome | None:
+        """What the run came to; None where the process has died."""
+        try:
+            outcome: Outcome = self.connection.recv()
+        except (EOFError, OSError):
+            return None
+        return outcome
+
+    def stop(self) -> None:
+        """Tell it to end, whatever it does."""
+        self._process.terminate()
+
+    def end(self) -> str:
+        """Wait until it has ended, and tell how."""
+        self.connection.close()
+        self._process.join(_PATIENCE)
+        if self._process.is_alive():
+            self._process.kill()
+            self._process.join()
+        status = self._process.exitcode or 0
+        self._process.close()
+        return f"was ended by {signal.Signals(-status).name}" if status < 0 else f"ended with status {status}"
+
+
+def _serve(path: Path, connection: Connection) -> None:
+    """What a worker does."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+    sys.stdout = sys.stderr
+    with suppress(EOFError, OSError):
+        try:
+            scenario = prepare(path)
+        except LinkwrightError as error:
+            while True:
+                run: Run = connection.recv()
+                connection.send(Outcome(run.row, error=described(error)))
+        while True:
+            connection.send(run_once(scenario, connection.recv()))
+
+
+def _end_with_parent() -> None:
+    """Let no run outlive what wants its outcome, whatever ended that."""
+    parent = multiprocessing.parent_process()
+    assert parent is not None, "it is a process of a pool"
+    parent.join()
+    os._exit(1)
+
+
+@contextmanager
+def _no_interrupt() -> Iterator[None]:
+    """Keep Ctrl-C from a process that is started, which begins with the signals that are blocked here."""
+    if sys.platform == "win32":
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)

@@ -1,0 +1,60 @@
+"""Sweeps on a Ray cluster."""
+
+import os
+import subprocess
+import sys
+
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.sweep.ray_workers import run_on_ray
+from tests.sweep.scenarios import HEAD, ignore, write
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="the tests have Ray on Linux only")
+
+LOSING = f"""import os, signal
+from pathlib import Path
+import beside
+{HEAD}
+@scenario(n=[1, 2, 3, 4])
+def work(n, seed):
+    lost = Path(os.environ["LOST"])
+    if n == 2 and not lost.exists():
+        lost.write_text(str(os.getpid()))
+        os.kill(os.getpid(), signal.SIGKILL)
+    return {{"square": beside.square(n)}}
+"""
+TWO = """import sys
+import ray.cluster_utils
+cluster = ray.cluster_utils.Cluster()
+for _ in range(2):
+    cluster.add_node(num_cpus=1, include_dashboard=False)
+from linkwright.cli import main
+status = main(["sweep", "squares.py", "--ray", cluster.address])
+cluster.shutdown()
+sys.exit(status)
+"""
+
+
+@pytest.mark.slow
+def test_a_cluster_of_two_workers_loses_one_and_the_table_is_whole(tmp_path):
+    path = write(tmp_path, LOSING)
+    (tmp_path / "beside.py").write_text("def square(n): return n * n\n")
+    lost = tmp_path / "lost"
+    environment = {
+        **os.environ,
+        "LOST": str(lost),
+        "RAY_raylet_start_wait_time_s": "600",
+    }
+    done = subprocess.run([sys.executable, "-c", TWO], cwd=tmp_path, env=environment, capture_output=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert lost.exists()
+    rows = path.with_suffix(".csv").read_text()
+    assert rows == "row,n,seed,square,error\n1,1,0,1,\n2,2,0,4,\n3,3,0,9,\n4,4,0,16,\n"
+
+
+def test_without_ray_it_is_asked_for(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "ray", None)
+    with pytest.raises(LinkwrightError) as raised:
+        run_on_ray(write(tmp_path), [], "auto", ignore)
+    assert raised.value.diagnostics[0].code == "SWEEP113"

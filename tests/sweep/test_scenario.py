@@ -1,0 +1,145 @@
+"""Scenarios, and the runs that they come to."""
+
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.sweep.plan import fingerprint, planned, with_values
+from linkwright.sweep.running import run_once
+from linkwright.sweep.scenario import load_scenario
+from tests.sweep.scenarios import HEAD, SQUARES, loaded, write
+
+
+def test_each_value_is_run_with_each_seed(tmp_path):
+    runs = planned(loaded(tmp_path))
+    assert [run.row for run in runs] == [1, 2, 3, 4, 5, 6]
+    assert [(run.parameters["n"], run.seed) for run in runs] == [(1, 0), (1, 1), (2, 0), (2, 1), (3, 0), (3, 1)]
+    assert list(runs[0].parameters) == ["n", "drawn"]
+
+
+def test_what_is_drawn_depends_on_seed_and_name_alone(tmp_path):
+    scenario = loaded(tmp_path)
+    drawn = {run.seed: run.parameters["drawn"] for run in planned(scenario)}
+    assert all(run.parameters["drawn"] == drawn[run.seed] for run in planned(scenario))
+    assert len(set(drawn.values())) == 2
+    more = planned(with_values(scenario, {"n": "7"}, 50))
+    assert {run.seed: run.parameters["drawn"] for run in more}.items() >= drawn.items()
+    assert all(0.0 <= run.parameters["drawn"] < 1.0 for run in more)
+
+
+def test_values_of_the_command_line_are_yaml(tmp_path):
+    text = f"{HEAD}\n@scenario(world=['empty'], laser=[True], mass=Normal(1.0, 0.1))\ndef f(world, laser, mass): ...\n"
+    scenario = with_values(loaded(tmp_path, text), {"world": "maze,house", "laser": "true,false", "mass": "1.5"}, None)
+    assert {name: list(values) for name, values in scenario.parameters.items()} == {
+        "world": ["maze", "house"],
+        "laser": [True, False],
+        "mass": [1.5],
+    }
+
+
+def test_a_run_is_what_the_function_returns(tmp_path):
+    scenario = loaded(tmp_path)
+    last = planned(scenario)[-1]
+    outcome = run_once(scenario, last)
+    assert (outcome.row, outcome.error) == (6, "")
+    assert outcome.results == {"square": 9, "big": True, "sum": 4 + last.parameters["drawn"]}
+    assert run_once(scenario, last) == outcome
+
+
+def test_random_numbers_of_python_and_numpy_begin_with_the_seed(tmp_path):
+    text = f"""import random
+import numpy
+{HEAD}
+@scenario(seeds=2)
+def draw():
+    return {{"python": random.random(), "numpy": numpy.random.rand(), "array": numpy.float64(0.5)}}
+"""
+    scenario = loaded(tmp_path, text)
+    first, second = (run_once(scenario, run).results for run in planned(scenario))
+    assert first == run_once(scenario, planned(scenario)[0]).results
+    assert first["python"] != second["python"]
+    assert first["numpy"] != second["numpy"]
+    assert type(first["array"]) is float
+
+
+@pytest.mark.parametrize(
+    ("body", "error"),
+    [
+        ("1 / 0", "ZeroDivisionError: division by zero (squares.py:5)"),
+        ("raise SystemExit(3)", "SystemExit: 3 (squares.py:5)"),
+        ("return 3", "BadResultError: the scenario returned no dict but int"),
+        ("return {'x': [1]}", "BadResultError: result 'x' is no number, text, True or False but list"),
+        ("return {'n': 1}", "BadResultError: a result cannot be called 'n': that is a column already, or no text"),
+        ("from linkwright.descriptions import load; load('<robot')", "XML203 <robot_description>:1:1"),
+    ],
+)
+def test_what_goes_wrong_is_the_outcome(tmp_path, body, error):
+    scenario = loaded(tmp_path, f"{HEAD}\n@scenario(n=[1])\ndef f(n):\n    {body}\n")
+    outcome = run_once(scenario, planned(scenario)[0])
+    assert outcome.error.startswith(error)
+    assert outcome.results == {}
+
+
+BAD = {
+    "SWEEP102 squares.py:1:5 this is no Python: invalid syntax": "def :\n",
+    "SWEEP102 squares.py:2:1 the scenario cannot be loaded: ZeroDivisionError: division by zero": "\n1 / 0\n",
+    "SWEEP102 squares.py:1:1 the scenario cannot be loaded: ModuleNotFoundError: No module named 'nothing_of_this'": (
+        "import nothing_of_this\n"
+    ),
+    "SWEEP103  there is no scenario in 'squares.py'": HEAD,
+    "SWEEP103 squares.py:7:1 there are 2 scenarios in 'squares.py'": f"{SQUARES}\n@scenario()\ndef other(): ...\n",
+    "SWEEP104 squares.py:2:1 the function 'f' takes no 'm'": f"{HEAD}@scenario(m=[1])\ndef f(): ...\n",
+    "SWEEP104 squares.py:2:1 the function 'f' needs 'm', of which @scenario says nothing": (
+        f"{HEAD}@scenario()\ndef f(m, k=1, seed=0): ...\n"
+    ),
+    "SWEEP104 squares.py:2:1 a parameter cannot be called 'row': that is a column already": (
+        f"{HEAD}@scenario(row=[1])\ndef f(row): ...\n"
+    ),
+    "SWEEP105 squares.py:2:1 parameter 'm' has no values": f"{HEAD}@scenario(m=[])\ndef f(m): ...\n",
+    "SWEEP105 squares.py:2:1 parameter 'm' needs a list of values, a Uniform or a Normal": (
+        f"{HEAD}@scenario(m='maze')\ndef f(m): ...\n"
+    ),
+    "SWEEP105 squares.py:2:1 a value of parameter 'm' is no number, text, True or False but dict": (
+        f"{HEAD}@scenario(m=[{{}}])\ndef f(m): ...\n"
+    ),
+    "SWEEP105 squares.py:2:1 parameter 'm': the numbers that it is drawn by are to be finite": (
+        f"{HEAD}@scenario(m=Uniform(0, float('inf')))\ndef f(m): ...\n"
+    ),
+    "SWEEP105 squares.py:2:1 the seeds are to be a positive number of them, or a list of whole numbers from 0 on": (
+        f"{HEAD}@scenario(seeds=0)\ndef f(): ...\n"
+    ),
+}
+
+
+@pytest.mark.parametrize(("told", "text"), BAD.items(), ids=range(len(BAD)))
+def test_a_bad_scenario_is_one_error(tmp_path, monkeypatch, told, text):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(LinkwrightError) as raised:
+        loaded(tmp_path, text)
+    (found,) = raised.value.diagnostics
+    assert f"{found.code} {found.span or ''} {found.message}" == told
+
+
+@pytest.mark.parametrize("name", ["none.py", "drive.yaml", "."])
+def test_what_is_no_file_of_python_is_no_scenario(tmp_path, name):
+    (tmp_path / "drive.yaml").write_text("a: 1")
+    with pytest.raises(LinkwrightError) as raised:
+        load_scenario(tmp_path / name)
+    assert raised.value.diagnostics[0].code == "SWEEP101"
+
+
+@pytest.mark.parametrize(
+    ("words", "code"), [({"m": "1"}, "SWEEP106"), ({"n": ""}, "SWEEP105"), ({"n": "]"}, "SWEEP105")]
+)
+def test_bad_values_of_the_command_line(tmp_path, words, code):
+    with pytest.raises(LinkwrightError) as raised:
+        with_values(loaded(tmp_path), words, None)
+    assert raised.value.diagnostics[0].code == code
+
+
+def test_the_fingerprint_is_that_of_file_and_values(tmp_path):
+    scenario = loaded(tmp_path)
+    whole = fingerprint(scenario, planned(scenario))
+    assert whole == fingerprint(scenario, planned(scenario))
+    assert whole != fingerprint(scenario, planned(with_values(scenario, {}, 1)))
+    write(tmp_path, f"{SQUARES}\n# changed\n")
+    assert whole != fingerprint(scenario, planned(scenario))

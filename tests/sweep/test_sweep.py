@@ -1,0 +1,191 @@
+"""Sweeps: tables, summaries, going on, in this process."""
+
+import csv
+import io
+from html.parser import HTMLParser
+
+import pyarrow.parquet as pq
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.sweep.plan import planned
+from linkwright.sweep.running import Outcome, run_once
+from linkwright.sweep.sweep import Sweep
+from linkwright.sweep.table import Table, check_format, written
+from tests.full_disk import full_disk, needs_limits
+from tests.sweep.scenarios import HEAD, SQUARES, loaded, write
+
+MIXED = f"""{HEAD}
+@scenario(world=['maze', 'a,"b"'], n=[1, 2])
+def mixed(world, n):
+    if n == 2 and world == 'maze':
+        raise RuntimeError('<no> way')
+    return {{"float_or_int": n / 2 if n == 1 else n, "text": world, "late": None, "truth": n == 1, "nan": float('nan')}}
+"""
+
+
+def backwards(scenario, until=None):
+    """A runner in this process that begins with the last row, and is interrupted before a row."""
+
+    def run(runs, report):
+        for each in reversed(runs):
+            if each.row == until:
+                raise KeyboardInterrupt
+            report(run_once(scenario, each))
+
+    return run
+
+
+def rows_of(path):
+    return list(csv.DictReader(io.StringIO(path.read_text())))
+
+
+def swept(tmp_path, text=SQUARES, name="out.csv", until=None, resume=False):
+    scenario = loaded(tmp_path, text)
+    sweep = Sweep(scenario, tmp_path / name, ["linkwright", "sweep", "squares.py"])
+    told = []
+    table = sweep.run(backwards(scenario, until), resume=resume, progress=lambda *state: told.append(state))
+    return table, told
+
+
+def test_rows_are_in_their_order_whichever_came_first(tmp_path):
+    table, told = swept(tmp_path)
+    assert told[-1] == (6, 6, 0)
+    rows = rows_of(tmp_path / "out.csv")
+    assert [row["row"] for row in rows] == ["1", "2", "3", "4", "5", "6"]
+    assert list(rows[0]) == ["row", "n", "drawn", "seed", "square", "big", "sum", "error"]
+    assert [row["square"] for row in rows] == ["1", "1", "4", "4", "9", "9"]
+    assert rows[5]["big"] == "true"
+    assert [float(row["sum"]) for row in rows] == table.columns["sum"], "no digit is lost"
+    assert sorted(path.name for path in tmp_path.iterdir() if path.is_file()) == ["out.csv", "out.html", "squares.py"]
+
+
+def test_a_run_that_fails_is_a_row_with_its_error(tmp_path):
+    table, told = swept(tmp_path, MIXED)
+    assert told[-1] == (4, 4, 1)
+    assert table.failed == [1]
+    rows = rows_of(tmp_path / "out.csv")
+    assert rows[1]["error"] == "RuntimeError: <no> way (squares.py:6)"
+    assert rows[1]["text"] == ""
+    assert rows[2]["world"] == 'a,"b"'
+
+
+def test_parquet_has_the_same_and_its_types(tmp_path):
+    table, _ = swept(tmp_path, MIXED, "out.parquet")
+    read = pq.read_table(tmp_path / "out.parquet").to_pydict()
+    assert read["row"] == [1, 2, 3, 4]
+    assert read["float_or_int"] == [0.5, None, 0.5, 2.0]
+    assert read["truth"] == [True, None, True, False]
+    assert read["late"] == [None] * 4
+    assert list(read) == list(table.columns)
+
+
+def test_what_was_interrupted_goes_on_and_ends_with_the_same_bytes(tmp_path):
+    whole, interrupted = tmp_path / "whole", tmp_path / "interrupted"
+    whole.mkdir()
+    interrupted.mkdir()
+    swept(whole)
+    table, _ = swept(interrupted, until=3)
+    assert table.columns["row"] == [4, 5, 6]
+    assert "3 are still to be done" in (interrupted / "out.html").read_text()
+    journal = interrupted / "out.csv.unfinished"
+    with journal.open("a") as file:
+        file.write('{"row": 3, "resul')  # the power went
+    table, told = swept(interrupted, resume=True)
+    assert told[0] == (4, 6, 0)
+    assert not journal.exists()
+    for name in ("out.csv", "out.html"):
+        assert (interrupted / name).read_bytes() == (whole / name).read_bytes()
+
+
+def test_an_unfinished_sweep_is_neither_lost_nor_mixed_with_another(tmp_path):
+    with pytest.raises(LinkwrightError) as raised:
+        swept(tmp_path, resume=True)
+    assert raised.value.diagnostics[0].code == "SWEEP109"
+    swept(tmp_path, until=3)
+    before = (tmp_path / "out.csv.unfinished").read_bytes()
+    for resume, text, code in ((False, SQUARES, "SWEEP107"), (True, SQUARES.replace("seeds=2", "seeds=3"), "SWEEP108")):
+        with pytest.raises(LinkwrightError) as raised:
+            swept(tmp_path, text, resume=resume)
+        assert raised.value.diagnostics[0].code == code
+    assert (tmp_path / "out.csv.unfinished").read_bytes() == before
+
+
+@needs_limits
+def test_on_a_full_disk_the_table_that_was_there_stays(tmp_path):
+    (tmp_path / "out.csv").write_text("old")
+    scenario = loaded(tmp_path)
+    sweep = Sweep(scenario, tmp_path / "out.csv", ["linkwright"])
+    with full_disk(50), pytest.raises(OSError, match="too large") as raised:
+        sweep.run(backwards(scenario), resume=False, progress=lambda *_: None)
+    assert raised.value.filename == str(tmp_path / "out.csv.unfinished")
+    assert (tmp_path / "out.csv").read_text() == "old"
+
+
+class Page(HTMLParser):
+    """What a page is made of."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.tags, self.addresses, self.text = [], [], io.StringIO()
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append((tag, dict(attrs)))
+
+    def handle_data(self, data):
+        self.text.write(data)
+
+    def count(self, tag, **attributes):
+        return sum(name == tag and attributes.items() <= found.items() for name, found in self.tags)
+
+
+def test_the_summary_has_plots_and_fetches_nothing(tmp_path):
+    swept(tmp_path)
+    page = Page((tmp_path / "out.html").read_text())
+    assert page.count("svg") == 3 + 2 * 3, "of each result one by itself, and one against each parameter that differs"
+    assert page.count("circle") == 6 * 6
+    assert page.count("tr", id="row-6") == 1
+    assert page.count("a", href="#row-6") == 6
+    assert not [found for _, found in page.tags if {"src", "action"} & found.keys()]
+    assert page.count("link") == page.count("script") == 0
+    assert "6 runs" in page.text.getvalue()
+
+
+def test_the_summary_tells_what_failed_and_how_to_run_it_again(tmp_path):
+    swept(tmp_path, MIXED)
+    text = (tmp_path / "out.html").read_text()
+    assert "&lt;no&gt; way" in text
+    assert "linkwright sweep squares.py --rerun 2" in text
+    assert "1 failed" in text
+
+
+def test_a_sweep_of_nothing_but_errors_has_a_page(tmp_path):
+    table, _ = swept(tmp_path, f"{HEAD}@scenario(n=[1])\ndef f(n): return {{'x': 1 / 0}}\n")
+    assert table.failed == [0]
+    assert Page((tmp_path / "out.html").read_text()).count("svg") == 0
+
+
+@pytest.mark.parametrize("values", [[1.0, 1.0], [0.0, 1e-12], [-5.0, 1e9], [1e-300, 2e-300]])
+def test_plots_of_extreme_values(tmp_path, values):
+    text = f"{HEAD}@scenario(n=[0, 1])\ndef f(n): return {{'x': {values}[n]}}\n"
+    swept(tmp_path, text)
+    page = (tmp_path / "out.html").read_text()
+    assert "nan" not in page.lower().replace("standard", "")
+    assert Page(page).count("circle") == 2
+
+
+def test_tables_are_csv_or_parquet(tmp_path):
+    with pytest.raises(LinkwrightError) as raised:
+        check_format(tmp_path / "out.xlsx")
+    assert raised.value.diagnostics[0].code == "SWEEP110"
+    for name in ("out.csv", "out.parquet"):
+        check_format(tmp_path / name)
+
+
+def test_what_is_not_returned_everywhere_is_empty_there(tmp_path):
+    runs = planned(loaded(tmp_path))[:2]
+    table = Table.of(runs, {1: Outcome(1, {"a": 1}), 2: Outcome(2, {"b": "x"})})
+    lines = written(table, tmp_path / "out.csv").decode().splitlines()
+    assert [line.split(",")[4:] for line in lines] == [["a", "b", "error"], ["1", "", ""], ["", "x", ""]]
+    assert write(tmp_path).exists()
