@@ -149,8 +149,7 @@ class SimulatedView(ModelView):
     def _plan_others(self) -> None:
         self._plan(*_SIMULATOR, self._world.parameters, output="screen")
         if not self._world.headless:
-            parameters = {"use_sim_time": True, "world": self._world.world}
-            self._plan(*VIEWER, parameters, name="viewer", viewer_config=self._viewer_config)
+            self._plan(*VIEWER, {"use_sim_time": True}, name="viewer", viewer_config=self._viewer_config)
 
     def _viewer_config(self) -> RvizConfig:
         """The world with the robot in it, its scans and pictures, in the frame that the robot moves in.

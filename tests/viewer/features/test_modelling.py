@@ -5,9 +5,10 @@ from __future__ import annotations
 from contextlib import asynccontextmanager
 from pathlib import Path
 
+import pytest
+
 from linkwright.graph import DurabilityPolicy, QoSProfile
 from linkwright.messages import get_message, get_service
-from linkwright.nodes.options import NodeOptions
 from tests.sdf.editing.texts import BOX, PLAIN
 from tests.viewer.scene import page, world
 from tests.waiting import eventually
@@ -25,8 +26,10 @@ POSE = [1, 2, 3, 0, 0, 0.5]
 class Simulation:
     """What a simulator is for those who model its world; keeps what it was asked."""
 
-    def __init__(self, made, *, loads: bool) -> None:
+    def __init__(self, made, path: Path | None, *, loads: bool) -> None:
         self.node = made.graph.create_node("gazebo")
+        if path is not None:
+            self.node.declare_parameter("world", str(path))
         latched = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         self.description = self.node.create_publisher(STRING, "/world_description", latched)
         self.description.publish(STRING(data=PLAIN))
@@ -56,9 +59,8 @@ class Simulation:
 @asynccontextmanager
 async def modelled(path: Path | None = None, *, loads: bool = True):
     """A simulation whose world stands in a file, and a page that edits it."""
-    options = NodeOptions(parameters={} if path is None else {"world": str(path)})
-    async with world(options=options) as made:
-        simulation = Simulation(made, loads=loads)
+    async with world() as made:
+        simulation = Simulation(made, path, loads=loads)
         async with page(made.viewer) as client:
             await client.until("modelling_state", available=True)
             await client.send("set_modelling", active=True)
@@ -192,6 +194,14 @@ async def test_a_world_without_a_file_is_saved_as_one(tmp_path):
         await client.send("save_world", path=str(path))
         assert (await client.until("modelling_state", file=str(path)))["unsaved"] is False
         assert path.read_text() == PLAIN.replace(BOX, "")
+
+
+@pytest.mark.parametrize("text", [None, PLAIN.replace('name="w"', 'name="other"'), "<sdf"])
+async def test_a_file_with_another_world_is_of_another_machine(tmp_path, text):
+    path = tmp_path / "none.world" if text is None else written(tmp_path, text)
+    async with modelled(path) as (_, client, _):
+        assert client.state["file"] is None
+        assert len(client.state["things"]) == 3
 
 
 async def test_a_file_that_another_program_changed_is_read_again_or_not_overwritten(tmp_path):

@@ -1,19 +1,20 @@
 """Modelling a world in the page: its text is edited, and the simulation makes its world that of the text.
 
-The text is that of the file that the parameter ``world`` of the viewer's node names; where it names none, what the
-simulator tells about its world. All pages edit one text, one thing after the other.
+The text is that of the file that the simulator's parameter ``world`` names; where there is none, or another world is in
+it, the text is what the simulator tells about its world. All pages edit one text, one thing after the other.
 """
 
 from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable
+from contextlib import suppress
 from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from linkwright.diagnostics import LinkwrightError, phrase
-from linkwright.graph import DurabilityPolicy, ParameterDescriptor, QoSProfile
-from linkwright.messages import get_message
+from linkwright.graph import DurabilityPolicy, QoSProfile
+from linkwright.messages import get_message, get_service
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
 from linkwright.viewer.features.simulation_services import SimulationServices, refuse
 from linkwright.viewer.protocol.message import PageMessage, ServerMessage
@@ -62,9 +63,6 @@ class ModellingFeature(PageFeature):
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
-        node = self.context.node
-        about = ParameterDescriptor(description="the file of the world that is simulated", read_only=True)
-        self._name = str(node.declare_parameter("world", "", about).value)
         self._services = SimulationServices(self.context)
         self._listening = False
         self._available = False
@@ -184,15 +182,51 @@ class ModellingFeature(PageFeature):
         if edited is not None and edited.file is not None:
             if not edited.unsaved and await asyncio.to_thread(lambda: edited.is_outdated):
                 self._edited = await asyncio.to_thread(EditedWorld.of_file, edited.file, packages)
-        elif edited is None and self._name:
-            from linkwright.viewer.features.modelling.things import world_file
-
-            path = await asyncio.to_thread(world_file, self._name, packages)
-            self._edited = await asyncio.to_thread(EditedWorld.of_file, path, packages)
         elif edited is None:
-            self._edited = await asyncio.to_thread(EditedWorld.of_text, await self._described(), packages)
+            self._edited = await self._read()
         assert self._edited is not None, "one of these is so"
         return self._edited
+
+    async def _read(self) -> EditedWorld:
+        """The world that is simulated: of its file, where that can be found, else as the simulator tells about it."""
+        from linkwright.sdf.editing import EditError
+        from linkwright.viewer.features.modelling.edited_world import EditedWorld
+        from linkwright.viewer.features.modelling.things import world_file
+
+        packages = self.context.finder
+        told = await asyncio.to_thread(EditedWorld.of_text, await self._described(), packages)
+        name = await self._file_told()
+        if name:
+            with suppress(EditError, LinkwrightError):  # it may be one of another machine
+                path = await asyncio.to_thread(world_file, name, packages)
+                found = await asyncio.to_thread(EditedWorld.of_file, path, packages)
+                if found.world.world.name == told.world.world.name:
+                    return found
+        return told
+
+    async def _file_told(self) -> str:
+        """What the parameter ``world`` of the simulator says; empty where there is none."""
+        node = self.context.node
+        publishers = node.get_publishers_info_by_topic(_DESCRIPTION)
+        if not publishers:
+            return ""
+        name = f"{publishers[0].node_namespace.rstrip('/')}/{publishers[0].node_name}/get_parameters"
+        client = node.create_client(get_service("rcl_interfaces/srv/GetParameters"), name)
+        told: asyncio.Future[str] = asyncio.get_running_loop().create_future()
+
+        def take(future: Any) -> None:
+            if not told.done():
+                told.set_result(next((each.string_value for each in future.result().values), ""))
+
+        try:
+            if not client.service_is_ready():
+                return ""
+            client.call_async(client.srv_type.Request(names=["world"])).add_done_callback(take)
+            return await asyncio.wait_for(told, _PATIENCE)
+        except asyncio.TimeoutError:
+            return ""
+        finally:
+            node.destroy_client(client)
 
     async def _described(self) -> str:
         """What the simulator tells about its world.
