@@ -26,7 +26,7 @@ from linkwright.simulation.scene.couplings import THREAD
 from linkwright.simulation.scene.meshes import MeshLibrary
 from linkwright.simulation.scene.shapes import add_shape
 from linkwright.simulation.scene.structure import PlacedJoint
-from linkwright.simulation.scene.surfaces import apply_surface
+from linkwright.simulation.scene.surfaces import apply_surface, grip_of
 from linkwright.xmltree import Element
 
 COLLISION_GROUP, VISUAL_GROUP = 3, 2
@@ -52,10 +52,12 @@ class BodyWriter:
     Attributes:
         diagnostics: what could not be taken over.
         unsaid: names of the geoms that touch and of whose friction nothing is said.
+        grips: how much they grip where a motor turns them, by the names of the geoms.
     """
 
     def __init__(self, meshes: MeshLibrary) -> None:
         self.unsaid: set[str] = set()
+        self.grips: dict[str, float] = {}
         self.diagnostics: list[Diagnostic] = []
         self._meshes = meshes
         self._mujoco = load_mujoco()
@@ -162,6 +164,7 @@ class BodyWriter:
                 geom.group = COLLISION_GROUP
                 geom.contype, geom.conaffinity = surface.category_bitmask, surface.collide_bitmask
                 apply_surface(geom, surface)
+                self.grips[geom.name] = grip_of(surface)
                 if surface.friction is None:
                     self.unsaid.add(geom.name)
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import combinations
-from math import isfinite
+from math import inf, isfinite
 from types import MappingProxyType
 from typing import Any
 
@@ -22,7 +23,7 @@ from linkwright.simulation.scene.figures import draw, figures_of
 from linkwright.simulation.scene.meshes import MeshLibrary
 from linkwright.simulation.scene.shapes import set_pose
 from linkwright.simulation.scene.structure import HeldLink, PlacedJoint, Structure, structure_of
-from linkwright.simulation.scene.wheels import make_omnidirectional, make_rolling, make_sliding
+from linkwright.simulation.scene.wheels import SKIDDING_GRIP, make_omnidirectional, make_rolling, make_sliding
 from linkwright.xmltree import Element
 
 _USUAL_STEP = 0.001
@@ -31,6 +32,8 @@ _ANCHORS_APART = 0.1
 """How far from each other in m the two points are that hold the axis of a hinge that closes a loop."""
 _LOOP_STEPS = 4.0
 """The time constant of what closes a loop, in steps."""
+_WHEELS_THAT_ROLL = 2
+"""With more of them on one link some slip in every turn."""
 _SERVO_TIME = 0.02
 """How long a servo takes to bring its joint near to where it shall be, in s."""
 
@@ -255,7 +258,10 @@ class Scene:
 
     def let_slide(self, joint: str) -> None:
         """Let the wheel that a joint holds slide in all directions, as if it had rollers; a motor only turns it."""
-        make_omnidirectional(self.bodies[self.joints[joint].child], self.step)
+        body = self.bodies[self.joints[joint].child]
+        for geom in body.geoms:
+            self._writer.grips.pop(geom.name, None)
+        make_omnidirectional(body, self.step)
 
     def add_servo(self, joint: str) -> str:
         """Hold a joint of one axis where it is told to be; what pulls at it makes no difference.
@@ -298,10 +304,19 @@ class Scene:
         """Give wheels and casters of models with motors their surfaces, once all motors are there."""
         for name in self._unsettled & self.models.keys():
             driven = {self.joints[joint].child: joint for joint in self._driven[name]}
+            sides = Counter(self.joints[joint].parent for joint in driven.values())
+            greatest = SKIDDING_GRIP if max(sides.values(), default=0) > _WHEELS_THAT_ROLL else inf
             for held in self.models[name].structure.links:
                 body = self.bodies[held.link.name]
                 if held.link.name in driven:
-                    make_rolling(self.spec, body, self.spec.joint(driven[held.link.name]), self.step)
+                    make_rolling(
+                        self.spec,
+                        body,
+                        self.spec.joint(driven[held.link.name]),
+                        self.step,
+                        self._writer.grips,
+                        greatest,
+                    )
                 else:
                     make_sliding(body, self._writer.unsaid)
         self._unsettled.clear()

@@ -14,7 +14,7 @@ _USUAL_FRICTION = 1.0
 _LEAST = 1e-5
 """MuJoCo has no friction coefficients of less."""
 _GREATEST = 1e3
-_FRICTIONLESS = 0.1
+FRICTIONLESS = 0.1
 """At and below it a shape slides: friction this small is written for casters, and means that there shall be none."""
 _SOFT = (0.05, 1.0)
 """Time constant in s and damping ratio of what slides: soft enough to leave the load to the wheels beside it."""
@@ -32,7 +32,7 @@ def apply_surface(geom: Any, surface: Surface) -> None:
     mu = friction_of(surface)
     geom.friction = [min(max(mu, _LEAST), _GREATEST), *geom.friction[1:]]
     geom.priority = _priority(mu)
-    if mu < _FRICTIONLESS:
+    if mu < FRICTIONLESS:
         make_slippery(geom)
     if surface.torsional is not None and surface.torsional.coefficient > 0:
         geom.condim = 4
@@ -45,6 +45,13 @@ def friction_of(surface: Surface) -> float:
     """The coefficient of friction that counts: MuJoCo's is the same in all directions, and so the lesser of two."""
     if surface.friction is not None:
         return max(min(surface.friction.mu, surface.friction.mu2), 0.0)
+    return _USUAL_FRICTION
+
+
+def grip_of(surface: Surface) -> float:
+    """The coefficient of friction of a wheel that a motor turns: the greater; the lesser is for slipping sideways."""
+    if surface.friction is not None:
+        return max(surface.friction.mu, surface.friction.mu2, 0.0)
     return _USUAL_FRICTION
 
 
@@ -77,13 +84,17 @@ def is_slippery(geom: Any) -> bool:
     return bool(geom.condim == 1)
 
 
-def make_wheel(geom: Any, step: float) -> None:
+def make_wheel(geom: Any, step: float, grip: float | None = None) -> None:
     """Let a shape roll without slipping: a hard contact, which counts before that of a ground of equal friction.
 
     Args:
         geom: the shape.
         step: the time step of the simulation in s.
+        grip: its coefficient of friction; None for the one that it has.
     """
+    if grip is not None:
+        geom.friction = [min(max(grip, _LEAST), _GREATEST), *geom.friction[1:]]
+        geom.priority, geom.condim = _priority(grip), max(geom.condim, 3)
     geom.solref = [_HARD_STEPS * step, 1.0]
     geom.solimp = list(_HARD_IMPEDANCE)
     geom.priority += 1

@@ -1,0 +1,64 @@
+"""Four wheels that a differential drive turns: they slip in every turn."""
+
+from __future__ import annotations
+
+from math import pi
+
+import pytest
+
+from linkwright.simulation.plugins.odometry import yaw_of
+from tests.simulation.test_movers import drive
+from tests.simulation.test_plugins import served
+from tests.simulation.worlds import GROUND, box
+
+RADIUS, WIDTH = 0.1, 0.4
+SIDES = tuple((end, side) for end in ("front", "back") for side in ("left", "right"))
+
+
+def skid(length: float, surface: str = "") -> str:
+    """A robot of 9 kg with wheels on two axles some way apart."""
+    text = box("robot", "0 0 0.2 0 0 0", "0.6 0.3 0.1", 5.0)
+    for end, side in SIDES:
+        x, y = (length / 2 if end == "front" else -length / 2), (WIDTH / 2 if side == "left" else -WIDTH / 2)
+        wheel = (
+            f'<link name="{end}_{side}"><pose>{x} {y} -0.1 {pi / 2} 0 0</pose><inertial><mass>1</mass><inertia>'
+            '<ixx>0.003</ixx><iyy>0.003</iyy><izz>0.005</izz></inertia></inertial><collision name="c"><geometry>'
+            f"<cylinder><radius>{RADIUS}</radius><length>0.05</length></cylinder></geometry>{surface}</collision></link>"
+            f'<joint name="{end}_{side}_joint" type="revolute"><parent>link</parent><child>{end}_{side}</child>'
+            '<axis><xyz expressed_in="__model__">0 1 0</xyz></axis></joint>'
+        )
+        text = text.replace("</model>", f"{wheel}</model>")
+    joints = "".join(f"<{side}_joint>{end}_{side}_joint</{side}_joint>" for end, side in SIDES)
+    sizes = f"<wheel_separation>{WIDTH}</wheel_separation><wheel_diameter>{2 * RADIUS}</wheel_diameter>"
+    plugin = f'<plugin name="drive" filename="libgazebo_ros_diff_drive.so"><num_wheel_pairs>2</num_wheel_pairs>{joints}'
+    return text.replace("</model>", f"{plugin}{sizes}</plugin></model>")
+
+
+def friction(mu: float, mu2: float) -> str:
+    """A surface."""
+    return f"<surface><friction><ode><mu>{mu}</mu><mu2>{mu2}</mu2></ode></friction></surface>"
+
+
+@pytest.mark.parametrize("surface", ["", friction(100.0, 50.0), friction(1.0, 0.05)], ids=["unsaid", "rubber", "mu2"])
+@pytest.mark.parametrize("length", [0.2, 0.4])
+async def test_they_turn_a_robot_nearly_as_fast_as_friction_by_coulomb_lets_them(length, surface):
+    async with served(GROUND, skid(length, surface)) as (server, graph, log):
+        await drive(server, graph, turning=0.5, seconds=1.0)
+        begin = yaw_of(server.simulation.model_pose("robot"))
+        await drive(server, graph, turning=0.5, seconds=1.0)
+        share = (yaw_of(server.simulation.model_pose("robot")) - begin) / 0.5
+        expected = WIDTH**2 / (WIDTH**2 + length**2)
+        assert 0.8 * expected < share < 1.05 * expected
+        assert not log
+
+
+@pytest.mark.parametrize("surface", ["", friction(1.0, 0.05)], ids=["unsaid", "mu2"])
+async def test_they_drive_straight_on(surface):
+    async with served(GROUND, skid(0.4, surface)) as (server, graph, log):
+        await drive(server, graph, 0.5, seconds=1.0)
+        begin = server.simulation.model_pose("robot")
+        await drive(server, graph, 0.5, seconds=1.0)
+        end = server.simulation.model_pose("robot")
+        assert end[0] - begin[0] == pytest.approx(0.5, abs=0.01)
+        assert (end[1], yaw_of(end)) == pytest.approx((0.0, 0.0), abs=1e-3)
+        assert not log
