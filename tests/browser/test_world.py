@@ -109,3 +109,31 @@ def test_the_bar_is_there_with_the_simulation_and_the_mouse_handles_models(live,
     page.mouse.click(x, y, button="right")
     page.get_by_role("menuitem", name="Add a model here").click()
     assert page.get_by_role("dialog").is_visible()
+
+
+LAMPS = """
+  <scene><ambient>0.3 0.3 0.3</ambient><background>0.2 0.4 0.8</background></scene>
+  <light name="sun" type="directional"><cast_shadows>true</cast_shadows><direction>-0.5 0.3 -1</direction></light>
+  <light name="lamp" type="point"><pose>2 2 4 0 0 0</pose><diffuse>1 0.8 0.5</diffuse></light>
+  <model name="floor"><static>true</static><pose>0 0 -0.5 0 0 0</pose><link name="link">
+    <visual name="v"><geometry><box><size>14 14 0.1</size></box></geometry></visual>
+    <light name="spot" type="spot"><pose>-3 0 5 0 0 0</pose><spot><outer_angle>0.8</outer_angle></spot></light>
+  </link></model>
+</world>"""
+
+
+def test_a_world_is_in_the_light_of_the_camera_a_studio_or_its_own_lights(live, open_page):
+    def lit(page) -> dict:
+        return page.evaluate("() => window.linkwright.displays[0].drawn.light")
+
+    for choice, expected in (
+        ("Automatic", {"lighting": "Camera", "lights": 0, "shadows": 0}),  # where the tests run the processor draws
+        ("Studio", {"lighting": "Studio", "lights": 1, "shadows": 1}),
+        ("World", {"lighting": "World", "lights": 3, "shadows": 1}),
+    ):
+        displays = DISPLAYS.replace("Name: World", f"Name: World, Light: {choice}")
+        viewer = live(configuration(displays, distance=16.0).replace("Fixed Frame: base", "Fixed Frame: world"))
+        viewer.publish("/world_description", String(WORLD.replace("</world>", LAMPS)), DESCRIPTION_QOS)
+        page = open_page(viewer)
+        viewer.settle(page)
+        assert lit(page) == expected

@@ -2,11 +2,28 @@
 
 import type { LinkScene } from "./robot";
 
+/** A light of a world. */
+export interface LightScene {
+  kind: "directional" | "point" | "spot";
+  link: string | null;
+  position: number[];
+  direction: number[];
+  color: number[];
+  shadows: boolean;
+  range: number;
+  fading: number[];
+  cone: number[];
+}
+
 /** World: what is drawn; `revision` counts descriptions. */
 export interface WorldScene {
   revision: number;
   name: string;
   links: LinkScene[];
+  lights: LightScene[];
+  ambient: number[];
+  background: number[];
+  shadows: boolean;
   kind: "world_scene";
 }
 

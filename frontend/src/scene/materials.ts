@@ -48,6 +48,8 @@ export const errorMaterial = new MeshBasicMaterial({ color: 0xffffff, side: Doub
 
 /** Hands out materials; many links of one colour make one material. */
 export class MaterialPool {
+  /** Whether lights that stand in the scene shine on the surfaces, so that each is to be drawn by itself. */
+  isLit = false;
   private readonly materials = new Map<string, MeshLambertMaterial>();
   private readonly used = new Set<string>();
 

@@ -179,7 +179,8 @@ export class Stage {
         const invalidate = (): void => this.loop.invalidate();
         const beside = (show: () => void): void => this.loop.beside(show);
         const camera = (): Camera => this.viewport.camera;
-        const drawing = new Drawing({ display, session, meshes, panels, invalidate, beside, camera });
+        const hasGpu = (): boolean => this.viewport.hasGpu;
+        const drawing = new Drawing({ display, session, meshes, panels, invalidate, beside, camera, hasGpu });
         this.drawings.set(display.id, { display, drawing, pacing: new Pacing(invalidate) });
         this.viewport.scene.add(drawing.root);
         drawing.interactionChanged?.(this.interaction);
@@ -218,6 +219,7 @@ export class Stage {
     }
     this.robotSettled ||= settled && [...this.robots(), ...this.worlds()].some((each) => each.isInPlace);
     if (settled) this.fitFirst();
+    this.viewport.light(this.worlds().find((world) => world.ownLight)?.ownLight ?? null);
     this.marks.update();
     this.outline.set(this.selectedObjects());
     this.viewport.render(detail.smooth);

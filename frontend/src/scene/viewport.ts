@@ -5,6 +5,7 @@ import {
   DirectionalLight,
   LinearSRGBColorSpace,
   OrthographicCamera,
+  PCFShadowMap,
   PerspectiveCamera,
   Scene,
   Vector3,
@@ -19,6 +20,10 @@ import { Smoothing } from "./smoothing";
 
 const LARGEST_PIXEL_RATIO = 2;
 const FAR_CLIP = 1000;
+/** The share of the camera's light beside lights that stand in the scene. */
+const FAINT = 0.15;
+/** What programs call themselves that draw on the processor. */
+const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
 /** Longest side of a picture, pixels. */
 const LARGEST_PICTURE = 8192;
 
@@ -34,7 +39,10 @@ export class Viewport {
   readonly renderer: WebGLRenderer;
   private readonly smoothing = new Smoothing();
   private part = 1;
-  private readonly light = new DirectionalLight(0xffffff, (1 - AMBIENT) * Math.PI);
+  private readonly ambient = new AmbientLight(0xffffff, AMBIENT * Math.PI);
+  private ownBackground = "#303030";
+  private drawnBy: string | null = null;
+  private readonly headlight = new DirectionalLight(0xffffff, (1 - AMBIENT) * Math.PI);
 
   constructor(readonly container: HTMLElement, resized: () => void) {
     this.renderer = makeRenderer();
@@ -43,7 +51,8 @@ export class Viewport {
     this.renderer.outputColorSpace = LinearSRGBColorSpace;
     this.renderer.setClearColor(0x303030);
     this.perspective.matrixAutoUpdate = this.orthographic.matrixAutoUpdate = false;
-    this.scene.add(new AmbientLight(0xffffff, AMBIENT * Math.PI), this.light, this.light.target);
+    this.renderer.shadowMap.type = PCFShadowMap;
+    this.scene.add(this.ambient, this.headlight, this.headlight.target);
     container.prepend(this.canvas);
     new ResizeObserver(() => {
       this.fit();
@@ -57,7 +66,23 @@ export class Viewport {
   }
 
   set background(color: string) {
+    this.ownBackground = color;
     this.renderer.setClearColor(new Color(color));
+  }
+
+  /** Whether a graphics card draws, and not the processor. */
+  get hasGpu(): boolean {
+    this.drawnBy ??= nameOfRenderer(this.renderer.getContext());
+    return !SOFTWARE.test(this.drawnBy);
+  }
+
+  /** Lights the scene: by the camera (null), or by lights that stand in it, which leave the camera a faint one. */
+  light(own: { shadows: boolean; background: string | null } | null): void {
+    const { renderer } = this;
+    this.headlight.intensity = (own ? FAINT : 1 - AMBIENT) * Math.PI;
+    this.ambient.intensity = own ? 0 : AMBIENT * Math.PI;
+    renderer.shadowMap.enabled = own?.shadows ?? false;
+    renderer.setClearColor(new Color(own?.background ?? this.ownBackground));
   }
 
   /** The camera in use: views differ in their projection. */
@@ -74,7 +99,7 @@ export class Viewport {
       .makeBasis(new Vector3(...seen.right), new Vector3(...seen.up), new Vector3(...seen.back))
       .setPosition(...seen.position);
     this.inUse.updateMatrixWorld(true);
-    this.light.position.set(...seen.back);
+    this.headlight.position.set(...seen.back);
   }
 
   /** The share of the screen's pixels along a side that is drawn; the picture is as large as before. */
@@ -138,4 +163,10 @@ function makeRenderer(): WebGLRenderer {
   const options = { antialias: false, powerPreference: "high-performance" } as const;
   const context = canvas.getContext("webgl2", { ...options, alpha: false });
   return new WebGLRenderer(context ? { ...options, canvas, context } : options);
+}
+
+/** What draws, as the graphics driver calls itself; empty where the browser does not say. */
+function nameOfRenderer(gl: WebGLRenderingContext | WebGL2RenderingContext): string {
+  const said = gl.getExtension("WEBGL_debug_renderer_info");
+  return String(gl.getParameter(said ? said.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
 }

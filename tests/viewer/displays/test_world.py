@@ -197,3 +197,34 @@ async def test_materials_of_gazebo_are_known_by_their_names():
         await Simulation(made).describe(text, links=1)
         (link,) = sent(made, "world_scene").fields["links"]
         assert link["visuals"][0]["color"] == [1.0, 0.0, 0.0, 1.0]
+
+
+LIGHTS = """\
+<sdf version="1.9"><world name="yard"><scene><ambient>0.1 0.2 0.3 1</ambient><shadows>false</shadows></scene>
+  <light name="sun" type="directional">
+    <direction>0 0 -2</direction><diffuse>1 0.5 0 1</diffuse><intensity>2</intensity></light>
+  <light name="off" type="point"><light_on>false</light_on></light>
+  <light name="lost" type="point"><pose relative_to="nowhere"/></light>
+  <model name="lamp"><static>true</static><link name="link"><pose>0 0 5 0 0 0</pose>
+    <light name="bulb" type="spot"><pose>0 0 1 0 1.5707963267948966 0</pose>
+      <attenuation><range>20</range><constant>0.5</constant><linear>0.1</linear><quadratic>0.01</quadratic></attenuation>
+      <spot><inner_angle>0.5</inner_angle><outer_angle>1</outer_angle></spot></light></link></model>
+</world></sdf>
+"""
+
+
+async def test_the_lights_of_a_world_are_sent_with_where_they_are_and_how_they_shine():
+    async with world(config("world")) as made:
+        await Simulation(made).describe(LIGHTS, links=1)
+        scene = sent(made, "world_scene").fields
+        assert (scene["ambient"], scene["background"], scene["shadows"]) == ([0.1, 0.2, 0.3], [0.7, 0.7, 0.7], False)
+        sun, bulb = scene["lights"]
+        assert (sun["kind"], sun["link"], sun["direction"], sun["color"]) == (
+            "directional",
+            None,
+            [0, 0, -1],
+            [2, 1, 0],
+        )
+        assert (bulb["kind"], bulb["link"], bulb["position"]) == ("spot", "lamp::link", [0, 0, 1])
+        assert bulb["direction"] == pytest.approx([-1, 0, 0])
+        assert (bulb["range"], bulb["fading"], bulb["cone"]) == (20, [0.5, 0.1, 0.01], [0.5, 1])

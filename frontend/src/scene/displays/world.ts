@@ -4,7 +4,14 @@ import type { WorldPoses, WorldScene } from "../../protocol";
 import type { Described, Hit, SelectionBox } from "../picking";
 import { dataPose, poseMatrix } from "../pose";
 import { RobotDrawing } from "../robot/robot-drawing";
+import { WorldLights } from "../world-lights";
 import type { Drawing, DrawingContext } from "./drawing";
+
+/** How a world lights the scene by itself: whether with shadows, and the colour behind it, if it has one. */
+export interface OwnLight {
+  readonly shadows: boolean;
+  readonly background: string | null;
+}
 import { Displacement, modelOf } from "./world-models";
 
 /** linkwright/World: the links of all models of a simulated world. */
@@ -17,9 +24,12 @@ export class WorldDrawing implements Drawing {
   private readonly displacement = new Displacement();
   private styleIsOld = true;
   private poseIsOld = true;
+  private readonly lights: WorldLights;
 
   constructor(private readonly context: DrawingContext) {
     this.root.matrixAutoUpdate = false;
+    this.lights = new WorldLights(() => context.hasGpu());
+    this.root.add(this.lights.root);
   }
 
   dataChanged(data: DisplayData): void {
@@ -46,9 +56,22 @@ export class WorldDrawing implements Drawing {
     const { shown, context } = this;
     if (!shown) return;
     if (this.placed?.data.pose === null) this.poseIsOld = true; // it follows its frame
-    if (this.styleIsOld) shown.style(context.display.rows, context.session.inspect.current.contrast);
-    if (this.styleIsOld || this.poseIsOld) this.place(shown);
+    if (this.styleIsOld && this.scene) {
+      this.lights.style(context.display.rows, this.scene);
+      shown.style(context.display.rows, context.session.inspect.current.contrast, this.lights.isLit);
+      this.lights.shade(shown.root);
+    }
+    if (this.styleIsOld || this.poseIsOld) {
+      this.place(shown);
+      this.lights.place(this.world(), (link) => this.poseOf(link), () => shown.bounds());
+    }
     this.styleIsOld = this.poseIsOld = false;
+  }
+
+  /** How it is lit; null while it is drawn in the light of the camera. */
+  get ownLight(): OwnLight | null {
+    if (!this.scene || !this.lights.isLit) return null;
+    return { shadows: this.lights.castsShadows, background: this.lights.background(this.scene) };
   }
 
   /** Whether something of it has a place. */
@@ -127,11 +150,12 @@ export class WorldDrawing implements Drawing {
   }
 
   inspect(): object {
-    return { revision: this.scene?.revision ?? 0, ...this.shown?.tell() };
+    return { revision: this.scene?.revision ?? 0, ...this.shown?.tell(), light: this.lights.tell() };
   }
 
   dispose(): void {
     this.shown?.dispose();
+    this.lights.dispose();
   }
 
   private place(shown: RobotDrawing): void {

@@ -78,8 +78,9 @@ export class RobotDrawing {
     return box;
   }
 
-  /** `contrast` draws collisions over pale visuals. */
-  style(rows: PropertyRows, contrast: boolean): void {
+  /** `contrast` draws collisions over pale visuals; `isLit`: in the light of lamps in the scene, not of the camera. */
+  style(rows: PropertyRows, contrast: boolean, isLit = false): void {
+    this.pool.isLit = isLit;
     this.pool.renew(() => this.styleLinks(rows, contrast));
     this.extras.style(rows);
   }

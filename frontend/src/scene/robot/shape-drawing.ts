@@ -97,7 +97,7 @@ export class ShapeDrawing {
       const [only = errorMaterial] = materials;
       mesh.material = materials.length === 1 ? only : materials;
     }
-    this.together = lost ? null : this.asSolid(instead, alpha);
+    this.together = lost || pool.isLit ? null : this.asSolid(instead, alpha);
     for (const { mesh } of this.parts) {
       if (this.together) {
         mesh.layers.disable(0);

@@ -22,6 +22,7 @@ from linkwright.viewer.config.rviz_config import DisplayConfig
 from linkwright.viewer.config.schema import Path, PropertySpec, alpha, topic_spec
 from linkwright.viewer.displays.base.display import DisplayHost, Pose
 from linkwright.viewer.displays.base.topic_display import SideTopic, TopicDisplay
+from linkwright.viewer.lights import lights_of
 from linkwright.viewer.protocol.displays import StatusLevel
 from linkwright.viewer.protocol.robot import MeshStatus
 from linkwright.viewer.protocol.worlds import WorldPoses, WorldScene
@@ -59,6 +60,15 @@ class WorldDisplay(TopicDisplay):
         PropertySpec("Visual Enabled", "bool", True, "Draw what the models look like."),
         PropertySpec("Collision Enabled", "bool", False, "Draw the shapes that contacts are worked out with."),
         alpha("Opacity of all models: 0 is invisible."),
+        PropertySpec(
+            "Light",
+            "enum",
+            "Automatic",
+            "What lights the scene: the camera, as in RViz, a studio, or the lights of the world with its background. "
+            "Automatic: the studio where a graphics card draws, else the camera.",
+            options=("Automatic", "Camera", "Studio", "World"),
+        ),
+        PropertySpec("Shadows", "bool", True, "Let the lights of the studio and of the world cast shadows."),
     )
 
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
@@ -182,7 +192,15 @@ class WorldDisplay(TopicDisplay):
         self._rows_of = {link.name: row for row, link in enumerate(content.links)}
         self._anchors = _anchors(content)
         self._page_problems.clear()
-        scene = WorldScene(self._revision, world.name, content.links)
+        scene = WorldScene(
+            self._revision,
+            world.name,
+            content.links,
+            lights_of(world),
+            list(world.scene.ambient[:3]),
+            list(world.scene.background[:3]),
+            world.scene.shadows,
+        )
         self.send(scene, key=_SCENE_KEY)
         self.say(_WORLD, "ok", f"{len(world.models)} models, {len(content.links)} links")
         self._tell_problems()

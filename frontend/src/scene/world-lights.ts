@@ -1,0 +1,195 @@
+import {
+  AmbientLight,
+  Box3,
+  Color,
+  DirectionalLight,
+  Group,
+  HemisphereLight,
+  Light,
+  Matrix4,
+  Mesh,
+  PointLight,
+  SpotLight,
+  Vector3,
+  type Object3D,
+} from "three";
+import type { LightScene, WorldScene } from "../protocol";
+import type { PropertyRows } from "../state/properties";
+
+/** What lights the scene: the camera, a studio, or the lights of the world. */
+export type Lighting = "Camera" | "Studio" | "World";
+
+/** A surface that faces a light of this strength has exactly its own colour. */
+const FULL = Math.PI;
+const STUDIO_KEY = 0.62;
+const STUDIO_SKY = 0.42;
+const STUDIO_GROUND = 0.16;
+/** Where the light of the studio comes from. */
+const STUDIO_FROM = new Vector3(-0.45, -0.6, 1).normalize();
+/** Pixels of a shadow map along its side. */
+const SHADOW_PIXELS = 2048;
+/** Shadows are drawn this far around the middle of what is drawn at most, m. */
+const LARGEST_RADIUS = 25;
+/** Metres between a lamp and what it lights, as a rule. */
+const SEEN_FROM = 3;
+/** So many lights have shadows; each is another picture of the scene. */
+const MOST_SHADOWS = 2;
+/** So many lights of a world are lit: each costs every pixel. */
+const MOST_LIGHTS = 8;
+
+/** The lights of one world, where they stand in the fixed frame. */
+export class WorldLights {
+  readonly root = new Group();
+  private placed: { light: Light; said: LightScene }[] = [];
+  private made = "";
+  private lighting: Lighting = "Camera";
+  private shadowed = false;
+
+  constructor(private readonly hasGpu: () => boolean) {
+    this.root.matrixAutoUpdate = false;
+  }
+
+  /** Takes what the display's properties and its world say. */
+  style(rows: PropertyRows, scene: WorldScene): void {
+    const chosen = rows.text("Automatic", "Light");
+    this.lighting = chosen === "Studio" || chosen === "World" || chosen === "Camera" ? chosen : this.hasGpu() ? "Studio" : "Camera";
+    this.shadowed = this.lighting !== "Camera" && rows.bool(true, "Shadows") && (this.lighting === "Studio" || scene.shadows);
+    const key = [this.lighting, this.shadowed, scene.revision].join();
+    if (key === this.made) return;
+    this.made = key;
+    this.clear();
+    if (this.lighting === "Studio") this.buildStudio();
+    else if (this.lighting === "World") this.buildWorld(scene);
+  }
+
+  /** Whether the light at the camera is not needed. */
+  get isLit(): boolean {
+    return this.lighting !== "Camera";
+  }
+
+  get castsShadows(): boolean {
+    return this.shadowed;
+  }
+
+  /** The colour behind the world, where its own lights are lit. */
+  background(scene: WorldScene): string | null {
+    if (this.lighting !== "World") return null;
+    const [r = 0, g = 0, b = 0] = scene.background;
+    return `#${new Color(r, g, b).getHexString()}`;
+  }
+
+  /** Puts the lights where their links are, and the shadows around what is drawn. */
+  place(world: Matrix4, poseOf: (link: string) => Matrix4 | null, drawn: () => Box3): void {
+    if (!this.isLit) return;
+    for (const { light, said } of this.placed) {
+      const frame = said.link === null ? world : poseOf(said.link);
+      light.visible = frame !== null;
+      if (!frame) continue;
+      light.position.fromArray(said.position).applyMatrix4(frame);
+      const direction = new Vector3().fromArray(said.direction).transformDirection(frame);
+      if (light instanceof SpotLight || light instanceof DirectionalLight) light.target.position.copy(light.position).add(direction);
+      if (light instanceof DirectionalLight) this.aim(light, direction, drawn);
+    }
+  }
+
+  /** Lets surfaces cast and receive shadows, or no more. */
+  shade(root: Object3D): void {
+    root.traverse((object) => {
+      if (object instanceof Mesh) object.castShadow = object.receiveShadow = this.shadowed;
+    });
+  }
+
+  /** What is lit, for tests. */
+  tell(): object {
+    const shadows = this.placed.filter(({ light }) => light.castShadow).length;
+    return { lighting: this.lighting, lights: this.placed.length, shadows };
+  }
+
+  dispose(): void {
+    this.clear();
+  }
+
+  private clear(): void {
+    this.root.traverse((object) => {
+      if (object instanceof Light) object.dispose();
+    });
+    this.root.clear();
+    this.placed = [];
+  }
+
+  private buildStudio(): void {
+    const sky = new HemisphereLight(0xffffff, 0xffffff, STUDIO_SKY * FULL);
+    sky.groundColor.setScalar(STUDIO_GROUND / STUDIO_SKY);
+    sky.position.set(0, 0, 1);
+    this.root.add(sky);
+    const said: LightScene = {
+      kind: "directional",
+      link: null,
+      position: [0, 0, 0],
+      direction: STUDIO_FROM.clone().negate().toArray(),
+      color: [STUDIO_KEY, STUDIO_KEY, STUDIO_KEY],
+      shadows: true,
+      range: 0,
+      fading: [1, 0, 0],
+      cone: [0, 0],
+    };
+    this.add(new DirectionalLight(), said);
+  }
+
+  private buildWorld(scene: WorldScene): void {
+    const [r = 0, g = 0, b = 0] = scene.ambient;
+    this.root.add(new AmbientLight(new Color(r, g, b), FULL));
+    for (const said of scene.lights.slice(0, MOST_LIGHTS)) this.add(lightOf(said), said);
+  }
+
+  private add(light: DirectionalLight | PointLight | SpotLight, said: LightScene): void {
+    const [r = 0, g = 0, b = 0] = said.color;
+    light.color.setRGB(r, g, b);
+    light.intensity = FULL * strength(said);
+    const shadows = this.placed.filter((each) => each.light.castShadow).length;
+    if (this.shadowed && said.shadows && shadows < MOST_SHADOWS && !(light instanceof PointLight)) {
+      light.castShadow = true;
+      light.shadow.mapSize.set(SHADOW_PIXELS, SHADOW_PIXELS);
+      light.shadow.bias = -0.0005;
+      light.shadow.normalBias = 0.02;
+      light.shadow.radius = 3;
+    }
+    this.root.add(light);
+    if (!(light instanceof PointLight)) this.root.add(light.target);
+    this.placed.push({ light, said });
+  }
+
+  /** A sun shines from just outside of what is drawn, so that its shadows are as fine as they can be. */
+  private aim(light: DirectionalLight, direction: Vector3, drawn: () => Box3): void {
+    const box = light.castShadow ? drawn() : new Box3();
+    if (box.isEmpty()) {
+      light.position.copy(direction).negate();
+      light.target.position.set(0, 0, 0);
+      return;
+    }
+    const middle = box.getCenter(new Vector3());
+    const radius = Math.min(box.getSize(new Vector3()).length() / 2, LARGEST_RADIUS);
+    light.target.position.copy(middle);
+    light.position.copy(middle).addScaledVector(direction, -2 * radius);
+    const { camera } = light.shadow;
+    Object.assign(camera, { left: -radius, right: radius, top: radius, bottom: -radius, near: 0.1, far: 4 * radius });
+    camera.updateProjectionMatrix();
+  }
+}
+
+/** How strong a light is at the distance at which it is seen most; nearer and farther it is the same up to its range. */
+function strength({ kind, range, fading }: LightScene): number {
+  if (kind === "directional") return 1;
+  const [constant = 1, linear = 0, quadratic = 0] = fading;
+  const distance = Math.min(range / 2, SEEN_FROM);
+  return Math.min(1, 1 / Math.max(constant + linear * distance + quadratic * distance ** 2, 1e-3));
+}
+
+function lightOf(said: LightScene): DirectionalLight | PointLight | SpotLight {
+  if (said.kind === "directional") return new DirectionalLight();
+  if (said.kind === "point") return new PointLight(0xffffff, 1, said.range, 0);
+  const [inner = 0, outer = 0] = said.cone;
+  const angle = Math.min(outer > 0 ? outer / 2 : Math.PI / 4, Math.PI / 2);
+  const soft = outer > 0 ? Math.min(Math.max(1 - inner / outer, 0), 1) : 0;
+  return new SpotLight(0xffffff, 1, said.range, angle, soft, 0);
+}
