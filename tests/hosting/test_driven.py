@@ -86,8 +86,9 @@ def drive_of(path: Path) -> SimulatedWorld:
     """What `linkwright drive` makes of a file."""
     description = examine(path)
     assert description.robot is not None
-    found = infer(description.robot, MeshLibrary(PackageFinder(start=path.parent), path.parent))
-    return replace(SimulatedWorld.of("empty", description, found), headless=True)
+    meshes = MeshLibrary(PackageFinder(start=path.parent), path.parent)
+    found = infer(description.robot, meshes)
+    return replace(SimulatedWorld.of("empty", description, found, lambda robot: infer(robot, meshes)), headless=True)
 
 
 @asynccontextmanager

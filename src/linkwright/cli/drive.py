@@ -68,16 +68,23 @@ def run(arguments: argparse.Namespace) -> int:
     from linkwright.inference import infer
     from linkwright.inference.writing import write_inference
     from linkwright.packages import PackageFinder
+    from linkwright.simulation.library import load_mujoco
+    from linkwright.simulation.server.worlds import load_world
 
     path = Path(arguments.file).absolute()
     finder = PackageFinder(start=[path.parent, Path.cwd()])
-    description = examine(arguments.file, arguments=parse_assignments(arguments.values), packages=finder)
+    values = parse_assignments(arguments.values)
+    description = examine(arguments.file, arguments=values, packages=finder)
     robot = description.robot
     if robot is None or not robot.links:
         print_diagnostics(description.diagnostics, sys.stderr)
         return 1
     wheels = [name.strip() for name in (arguments.wheels or "").split(",") if name.strip()]
-    found = infer(robot, MeshLibrary(finder, path.parent), kind=arguments.drive, wheels=wheels)
+
+    def inferred(robot: Robot) -> Inference:
+        return infer(robot, MeshLibrary(finder, path.parent), kind=arguments.drive, wheels=wheels)
+
+    found = inferred(robot)
     if arguments.show:
         sys.stdout.write(_listed(found))
         return 0
@@ -87,10 +94,13 @@ def run(arguments: argparse.Namespace) -> int:
             print(localized(phrase("Changed file {file}", file=display_path(file))))
         print_diagnostics(written.refused, sys.stderr)
         return 1 if written.refused else 0
+    load_mujoco()
     print_diagnostics([each for each in found.diagnostics if each.severity is not Severity.INFO], sys.stderr)
     say(localized(_summary(robot, found)))
     world = replace(
-        SimulatedWorld.of(arguments.world, description, found),
+        SimulatedWorld.of(arguments.world, description, found, inferred),
+        arguments=tuple(values.items()),
+        loaded=load_world(arguments.world),
         seconds=arguments.seconds,
         headless=arguments.headless,
         rate=arguments.rate,

@@ -42,7 +42,7 @@ def run(arguments: argparse.Namespace) -> int:
     from linkwright.simulation.server.worlds import load_world
 
     load_mujoco()
-    load_world(arguments.world)  # a world that cannot be had is said at once, and not in the middle of a log
+    loaded = load_world(arguments.world)  # a world that cannot be had is said at once, and not in the middle of a log
     path = Path(arguments.robot or arguments.world).absolute()
     finder = PackageFinder(start=[path.parent, Path.cwd()])
     world = SimulatedWorld(
@@ -56,12 +56,16 @@ def run(arguments: argparse.Namespace) -> int:
         paused=arguments.pause,
         headless=arguments.headless,
         gazebo_mistakes=arguments.gazebo_mistakes,
+        loaded=loaded,
     )
     if arguments.robot is not None:
-        model = load_model(path, parse_assignments(arguments.values), finder)
+        values = parse_assignments(arguments.values)
+        model = load_model(path, values, finder)
         if model is None:
             return 1
-        world = replace(world, description=model.description, text=model.text, name=model.name)
+        world = replace(
+            world, description=model.description, text=model.text, name=model.name, arguments=tuple(values.items())
+        )
     options = HostOptions(arguments.host, arguments.port, not arguments.no_open)
     with recording(arguments) as writer:
         return run_simulated(world, finder, options, foxglove=arguments.foxglove, writer=writer)

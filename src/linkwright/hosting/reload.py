@@ -174,8 +174,7 @@ class LiveReload:
             description = await loop.run_in_executor(None, self._descriptions.read, call)
         except LinkwrightError as error:
             return None, error.diagnostics
-        text = self._descriptions.remember(call, description)
-        return (None if description.robot is None else text), description.diagnostics
+        return self._descriptions.take(call, description)
 
     def _apply(self, call: XacroCall, text: str, findings: tuple[Diagnostic, ...]) -> None:
         was_broken = self._is_broken(call)

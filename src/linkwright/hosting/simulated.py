@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from linkwright.diagnostics import Diagnostic, foreign, phrase
 from linkwright.hosting.launch_log import LaunchLog
 from linkwright.hosting.plans import VIEWER, HostedPlan, HostOptions
 from linkwright.hosting.sensor_topics import image_topics, scan_topics
 from linkwright.hosting.signals import SignalWatch, run_to_end
+from linkwright.hosting.simulated_files import SimulatedDescriptions, WorldCall
 from linkwright.hosting.view import ModelView
 from linkwright.hosting.xacro_calls import XacroCall
+from linkwright.messages import get_service
 from linkwright.packages import PackageFinder
 from linkwright.xmltree import write
 
@@ -20,8 +24,11 @@ if TYPE_CHECKING:
     from linkwright.bag import BagWriter
     from linkwright.descriptions import Description
     from linkwright.inference import Inference
+    from linkwright.simulation.server.worlds import LoadedWorld
+    from linkwright.urdf import Robot
     from linkwright.viewer import RvizConfig
 
+_LOAD_WORLD = "simulation_interfaces/srv/LoadWorld"
 _SIMULATOR = ("gazebo_ros", "gzserver")
 _CLOCK_RATE = 100.0
 """Hz of simulated time in which the time is told: transforms are not older than that."""
@@ -32,6 +39,16 @@ _DISTANCE = 5.0
 """Metres from which a robot and what is around it are seen."""
 _ODOMETRY_FRAME = re.compile(r"<(odometry_?[fF]rame|odom_frame)>\s*([\w/]+)\s*<")
 _DRIVES = re.compile(r"diff.drive|DiffDrive|skid_steer|planar_move|ackermann|mecanum", re.IGNORECASE)
+
+
+def _as_it_is(description: Description) -> str:
+    return description.text
+
+
+def _completed(description: Description, found: Inference) -> str:
+    from linkwright.inference.applying import completed  # not above: only robots that lack something need it
+
+    return write(completed(description.document, found))
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +69,9 @@ class SimulatedWorld:
         paused: whether it begins paused.
         headless: whether there is no page.
         gazebo_mistakes: whether plugins make the known mistakes of Gazebo.
+        arguments: name and value of the xacro arguments of the robot.
+        complete: makes the text that is simulated of the robot when its file was saved.
+        loaded: the world, if it was read already: its files are watched.
     """
 
     world: str
@@ -67,17 +87,30 @@ class SimulatedWorld:
     paused: bool = False
     headless: bool = False
     gazebo_mistakes: bool = False
+    arguments: tuple[tuple[str, str], ...] = ()
+    complete: Callable[[Description], str] = _as_it_is
+    loaded: LoadedWorld | None = None
 
     @classmethod
-    def of(cls, world: str, description: Description, found: Inference) -> SimulatedWorld:
-        """A robot with all that was inferred about it, standing on the ground of a world."""
-        from linkwright.inference.applying import completed  # not above: only robots that lack something need it
+    def of(
+        cls, world: str, description: Description, found: Inference, infer: Callable[[Robot], Inference]
+    ) -> SimulatedWorld:
+        """A robot with all that was inferred about it, standing on the ground of a world.
+
+        Args:
+            world: a file, or the name of a world.
+            description: the robot.
+            found: what was inferred about it.
+            infer: how that is done for what its file says later.
+        """
+
+        def complete(later: Description) -> str:
+            return later.text if later.robot is None else _completed(later, infer(later.robot))
 
         assert description.robot is not None, "something was inferred about it"
-        text = write(completed(description.document, found))
         pose = (0.0, 0.0, -found.ground, 0.0, 0.0, 0.0)
-        path = Path(description.name).absolute()
-        return cls(world, path, description, text, description.robot.name, pose)
+        path, text = Path(description.name).absolute(), _completed(description, found)
+        return cls(world, path, description, text, description.robot.name, pose, complete=complete)
 
     @property
     def parameters(self) -> dict[str, Any]:
@@ -134,17 +167,36 @@ class SimulatedView(ModelView):
     """A simulated world on the running event loop: simulator, robot_state_publisher of a robot, and the viewer."""
 
     def __init__(self, world: SimulatedWorld, finder: PackageFinder, options: HostOptions, log: LaunchLog) -> None:
-        super().__init__(XacroCall(world.path, ()), finder, options, log)
+        descriptions = SimulatedDescriptions(finder, world.complete)
+        super().__init__(XacroCall(world.path, world.arguments), finder, options, log, descriptions)
         self._world = world
+        self._files = descriptions
 
     def _publish(self) -> bool:
-        """Have the robot published, if it is one."""
-        description = self._world.description
+        """Have the robot published, if it is one; it, and the world, are read again when their files are saved."""
+        description, text = self._world.description, self._world.text
+        if text:
+            self._files.begin(self._call)
+            self._files.take_text(self._call, text, (self._call.path,) if description is None else description.files)
         if description is not None:
-            self.descriptions.library.remember(description)
-            parameters = {"robot_description": self._world.text, "use_sim_time": True}
-            self._plan("robot_state_publisher", "robot_state_publisher", parameters)
+            self._files.remember(self._call, description)
+            self._plan(
+                "robot_state_publisher", "robot_state_publisher", {"robot_description": text, "use_sim_time": True}
+            )
+        if self._world.loaded is not None:
+            call = self._files.begin_with(self._world.loaded)
+            self.reload.bind(call, lambda path: self.spawn(self._load_world(call, path)))
         return True
+
+    async def _load_world(self, call: WorldCall, path: str) -> None:
+        """Have the simulator take the world of a file, which was saved."""
+        client = self.host.launcher_node.create_client(get_service(_LOAD_WORLD), "/load_world")
+        request = client.srv_type.Request(ignore_missing_or_unsupported_assets=True)
+        request.world_resource.uri = path
+        answer = await client.call_async(request)
+        if answer is not None and answer.result.result != answer.result.RESULT_OK:
+            message = phrase("the simulation goes on as before: {reason}", reason=foreign(answer.result.error_message))
+            self.reload.report(call, [Diagnostic("SIM153", message)])
 
     def _plan_others(self) -> None:
         self._plan(*_SIMULATOR, self._world.parameters, output="screen")

@@ -70,6 +70,7 @@ class ModelView:
         finder: where packages are.
         options: how it is run.
         log: what is printed.
+        descriptions: what reads models; one that reads robots by default.
 
     Attributes:
         ending: whether it is about to end.
@@ -79,11 +80,18 @@ class ModelView:
 
     has_processes = False
 
-    def __init__(self, call: XacroCall, finder: PackageFinder, options: HostOptions, log: LaunchLog) -> None:
+    def __init__(
+        self,
+        call: XacroCall,
+        finder: PackageFinder,
+        options: HostOptions,
+        log: LaunchLog,
+        descriptions: Descriptions | None = None,
+    ) -> None:
         self.finder = finder
         self.options = options
         self.log = log
-        self.descriptions = Descriptions(finder)
+        self.descriptions = descriptions or Descriptions(finder)
         self.loop: asyncio.AbstractEventLoop | None = None
         self.ending = False
         self.visiting = False

@@ -110,6 +110,11 @@ class Descriptions:
         self._warnings[call] = description.remarks
         return text
 
+    def take(self, call: XacroCall, description: Description) -> tuple[str | None, tuple[Diagnostic, ...]]:
+        """Remember what was read; its text, which is None where there is no robot, and what is remarkable about it."""
+        text = self.remember(call, description)
+        return (None if description.robot is None else text), description.diagnostics
+
     def call_of(self, text: str) -> XacroCall | None:
         """The use of xacro that gave a text, or None for a text from elsewhere."""
         return self._calls.get(text)

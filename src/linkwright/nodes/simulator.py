@@ -12,12 +12,12 @@ from functools import partial
 from math import inf
 from typing import Any
 
-from linkwright.diagnostics import Diagnostic, Severity
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity
 from linkwright.geometry.single import Transform, quaternion_from_rpy
-from linkwright.graph import Graph
+from linkwright.graph import Graph, Parameter, SetParametersResult
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 
-_EMPTY = "empty"
+_EMPTY, _DESCRIPTION = "empty", "robot_description"
 _LEFT_OUT = frozenset({"SDF150", "SDF160", "SDF161"})
 """The codes of what is unknown or not to be found."""
 _PARAMETERS: dict[str, Any] = {
@@ -32,7 +32,7 @@ _PARAMETERS: dict[str, Any] = {
     "seconds": 0.0,
     "usual_names": False,
     "gazebo_mistakes": False,
-    "robot_description": "",
+    _DESCRIPTION: "",
     "robot_name": "",
     "robot_pose": [0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
     "robot_namespace": "",
@@ -62,7 +62,8 @@ class Simulator(SingleNode):
     ``gazebo_mistakes``
         whether plugins make the known mistakes of Gazebo, too: see docs/simulation.md.
     ``robot_description``, ``robot_name``, ``robot_pose``, ``robot_namespace``
-        a robot that is there from the start: URDF or SDF, and x, y, z in m and roll, pitch, yaw in rad.
+        a robot that is there from the start: URDF or SDF, and x, y, z in m and roll, pitch, yaw in rad. Another
+        description may be set while it runs: the robot comes anew where it is, with its joints as they are.
 
     Attributes:
         finished: gets status 0 when the seconds are over.
@@ -110,9 +111,10 @@ class Simulator(SingleNode):
             own = PluginNode(self._node, self.server.exchange, owned=False, qos={}, usual=None)
             self.services = Services(self.server, self.runner, own, loaded, options.library)
             self.server.start()
-            if said["robot_description"]:
+            if said[_DESCRIPTION]:
                 pose = _pose(said["robot_pose"])
-                self.services.spawn(said["robot_description"], said["robot_name"], pose, said["robot_namespace"])
+                robot = self.services.spawn(said[_DESCRIPTION], said["robot_name"], pose, said["robot_namespace"])
+                self._node.add_on_set_parameters_callback(partial(self._renew, robot))
             self._tell_state()
             self.server.exchange.deliver()
             self.runner.start()
@@ -122,6 +124,18 @@ class Simulator(SingleNode):
         self.runner.close()
         self.server.close()
         super().close()
+
+    def _renew(self, robot: str, parameters: Sequence[Parameter]) -> SetParametersResult:
+        """Take another description of the robot, which goes on where it is; one that cannot be read is refused."""
+        from linkwright.simulation.server.loading import told
+
+        for each in parameters:
+            if each.name == _DESCRIPTION:
+                try:
+                    self.services.renew(each.value, robot)
+                except LinkwrightError as error:
+                    return SetParametersResult(successful=False, reason=told(error.diagnostics[0]))
+        return SetParametersResult(successful=True)
 
     def _finish(self) -> None:
         if not self.finished.done():

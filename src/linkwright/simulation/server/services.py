@@ -75,7 +75,7 @@ class Services:
 
     # --- models -------------------------------------------------------------------------------------------------------
 
-    def spawn(self, text: str, name: str, pose: Transform, namespace: str = "") -> None:
+    def spawn(self, text: str, name: str, pose: Transform, namespace: str = "") -> str:
         """Put the model of a text, URDF or SDF, into the world.
 
         Args:
@@ -84,12 +84,39 @@ class Services:
             pose: of its frame, before which its own pose comes.
             namespace: of the nodes of its plugins that name none.
 
+        Returns:
+            What it is called.
+
         Raises:
             LinkwrightError: what is wrong with it.
         """
         entity = entity_from(text, self._server.simulation.finder, self._library)
         placed = compose(pose, transform_of(entity.model.pose.pose))
-        self._server.spawn(entity.model, name or entity.model.name, placed, namespace)
+        name = name or entity.model.name
+        self._server.spawn(entity.model, name, placed, namespace)
+        return name
+
+    def renew(self, text: str, name: str) -> None:
+        """Soon put the model of a text in the place of one of the world, to go on where that is; from any thread.
+
+        What the simulation has against it is logged then.
+
+        Args:
+            text: the description, URDF or SDF.
+            name: what the model is called.
+
+        Raises:
+            LinkwrightError: what is wrong with the description.
+        """
+        entity = entity_from(text, self._server.simulation.finder, self._library)
+
+        def renew() -> None:
+            try:
+                self._server.renew(entity.model, name)
+            except LinkwrightError as error:
+                self._server.node.get_logger().error(told(error.diagnostics[0]))
+
+        self._server.exchange.post(renew)
 
     def _spawn(self, request: Any, response: Any) -> Any:
         def spawn() -> str:

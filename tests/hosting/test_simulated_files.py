@@ -1,0 +1,188 @@
+"""Saving the files of a world and its robot while they are simulated."""
+
+from __future__ import annotations
+
+import asyncio
+import io
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from linkwright.descriptions import examine
+from linkwright.hosting.launch_log import LaunchLog
+from linkwright.hosting.plans import HostOptions
+from linkwright.hosting.simulated import SimulatedView, SimulatedWorld
+from linkwright.nodes.simulator import Simulator
+from linkwright.packages import PackageFinder
+from linkwright.simulation.server.server import SimulationServer
+from linkwright.simulation.server.worlds import load_world
+from linkwright.simulation.simulation import Simulation
+from tests.hosting.test_driven import MBOT, drive_of
+from tests.simulation.worlds import GROUND, box
+from tests.waiting import eventually
+
+ARM = """<robot name="arm"><link name="base"/><link name="tip"><inertial><mass value="1"/>
+<inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<joint name="turn" type="continuous"><parent link="base"/><child link="tip"/><axis xyz="0 0 1"/></joint>{}</robot>"""
+MORE = '<link name="more"/><joint name="on" type="fixed"><parent link="tip"/><child link="more"/></joint>'
+FALLING = box("falling", "0 0 9 0 0 0")
+
+
+@pytest.fixture(autouse=True)
+def _logs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "ros_log"))
+    monkeypatch.setenv("LINKWRIGHT_DDS", "0")
+
+
+def world(*parts: str) -> str:
+    """A world with a ground."""
+    return f'<sdf version="1.7"><world name="w">{GROUND}{"".join(parts)}</world></sdf>'
+
+
+class Shown:
+    """A simulation that is shown, and what it printed."""
+
+    def __init__(self, view: SimulatedView, err: io.StringIO, until: Callable[[str], object]) -> None:
+        self.view = view
+        self.until = until
+        self.err = err
+
+    @property
+    def server(self) -> SimulationServer:
+        """What moves, in its own thread."""
+        running = [each for _, each in self.view.host._running.values()]
+        return next(each.server for each in running if isinstance(each, Simulator))
+
+    async def look(self, function: Callable[[Simulation], Any]) -> Any:
+        """What a function says in the thread of the simulation."""
+        seen: list[Any] = []
+        self.server.exchange.post(lambda: seen.append(function(self.server.simulation)))
+        await eventually(lambda: bool(seen))
+        return seen[0]
+
+    async def when(self, condition: Callable[[Simulation], bool]) -> None:
+        """Wait until something is so in the thread of the simulation."""
+        seen: list[bool] = []
+
+        def is_so() -> bool:
+            self.server.exchange.post(lambda: seen.append(condition(self.server.simulation)))
+            return any(seen)
+
+        await eventually(is_so, what=self.err.getvalue)
+
+
+@asynccontextmanager
+async def shown(simulated: SimulatedWorld) -> AsyncIterator[Shown]:
+    """A simulation without a page, which stands still."""
+    out, err = io.StringIO(), io.StringIO()
+    finder = PackageFinder(start=simulated.path.parent)
+    options = HostOptions(port=0, open_browser=False, network=False)
+    view = SimulatedView(replace(simulated, headless=True, paused=True), finder, options, LaunchLog(out, err))
+    running = asyncio.create_task(view.run(None))
+
+    async def until(text: str, what: Callable[[], bool] = lambda: True) -> None:
+        await eventually(lambda: (text in err.getvalue() and what()) or running.done(), what=err.getvalue)
+        assert not running.done(), err.getvalue()
+
+    try:
+        await until("gzserver-2]: started" if simulated.text else "gzserver-1]: started")
+        yield Shown(view, err, until)
+    finally:
+        view.interrupt("the test is over")
+        await running
+
+
+def with_robot(folder: Path, text: str) -> SimulatedWorld:
+    """A robot in a world, of files in a folder."""
+    (folder / "a.world").write_text(world(FALLING))
+    (folder / "robot.urdf").write_text(text)
+    description = examine(folder / "robot.urdf")
+    assert description.robot is not None
+    return SimulatedWorld(
+        str(folder / "a.world"),
+        folder / "robot.urdf",
+        description,
+        description.text,
+        description.robot.name,
+        loaded=load_world(str(folder / "a.world")),
+    )
+
+
+def has(*names: str) -> Callable[[Simulation], bool]:
+    """Whether a simulation has these models."""
+    return lambda simulation: set(simulation.scene.models) == set(names)
+
+
+async def test_a_world_that_is_saved_comes_and_what_is_the_same_stays(tmp_path):
+    (tmp_path / "a.world").write_text(world(FALLING))
+    loaded = load_world(str(tmp_path / "a.world"))
+    async with shown(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world", loaded=loaded)) as it:
+        await it.look(lambda simulation: simulation.set_model_pose("falling", (1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0)))
+        (tmp_path / "a.world").write_text(world(FALLING, box("new", "5 5 1 0 0 0")))
+        await it.when(has("ground", "falling", "new"))
+        assert (await it.look(lambda simulation: simulation.model_pose("falling")))[:3] == (1.0, 2.0, 3.0)
+        assert f"reloaded {tmp_path / 'a.world'}" in it.err.getvalue()
+
+
+async def test_a_broken_world_is_told_and_what_runs_goes_on(tmp_path):
+    (tmp_path / "a.world").write_text(world(FALLING))
+    loaded = load_world(str(tmp_path / "a.world"))
+    async with shown(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world", loaded=loaded)) as it:
+        (tmp_path / "a.world").write_text("<sdf version='1.7'><world></sdf>")
+        await it.until("error[XML")
+        assert [each.code[:3] for each in it.view.reload.findings()] == ["XML"]
+        assert await it.look(has("ground", "falling"))
+        (tmp_path / "a.world").write_text(world(box("new", "5 5 1 0 0 0")))
+        await it.until("repaired")
+        await it.when(has("ground", "new"))
+        assert it.view.reload.findings() == []
+
+
+async def test_a_world_that_cannot_be_simulated_is_told(tmp_path):
+    (tmp_path / "a.world").write_text(world(FALLING))
+    loaded = load_world(str(tmp_path / "a.world"))
+    async with shown(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world", loaded=loaded)) as it:
+        never = '<physics type="ode"><max_step_size>-1</max_step_size></physics>'
+        (tmp_path / "a.world").write_text(world(FALLING, never))
+        await it.until("the simulation goes on as before: a time step of -1.0 s")
+
+
+async def test_a_model_that_the_world_includes_is_watched_too(tmp_path):
+    (tmp_path / "crate").mkdir()
+    (tmp_path / "crate/model.sdf").write_text(f'<sdf version="1.7">{FALLING}</sdf>')
+    (tmp_path / "a.world").write_text(world("<include><uri>model://crate</uri></include>"))
+    loaded = load_world(str(tmp_path / "a.world"))
+    async with shown(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world", loaded=loaded)) as it:
+        (tmp_path / "crate/model.sdf").write_text(f'<sdf version="1.7">{box("crate", "1 1 1 0 0 0")}</sdf>')
+        await it.when(has("ground", "crate"))
+
+
+async def test_a_robot_that_is_saved_comes_anew_where_it_is_with_its_joints(tmp_path):
+    def elsewhere(simulation: Simulation) -> None:
+        simulation.set_model_pose("arm", (1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0))
+        simulation.set_joint_position("arm::turn", 0.5)
+
+    async with shown(with_robot(tmp_path, ARM.format(""))) as it:
+        await it.look(elsewhere)
+        (tmp_path / "robot.urdf").write_text(ARM.format(MORE))
+        await it.when(lambda simulation: "arm::more" in simulation.scene.bodies)
+        pose = await it.look(lambda simulation: simulation.model_pose("arm"))
+        assert pose[:3] == pytest.approx((1.0, 2.0, 3.0))
+        assert (await it.look(lambda simulation: simulation.joint_state("arm::turn")))[0] == pytest.approx(0.5)
+        (tmp_path / "robot.urdf").write_text(ARM.format("<link"))
+        await it.until("error[XML")
+        assert await it.look(lambda simulation: "arm::more" in simulation.scene.bodies)
+
+
+async def test_a_robot_that_drives_is_completed_again(tmp_path):
+    (tmp_path / "mbot.urdf").write_text(MBOT)
+    async with shown(drive_of(tmp_path / "mbot.urdf")) as it:
+        mast = '<link name="mast"/><joint name="m" type="fixed"><parent link="base_link"/><child link="mast"/></joint>'
+        (tmp_path / "mbot.urdf").write_text(MBOT.replace("</robot>", f"{mast}</robot>"))
+        await it.when(lambda simulation: "mbot::mast" in simulation.scene.bodies)
+        radius = await it.look(lambda simulation: simulation.wheel_radius("mbot::left_wheel_link"))
+        assert radius == pytest.approx(0.06)
