@@ -83,6 +83,19 @@ async def test_a_broken_model_is_published_as_soon_as_it_is_right(tmp_path: Path
         assert view.reload.findings() == []
 
 
+async def test_what_is_wrong_is_not_told_again_when_other_files_change(tmp_path: Path) -> None:
+    path = tmp_path / "m.urdf"
+    path.write_text(BROKEN)
+    async with shown(path) as (view, until):
+        await until("joint_state_publisher_gui-1]: started")
+        for changed, times in ((tmp_path / "log.txt", 1), (path, 2)):
+            view.reload._on_change({changed})
+            await eventually(lambda: not view.reload._running)
+            assert (await until("error[XML")).count("error[XML") == times
+        path.write_text(GOOD)
+        await until("Robot initialized")
+
+
 def test_a_model_that_does_not_exist(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run_view(tmp_path / "none.urdf", {}, HostOptions(open_browser=False)) == 1
     captured = capsys.readouterr()

@@ -49,6 +49,7 @@ class LiveReload:
         self._watch: FileWatch | None = None
         self._running: dict[XacroCall, asyncio.Task[None]] = {}
         self._again: set[XacroCall] = set()
+        self._saved: set[XacroCall] = set()
         self._started = False
         self._closed = False
 
@@ -64,7 +65,7 @@ class LiveReload:
     def report(self, about: object, diagnostics: Iterable[Diagnostic]) -> None:
         """Print what is wrong with a description and show it; nothing wrong clears it.
 
-        Errors are printed again and again, as long as they are there; warnings and remarks once.
+        Errors are printed again with each saving, as long as they are there; warnings and remarks once.
         """
         findings = tuple(diagnostics)
         known = {_essence(finding) for finding in self._findings.get(about, ())}
@@ -126,13 +127,14 @@ class LiveReload:
         if self._closed:
             return
         for call in self._targets:
+            files = self._files_of_interest(call)
+            if not paths.isdisjoint(files | {real(file) for file in files}):
+                self._saved.add(call)
             if self._is_broken(call):
                 # Any file beside it may be the missing piece, and any package.
                 self._descriptions.finder.forget()
                 self._start_reload(call)
-                continue
-            files = self._files_of_interest(call)
-            if not paths.isdisjoint(files | {real(file) for file in files}):
+            elif call in self._saved:
                 self._start_reload(call)
 
     def _is_broken(self, call: XacroCall) -> bool:
@@ -164,7 +166,10 @@ class LiveReload:
             await asyncio.sleep(_SETTLE_SECONDS)
             if call in self._again:
                 return  # there is a newer change, which starts over
-        self.report(call, findings)
+        known = [_essence(finding) for finding in self._findings.get(call, ())]
+        if call in self._saved or known != [_essence(finding) for finding in findings]:
+            self.report(call, findings)
+        self._saved.discard(call)
         self._watch_files()
 
     async def _read(self, call: XacroCall) -> tuple[str | None, tuple[Diagnostic, ...]]:
@@ -178,6 +183,7 @@ class LiveReload:
 
     def _apply(self, call: XacroCall, text: str, findings: tuple[Diagnostic, ...]) -> None:
         was_broken = self._is_broken(call)
+        self._saved.discard(call)
         try:
             for apply in tuple(self._targets[call]):
                 apply(text)
