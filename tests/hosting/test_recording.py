@@ -16,6 +16,7 @@ from linkwright.hosting.launch_log import LaunchLog
 from linkwright.hosting.plans import HostOptions
 from linkwright.hosting.simulated import SimulatedView, SimulatedWorld
 from linkwright.packages import PackageFinder
+from linkwright.testing import Recording
 from tests.waiting import eventually
 
 MBOT = Path(__file__).parents[2] / "robots/my_robot_description/urdf/mbot_gazebo.xacro"
@@ -80,15 +81,21 @@ async def test_a_recording_is_whole_when_the_user_ends_the_simulation(tmp_path: 
         assert bag.finding is None
 
 
-async def test_a_full_disk_ends_the_simulation(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("refusing", ["write", "close"])
+async def test_a_full_disk_ends_the_recording_and_the_simulation_goes_on(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, refusing: str
+) -> None:
     def refuse(*_: object) -> None:
         raise LinkwrightError(Diagnostic("BAG108", phrase("the disk is full")))
 
-    monkeypatch.setattr(BagWriter, "write", refuse)
-    view, err = view_of(mbot(0.0))
-    with BagWriter(tmp_path / "run") as writer:
-        assert not await view.run(None, writer)
+    view, err = view_of(mbot(2.0))
+    clock = Recording(view.host.graph, view.host.graph.create_node("listener"), "/clock")
+    with BagWriter(tmp_path / "run") as writer, monkeypatch.context() as patched:
+        patched.setattr(BagWriter, refusing, refuse)
+        assert not await view.run(None, writer), "which is exit status 1"
     assert err.getvalue().count("the disk is full") == 1
+    assert "has finished cleanly" in err.getvalue()
+    assert clock.last.clock.sec >= 1, "it did not end with the first message"
 
 
 @pytest.mark.parametrize("words", [("sim", "empty"), ("drive", str(MBOT))], ids=["sim", "drive"])

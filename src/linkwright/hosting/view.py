@@ -101,6 +101,7 @@ class ModelView:
         self._tasks: set[asyncio.Task[Any]] = set()
         self._is_over = asyncio.Event()
         self._crash: BaseException | None = None
+        self._recorder: Recorder | None = None
         self._numbers = count(1)
         self.host = NodeHost(self)
         self.reload = LiveReload(self.descriptions, self.host.show_findings, log)
@@ -114,10 +115,9 @@ class ModelView:
         """
         self.loop = asyncio.get_running_loop()
         self.log.begin()
-        recorder = None
         try:
             if writer is not None:
-                recorder = self._recorder(writer)
+                self._recorder = self._recording(writer)
             if self._publish():
                 self._plan_others()
                 if foxglove is not None:
@@ -131,26 +131,27 @@ class ModelView:
             while self._tasks:
                 await asyncio.wait(self._tasks)
         finally:
-            if recorder is not None:
-                recorder.close()
+            self._end_recording()
             await self._close()
         if self._crash is not None:
             raise self._crash
         return not self._failures
 
-    def _recorder(self, writer: BagWriter) -> Recorder:
+    def _recording(self, writer: BagWriter) -> Recorder:
+        """A recording; where the disk refuses it, that is told, all else goes on, and the exit status is 1."""
         from linkwright.bag import Recorder, TopicSelection
 
         def guarded(callback: Callable[..., object]) -> Callable[..., object]:
             def call(*arguments: Any) -> None:
-                if self._is_over.is_set():
+                if self._is_over.is_set() or writer in self._failures:
                     return
                 try:
                     callback(*arguments)
-                except LinkwrightError as error:  # the disk is full
+                except LinkwrightError as error:
                     self.log.diagnostics(error.diagnostics)
                     self.fail(writer)
-                    self.shut_down("the recording has ended")
+                    asyncio.get_running_loop().call_soon(self._end_recording)
+                    asyncio.get_running_loop().call_soon(node.destroy_node)
 
             return call
 
@@ -158,6 +159,15 @@ class ModelView:
             "rosbag2_recorder", parameters={"use_sim_time": True}, start_parameter_services=False
         )
         return Recorder(node, TopicSelection(everything=True, every_service=True), writer, guarded=guarded)
+
+    def _end_recording(self) -> None:
+        recorder, self._recorder = self._recorder, None
+        if recorder is not None:
+            try:
+                recorder.close()
+            except LinkwrightError as error:
+                self.log.diagnostics(error.diagnostics)
+                self.fail(recorder)
 
     # --- what is shown ----------------------------------------------------------------------------------------
 
