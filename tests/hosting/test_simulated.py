@@ -67,6 +67,16 @@ async def test_the_page_shows_the_world_in_the_frame_that_the_robot_moves_in():
     assert await running
 
 
+async def test_a_robot_with_the_name_of_a_model_of_the_world_ends_it(tmp_path: Path):
+    named = '<model name="mbot"><static>true</static><link name="link"/></model>'
+    (tmp_path / "a.world").write_text(f'<sdf version="1.7"><world name="w">{named}</world></sdf>')
+    world = replace(in_an_empty_world(), world=str(tmp_path / "a.world"), seconds=0.0)
+    err = io.StringIO()
+    view = SimulatedView(world, PackageFinder(start=MBOT.parent), OPTIONS, LaunchLog(io.StringIO(), err))
+    assert not await view.run(None)
+    assert "error[SIM102]: there is already a model 'mbot'" in err.getvalue()
+
+
 def test_a_world_that_is_not_there_is_one_error(capsys):
     assert main(["sim", "emty"]) == 1
     printed = capsys.readouterr()

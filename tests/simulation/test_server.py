@@ -119,6 +119,13 @@ async def test_it_runs_beside_the_event_loop_and_ends_after_its_seconds(tmp_path
         assert answer.result.result == answer.result.RESULT_OK
 
 
+async def test_a_simulation_that_fails_does_not_wait_for_its_seconds(tmp_path):
+    falling = "<gravity>0 0 -1e14</gravity>" + box("one", "0 0 9 0 0 0")
+    async with simulator(tmp_path, falling, pause=False, seconds=1.0) as it:
+        await eventually(it.simulator.finished.done)
+        assert it.simulator.finished.result() == 1
+
+
 async def test_a_simulation_that_runs_makes_no_single_steps(tmp_path):
     async with simulator(tmp_path, pause=False) as it:
         answer = await it.ask("simulation_interfaces/srv/StepSimulation", "/step_simulation", steps=1)

@@ -180,7 +180,7 @@ class NodeHost:
     def _not_started(self, plan: HostedPlan, error: LinkwrightError) -> None:
         """Tell why; a node whose model file is wrong is started as soon as that is repaired."""
         session = self._session
-        found = self._description_of(plan)
+        found = self._description_of(plan) if plan.waits else None
         if found is None or session.ending:
             session.fail(plan)
             session.log.diagnostics(error.diagnostics)

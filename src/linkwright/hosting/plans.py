@@ -39,6 +39,7 @@ class HostedPlan:
         destinations: where its lines on stdout (1) and stderr (2) go, see `linkwright.hosting.launch_log`.
         respawns: how often it is started again when it has done its work; without end if negative.
         respawn_delay: seconds to wait before that.
+        waits: whether, if it cannot start with its model, it starts as soon as the model file is repaired.
     """
 
     owner: Any
@@ -54,6 +55,7 @@ class HostedPlan:
     destinations: Mapping[int, frozenset[str]] = field(default_factory=lambda: output_destinations("screen"))
     respawns: int = 0
     respawn_delay: float = 0.0
+    waits: bool = True
 
     @property
     def is_viewer(self) -> bool:

@@ -199,7 +199,7 @@ class SimulatedView(ModelView):
             self.reload.report(call, [Diagnostic("SIM153", message)])
 
     def _plan_others(self) -> None:
-        self._plan(*_SIMULATOR, self._world.parameters, output="screen")
+        self._plan(*_SIMULATOR, self._world.parameters, output="screen", waits=False)
         if not self._world.headless:
             self._plan(*VIEWER, {"use_sim_time": True}, name="viewer", viewer_config=self._viewer_config)
 

@@ -215,6 +215,7 @@ class ModelView:
         name: str | None = None,
         viewer_config: Callable[[], RvizConfig] | None = None,
         output: str = "log",
+        waits: bool = True,
     ) -> None:
         plan = HostedPlan(
             self,
@@ -226,6 +227,7 @@ class ModelView:
             parameters or {},
             viewer_config=viewer_config,
             destinations=output_destinations(output),
+            waits=waits,
         )
         self.host.plan(plan)
 

@@ -66,7 +66,7 @@ class Simulator(SingleNode):
         description may be set while it runs: the robot comes anew where it is, with its joints as they are.
 
     Attributes:
-        finished: gets status 0 when the seconds are over.
+        finished: gets status 0 when the seconds are over, and 1 when they will not be, as the simulation failed.
 
     Raises:
         LinkwrightError: SIM150 there is no such world; SIM101 MuJoCo is missing; what is wrong with world or robot.
@@ -137,9 +137,9 @@ class Simulator(SingleNode):
                     return SetParametersResult(successful=False, reason=told(error.diagnostics[0]))
         return SetParametersResult(successful=True)
 
-    def _finish(self) -> None:
+    def _finish(self, status: int) -> None:
         if not self.finished.done():
-            self.finished.set_result(0)
+            self.finished.set_result(status)
 
     def _tell_state(self) -> None:
         self._reports.publish_state(paused=self.runner.paused)
@@ -160,8 +160,8 @@ class Simulator(SingleNode):
                 logger.warning(text)
 
 
-def _call_on(loop: asyncio.AbstractEventLoop, function: Callable[[], None]) -> None:
-    loop.call_soon_threadsafe(function)
+def _call_on(loop: asyncio.AbstractEventLoop, function: Callable[[int], None], status: int) -> None:
+    loop.call_soon_threadsafe(function, status)
 
 
 def _pose(numbers: Sequence[float]) -> Transform:

@@ -38,7 +38,7 @@ class Runner:
         seconds: after how many simulated seconds it is done; None for never.
         watch: called in the thread every now and then, paused or not.
         on_state: called in the thread when it has been paused or let go on.
-        on_end: called in the thread when the seconds are over.
+        on_end: called in the thread when the seconds are over, with 0, or will not be, as something failed, with 1.
 
     Attributes:
         paused: whether no time passes.
@@ -54,7 +54,7 @@ class Runner:
         seconds: float | None = None,
         watch: Callable[[], None] = lambda: None,
         on_state: Callable[[], None] = lambda: None,
-        on_end: Callable[[], None] = lambda: None,
+        on_end: Callable[[int], None] = lambda _: None,
     ) -> None:
         self.paused = paused
         self.real_time_factor = 0.0
@@ -131,13 +131,19 @@ class Runner:
         try:
             work()
         except LinkwrightError as error:
-            self.pause()
+            self._fail()
             finding = error.diagnostics[0]
             hint = f" ({finding.hint})" if finding.hint else ""
             self._server.node.get_logger().error(f"{finding.message}{hint}")
         except BaseException:
-            self.pause()
+            self._fail()
             raise
+
+    def _fail(self) -> None:
+        self.pause()
+        if self._left is not None:
+            self._left = None
+            self._on_end(1)
 
     def _advance(self) -> None:
         simulation = self._server.simulation
@@ -154,7 +160,7 @@ class Runner:
             if self._left <= 0:
                 self._left = None
                 self.pause()
-                self._on_end()
+                self._on_end(0)
 
     def _ahead(self) -> float:
         """How many real seconds are to be waited until real time has come as far."""
