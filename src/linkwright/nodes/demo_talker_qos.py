@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import asyncio
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
@@ -16,7 +17,7 @@ _DEPTH = 10
 _ENDLESS = 1 << 31
 
 
-class _Counted(SingleNode):
+class _Counted(SingleNode, ABC):
     """What both have in common: their arguments, and an end after some messages."""
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
@@ -31,8 +32,8 @@ class _Counted(SingleNode):
 
     _what: str
 
-    def _begin(self, qos: QoSProfile) -> None:
-        raise NotImplementedError
+    @abstractmethod
+    def _begin(self, qos: QoSProfile) -> None: ...
 
     def _counted(self) -> None:
         self._count += 1

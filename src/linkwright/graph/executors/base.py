@@ -62,7 +62,8 @@ def deadline_after(timeout_sec: float | None) -> int | None:
 class Executor:
     """Runs the callbacks of nodes in the threads of its choice; a base class for users' own executors.
 
-    A user's own defines `spin_once`, and gets its work from `wait_for_ready_callbacks`.
+    A user's own defines `spin_once`, and gets its work from `wait_for_ready_callbacks`. As in rclpy it is no abstract
+    class, and may be made without.
 
     Args:
         context: when this is no longer ok, spinning ends; None for an executor without one.

@@ -11,6 +11,8 @@ class CallbackGroup:
 
     An executor asks `can_execute`, then says `beginning_execution`, which may still refuse, and `ending_execution`. It
     asks again when something that ran has ended.
+
+    It is no abstract class: as in rclpy, programs may make one, and what they do not override is not implemented.
     """
 
     def __init__(self) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import os
 import sys
+from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -25,7 +26,7 @@ _STARTERS = (_OURS + "cli" + os.sep, str(Path(asyncio.__file__).parent) + os.sep
 """Folders of the programs that our own code may have been started by: the command line, the event loop."""
 
 
-class Place:
+class Place(ABC):
     """Where something was written: in a program (`CodePlace`) or in an XML or YAML file (`MarkupPlace`)."""
 
     __slots__ = ()
@@ -53,17 +54,17 @@ class Place:
         return None if frame is None else CodePlace(frame.f_code, frame.f_lasti, frame.f_lineno)
 
     @property
+    @abstractmethod
     def file(self) -> str:
         """The file."""
-        raise NotImplementedError
 
+    @abstractmethod
     def source(self) -> SourceText | None:
         """The text of the file; None where it cannot be read again."""
-        raise NotImplementedError
 
+    @abstractmethod
     def span(self, source: SourceText | None = None) -> Span:
         """The lines and columns, worked out when a message needs them."""
-        raise NotImplementedError
 
 
 @dataclass(frozen=True, slots=True)

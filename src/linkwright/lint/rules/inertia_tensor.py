@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator
 
 from linkwright.diagnostics import Diagnostic, Note, phrase
@@ -13,25 +14,29 @@ from linkwright.lint.tensors import DIAGONAL, Flaw, tensor
 from linkwright.urdf import Inertial, Link
 
 
-class _TensorRule(Rule):
+class _FlawRule(Rule):
     """A rule about one kind of flaw."""
 
     kind = ""
-
-    def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        for link, inertial, flaw in self.flawed(subject):
-            yield self.finding(link.name, inertial, flaw)
 
     def flawed(self, subject: Subject) -> Iterator[tuple[Link, Inertial, Flaw]]:
         """The links whose tensor has the flaw first of all."""
         return (each for each in subject.tensor_flaws if each[2].kind == self.kind)
 
+
+class _TensorRule(_FlawRule, ABC):
+    """One that says something of each flaw of its kind."""
+
+    def check(self, subject: Subject) -> Iterable[Diagnostic]:
+        for link, inertial, flaw in self.flawed(subject):
+            yield self.finding(link.name, inertial, flaw)
+
+    @abstractmethod
     def finding(self, name: str, inertial: Inertial, flaw: Flaw) -> Finding:
         """What is said of a flaw of this kind in the tensor of a link, of a robot or a world."""
-        raise NotImplementedError(self.code)
 
 
-class ZeroInertia(_TensorRule):
+class ZeroInertia(_FlawRule):
     """A mass with an inertia tensor of zero.
 
     ## Why

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from abc import abstractmethod
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
@@ -27,9 +28,9 @@ class LaunchRule(PackageRule):
         for file in package.launch_files.values():
             yield from self.check_launch(file)
 
+    @abstractmethod
     def check_launch(self, file: LaunchFile) -> Iterator[Diagnostic]:
         """What the rule finds in a launch file."""
-        raise NotImplementedError
 
 
 class LaunchSyntaxError(LaunchRule):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
@@ -27,7 +28,7 @@ _BUILD_FILES = {
 }
 
 
-class PackageRule(Rule):
+class PackageRule(Rule, ABC):
     """A rule about a package; it has nothing to say where a description lies in none."""
 
     scope = Scope.PACKAGE
@@ -37,9 +38,9 @@ class PackageRule(Rule):
         if package is not None:
             yield from self.check_package(package)
 
+    @abstractmethod
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
         """What the rule finds in a package."""
-        raise NotImplementedError
 
 
 class ManifestRule(PackageRule):
@@ -50,9 +51,9 @@ class ManifestRule(PackageRule):
         if package.manifest is not None:
             yield from self.check_manifest(package.manifest)
 
+    @abstractmethod
     def check_manifest(self, manifest: Manifest) -> Iterator[Diagnostic]:
         """What the rule finds in a manifest."""
-        raise NotImplementedError
 
 
 class ManifestMalformed(PackageRule):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
@@ -13,7 +14,7 @@ if TYPE_CHECKING:
     from linkwright.lint.xacro_facts import XacroFacts
 
 
-class XacroRule(Rule):
+class XacroRule(Rule, ABC):
     """A rule about the xacro files of a description; it has nothing to say of plain URDF."""
 
     holds_for_libraries = True
@@ -22,6 +23,6 @@ class XacroRule(Rule):
         if subject.expansion is not None:
             yield from self.check_xacro(subject.xacro)
 
+    @abstractmethod
     def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
         """What the rule finds in the files of a description."""
-        raise NotImplementedError

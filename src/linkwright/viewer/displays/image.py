@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
@@ -68,6 +69,7 @@ class ImageTopicDisplay(TopicDisplay):
             return
         self.take_image(image, pose)
 
+    @abstractmethod
     def take_image(self, message: Any, pose: Pose | None) -> None:
         """An image to show.
 
@@ -75,7 +77,6 @@ class ImageTopicDisplay(TopicDisplay):
             message: with the fields of a sensor_msgs/msg/Image, or a sensor_msgs/msg/CompressedImage for browsers.
             pose: see `take`.
         """
-        raise NotImplementedError
 
     def reset(self) -> None:
         """Forget the image."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import math
 import time
+from abc import abstractmethod
 from collections import deque
 from dataclasses import dataclass, replace
 from functools import partial
@@ -59,7 +60,7 @@ class _Shown:
 
 
 class CloudDisplay(TopicDisplay):
-    """Shows the points that a subclass makes of each message.
+    """Shows points.
 
     The colours are worked out here and sent with the places; style, size and opacity are the page's business. With a
     Decay Time every message is content of its own, which is taken away when its time is over.
@@ -74,18 +75,6 @@ class CloudDisplay(TopicDisplay):
         self._decay: asyncio.TimerHandle | None = None
         self._counting: asyncio.TimerHandle | None = None
         self._computed: dict[str, tuple[float, float]] = {}
-
-    def points_of(self, message: Any) -> Points:
-        """The points of a message, in the frame of its header.
-
-        Raises:
-            BadCloudError: there are none to be had.
-        """
-        raise NotImplementedError
-
-    def placed(self, points: Points, message: Any, pose: Pose) -> tuple[Points, Pose]:  # noqa: ARG002
-        """The points of a message and the pose of the frame that they are in; a scanner may move while it scans."""
-        return points, pose
 
     def pixel_size(self) -> float:
         """Size of points by their depth, for a camera's pixels; 0 for the size that the properties say."""
@@ -108,17 +97,6 @@ class CloudDisplay(TopicDisplay):
         return tuple(
             replace(spec, options=offered[spec.name]) if spec.name in offered else spec for spec in self.SCHEMA
         )
-
-    def take(self, message: Any, pose: Pose | None) -> None:
-        """Show the points of a message."""
-        assert pose is not None
-        try:
-            points = self.points_of(message)
-        except BadCloudError as error:
-            self.say("Message", "error", str(error))
-            return
-        self.unsay("Message")
-        self.show(*self.placed(points, message, pose), self.frame_of(message)[1])
 
     def show(self, points: Points, pose: Pose, stamp_ns: int) -> None:
         """Show points whose frame is at a pose, and those before them as long as the Decay Time says."""
@@ -263,7 +241,34 @@ class CloudDisplay(TopicDisplay):
 _IDENTITY = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0])
 
 
-class LaserScanDisplay(CloudDisplay):
+class PointsDisplay(CloudDisplay):
+    """Shows the points that a subclass makes of each message."""
+
+    @abstractmethod
+    def points_of(self, message: Any) -> Points:
+        """The points of a message, in the frame of its header.
+
+        Raises:
+            BadCloudError: there are none to be had.
+        """
+
+    def placed(self, points: Points, message: Any, pose: Pose) -> tuple[Points, Pose]:  # noqa: ARG002
+        """The points of a message and the pose of the frame that they are in; a scanner may move while it scans."""
+        return points, pose
+
+    def take(self, message: Any, pose: Pose | None) -> None:
+        """Show the points of a message."""
+        assert pose is not None
+        try:
+            points = self.points_of(message)
+        except BadCloudError as error:
+            self.say("Message", "error", str(error))
+            return
+        self.unsay("Message")
+        self.show(*self.placed(points, message, pose), self.frame_of(message)[1])
+
+
+class LaserScanDisplay(PointsDisplay):
     """The echoes of a planar scanner.
 
     Each ray is placed where the scanner was when it was sent, as laser_geometry does; a scan whose end has no
@@ -303,7 +308,7 @@ class LaserScanDisplay(CloudDisplay):
         return swept(points, points.channels["index"] / steps, pose, end), _IDENTITY
 
 
-class PointCloudDisplay(CloudDisplay):
+class PointCloudDisplay(PointsDisplay):
     """A cloud of points as the old sensor_msgs/msg/PointCloud has it."""
 
     CLASS = "rviz_default_plugins/PointCloud"
@@ -319,7 +324,7 @@ class PointCloudDisplay(CloudDisplay):
         return points_of_legacy_cloud(message)
 
 
-class PointCloud2Display(CloudDisplay):
+class PointCloud2Display(PointsDisplay):
     """A cloud of points."""
 
     CLASS = "rviz_default_plugins/PointCloud2"
@@ -335,7 +340,7 @@ class PointCloud2Display(CloudDisplay):
         return points_of_cloud(message)
 
 
-class ScalarDisplay(CloudDisplay):
+class ScalarDisplay(PointsDisplay):
     """A point at the origin of the sensor's frame."""
 
     FIELD: ClassVar[str]

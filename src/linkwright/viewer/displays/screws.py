@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from abc import abstractmethod
 from typing import Any
 
 from linkwright.viewer.config.schema import PropertySpec, Schema, alpha, topic_spec
@@ -33,9 +34,9 @@ class ScrewDisplay(RecentDisplay):
         linear, angular = (self.number_list(vector) for vector in self.vectors(message))
         return Screw(linear, angular) if self.is_finite(linear, angular) else None
 
+    @abstractmethod
     def vectors(self, message: Any) -> tuple[Any, Any]:
         """The linear and the angular vector of a message."""
-        raise NotImplementedError
 
     def number_list(self, vector: Any) -> list[float]:
         """x, y and z of a vector."""

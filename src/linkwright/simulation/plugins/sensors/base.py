@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
@@ -26,7 +27,7 @@ class FrameName:
     frame_name: str = parameter("", aliases=("frameName",))
 
 
-class SensorPlugin(SimulatedPlugin[P], Generic[P]):
+class SensorPlugin(SimulatedPlugin[P], ABC, Generic[P]):
     """A sensor that measures when it is due and somebody listens."""
 
     def start(self) -> None:
@@ -39,21 +40,21 @@ class SensorPlugin(SimulatedPlugin[P], Generic[P]):
         """Begin anew, with the same random numbers."""
         self.make_sensor()
 
+    @abstractmethod
     def make_sensor(self) -> None:
         """Make what measures."""
-        raise NotImplementedError
 
+    @abstractmethod
     def make_topics(self) -> None:
         """Make the topics."""
-        raise NotImplementedError
 
+    @abstractmethod
     def is_wanted(self) -> bool:
         """Whether anybody listens."""
-        raise NotImplementedError
 
+    @abstractmethod
     def measure(self) -> None:
         """Measure and publish."""
-        raise NotImplementedError
 
     @property
     def rate(self) -> float:

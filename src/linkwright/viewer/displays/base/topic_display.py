@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import time
 import traceback
+from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
@@ -95,7 +96,7 @@ _COUNT_PERIOD = 1.0
 """Seconds between two updates of the row that counts messages or says why there are none."""
 
 
-class TopicDisplay(DataDisplay):
+class TopicDisplay(DataDisplay, ABC):
     """A display of the messages of one type on one topic.
 
     A subclass says `CLASS`, `MESSAGE` and its properties, among them a `topic_spec`, and overrides `take`. It listens
@@ -137,6 +138,7 @@ class TopicDisplay(DataDisplay):
 
     # --- what subclasses override ------------------------------------------------------------------------------
 
+    @abstractmethod
     def take(self, message: Any, pose: Pose | None) -> None:
         """A message to show.
 
@@ -144,7 +146,6 @@ class TopicDisplay(DataDisplay):
             message: of the type `MESSAGE`; it must not be changed.
             pose: of the frame in its header, at its time; None when the display is not `TRANSFORMED`.
         """
-        raise NotImplementedError
 
     def reset(self) -> None:
         """Forget everything shown: the topic or the Fixed Frame has changed, or time was reset."""
@@ -405,9 +406,9 @@ class RecentDisplay(TopicDisplay):
         self._shown: deque[_Shown] = deque()
         self._number = 0
 
+    @abstractmethod
     def content(self, message: Any) -> DataContent | None:
         """What pages draw of a message, in the frame of `frame_of`; None for nothing new."""
-        raise NotImplementedError
 
     def take(self, message: Any, pose: Pose | None) -> None:
         """Show a message, and drop the oldest one."""
