@@ -127,7 +127,7 @@ class Simulator(SingleNode):
 
     def _renew(self, robot: str, parameters: Sequence[Parameter]) -> SetParametersResult:
         """Take another description of the robot, which goes on where it is; one that cannot be read is refused."""
-        from linkwright.simulation.server.loading import told
+        from linkwright.simulation.plugins.entities import told
 
         for each in parameters:
             if each.name == _DESCRIPTION:

@@ -14,7 +14,7 @@ from linkwright.geometry.single import Transform, compose, rotate
 from linkwright.messages import Header, Time
 from linkwright.sdf.frames import transform_of
 from linkwright.sdf.poses import WORLD
-from linkwright.simulation.plugins.entities import Entities, answered, numbers, transform_in
+from linkwright.simulation.plugins.entities import Entities, answered, numbers, told, transform_in
 from linkwright.simulation.plugins.node import PluginNode
 from linkwright.simulation.server.entities import entity_from
 from linkwright.simulation.server.loading import WorldLoader
