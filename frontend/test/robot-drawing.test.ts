@@ -1,4 +1,4 @@
-import { Box3, Raycaster, Vector3 } from "three";
+import { Box3, PerspectiveCamera, Raycaster, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
 import type { LinkScene, Shape } from "../src/protocol";
 import { TOUCHED } from "../src/scene/layers";
@@ -46,7 +46,17 @@ function robot(links: LinkScene[]): { drawing: RobotDrawing; frames: FrameStore 
 function draw({ drawing, frames }: ReturnType<typeof robot>, rows = new PropertyRows([])): Record<string, unknown> {
   drawing.style(rows, false);
   drawing.place((each, matrix) => framePose(frames, frames.row(each.frame), matrix));
+  drawing.look(from(5));
   return drawing.tell() as Record<string, unknown>;
+}
+
+/** A camera that looks at the row from so many metres in front of it. */
+function from(distance: number): PerspectiveCamera {
+  const camera = new PerspectiveCamera(45, 1, 0.01, 100);
+  camera.position.set(distance, 0, 0);
+  camera.lookAt(0, 0, 0);
+  camera.updateMatrixWorld(true);
+  return camera;
 }
 
 const ROW = [
@@ -67,6 +77,17 @@ describe("RobotDrawing", () => {
     const round = (vector: Vector3): number[] => vector.toArray().map((each) => Math.round(each * 100) / 100);
     expect(round(box.min)).toEqual([-0.3, -0.2, -0.3]);
     expect(round(box.max)).toEqual([1.1, 2.3, 0.3]);
+  });
+
+  it("draws spheres with few corners while they look small", () => {
+    const row = robot([link("balls", shape({ kind: "sphere", size: [0.3] }), shape({ kind: "sphere", size: [3] }))]);
+    const small = (distance: number): unknown => {
+      row.drawing.look(from(distance));
+      return (row.drawing.tell() as Record<string, unknown>)["smallSpheres"];
+    };
+    draw(row);
+    expect([2, 20, 90, 20, 0.1].map(small)).toEqual([0, 1, 2, 1, 0]);
+    expect(draw(row)["drawnTogether"]).toBe(2);
   });
 
   it("draws what is seen through, white for want of a transform, or switched off, otherwise or not at all", () => {

@@ -61,6 +61,7 @@ export class RobotModelDrawing implements Drawing {
     this.styleIsOld = false;
     const { frames } = this.context.session;
     this.shown?.place((link, matrix) => framePose(frames, frames.row(link.frame), matrix));
+    this.shown?.look(this.context.camera());
   }
 
   settled(): boolean {

@@ -66,6 +66,7 @@ export class WorldDrawing implements Drawing {
       this.lights.place(this.world(), (link) => this.poseOf(link), () => shown.bounds());
     }
     this.styleIsOld = this.poseIsOld = false;
+    shown.look(context.camera());
   }
 
   /** How it is lit; null while it is drawn in the light of the camera. */

@@ -17,6 +17,8 @@ export const unitCylinder = new CylinderGeometry(1, 1, 1, 40).rotateX(Math.PI / 
 export const unitCone = new ConeGeometry(1, 1, 40).rotateX(Math.PI / 2);
 export const unitPlane = new PlaneGeometry(1, 1);
 export const unitSphere = new SphereGeometry(1, 32, 20).rotateX(Math.PI / 2);
+/** A unit sphere for where it is seen from afar. */
+export const smallSphere = new SphereGeometry(1, 16, 10).rotateX(Math.PI / 2);
 
 const capsules = new Map<number, BufferGeometry>();
 

@@ -1,4 +1,4 @@
-import { Box3, Group, Vector3, type Matrix4, type Object3D, type Raycaster } from "three";
+import { Box3, Group, Vector3, type Camera, type Matrix4, type Object3D, type Raycaster } from "three";
 import type { RobotScene } from "../../protocol";
 import type { PropertyRows } from "../../state/properties";
 import type { Described, Hit, SelectionBox } from "../picking";
@@ -97,6 +97,11 @@ export class RobotDrawing {
     this.extras.place((name) => this.links.get(name)?.pose ?? null);
   }
 
+  /** Chooses how finely shapes are drawn, for the camera of the next frame. */
+  look(camera: Camera): void {
+    this.solids.look(camera);
+  }
+
   pick(ray: Raycaster): Hit | null {
     this.linkOf.clear();
     const targets = [...this.links.values()].flatMap((link) => {
@@ -134,7 +139,8 @@ export class RobotDrawing {
   /** What is drawn, for tests: the shapes of each link, and what stands beside them. */
   tell(): object {
     const links = [...this.links.values()].map((link) => [link.link.name, link.tell()] as const);
-    return { ...this.extras.counts, drawnTogether: this.solids.size, links: Object.fromEntries(links) };
+    const { size: drawnTogether, smallSpheres } = this.solids;
+    return { ...this.extras.counts, drawnTogether, smallSpheres, links: Object.fromEntries(links) };
   }
 
   objectsOf(link: string): readonly Object3D[] {

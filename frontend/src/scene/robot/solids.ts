@@ -1,8 +1,10 @@
-import type { Matrix4, Object3D } from "three";
+import { Vector3, type BufferGeometry, type Camera, type Matrix4, type Object3D } from "three";
 import { CopyBatch } from "../objects/copy-batch";
-import { paint, unitBox, unitCone, unitCylinder, unitSphere } from "../objects/geometries";
+import { paint, smallSphere, unitBox, unitCone, unitCylinder, unitSphere } from "../objects/geometries";
 
 const GEOMETRIES = { box: unitBox, cylinder: unitCylinder, cone: unitCone, sphere: unitSphere } as const;
+
+const place = new Vector3();
 
 /** A kind of shape of which all are drawn in one call. */
 export type SolidKind = keyof typeof GEOMETRIES;
@@ -13,35 +15,96 @@ export function solidKind(kind: string): SolidKind | null {
   return kind in GEOMETRIES ? (kind as SolidKind) : null;
 }
 
-/** Draws boxes, cylinders, cones and spheres that hide what is behind them; used as `CopyBatch`: `begin`, `add` each, `end`. */
+/** A sphere of this share of the height of the picture, or less, looks as round with few corners. */
+const SMALL = 0.06;
+
+/** A sphere that is drawn: its size is that of a unit sphere under the matrix. */
+interface Sphere {
+  readonly matrix: Matrix4;
+  readonly color: number;
+  isSmall: boolean;
+}
+
+/**
+ * Draws boxes, cylinders, cones and spheres that hide what is behind them; used as `CopyBatch`: `begin`, `add` each, `end`,
+ * and before each frame `look`. Spheres have ten times the corners of the others, which without a GPU took two
+ * fifths of the time of a frame: those that look small are drawn with fewer.
+ */
 export class Solids {
   private readonly batches: ReadonlyMap<SolidKind, CopyBatch>;
+  private readonly small: CopyBatch;
+  private spheres: Sphere[] = [];
+  private isOld = false;
 
   constructor(parent: Object3D) {
     const kinds = Object.keys(GEOMETRIES) as SolidKind[];
-    this.batches = new Map(kinds.map((kind) => [kind, new CopyBatch(parent, paint(GEOMETRIES[kind].clone(), 1, 1, 1))]));
+    const batch = (shape: BufferGeometry): CopyBatch => new CopyBatch(parent, paint(shape.clone(), 1, 1, 1));
+    this.batches = new Map(kinds.map((kind) => [kind, batch(GEOMETRIES[kind])]));
+    this.small = batch(smallSphere);
   }
 
   /** How many are drawn. */
   get size(): number {
-    return [...this.batches.values()].reduce((sum, batch) => sum + batch.size, 0);
+    let sum = this.spheres.length;
+    for (const [kind, batch] of this.batches) if (kind !== "sphere") sum += batch.size;
+    return sum;
+  }
+
+  /** How many spheres are drawn with few corners. */
+  get smallSpheres(): number {
+    return this.small.size;
   }
 
   /** Starts over; at most so many of each kind will follow. */
   begin(counts: ReadonlyMap<SolidKind, number>): void {
-    for (const [kind, batch] of this.batches) batch.begin(counts.get(kind) ?? 0);
+    for (const [kind, batch] of this.batches) if (kind !== "sphere") batch.begin(counts.get(kind) ?? 0);
+    this.spheres = [];
   }
 
   /** `matrix` in the parent's frame, of a shape of size one; `color` is 0xrrggbb. */
   add(kind: SolidKind, matrix: Matrix4, color: number): void {
-    this.batches.get(kind)?.add(matrix, 0, 1, color);
+    if (kind === "sphere") this.spheres.push({ matrix: matrix.clone(), color, isSmall: false });
+    else this.batches.get(kind)?.add(matrix, 0, 1, color);
   }
 
   end(): void {
-    for (const batch of this.batches.values()) batch.end();
+    for (const [kind, batch] of this.batches) if (kind !== "sphere") batch.end();
+    this.isOld = true;
+  }
+
+  /** Draws the spheres for a camera of the parent's frame. */
+  look(camera: Camera): void {
+    let changed = this.isOld;
+    for (const sphere of this.spheres) {
+      const isSmall = shareOf(sphere.matrix, camera) < SMALL;
+      changed ||= isSmall !== sphere.isSmall;
+      sphere.isSmall = isSmall;
+    }
+    this.isOld = false;
+    if (changed) this.deal();
   }
 
   dispose(): void {
-    for (const batch of this.batches.values()) batch.dispose();
+    for (const batch of [...this.batches.values(), this.small]) batch.dispose();
   }
+
+  private deal(): void {
+    const small = this.spheres.filter((sphere) => sphere.isSmall);
+    const large = this.spheres.filter((sphere) => !sphere.isSmall);
+    for (const [batch, spheres] of [[this.small, small], [this.batches.get("sphere"), large]] as const) {
+      batch?.begin(spheres.length);
+      for (const { matrix, color } of spheres) batch?.add(matrix, 0, 1, color);
+      batch?.end();
+    }
+  }
+}
+
+/** The radius of a sphere in a picture, as a share of its height: infinite for one that the camera is beside or within. */
+function shareOf(matrix: Matrix4, camera: Camera): number {
+  const radius = matrix.getMaxScaleOnAxis();
+  const { elements } = camera.projectionMatrix;
+  const depth = -place.setFromMatrixPosition(matrix).applyMatrix4(camera.matrixWorldInverse).z;
+  const isPerspective = elements[11] !== 0;
+  if (isPerspective && Math.abs(depth) <= radius) return Infinity;
+  return (radius * elements[5]) / 2 / (isPerspective ? Math.abs(depth) : 1);
 }
