@@ -146,6 +146,7 @@ def test_a_row_is_run_again_by_its_number(tmp_path, monkeypatch, capsys):
         (["squares.py", "m:=1"], "SWEEP106"),
         (["squares.py", "m=1"], "CLI101"),
         (["squares.py", "--out", "a.txt"], "SWEEP110"),
+        (["squares.py", "--out", "squares.py/a.csv"], "SWEEP110"),
         (["squares.py", "--resume"], "SWEEP109"),
     ],
 )

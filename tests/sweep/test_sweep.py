@@ -7,7 +7,7 @@ from html.parser import HTMLParser
 import pyarrow.parquet as pq
 import pytest
 
-from linkwright.diagnostics import LinkwrightError
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.sweep.plan import planned
 from linkwright.sweep.running import Outcome, run_once
 from linkwright.sweep.sweep import Sweep
@@ -116,10 +116,21 @@ def test_on_a_full_disk_the_table_that_was_there_stays(tmp_path):
     (tmp_path / "out.csv").write_text("old")
     scenario = loaded(tmp_path)
     sweep = Sweep(scenario, tmp_path / "out.csv", ["linkwright"])
-    with full_disk(50), pytest.raises(OSError, match="too large") as raised:
+    with full_disk(200), pytest.raises(LinkwrightError, match="too large") as raised:
         sweep.run(backwards(scenario), resume=False, progress=lambda *_: None)
-    assert raised.value.filename == str(tmp_path / "out.csv.unfinished")
+    assert raised.value.diagnostics[0].code == "SWEEP110"
     assert (tmp_path / "out.csv").read_text() == "old"
+    table = sweep.run(backwards(scenario), resume=True, progress=lambda *_: None)
+    assert table.columns["row"] == [1, 2, 3, 4, 5, 6]
+
+
+def test_what_ends_before_the_first_row_leaves_nothing_behind(tmp_path):
+    def refused(runs, report):
+        raise LinkwrightError(Diagnostic("SWEEP114", phrase("there is no cluster")))
+
+    with pytest.raises(LinkwrightError):
+        Sweep(loaded(tmp_path), tmp_path / "out.csv", []).run(refused, resume=False, progress=lambda *_: None)
+    assert [path.name for path in tmp_path.iterdir() if path.is_file()] == ["squares.py"]
 
 
 class Page(HTMLParser):

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
+from contextlib import contextmanager
 from io import FileIO
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, phrase
 from linkwright.sweep.running import Outcome
 
 if TYPE_CHECKING:
@@ -31,7 +33,7 @@ class Journal:
 
     Raises:
         LinkwrightError: SWEEP107 there is one, and it is not to be gone on with; SWEEP108 it is of another plan;
-            SWEEP109 there is none.
+            SWEEP109 there is none; SWEEP110 it cannot be written.
     """
 
     def __init__(self, table: Path, fingerprint: str, *, resume: bool) -> None:
@@ -52,13 +54,14 @@ class Journal:
             raise LinkwrightError(Diagnostic("SWEEP107", message, hint=hint))
 
     def __enter__(self) -> Self:
-        self.path.parent.mkdir(parents=True, exist_ok=True)
         known = [self._head, *map(_line, self.outcomes.values())]
-        self._file = self.path.open("wb", buffering=0)
+        with refusing(self.path):
+            self.path.parent.mkdir(parents=True, exist_ok=True)
+            self._file = self.path.open("wb", buffering=0)
         try:
             for each in known:
                 self._write(each)
-        except OSError:
+        except LinkwrightError:
             self._file.close()
             raise
         return self
@@ -68,12 +71,14 @@ class Journal:
     ) -> None:
         assert self._file is not None, "it was entered"
         self._file.close()
+        if error is not None and not self.outcomes:
+            self.remove()
 
     def add(self, outcome: Outcome) -> None:
         """Keep an outcome.
 
         Raises:
-            OSError: it cannot be written.
+            LinkwrightError: SWEEP110 it cannot be written.
         """
         self.outcomes[outcome.row] = outcome
         self._write(_line(outcome))
@@ -85,12 +90,9 @@ class Journal:
     def _write(self, line: dict[str, Any]) -> None:
         assert self._file is not None, "it was entered"
         left = f"{json.dumps(line)}\n".encode()
-        try:
+        with refusing(self.path):
             while left:
                 left = left[self._file.write(left) :]
-        except OSError as error:
-            error.filename = str(self.path)
-            raise
 
     def _read(self) -> None:
         lines = self.path.read_text(encoding="utf-8", errors="replace").splitlines()
@@ -101,6 +103,22 @@ class Journal:
             raise LinkwrightError(Diagnostic("SWEEP108", message, hint=hint))
         for entry in entries[1:]:
             self.outcomes[entry["row"]] = Outcome(**entry)
+
+
+@contextmanager
+def refusing(path: Path) -> Iterator[None]:
+    """Tell of a file that cannot be written.
+
+    Raises:
+        LinkwrightError: SWEEP110.
+    """
+    try:
+        yield
+    except OSError as error:
+        reason = foreign(error.strerror or error)
+        message = phrase("cannot write '{path}': {reason}", path=display_path(path), reason=reason)
+        hint = phrase("name a file in a folder that you may write to")
+        raise LinkwrightError(Diagnostic("SWEEP110", message, hint=hint)) from None
 
 
 def _line(outcome: Outcome) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from linkwright.sweep.journal import Journal
+from linkwright.sweep.journal import Journal, refusing
 from linkwright.sweep.page import summary
 from linkwright.sweep.plan import Run, fingerprint, planned
 from linkwright.sweep.running import Outcome
@@ -51,8 +51,7 @@ class Sweep:
             The table; what is missing of it was interrupted.
 
         Raises:
-            LinkwrightError: of the journal, see `Journal`.
-            OSError: a file cannot be written.
+            LinkwrightError: of the journal, see `Journal`; SWEEP110 a file cannot be written.
         """
         runs = planned(self.scenario)
         with Journal(self.table, fingerprint(self.scenario, runs), resume=resume) as journal:
@@ -67,9 +66,10 @@ class Sweep:
             with suppress(KeyboardInterrupt):
                 runner([run for run in runs if run.row not in journal.outcomes], done)
         table = Table.of(runs, journal.outcomes)
-        write_whole_file(self.table, written(table, self.table))
-        command = shlex.join(self.words)
-        write_whole_file(self.page, summary(table, self.scenario.path.name, command, len(runs)))
+        page = summary(table, self.scenario.path.name, shlex.join(self.words), len(runs))
+        for path, content in ((self.table, written(table, self.table)), (self.page, page)):
+            with refusing(path):
+                write_whole_file(path, content)
         if len(table) == len(runs):
             journal.remove()
         return table

@@ -61,7 +61,7 @@ def check_format(path: Path) -> None:
     Raises:
         LinkwrightError: SWEEP110 its ending is none of a table; SWEEP111 pyarrow is not installed.
     """
-    if path.suffix not in FORMATS:
+    if path.suffix not in FORMATS or path.is_dir():
         message = phrase("'{path}' is no file for a table", path=str(path))
         raise LinkwrightError(Diagnostic("SWEEP110", message, hint=phrase("its name is to end in .csv or .parquet")))
     if path.suffix == ".parquet":

@@ -1,0 +1,25 @@
+"""The scenario of the page about sweeps."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.sweep.plan import planned
+from linkwright.sweep.running import run_once
+from linkwright.sweep.scenario import load_scenario
+from tests.docs.pages import blocks
+from tests.places import REPOSITORY
+
+
+@pytest.mark.parametrize("page", ["docs/sweeps.md", "docs/zh/sweeps.md"])
+def test_it_runs_and_friction_decides_who_arrives(page, tmp_path):
+    (block,) = (each for each in blocks(REPOSITORY / page) if each.title)
+    path = tmp_path / block.title
+    path.write_text(block.text, encoding="utf-8")
+    scenario = load_scenario(path)
+    runs = planned(scenario)
+    assert len(runs) == 10
+    slippery, rough = run_once(scenario, runs[0]), run_once(scenario, runs[-1])
+    assert not slippery.error
+    assert not rough.error
+    assert (slippery.results["arrived"], rough.results["arrived"]) == (False, True)
