@@ -1,6 +1,7 @@
 """Sweeps on a Ray cluster."""
 
 import os
+import socket
 import subprocess
 import sys
 
@@ -51,6 +52,16 @@ def test_a_cluster_of_two_workers_loses_one_and_the_table_is_whole(tmp_path):
     assert lost.exists()
     rows = path.with_suffix(".csv").read_text()
     assert rows == "row,n,seed,square,error\n1,1,0,1,\n2,2,0,4,\n3,3,0,9,\n4,4,0,16,\n"
+
+
+def test_where_nobody_listens_there_is_no_cluster(tmp_path):
+    with socket.socket() as unused:
+        unused.bind(("127.0.0.1", 0))  # and nobody else can listen there
+        address = f"127.0.0.1:{unused.getsockname()[1]}"
+        for each in (address, f"ray://{address}"):
+            with pytest.raises(LinkwrightError, match="refused") as raised:
+                run_on_ray(write(tmp_path), [], each, ignore)
+            assert raised.value.diagnostics[0].code == "SWEEP114"
 
 
 def test_without_ray_it_is_asked_for(tmp_path, monkeypatch):

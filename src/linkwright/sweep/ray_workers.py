@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import os
+import socket
 from collections import deque
 from collections.abc import Iterable
 from pathlib import Path
@@ -18,6 +19,9 @@ from linkwright.sweep.workers import MOST_ATTEMPTS, Report
 
 _AHEAD = 2
 """For each processor of the cluster so many runs are handed out."""
+
+_PATIENCE = 10.0
+"""Seconds for a machine to answer."""
 
 _scenario: Scenario | None = None
 """What a process of the cluster has loaded: processes are the cluster's, and used again."""
@@ -71,6 +75,7 @@ def _connected(path: Path, address: str) -> Any:
     except ModuleNotFoundError as error:
         raise missing_extra("SWEEP113", error) from None
     try:
+        _reach(address)
         ray.init(
             address=address,
             runtime_env={"working_dir": str(path.parent)},
@@ -83,6 +88,17 @@ def _connected(path: Path, address: str) -> Any:
         hint = phrase("`ray start --head` begins one; its address is then auto on that machine")
         raise LinkwrightError(Diagnostic("SWEEP114", message, hint=hint)) from None
     return ray
+
+
+def _reach(address: str) -> None:
+    """Find out whether anybody listens at an address with a port: Ray would try for minutes, and tell of each time.
+
+    Raises:
+        OSError: nobody does.
+    """
+    host, _, port = address.removeprefix("ray://").rpartition(":")
+    if host and port.isdigit():
+        socket.create_connection((host, int(port)), _PATIENCE).close()
 
 
 def _run_there(name: str, run: Run) -> Outcome:
