@@ -128,7 +128,8 @@ class Viewer:
 
     def keep_unsaved(self) -> list[Diagnostic]:
         """Keep what pages edited and did not save, before the program ends; returns the notices about it."""
-        return keep_unsaved(manager.config for manager in self.managers.all() if manager.history.unsaved)
+        kept = keep_unsaved(manager.config for manager in self.managers.all() if manager.history.unsaved)
+        return [*kept, *(notice for feature in self._features for notice in feature.keep_unsaved())]
 
     @property
     def url(self) -> str:

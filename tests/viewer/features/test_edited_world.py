@@ -123,3 +123,17 @@ def test_worlds_are_found_by_path_and_name(tmp_path, monkeypatch):
     assert world_file("some", NOWHERE) == tmp_path / "some.world"
     with pytest.raises(EditError, match="there is no world 'none'"):
         world_file("none", NOWHERE)
+
+
+def test_what_is_not_saved_is_kept(tmp_path):
+    path, folder = tmp_path / "w.world", tmp_path / "state" / "unsaved"
+    path.write_bytes(codecs.BOM_UTF8 + PLAIN.encode())
+    said = [edited(path, name).keep(folder) for name in ("a", "b")]
+    (kept,) = folder.iterdir()
+    assert [each.code for each in said] == ["RVIZ301", "RVIZ301"]
+    assert f"'{path}'" in said[0].message
+    assert f"'{kept}'" in said[0].message
+    assert kept.read_bytes() == codecs.BOM_UTF8 + PLAIN.replace("'box'", "'b'").encode()
+    (tmp_path / "file").touch()
+    lost = edited(path).keep(tmp_path / "file" / "unsaved")
+    assert (lost.code, "cannot write" in lost.message) == ("RVIZ104", True)

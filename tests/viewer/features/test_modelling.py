@@ -9,6 +9,7 @@ import pytest
 
 from linkwright.graph import DurabilityPolicy, QoSProfile
 from linkwright.messages import get_message, get_service
+from linkwright.viewer.config.locations import recovery_folder
 from tests.sdf.editing.texts import BOX, PLAIN
 from tests.viewer.scene import page, world
 from tests.waiting import eventually
@@ -216,3 +217,15 @@ async def test_a_file_that_another_program_changed_is_read_again_or_not_overwrit
         assert path.read_text() == PLAIN
         await client.send("save_world", path="other.world")
         assert (await client.until("modelling_state"))["file"] == str(tmp_path / "other.world")
+
+
+async def test_what_is_not_saved_when_the_program_ends_is_kept(tmp_path):
+    path = written(tmp_path)
+    async with modelled(path) as (_, client, made):
+        assert made.viewer.keep_unsaved() == []
+        await client.send("delete_things", names=["box"])
+        await client.until("modelling_state", unsaved=True)
+        (said,) = made.viewer.keep_unsaved()
+    assert (said.code, path.read_text()) == ("RVIZ301", PLAIN)
+    kept = list(recovery_folder().glob("my-*.world"))
+    assert [each.read_text() for each in kept if str(each) in said.message] == [PLAIN.replace(BOX, "")]

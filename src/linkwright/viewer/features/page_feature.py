@@ -82,6 +82,10 @@ class PageFeature:
     def page_gone(self, page: Page) -> None:
         """A page was closed."""
 
+    def keep_unsaved(self) -> list[Diagnostic]:
+        """Keep what pages edited and did not save, before the program ends; the notices about it."""
+        return []
+
     def close(self) -> None:
         """End for good."""
 

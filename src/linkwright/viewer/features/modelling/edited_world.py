@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 from collections.abc import Callable
 from pathlib import Path
 
 from linkwright.descriptions import is_world
-from linkwright.diagnostics import foreign, phrase
+from linkwright.diagnostics import Diagnostic, Phrase, Severity, foreign, phrase
 from linkwright.packages import PackageFinder
 from linkwright.sdf.editing import EditError, WorldText
 from linkwright.sdf.resources import ResourceFinder
@@ -17,6 +18,8 @@ from linkwright.xmltree.reader import read_bytes
 
 _XACRO = ".xacro"
 _NAMELESS = "world.sdf"
+_LONGEST_STEM = 56
+"""Characters, of which a file system may count four bytes each."""
 _MOST_STEPS = 200
 """Of undo."""
 _INSTALLED = Path(__file__).parents[3]
@@ -155,16 +158,37 @@ class EditedWorld:
             raise EditError(phrase("this world has no file of its own: say as which it is saved"))
         elif os.path.lexists(target):
             raise EditError(phrase("there is a file '{path}' already", path=str(target)))
-        content = self._mark + self.world.text.encode(self._encoding, "xmlcharrefreplace")
+        content = self._encoded
         try:
             write_whole_file(target, content)
         except OSError as error:
-            reason = foreign(error.strerror or error)
-            raise EditError(phrase("cannot write '{path}': {reason}", path=str(target), reason=reason)) from None
+            raise EditError(_not_written(target, error)) from None
         self._content, self._saved = content, self.world.text
         if target != self.path:
             self.path = target
             self.world = WorldText(self.world.text, target, self.world.finder)
+
+    def keep(self, folder: Path) -> Diagnostic:
+        """Write what is not saved into a folder, in which a later text of the same world takes its place.
+
+        Returns:
+            Where it is (RVIZ301), or that it is lost (RVIZ104).
+        """
+        mark = hashlib.sha256(os.fsencode(self.path)).hexdigest()[:8]  # of two files of one name
+        kept = folder / f"{self.path.stem[:_LONGEST_STEM]}-{mark}{self.path.suffix}"
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            write_whole_file(kept, self._encoded)
+        except OSError as error:
+            return Diagnostic("RVIZ104", _not_written(kept, error))
+        message = phrase(
+            "changes of the world '{path}' that were not saved are kept in '{kept}'", path=self.path, kept=kept
+        )
+        return Diagnostic("RVIZ301", message, severity=Severity.WARNING)
+
+    @property
+    def _encoded(self) -> bytes:
+        return self._mark + self.world.text.encode(self._encoding, "xmlcharrefreplace")
 
     def _named(self, name: str) -> Path:
         """The file that the user names.
@@ -179,3 +203,7 @@ class EditedWorld:
         if "\0" in name or not is_world(path.name) or path.suffix == _XACRO:
             raise EditError(phrase("'{name}' is no name of a world: let it end in .world or .sdf", name=name))
         return path
+
+
+def _not_written(path: Path, error: OSError) -> Phrase:
+    return phrase("cannot write '{path}': {reason}", path=str(path), reason=foreign(error.strerror or error))

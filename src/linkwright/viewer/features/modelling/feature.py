@@ -12,9 +12,10 @@ from contextlib import suppress
 from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from linkwright.diagnostics import LinkwrightError, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.graph import DurabilityPolicy, QoSProfile
 from linkwright.messages import get_message, get_service
+from linkwright.viewer.config.locations import recovery_folder
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
 from linkwright.viewer.features.simulation_services import SimulationServices, refuse
 from linkwright.viewer.protocol.message import PageMessage, ServerMessage
@@ -84,6 +85,12 @@ class ModellingFeature(PageFeature):
         if self._listening and len(self.context.pages) == 0:
             self._listening = False
             self.context.graph_changes.ignore(self._review)
+
+    def keep_unsaved(self) -> list[Diagnostic]:
+        """Keep the text of a world that is not saved."""
+        if self._edited is None or not self._edited.unsaved:
+            return []
+        return [self._edited.keep(recovery_folder())]
 
     def close(self) -> None:
         """End for good."""
