@@ -158,6 +158,13 @@ async def test_everything_that_a_page_can_ask_for(tmp_path):
         assert {"name": "sun", "address": "model://sun"} in found
 
 
+async def test_nothing_gets_the_name_of_what_was_put_into_the_world(tmp_path):
+    async with modelled(written(tmp_path, PLAIN.replace(BOX, ""))) as (_, client, _):
+        assert [each["name"] for each in client.state["things"]] == ["ground_plane", "lamp"]
+        await client.send("add_thing", shape="box", address="", pose=POSE, size=[])
+        assert (await client.until("modelling_state", unsaved=True))["things"][-1]["name"] == "box_2"
+
+
 async def test_pages_share_what_is_edited(tmp_path):
     async with modelled(written(tmp_path)) as (_, client, made), page(made.viewer) as other:
         assert (await other.opened())["modelling_state"]["active"] is True

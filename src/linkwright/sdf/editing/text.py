@@ -83,6 +83,7 @@ class WorldText:
         text: SDF.
         path: the file that it is of, from whose folder its addresses start.
         finder: where the models are that it includes.
+        reserved: names that new things cannot have, of what was put into the world that runs.
 
     Attributes:
         world: what it says, with includes resolved and everything where the last saved state has it.
@@ -94,8 +95,8 @@ class WorldText:
         EditError: there is no world in it.
     """
 
-    def __init__(self, text: str, path: Path, finder: ResourceFinder) -> None:
-        self.text, self.path, self.finder = text, path, finder
+    def __init__(self, text: str, path: Path, finder: ResourceFinder, reserved: frozenset[str] = frozenset()) -> None:
+        self.text, self.path, self.finder, self.reserved = text, path, finder, reserved
         document, _ = parse_as_gazebo(text, str(path))
         reading = read(document)
         if reading.sdf is None or not reading.sdf.worlds or reading.sdf.worlds[0].element is None:
@@ -122,7 +123,7 @@ class WorldText:
         world, state = self.world, self.world.states[-1] if self.world.states else None
         gone = state.deletions.names if state is not None else ()
         beside: tuple[Actor | Frame | Joint, ...] = (*world.actors, *world.frames, *world.joints)
-        return frozenset({WORLD, *self.things, *(each.name for each in beside), *gone})
+        return self.reserved.union({WORLD, *self.things, *(each.name for each in beside), *gone})
 
     @property
     def state(self) -> Element | None:
@@ -157,7 +158,7 @@ class WorldText:
         if text == self.text:
             return self
         try:
-            return WorldText(text, self.path, self.finder)
+            return WorldText(text, self.path, self.finder, self.reserved)
         except LinkwrightError as error:
             found = error.diagnostics[0]
             raise EditError(phrase("the text would not be SDF: {reason}", reason=found.message)) from None

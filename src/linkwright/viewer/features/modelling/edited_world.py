@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 from linkwright.descriptions import is_world
@@ -115,6 +115,11 @@ class EditedWorld:
         except OSError:
             return False  # there is none, or it cannot be read: what is here is all there is
 
+    def reserve(self, names: Iterable[str]) -> None:
+        """Give new things none of these names but those that the world has itself."""
+        world = self.world
+        self.world = WorldText(world.text, world.path, world.finder, frozenset(names) - world.things.keys())
+
     def edit(self, change: Callable[[WorldText], WorldText]) -> None:
         """Change the world, in one step of undo.
 
@@ -166,7 +171,7 @@ class EditedWorld:
         self._content, self._saved = content, self.world.text
         if target != self.path:
             self.path = target
-            self.world = WorldText(self.world.text, target, self.world.finder)
+            self.world = WorldText(self.world.text, target, self.world.finder, self.world.reserved)
 
     def keep(self, folder: Path) -> Diagnostic:
         """Write what is not saved into a folder, in which a later text of the same world takes its place.

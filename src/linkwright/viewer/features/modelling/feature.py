@@ -188,7 +188,9 @@ class ModellingFeature(PageFeature):
         edited, packages = self._edited, self.context.finder
         if edited is not None and edited.file is not None:
             if not edited.unsaved and await asyncio.to_thread(lambda: edited.is_outdated):
-                self._edited = await asyncio.to_thread(EditedWorld.of_file, edited.file, packages)
+                fresh = await asyncio.to_thread(EditedWorld.of_file, edited.file, packages)
+                await asyncio.to_thread(fresh.reserve, edited.world.reserved)
+                self._edited = fresh
         elif edited is None:
             self._edited = await self._read()
         assert self._edited is not None, "one of these is so"
@@ -208,6 +210,7 @@ class ModellingFeature(PageFeature):
                 path = await asyncio.to_thread(world_file, name, packages)
                 found = await asyncio.to_thread(EditedWorld.of_file, path, packages)
                 if found.world.world.name == told.world.world.name:
+                    await asyncio.to_thread(found.reserve, told.world.things)
                     return found
         return told
 
