@@ -149,6 +149,27 @@ async def test_wheels_of_a_robot_that_goes_sideways_turn_against_each_other_and_
         assert not log
 
 
+async def test_a_model_has_the_velocity_that_it_is_told_in_its_own_axes():
+    plugin = (
+        '<plugin name="gz::sim::systems::VelocityControl" filename="gz-sim-velocity-control-system">'
+        "<initial_linear>0 0 0.5</initial_linear></plugin>"
+    )
+    text = box("drone", f"0 0 5 0 0 {pi / 2}").replace("</model>", f"{plugin}</model>")
+    async with served(GROUND, text) as (server, graph, log):
+        server.advance(SECOND)
+        assert server.simulation.model_pose("drone")[2] == pytest.approx(5.5, abs=0.02)
+        twist = get_message("geometry_msgs/msg/Twist")()
+        twist.linear.x, twist.angular.z = 0.3, 0.1
+        node = graph.create_node("pilot")
+        node.create_publisher("geometry_msgs/msg/Twist", "/model/drone/cmd_vel", 10).publish(twist)
+        await graph.settle()
+        server.advance(SECOND)
+        x, y, z, *_ = server.simulation.model_pose("drone")
+        assert (x, y, z) == pytest.approx((-0.015, 0.3, 5.5), abs=0.02)
+        assert yaw_of(server.simulation.model_pose("drone")) == pytest.approx(pi / 2 + 0.1, abs=1e-3)
+        assert not log
+
+
 async def test_a_drive_that_is_not_enabled_comes_to_rest():
     plugin = (
         '<plugin name="drive" filename="gz-sim-diff-drive-system"><left_joint>left_joint</left_joint>'

@@ -38,7 +38,7 @@ _ODOMETRY_DISPLAY, _ODOMETRY_TOPIC = "rviz_default_plugins/Odometry", "/odom"
 _DISTANCE = 5.0
 """Metres from which a robot and what is around it are seen."""
 _ODOMETRY_FRAME = re.compile(r"<(odometry_?[fF]rame|odom_frame)>\s*([\w/]+)\s*<")
-_DRIVES = re.compile(r"diff.drive|DiffDrive|skid_steer|planar_move|ackermann|mecanum", re.IGNORECASE)
+_DRIVES = re.compile(r"diff.drive|DiffDrive|skid_steer|planar_move|ackermann|mecanum|velocity.control", re.IGNORECASE)
 
 
 def _as_it_is(description: Description) -> str:

@@ -8,8 +8,8 @@
         publish_odom: bool = False
 
 A name is that of the child element of ``<plugin>``. The types are ``str``, ``float``, ``int``, ``bool``, `Vector3`, and
-``tuple[str, ...]`` or ``tuple[float, ...]`` for elements that may be there several times. ``bool | None`` and
-``float | None`` are for those whose defaults depend on others.
+``tuple[str, ...]`` or ``tuple[float, ...]`` for elements that may be there several times. ``bool | None``,
+``float | None`` and ``Vector3 | None`` are for those whose defaults depend on others.
 """
 
 from __future__ import annotations
@@ -133,6 +133,7 @@ _CONVERTERS: dict[Any, Callable[[str], Any]] = {
     bool | None: _truth,
     float | None: float,
     Vector3: _vector,
+    Vector3 | None: _vector,
 }
 
 

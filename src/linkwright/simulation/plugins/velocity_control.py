@@ -1,0 +1,59 @@
+"""A model that has the velocity that it is told: ``gz-sim-velocity-control-system``.
+
+Source: gz-sim (parameters, topic; velocities are in the axes of the model, and hold until the next message).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from linkwright.geometry.single import rotate
+from linkwright.geometry.vectors import Vector3
+from linkwright.simulation.plugins.entities import numbers
+from linkwright.simulation.plugins.planar_move import PlanarDrive
+
+
+@dataclass(frozen=True, kw_only=True)
+class VelocityControlParameters:
+    """Of the plugin."""
+
+    topic: str = ""
+    initial_linear: Vector3 | None = None
+    initial_angular: Vector3 | None = None
+
+
+class GzVelocityControl(PlanarDrive[VelocityControlParameters]):
+    """``gz-sim-velocity-control-system``, of models; links of their own are not controlled."""
+
+    PARAMETERS = VelocityControlParameters
+    IGNORED = ("link_name",)
+
+    def start(self) -> None:
+        """Listen.
+
+        Raises:
+            LinkwrightError: SIM160 the model is fixed to the world.
+        """
+        self.be_free()
+        self.reset()
+        topic = self.parameters.topic or f"/model/{self.place.path}/cmd_vel"
+        self.node.subscribe("geometry_msgs/msg/Twist", topic, self._told, usual="/cmd_vel")
+        self.every(0.0, self._move)
+
+    def reset(self) -> None:
+        """Have the velocity of the start, if there is one."""
+        said = self.parameters
+        self._wanted: tuple[Vector3, Vector3] | None = None
+        if said.initial_linear is not None or said.initial_angular is not None:
+            self._wanted = (said.initial_linear or (0.0, 0.0, 0.0), said.initial_angular or (0.0, 0.0, 0.0))
+
+    def _told(self, twist: Any) -> None:
+        self._wanted = (numbers(twist.linear), numbers(twist.angular))
+
+    def _move(self) -> None:
+        if self._wanted is None:
+            return
+        turn = self.simulation.model_pose(self.place.path)[3:]
+        linear, angular = (rotate(turn, each) for each in self._wanted)
+        self.simulation.set_model_velocity(self.place.path, linear, angular)
