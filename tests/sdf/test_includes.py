@@ -309,3 +309,19 @@ def test_an_address_that_means_nothing_is_said_to(tmp_path):
         found = finder.file(address, tmp_path)
         assert isinstance(found, Missing) or found == tmp_path, address
     assert isinstance(finder.model("", Path(tmp_path)), Missing)
+
+
+def test_what_is_unknown_or_not_there_is_told_of_once(tmp_path):
+    gone = "<include><uri>model://gone</uri></include>"
+    other = sdf('<model name="box"><static>true</static><mine/></model>')
+    write(tmp_path, {"box/model.sdf": other})
+    box = "<include><uri>model://box</uri></include>"
+    inside = f'<mine/><mine/><yours/>{gone}{gone}{box}<model name="m"><static>1</static><mine/></model>'
+    found = examined(tmp_path, inside, GZ_SIM_RESOURCE_PATH=str(tmp_path))
+    told = [str(each.message) for each in found.diagnostics if each.code in ("SDF150", "SDF160")]
+    assert [each.split(":")[0] for each in told] == [
+        "<mine> in <world> is not read",
+        "<yours> in <world> is not read",
+        "<mine> in <model> is not read",
+        "'model",
+    ]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,6 +15,7 @@ from linkwright.xmltree.reader import read_bytes
 if TYPE_CHECKING:
     from linkwright.sdf.worlds import Sdf
 
+_OF_A_KIND = frozenset({"SDF150", "SDF160"})
 _ENDINGS = (".world", ".sdf", ".world.xacro", ".sdf.xacro")
 
 
@@ -82,7 +83,17 @@ def examine_world(
     included = resolve_includes(reading.sdf, path, resources)
     found += [*included.diagnostics, *check_references(included.sdf)]
     sdf = with_scripts(included.sdf, resources)
-    return WorldDescription(path, sdf, tuple(found), (*files, *included.files))
+    return WorldDescription(path, sdf, tuple(_each_once(found)), (*files, *included.files))
+
+
+def _each_once(found: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
+    """Findings, of each kind of element that is not read and of each model that is not there only the first."""
+    told: set[str] = set()
+    for each in found:
+        words = f"{each.code} {each.message}"
+        if each.code not in _OF_A_KIND or words not in told:
+            told.add(words)
+            yield each
 
 
 def _document(

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import struct
+
 import mujoco
 import numpy as np
 import pytest
 from PIL import Image
 
+from linkwright.diagnostics import LinkwrightError
 from linkwright.sdf.shapes import Heightmap
 from linkwright.simulation.scene.heights import read_heights
 from linkwright.simulation.scene.meshes import MeshLibrary
@@ -207,3 +210,22 @@ def test_a_wheel_that_is_a_mesh_rolls_in_one_point(tmp_path):
     assert geom.type == mujoco.mjtGeom.mjGEOM_ELLIPSOID
     assert geom.size == pytest.approx([0.1, 0.1, 0.02], rel=1e-4)
     scene.spec.compile()
+
+
+@pytest.mark.parametrize(("order", "mark"), [("<", b"II*\0"), (">", b"MM\0*")])
+def test_an_elevation_model_may_have_heights_of_64_bits(tmp_path, order, mark):
+    heights = np.array([[10.0, 20.0, 30.0], [30.0, 50.0, 10.0]])
+    tags = {256: 3, 257: 2, 258: 64, 259: 1, 273: 8, 277: 1, 279: 48, 339: 3}
+    entries = b"".join(struct.pack(f"{order}HHII", tag, 4, 1, value) for tag, value in tags.items())
+    table = struct.pack(f"{order}H", len(tags)) + entries + bytes(4)
+    path = tmp_path / "hill.tif"
+    path.write_bytes(mark + struct.pack(f"{order}I", 56) + heights.astype(f"{order}f8").tobytes() + table)
+    assert read_heights(path).values.tolist() == [[0.5, 1.0, 0.0], [0.0, 0.25, 0.5]]
+
+
+@pytest.mark.parametrize("text", [b"II*\0", b"MM\0*" + bytes(20), b"II*\0\x08\0\0\0\x01\0" + bytes(12)])
+def test_an_image_that_is_none_is_told_of(tmp_path, text):
+    path = tmp_path / "hill.tif"
+    path.write_bytes(text)
+    with pytest.raises(LinkwrightError, match="cannot read the image"):
+        read_heights(path)

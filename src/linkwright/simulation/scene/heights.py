@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from warnings import catch_warnings, simplefilter
 
 import numpy as np
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, missing_extra, phrase
 from linkwright.geometry.arrays import Array
+from linkwright.simulation.scene.elevation import read_elevation
 
 _MOST = 1025
 """So many heights along a side are kept; of more every second, third and so on."""
@@ -32,13 +34,18 @@ def read_heights(path: Path) -> Heights:
     except ModuleNotFoundError as error:
         raise missing_extra("SIM114", error) from None
     try:
-        with Image.open(path) as image:
-            kind = image.mode
-            shown = image if kind in ("L", "I", "F", "I;16", "I;16B") else image.convert("L")
-            values = np.asarray(shown, dtype=np.float64)
+        with catch_warnings():
+            simplefilter("ignore")  # what is wrong with it is said here
+            with Image.open(path) as image:
+                kind = image.mode
+                shown = image if kind in ("L", "I", "F", "I;16", "I;16B") else image.convert("L")
+                values = np.asarray(shown, dtype=np.float64)
     except (OSError, UnidentifiedImageError, ValueError, Image.DecompressionBombError) as error:
-        message = phrase("cannot read the image '{path}': {why}", path=display_path(path), why=str(error))
-        raise LinkwrightError(Diagnostic("SIM113", message)) from None
+        try:
+            kind, values = "F", read_elevation(path)
+        except (OSError, ValueError):
+            message = phrase("cannot read the image '{path}': {why}", path=display_path(path), why=str(error))
+            raise LinkwrightError(Diagnostic("SIM113", message)) from None
     stride = -(-max(values.shape) // _MOST)
     values = values[::-stride, ::stride]
     if kind == "F":
