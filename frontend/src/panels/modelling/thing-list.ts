@@ -31,6 +31,7 @@ export class ThingList {
     this.element.setAttribute("aria-multiselectable", "true");
     this.element.setAttribute("aria-label", strings.modelling.things);
     this.element.addEventListener("keydown", (event) => this.keyed(event));
+    this.element.addEventListener("mousedown", (event) => this.pressed(event));
     modelling.changed.on(() => this.show());
     modelling.selectionChanged.on(() => this.reveal());
     this.show();
@@ -66,6 +67,13 @@ export class ThingList {
     row.id = `thing-${index}`;
     row.addEventListener("click", (event) => this.take(index, event.shiftKey, event.ctrlKey || event.metaKey));
     return row;
+  }
+
+  /** With Shift the browser would select text, from the field on that was edited last. */
+  private pressed(event: MouseEvent): void {
+    if (!event.shiftKey) return;
+    event.preventDefault();
+    this.element.focus({ preventScroll: true });
   }
 
   private take(index: number, range: boolean, toggle: boolean): void {
