@@ -12,6 +12,8 @@ from linkwright.messages import get_message, get_service
 from linkwright.nodes.options import NodeOptions
 from linkwright.nodes.simulator import Simulator
 from linkwright.sdf.poses import SEPARATOR
+from linkwright.sdf.writer import save
+from linkwright.simulation.server import reports
 from tests.simulation.test_plugins import joint_states, robot
 from tests.simulation.worlds import box
 from tests.waiting import eventually
@@ -196,6 +198,16 @@ async def test_the_world_is_told_to_who_comes_late_with_all_that_came(tmp_path):
         worlds = it.hear("std_msgs/msg/String", "/world_description", LATCHED)
         await eventually(lambda: bool(worlds) and 'name="late"' in worlds[-1].data)
         assert 'name="ground_plane"' in worlds[-1].data
+
+
+async def test_a_world_with_a_robot_is_written_once_at_the_start(tmp_path, monkeypatch):
+    written: list[str] = []
+    monkeypatch.setattr(reports, "save", lambda world: written.append(save(world)) or written[-1])
+    async with simulator(tmp_path, robot_description=URDF, robot_name="first") as it:
+        worlds = it.hear("std_msgs/msg/String", "/world_description", LATCHED)
+        await eventually(lambda: bool(worlds))
+        assert [each.data for each in worlds] == written
+        assert 'name="first"' in written[0]
 
 
 async def test_actors_and_roads_are_told_as_models_that_look_like_them(tmp_path):

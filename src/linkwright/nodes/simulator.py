@@ -115,6 +115,7 @@ class Simulator(SingleNode):
                 pose = _pose(said["robot_pose"])
                 robot = self.services.spawn(said[_DESCRIPTION], said["robot_name"], pose, said["robot_namespace"])
                 self._node.add_on_set_parameters_callback(partial(self._renew, robot))
+            self._reports.begin()
             self._tell_state()
             self.server.exchange.deliver()
             self.runner.start()

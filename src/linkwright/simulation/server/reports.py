@@ -51,9 +51,13 @@ class Reports:
         self._bodies: NDArray[np.intp] = np.zeros(0, dtype=np.intp)
         self._revision = -1
         self._posed = self._measured = 0.0
-        server.on_change.append(self.publish_description)
         server.on_reset.append(self._tell_time)
         server.simulation.call_every(round(NANOSECONDS / clock_rate) if clock_rate > 0 else 0, self._tell_time)
+
+    def begin(self) -> None:
+        """Tell what the world is made of, now and whenever it has changed."""
+        self._server.on_change.append(self.publish_description)
+        self.publish_description()
 
     def publish_state(self, *, paused: bool) -> None:
         """Tell whether time passes."""
