@@ -1,20 +1,26 @@
 """Simulated worlds: how many simulated seconds pass in one of the processor's, beside MuJoCo alone.
 
-Run it with ``python -m benchmarks simulation``. Every figure is the processor's time (ms) of a simulated second at
-steps of 1 ms, with everything that is published and received in this process; "MuJoCo" is ``mj_step`` of the same model
-from the same state in the same process, in turns. 1000 ms is real time on one processor.
+Run it with ``python -m benchmarks simulation``. Most figures are the processor's time (ms) of a simulated second at
+steps of 1 ms, with everything that is published and received in this process; 1000 ms is real time on one processor.
+"MuJoCo" is ``mj_step`` of the same model from the same state in the same process, "pybullet" steps of the same robots
+and boxes there. All take turns of a tenth of a second, so that they meet the same machine, and the median turn counts.
+Worlds of others are measured where they are beside the repository. The last rows are the whole command, in real seconds
+and MB.
 """
 
 from __future__ import annotations
 
 import asyncio
 import gc
+import os
 import statistics
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 
-from benchmarks.measure import Row, show
+from benchmarks.bullet import BulletWorld, bullet_world
+from benchmarks.measure import LINKWRIGHT, Row, commands, peak_memory, show
 from benchmarks.robots import REPOSITORY, SHIPPED
 from linkwright.descriptions import DescriptionLibrary
 from linkwright.graph import Graph
@@ -28,7 +34,12 @@ from linkwright.xacro import expand
 
 WORLDS = REPOSITORY / "robots" / "my_robot_gazebo" / "worlds"
 MBOT = SHIPPED / "urdf" / "mbot_gazebo.xacro"
-ROUNDS = 5
+OTHERS = REPOSITORY.parent / "shared" / "worlds"
+"""Worlds of others, where they are."""
+TURNS = 60
+_LEAST = 5
+_LONGEST = 10.0
+"""At most so many turns are measured of each, at least so many, and no more after so many seconds."""
 _SLICE = NANOSECONDS // 10
 _BESIDE = 1.5
 """Metres from one robot to the next."""
@@ -52,13 +63,14 @@ class Case:
     Attributes:
         what: in words.
         target: what was promised.
-        world: its name.
+        world: the name of one of ours, or a path below `OTHERS`.
         robots: how many robots.
         boxes: how many boxes.
         arguments: of the robot's xacro.
         topics: what somebody listens to, with its type.
         pixels: width and height of pictures.
-        seconds: how many simulated ones are timed at once.
+        way: how pictures are made, as ``MUJOCO_GL`` says it.
+        bullet: whether pybullet has the same world.
     """
 
     what: str
@@ -69,14 +81,23 @@ class Case:
     arguments: Mapping[str, str] | None = None
     topics: Mapping[str, str] | None = None
     pixels: tuple[int, int] = (640, 480)
-    seconds: int = 2
+    way: str = ""
+    bullet: bool = False
+
+    @property
+    def is_here(self) -> bool:
+        """Whether its world is."""
+        return not self.world.endswith(".world") or (OTHERS / self.world).is_file()
 
 
 _ALL = {"laser": "true", "camera": "true", "kinect": "true"}
+_LASER = {"laser": "true"}
+_TURTLEBOT = "turtlebot3_simulations_classic/turtlebot3_gazebo/worlds"
+_WAREHOUSE = "aws_small_warehouse/worlds/no_roof_small_warehouse/no_roof_small_warehouse.world"
 CASES = (
-    Case("mbot, nobody listens", "0.8 of MuJoCo"),
-    Case("mbot, 360 rays at 10 Hz, IMU and odometry at 100 Hz", "33 ms", arguments={"laser": "true"}, topics=_LISTENED),
-    Case("the same in the playground", world="playground", arguments={"laser": "true"}, topics=_LISTENED),
+    Case("mbot, nobody listens", "0.8 of MuJoCo", bullet=True),
+    Case("mbot, 360 rays at 10 Hz, IMU and odometry at 100 Hz", "33 ms", arguments=_LASER, topics=_LISTENED),
+    Case("the same in the playground", world="playground", arguments=_LASER, topics=_LISTENED),
     Case(
         "the same, camera at 30 Hz and depth at 20 Hz, 640x480",
         "500 ms",
@@ -84,50 +105,115 @@ CASES = (
         arguments=_ALL,
         topics={**_LISTENED, **_PICTURES},
     ),
-    Case("10 mbots, nobody listens", robots=10, seconds=1),
-    Case("100 mbots, nobody listens", robots=100, seconds=1),
-    Case("1 000 boxes at rest", robots=0, boxes=1000, seconds=1),
+    Case(
+        "the same, 320x240, by ray casting",
+        "1000 ms",
+        world="playground",
+        arguments=_ALL,
+        topics={**_LISTENED, **_PICTURES},
+        pixels=(320, 240),
+        way="off",
+    ),
+    *(
+        Case(f"mbot with laser in {name}", world=path, arguments=_LASER, topics=_LISTENED)
+        for name, path in (
+            ("the warehouse of AWS", _WAREHOUSE),
+            ("turtlebot3_world", f"{_TURTLEBOT}/turtlebot3_world.world"),
+            ("turtlebot3_house", f"{_TURTLEBOT}/turtlebot3_house.world"),
+        )
+    ),
+    Case("10 mbots, nobody listens", robots=10, bullet=True),
+    Case("100 mbots, nobody listens", robots=100, bullet=True),
+    *(Case(f"{count} boxes at rest", robots=0, boxes=count, bullet=True) for count in (10, 100, 1000)),
 )
 
 
 def rows() -> list[Row]:
     """Measure."""
-    return [asyncio.run(_row(case)) for case in CASES]
+    return [*(asyncio.run(_row(case)) for case in CASES if case.is_here), *_command_rows()]
+
+
+def _command_rows() -> Iterator[Row]:
+    """The whole command, without a page: from its start until a tenth of a second is simulated, and its memory."""
+    words = [LINKWRIGHT, "sim", "playground", str(MBOT), "laser:=true", "camera:=true", "--headless", "--rate", "max"]
+    begun = [*words, "--seconds", "0.1"]
+    yield Row("linkwright sim, until 0.1 s is simulated", commands({"it": begun}, 3)["it"], "s", "3 s")
+    yield Row("memory of linkwright sim", peak_memory([*words, "--seconds", "2"]), "MB", "2000 MB")
 
 
 async def _row(case: Case) -> Row:
     graph = Graph(on_log=lambda _: None)
     server = _server(graph, case)
+    bullet = bullet_world(_robot({}), case.robots, case.boxes) if case.bullet else None
     listener = graph.create_node("listener")
     for topic, kind in (case.topics or {}).items():
         listener.create_subscription(get_message(kind), topic, lambda _: None, 10)
     try:
-        await _pass(graph, server, 1)  # things fall to the ground
-        ours, alone = [], []
-        for _ in range(ROUNDS):
-            gc.collect()
-            ours.append(await _pass(graph, server, case.seconds) / case.seconds)
-            alone.append(_mujoco_alone(server.simulation, case.seconds) / case.seconds)
+        with _made_by(case.way):
+            for _ in range(NANOSECONDS // _SLICE):  # things fall to the ground
+                await _pass(graph, server)
+                _advance(bullet)
+            turns = await _take_turns(graph, server, bullet)
     finally:
         server.close()
         await graph.close()
-    return Row(case.what, _milliseconds(ours), "ms", case.target, {"MuJoCo": _milliseconds(alone)})
+        if bullet is not None:
+            bullet.close()
+    ours, *others = (statistics.median(each) * 1000 * NANOSECONDS / _SLICE for each in turns if each)
+    names = ("MuJoCo", "pybullet")
+    beside: dict[str, float | None] = dict(zip(names, others, strict=False))
+    return Row(case.what, ours, "ms", case.target, beside | ({"pybullet": None} if case.bullet and not bullet else {}))
 
 
-def _milliseconds(seconds: list[float]) -> float:
-    return statistics.median(seconds) * 1000
+async def _take_turns(
+    graph: Graph, server: SimulationServer, bullet: BulletWorld | None
+) -> tuple[list[float], list[float], list[float]]:
+    """The processor's seconds of each turn of ours, of MuJoCo and of Bullet."""
+    ours, alone, there = [], [], []
+    begin = time.monotonic()
+    for number in range(TURNS):
+        if number >= _LEAST and time.monotonic() - begin > _LONGEST:
+            break
+        gc.collect()
+        ours.append(await _pass(graph, server))
+        alone.append(_mujoco_alone(server.simulation))
+        if bullet is not None:
+            there.append(_timed(lambda: _advance(bullet)))
+    return ours, alone, there
+
+
+@contextmanager
+def _made_by(way: str) -> Iterator[None]:
+    """Have pictures made some way."""
+    before = os.environ.get("MUJOCO_GL")
+    if way:
+        os.environ["MUJOCO_GL"] = way
+    try:
+        yield
+    finally:
+        if way:
+            del os.environ["MUJOCO_GL"]
+            if before is not None:
+                os.environ["MUJOCO_GL"] = before
+
+
+def _robot(arguments: Mapping[str, str], pixels: tuple[int, int] = (640, 480)) -> str:
+    """The description of mbot."""
+    text = str(expand(MBOT, arguments, packages={"my_robot_description": SHIPPED}))
+    for name, usual, wanted in zip(("width", "height"), (640, 480), pixels, strict=True):
+        text = text.replace(f"<{name}>{usual}<", f"<{name}>{wanted}<")
+    return text.replace("<update_rate>50<", "<update_rate>100<")
 
 
 def _server(graph: Graph, case: Case) -> SimulationServer:
-    loaded = load_world(str(WORLDS / f"{case.world}.world"))
+    path = OTHERS / case.world if case.world.endswith(".world") else WORLDS / f"{case.world}.world"
+    loaded = load_world(str(path))
     simulation = Simulation(loaded.world, loaded.finder)
     server = SimulationServer(simulation, graph.create_node("gazebo"), ServerOptions(usual_names=True))
     server.start()
     library = DescriptionLibrary()
     if case.robots:
-        text = str(expand(MBOT, case.arguments, packages={"my_robot_description": SHIPPED}))
-        text = text.replace("<update_rate>50<", "<update_rate>100<")
-        robot = entity_from(text, loaded.finder, library).model
+        robot = entity_from(_robot(case.arguments or {}, case.pixels), loaded.finder, library).model
         for number in range(case.robots):
             row, column = divmod(number, 10)
             place = (row * _BESIDE, column * _BESIDE, 0.12, 0.0, 0.0, 0.0, 1.0)
@@ -139,23 +225,31 @@ def _server(graph: Graph, case: Case) -> SimulationServer:
     return server
 
 
-async def _pass(graph: Graph, server: SimulationServer, seconds: int) -> float:
-    """The processor's seconds that some simulated ones take, receiving what is published among them."""
+async def _pass(graph: Graph, server: SimulationServer) -> float:
+    """The processor's seconds that a turn of ours takes, receiving what is published among them."""
     begin = time.process_time()
-    for _ in range(seconds * NANOSECONDS // _SLICE):
-        server.advance(_SLICE)
-        await graph.settle()
+    server.advance(_SLICE)
+    await graph.settle()
     return time.process_time() - begin
 
 
-def _mujoco_alone(simulation: Simulation, seconds: int) -> float:
-    """The processor's seconds that MuJoCo takes for some simulated ones from the same state on."""
+def _mujoco_alone(simulation: Simulation) -> float:
+    """The processor's seconds that MuJoCo takes for a turn from the same state on."""
     mujoco, model = load_mujoco(), simulation.model
     simulation.refresh()
     data = mujoco.MjData(model)
     mujoco.mj_copyData(data, model, simulation.data)
+    return _timed(lambda: mujoco.mj_step(model, data, nstep=_SLICE // simulation.step))
+
+
+def _advance(bullet: BulletWorld | None) -> None:
+    if bullet is not None:
+        bullet.advance(_SLICE * 1000 // NANOSECONDS)
+
+
+def _timed(function: Callable[[], object]) -> float:
     begin = time.process_time()
-    mujoco.mj_step(model, data, nstep=seconds * NANOSECONDS // simulation.step)
+    function()
     return time.process_time() - begin
 
 

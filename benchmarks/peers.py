@@ -21,6 +21,7 @@ PEERS = {
     "yourdfpy": "yourdfpy",
     "urchin": "urchin",
     "pinocchio": "pin",
+    "pybullet": "pybullet",
     "zenoh_ros2_sdk": "zenoh-ros2-sdk==0.1.8",
 }
 """Module -> what is installed for it."""

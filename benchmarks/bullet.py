@@ -1,0 +1,91 @@
+"""The same robots and boxes in Bullet, through pybullet: physics only, as its users write it."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import sys
+import tempfile
+import types
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from benchmarks import peers
+
+_STEP = 0.001
+_BESIDE = 1.5
+"""Metres from one robot to the next."""
+_WHEELS = ("left_wheel_joint", "right_wheel_joint")
+_TORQUE = 5.0
+
+
+class BulletWorld:
+    """A plane with robots whose wheels stand still, and boxes of 0.25 m and 1 kg; as it comes, nothing in it sleeps.
+
+    Args:
+        urdf: the robot's description, with shapes only.
+        robots: how many.
+        boxes: how many.
+    """
+
+    def __init__(self, bullet: types.ModuleType, urdf: str, robots: int, boxes: int) -> None:
+        self._bullet = bullet
+        self._client = bullet.connect(bullet.DIRECT)
+        bullet.setTimeStep(_STEP, self._client)
+        bullet.setGravity(0, 0, -9.81, self._client)
+        plane = bullet.createCollisionShape(bullet.GEOM_PLANE, physicsClientId=self._client)
+        bullet.createMultiBody(0, plane, physicsClientId=self._client)
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "robot.urdf"
+            path.write_text(urdf, encoding="utf-8")
+            for number in range(robots):
+                self._add_robot(path, number)
+        shape = bullet.createCollisionShape(bullet.GEOM_BOX, halfExtents=[0.125] * 3, physicsClientId=self._client)
+        for number in range(boxes):
+            row, column = divmod(number, 40)
+            bullet.createMultiBody(1, shape, -1, [row * 0.5, column * 0.5, 0.125], physicsClientId=self._client)
+
+    def _add_robot(self, path: Path, number: int) -> None:
+        bullet, client = self._bullet, self._client
+        row, column = divmod(number, 10)
+        robot = bullet.loadURDF(str(path), [row * _BESIDE, column * _BESIDE, 0.12], physicsClientId=client)
+        for joint in range(bullet.getNumJoints(robot, client)):
+            name = bullet.getJointInfo(robot, joint, client)[1].decode()
+            force = _TORQUE if name in _WHEELS else 0.0
+            bullet.setJointMotorControl2(
+                robot, joint, bullet.VELOCITY_CONTROL, targetVelocity=0, force=force, physicsClientId=client
+            )
+
+    def advance(self, steps: int) -> None:
+        """Make steps of 1 ms."""
+        for _ in range(steps):
+            self._bullet.stepSimulation(self._client)
+
+    def close(self) -> None:
+        """Free it."""
+        self._bullet.disconnect(self._client)
+
+
+def bullet_world(urdf: str, robots: int, boxes: int) -> BulletWorld | None:
+    """A world in Bullet; None where pybullet is not installed here."""
+    with _silence():
+        bullet = peers.load("pybullet")
+        return None if bullet is None else BulletWorld(bullet, urdf, robots, boxes)
+
+
+@contextmanager
+def _silence() -> Iterator[None]:
+    """Drop what Bullet says of each link without a mass, past Python's streams."""
+    sys.stdout.flush()
+    kept = [os.dup(number) for number in (1, 2)]
+    with Path(os.devnull).open("w") as nothing:
+        for number in (1, 2):
+            os.dup2(nothing.fileno(), number)
+    try:
+        yield
+    finally:
+        ctypes.CDLL(None).fflush(None)
+        for number, before in zip((1, 2), kept, strict=True):
+            os.dup2(before, number)
+            os.close(before)
