@@ -126,6 +126,12 @@ describe("what is selected", () => {
   });
 });
 
+it("what is dropped before the scene can take it is there when it can, once", () => {
+  const drop = { placing: { kind: "box", address: "" }, at: null } as const;
+  modelling.drop(drop);
+  expect([modelling.takeDrop(), modelling.takeDrop()]).toEqual([drop, null]);
+});
+
 describe("what can be done", () => {
   it("is undone and redone only where there is something", () => {
     told({});

@@ -80,14 +80,14 @@ export class ModellingBar {
     let wasDropped = false;
     made.addEventListener("click", (event) => {
       if (wasDropped) return;
-      if (event.detail === 0) modelling.dropped.emit({ placing, at: null });
+      if (event.detail === 0) modelling.drop({ placing, at: null });
       else modelling.place(modelling.placing?.kind === kind ? null : placing);
     });
     made.addEventListener("pointerup", ({ clientX: x, clientY: y }) => {
       if (!(document.elementFromPoint(x, y) instanceof HTMLCanvasElement)) return;
       wasDropped = true; // a click follows
       setTimeout(() => (wasDropped = false));
-      modelling.dropped.emit({ placing, at: { x, y } });
+      modelling.drop({ placing, at: { x, y } });
     });
     // Else a finger that drags would scroll, and the button would hear no more of it.
     made.addEventListener("pointerdown", ({ pointerId }) => made.setPointerCapture(pointerId));

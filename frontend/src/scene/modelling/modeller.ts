@@ -1,5 +1,4 @@
 import type { Matrix4 } from "three";
-import type { Placing } from "../../state/modelling/modelling";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import { WorldDrawing } from "../displays/world";
@@ -35,7 +34,7 @@ export class Modeller {
       this.manipulation.update();
       this.hint();
     });
-    modelling.dropped.on(({ placing, at }) => this.drop(placing, at));
+    modelling.dropped.on(() => this.drop());
     simulation.refused.on(() => this.displace(new Map()));
     for (const signal of [frames.posesChanged, frames.tableChanged]) {
       signal.on(() => {
@@ -47,6 +46,7 @@ export class Modeller {
       if (modelling.active && content.kind === "world_scene") this.select();
     });
     this.follow();
+    this.drop();
   }
 
   /** What is left of an event for others; null for nothing. */
@@ -110,7 +110,10 @@ export class Modeller {
     sceneMenu.emit({ x: event.x, y: event.y, choices });
   }
 
-  private drop(placing: Placing, at: { x: number; y: number } | null): void {
+  private drop(): void {
+    const drop = this.session.modelling.takeDrop();
+    if (!drop) return;
+    const { placing, at } = drop;
     const { canvas, size } = this.stage.viewport;
     const box = canvas.getBoundingClientRect();
     if (at) this.placer.drop(placing, at.x - box.left, at.y - box.top);

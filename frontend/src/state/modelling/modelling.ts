@@ -14,6 +14,12 @@ export interface Placing {
   readonly address: string;
 }
 
+/** Something to put where it is dropped: pixels from the window's upper left corner; null for the middle of the scene. */
+export interface Drop {
+  readonly placing: Placing;
+  readonly at: { readonly x: number; readonly y: number } | null;
+}
+
 const NOTHING: Omit<ModellingState, "type"> = {
   available: false,
   active: false,
@@ -35,13 +41,14 @@ export class Modelling {
   readonly toolChanged = new Signal();
   /** The models that may be added are known. */
   readonly offered = new Signal<readonly ModelChoice[]>();
-  /** The user drops something onto the scene: pixels from the window's upper left corner; null for the middle of it. */
-  readonly dropped = new Signal<{ placing: Placing; at: { x: number; y: number } | null }>();
+  /** Something was dropped onto the scene; see `takeDrop`. */
+  readonly dropped = new Signal();
   readonly snapping: Snapping;
   private told = NOTHING;
   private names: readonly string[] = [];
   private mode: GizmoMode = "translate";
   private inHand: Placing | null = null;
+  private falling: Drop | null = null;
   private clipboard: readonly string[] = [];
   /** This page made something: what is new in the next state is selected. */
   private makes = false;
@@ -143,6 +150,19 @@ export class Modelling {
   place(placing: Placing | null): void {
     this.inHand = placing;
     this.toolChanged.emit();
+  }
+
+  /** The user drops something onto the scene. */
+  drop(drop: Drop): void {
+    this.falling = drop;
+    this.dropped.emit();
+  }
+
+  /** What was dropped last, once: the scene may have come later. */
+  takeDrop(): Drop | null {
+    const drop = this.falling;
+    this.falling = null;
+    return drop;
   }
 
   setActive(active: boolean): void {
