@@ -15,5 +15,4 @@ export const MODELLING_PATHS = {
   magnet: "M3 2.5h3v6a2 2 0 004 0v-6h3v6a5 5 0 01-10 0zM3 5.2h3M10 5.2h3",
   group: "M2 2h12v12H2zM4.5 4.5h4v4h-4zM8.5 8.5h3v3h-3z",
   ungroup: "M2 2h6v6H2zM9.5 9.5H14V14H9.5zM10.5 2.5h3v3M5.5 13.5h-3v-3",
-  clipboard: "M4 3.5H2.8v10.7h10.4V3.5H12M5.5 2h5v3h-5z",
 } as const;

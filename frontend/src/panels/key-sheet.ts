@@ -4,6 +4,7 @@ import { TOOLS } from "../scene/tools/catalog";
 import { keyText, SHORTCUTS } from "../shell/shortcuts";
 import type { ToolsState } from "../state/tools";
 import { strings } from "../strings";
+import { WORLD_KEYS } from "./modelling/world-commands";
 import { toolName } from "./toolbar";
 
 type Row = readonly [keys: string, meaning: string];
@@ -41,7 +42,7 @@ export class KeySheet {
 
   private sections(): (readonly [title: string, rows: readonly Row[], note?: string])[] {
     const words = strings.keys;
-    const { shell, displays } = strings;
+    const { shell, displays, modelling } = strings;
     const tools = this.tools.tools.flatMap((tool): Row[] => {
       const entry = TOOLS.get(tool.cls);
       return entry ? [[entry.key.toUpperCase(), toolName(tool)]] : [];
@@ -73,6 +74,18 @@ export class KeySheet {
           [keyText(SHORTCUTS.rename), displays.rename],
           [keyText(SHORTCUTS.remove), displays.remove],
           [`${keyText(SHORTCUTS.moveUp)} ${keyText(SHORTCUTS.moveDown)}`, `${displays.moveUp}, ${displays.moveDown}`],
+        ],
+      ],
+      [
+        modelling.label,
+        [
+          ["T R S", Object.values(modelling.modes).join(", ")],
+          [`${keyText(WORLD_KEYS.copy)} ${keyText(WORLD_KEYS.paste)}`, modelling.copyPaste],
+          [keyText(WORLD_KEYS.duplicate), modelling.duplicate],
+          [keyText(WORLD_KEYS.remove), modelling.remove],
+          [keyText(WORLD_KEYS.group), modelling.group],
+          [keyText(WORLD_KEYS.ungroup), modelling.ungroup],
+          ["Esc", modelling.deselect],
         ],
       ],
       [

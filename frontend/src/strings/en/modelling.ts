@@ -21,7 +21,6 @@ export const modelling = {
   placeHint: "Click where it shall stand. Shift: another one. Ctrl: beside the grid. Esc: none.",
   wallHint: "Drag from one end to the other, or click both. Ctrl: beside the grid. Esc: no more walls.",
   modes: { translate: "Move", rotate: "Turn", scale: "Scale" },
-  scaleHint: "boxes, cylinders, spheres, walls and ramps",
   snap: "Snap to the grid (Ctrl while dragging: the other way)",
   lengthStep: "Grid, m",
   angleStep: "Steps when turning, degrees",

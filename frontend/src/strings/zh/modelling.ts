@@ -22,7 +22,6 @@ export const modelling: typeof english = {
   placeHint: "点击要放置的位置。Shift：再放一个。Ctrl：不对齐网格。Esc：取消。",
   wallHint: "从一端拖到另一端，或依次点击两端。Ctrl：不对齐网格。Esc：不再画墙。",
   modes: { translate: "移动", rotate: "旋转", scale: "缩放" },
-  scaleHint: "长方体、圆柱、球、墙和斜坡",
   snap: "对齐网格（拖动时按住 Ctrl 则相反）",
   lengthStep: "网格（米）",
   angleStep: "旋转步长（度）",
