@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import pytest
+
 from linkwright.graph import DESCRIPTION_QOS, TF_QOS, DurabilityPolicy, QoSProfile
 from linkwright.messages import String, TFMessage, get_message, get_service
 from tests.browser.live import configuration
 from tests.waiting import wait_until
+
+pytestmark = pytest.mark.browser
 
 STATE = get_message("simulation_interfaces/msg/SimulationState")
 DISPLAYS = "- {Class: linkwright/World, Enabled: true, Name: World}"
