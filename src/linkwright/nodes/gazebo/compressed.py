@@ -28,8 +28,8 @@ def compressed(image: Any) -> Any | None:
     from PIL import Image  # not above: an extra
 
     rows = np.frombuffer(bytes(image.data), np.uint8).reshape(image.height, image.step)
-    pixels = rows[:, : image.width * channels].reshape(image.height, image.width, channels)
-    pixels = pixels[:, :, ::-1] if image.encoding == "bgr8" else pixels
+    stored = rows[:, : image.width * channels].reshape(image.height, image.width, channels)
+    pixels = stored[:, :, ::-1] if image.encoding == "bgr8" else stored
     file = BytesIO()
     Image.fromarray(np.ascontiguousarray(pixels[:, :, 0] if channels == 1 else pixels)).save(
         file, "JPEG", quality=_QUALITY
