@@ -325,3 +325,13 @@ def test_what_is_unknown_or_not_there_is_told_of_once(tmp_path):
         "<mine> in <model> is not read",
         "'model",
     ]
+
+
+def test_worlds_are_found_by_path_address_and_name(tmp_path):
+    path = tmp_path / "some.world"
+    path.write_text("<sdf version='1.6'><world name='w'/></sdf>")
+    finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {"GZ_SIM_RESOURCE_PATH": str(tmp_path)})
+    for name in (str(path), f"file://{path}", "some.world", "some"):
+        assert finder.world(name) == path
+    assert finder.world("none") is None
+    assert finder.world("some/some") is None

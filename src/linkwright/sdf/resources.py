@@ -133,6 +133,14 @@ class ResourceFinder:
                         found.setdefault(file.stem, file)
         return found
 
+    def world(self, name: str) -> Path | None:
+        """The file of a world, by its path, its ``file://`` address or its name on the search path; None for none."""
+        path = Path(name.removeprefix("file://")).expanduser()
+        if path.is_file():
+            return path
+        known = {} if "/" in name else self.worlds()
+        return known.get(name) or known.get(name.partition(".")[0])
+
     @cached_property
     def _folders(self) -> tuple[Path, ...]:
         """Where models are looked for, in this order; folders that are not there are left out."""

@@ -11,7 +11,6 @@ from linkwright.packages import PackageFinder
 from linkwright.sdf.editing import Change, EditError, change
 from linkwright.sdf.resources import model_file
 from linkwright.viewer.features.modelling.edited_world import EditedWorld
-from linkwright.viewer.features.modelling.things import world_file
 from tests.sdf.editing.texts import PLAIN
 
 NOWHERE = PackageFinder(start=Path("/nonexistent"), environment={})
@@ -113,16 +112,6 @@ def test_worlds_that_come_with_the_program_are_not_written(tmp_path):
     path = model_file(Path(linkwright.__file__).parent / "sdf" / "models" / "sun")
     with pytest.raises(EditError, match="there is no world in"):
         EditedWorld.of_file(path, NOWHERE)
-
-
-def test_worlds_are_found_by_path_and_name(tmp_path, monkeypatch):
-    (tmp_path / "some.world").write_text(PLAIN)
-    monkeypatch.setenv("GZ_SIM_RESOURCE_PATH", str(tmp_path))
-    assert world_file(str(tmp_path / "some.world"), NOWHERE) == tmp_path / "some.world"
-    assert world_file("some.world", NOWHERE) == tmp_path / "some.world"
-    assert world_file("some", NOWHERE) == tmp_path / "some.world"
-    with pytest.raises(EditError, match="there is no world 'none'"):
-        world_file("none", NOWHERE)
 
 
 def test_what_is_not_saved_is_kept(tmp_path):

@@ -13,8 +13,6 @@ from linkwright.sdf.worlds import World
 from linkwright.simulation.scene.compiling import count_links
 from linkwright.xmltree import Overlay
 
-_FILE = "file://"
-
 
 class LoadedWorld(NamedTuple):
     """A world that was read, with its includes.
@@ -45,11 +43,11 @@ def load_world(name: str, text: str | None = None) -> LoadedWorld:
         LinkwrightError: SIM150 there is no such world; SIM151 the file has none; SIM105 it has too many
             links; what is wrong with it.
     """
-    path = Path(name.removeprefix(_FILE)).expanduser()
+    path = Path(name.removeprefix("file://")).expanduser()
     finder = PackageFinder(start=[path.absolute().parent, Path.cwd()])
     resources = ResourceFinder(finder)
-    if text is None and not path.is_file():
-        path = _named(name, resources)
+    if text is None:
+        path = _found(name, resources)
     description = examine_world(path, packages=finder, overlay=None if text is None else Overlay({path: text}))
     if description.sdf is None:
         raise LinkwrightError(*description.diagnostics)
@@ -63,11 +61,11 @@ def load_world(name: str, text: str | None = None) -> LoadedWorld:
     return LoadedWorld(world, resources, description.diagnostics, path, description.files)
 
 
-def _named(name: str, finder: ResourceFinder) -> Path:
+def _found(name: str, finder: ResourceFinder) -> Path:
+    path = finder.world(name)
+    if path is not None:
+        return path
     known = finder.worlds()
-    for spelling in (name, name.partition(".")[0]):
-        if "/" not in name and spelling in known:
-            return known[spelling]
     message = phrase("there is no world '{name}'", name=name)
     hint = did_you_mean(name, known) or phrase("give a file, or one of {names}", names=joined(sorted(known)[:8]))
     raise LinkwrightError(Diagnostic("SIM150", message, hint=hint))

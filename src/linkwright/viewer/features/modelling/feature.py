@@ -199,16 +199,16 @@ class ModellingFeature(PageFeature):
     async def _read(self) -> EditedWorld:
         """The world that is simulated: of its file, where that can be found, else as the simulator tells about it."""
         from linkwright.sdf.editing import EditError
+        from linkwright.sdf.resources import ResourceFinder
         from linkwright.viewer.features.modelling.edited_world import EditedWorld
-        from linkwright.viewer.features.modelling.things import world_file
 
         packages = self.context.finder
         told = await asyncio.to_thread(EditedWorld.of_text, await self._described(), packages)
         name = await self._file_told()
-        if name:
-            with suppress(EditError, LinkwrightError):  # it may be one of another machine
-                path = await asyncio.to_thread(world_file, name, packages)
-                found = await asyncio.to_thread(EditedWorld.of_file, path, packages)
+        path = await asyncio.to_thread(ResourceFinder(packages).world, name) if name else None
+        if path is not None:
+            with suppress(EditError, LinkwrightError):  # it may be another one, on another machine
+                found = await asyncio.to_thread(EditedWorld.of_file, path.absolute(), packages)
                 if found.world.world.name == told.world.world.name:
                     await asyncio.to_thread(found.reserve, told.world.things)
                     return found

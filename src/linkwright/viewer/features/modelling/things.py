@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
-from linkwright.diagnostics import phrase
 from linkwright.packages import PackageFinder
 from linkwright.sdf.editing import (
     Change,
-    EditError,
     Thing,
     WorldText,
     add_include,
@@ -64,22 +60,6 @@ def choices(packages: PackageFinder) -> ModelChoices:
     found = ResourceFinder(packages).models()
     names = sorted(name for name, folder in found.items() if not isinstance(model_file(folder), Missing))
     return ModelChoices([ModelChoice(name, f"model://{name}") for name in names])
-
-
-def world_file(name: str, packages: PackageFinder) -> Path:
-    """The file of a world, by its path or by a name on the search path.
-
-    Raises:
-        EditError: there is none.
-    """
-    path = Path(name).expanduser()
-    if path.is_file():
-        return path.absolute()
-    known = ResourceFinder(packages).worlds()
-    found = known.get(name) or known.get(name.partition(".")[0])
-    if found is None:
-        raise EditError(phrase("there is no world '{name}'", name=name))
-    return found
 
 
 def changed(world: WorldText, message: PageMessage) -> WorldText:
