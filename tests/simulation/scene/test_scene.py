@@ -14,7 +14,7 @@ from linkwright.sdf.shapes import Heightmap
 from linkwright.simulation.scene.heights import read_heights
 from linkwright.simulation.scene.meshes import MeshLibrary
 from linkwright.simulation.scene.scene import Scene
-from linkwright.simulation.simulation import NANOSECONDS
+from linkwright.simulation.simulation import NANOSECONDS, Simulation
 from tests.simulation.worlds import GROUND, box, finder, simulated, world
 
 ROOM = """solid room
@@ -158,6 +158,25 @@ def test_mass_that_no_body_has_is_told():
     simulation = simulated(model)
     assert [found.code for found in simulation.scene.diagnostics] == ["SIM110", "SIM111"]
     simulation.advance(NANOSECONDS)
+
+
+def moments(ixx: float, iyy: float, izz: float) -> Simulation:
+    inertia = f"<inertia><ixx>{ixx!r}</ixx><iyy>{iyy!r}</iyy><izz>{izz!r}</izz></inertia>"
+    return simulated(f'<model name="m"><link name="l"><inertial><mass>1</mass>{inertia}</inertial></link></model>')
+
+
+def test_inertia_that_breaks_the_triangle_rule_is_told():
+    simulation = moments(1.0, 1.0, 9.0)
+    (found,) = simulation.scene.diagnostics
+    assert (found.code, "with the mean of its moments" in found.message) == ("SIM111", True)
+    assert simulation.model.body("m::l").inertia == pytest.approx([11 / 3] * 3)
+
+
+@pytest.mark.parametrize("izz", [2.0, 2.0000000000000004, 1.9999999999999998, 2.000001])
+def test_flat_bodies_keep_their_inertia(izz):
+    simulation = moments(1.0, 1.0, izz)
+    assert simulation.scene.diagnostics == []
+    assert sorted(simulation.model.body("m::l").inertia) == pytest.approx([1.0, 1.0, 2.0], rel=1e-5)
 
 
 def arm(second: str) -> str:

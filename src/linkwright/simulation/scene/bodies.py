@@ -15,7 +15,7 @@ from linkwright.geometry.mass import combine
 from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere
 from linkwright.geometry.single import Pose, Transform, compose, invert, rotate
 from linkwright.geometry.solids import shape_properties
-from linkwright.geometry.validity import is_positive_definite
+from linkwright.geometry.validity import TOLERANCE, is_positive_definite, triangle_excess
 from linkwright.geometry.vectors import Vector3
 from linkwright.sdf.frames import Frames, pose_of, transform_of
 from linkwright.sdf.joints import Axis
@@ -29,6 +29,8 @@ from linkwright.simulation.scene.structure import PlacedJoint
 from linkwright.simulation.scene.surfaces import apply_surface, grip_of
 from linkwright.xmltree import Element
 
+_FLAT = 1e-9
+"""So small a part of the largest moment of inertia makes a flat body one that MuJoCo takes for possible."""
 COLLISION_GROUP, VISUAL_GROUP = 3, 2
 """MuJoCo's groups of shapes that touch, and of those that are seen."""
 SECOND_AXIS = "#2"
@@ -92,6 +94,14 @@ class BodyWriter:
                 )
                 self._warn("SIM111", message, inertial.element or link.element)
             tensor = np.eye(3) * max(mass * 1e-4, _LEAST_INERTIA)
+        excess = triangle_excess(tensor)
+        if excess > TOLERANCE:
+            message = phrase(
+                "no body has the inertia of link '{name}'; it moves with the mean of its moments", name=link.name
+            )
+            self._warn("SIM111", message, inertial.element or link.element)
+        elif excess > -_FLAT:  # of flat bodies MuJoCo would take the mean for a rounding
+            tensor = tensor + np.eye(3) * np.trace(tensor) / 2 * (max(excess, 0.0) + _FLAT)
         body.explicitinertial = True
         body.mass = mass
         body.ipos = list(placed[:3])
