@@ -174,8 +174,9 @@ async def _take_turns(
     for number in range(TURNS):
         if number >= _LEAST and time.monotonic() - begin > _LONGEST:
             break
-        gc.collect()
+        gc.collect()  # before each of both: it leaves the processor's caches cold
         ours.append(await _pass(graph, server))
+        gc.collect()
         alone.append(_mujoco_alone(server.simulation))
         if bullet is not None:
             there.append(_timed(lambda: _advance(bullet)))

@@ -45,9 +45,15 @@ class Schedule:
 
     def run(self, now: int) -> None:
         """Do what is due. A task that is due more than once, as time went in longer steps, is done once."""
-        while (due := self.next_time) is not None and due <= now:
-            _, turn, task = self._heap[0]
-            heapreplace(self._heap, (due + ((now - due) // task.period + 1) * task.period, turn, task))
+        while self._heap and self._heap[0][0] <= now:
+            due, turn, task = self._heap[0]
+            if task.cancelled:
+                heappop(self._heap)
+                continue
+            next_due = due + task.period
+            if next_due <= now:
+                next_due += ((now - next_due) // task.period + 1) * task.period
+            heapreplace(self._heap, (next_due, turn, task))
             task.function()
 
     def restart(self) -> None:

@@ -204,14 +204,14 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
 
     def _drive(self) -> None:
         """Bring the wheels nearer to the command, by no more than they may speed up in m/s2 at their rims."""
-        said = self.parameters
-        greatest = inf if said.max_wheel_acceleration <= 0 else said.max_wheel_acceleration * self._interval
         forward, turning = self._wanted
         for number, pair in enumerate(self._pairs):
             wanted = forward - turning * pair.separation / 2.0, forward + turning * pair.separation / 2.0
             now = self._wheel_speeds[number]
             if now == wanted:
                 continue
+            said = self.parameters
+            greatest = inf if said.max_wheel_acceleration <= 0 else said.max_wheel_acceleration * self._interval
             left, right = _nearer(now[0], wanted[0], greatest), _nearer(now[1], wanted[1], greatest)
             self._wheel_speeds[number] = left, right
             pair.left.target, pair.right.target = left / pair.radius, right / pair.radius

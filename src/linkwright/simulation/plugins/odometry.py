@@ -105,8 +105,10 @@ class OdometryTopics:
     transforms: Output | None
     covariance: Covariance = (0.0, 0.0, 0.0)
     _matrix: Array = field(init=False)
+    _outputs: tuple[Output, ...] = field(init=False)
 
     def __post_init__(self) -> None:
+        self._outputs = tuple(each for each in (self.odometry, self.transforms) if each is not None)
         x, y, yaw = self.covariance
         diagonal = (x, y, _UNKNOWN, _UNKNOWN, _UNKNOWN, yaw) if any(self.covariance) else (0.0,) * 6
         self._matrix = np.diag(diagonal).astype(np.float64).ravel()
@@ -114,7 +116,10 @@ class OdometryTopics:
     @property
     def is_wanted(self) -> bool:
         """Whether anybody listens."""
-        return any(output is not None and output.is_wanted for output in (self.odometry, self.transforms))
+        for each in self._outputs:  # noqa: SIM110 - see Output.is_wanted
+            if each.is_wanted:
+                return True
+        return False
 
     def publish(self, stamp: Time, pose: Transform, forward: float, sideways: float, turning: float) -> None:
         """Publish where the robot is, and its velocities in its own axes in m/s and rad/s."""
