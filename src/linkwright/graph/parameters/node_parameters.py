@@ -125,6 +125,10 @@ class NodeParameters:
         """Whether a parameter is declared."""
         return name in self.__parameters
 
+    def undeclared_overrides(self) -> list[str]:
+        """The names of values that it was given from outside and that no declaration has asked for, in their order."""
+        return [name for name in self.__parameters.overrides if name not in self.__parameters]
+
     def parameter_names(self) -> list[str]:
         """Names of the declared parameters, in order of declaration."""
         return self.__parameters.names()

@@ -1,0 +1,1 @@
+"""ros2_control: hardware, controllers, and who runs them."""

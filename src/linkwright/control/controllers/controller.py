@@ -1,0 +1,201 @@
+"""What controllers derive from.
+
+How to write one: a class, declared as an entry point of the group ``linkwright.controllers`` under its type name:
+
+    class Copier(Controller[Parameters]):
+        PARAMETERS = Parameters  # a dataclass, see `parameters`
+
+        def command_interfaces(self):
+            return [f"{joint}/position" for joint in self.parameters.joints]
+
+        def on_configure(self):
+            self._wanted = nan
+            self.node.subscribe("std_msgs/msg/Float64", "~/command", self._on_command)
+
+        def on_activate(self):
+            self._wanted = nan
+
+        def update(self, time_ns, period_s):
+            for command in self.commands:
+                command.value = self._wanted
+
+Everything is called in one thread, that of the updates. Names, order and meaning of the callbacks are those of
+``controller_interface`` of ros2_control.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
+
+from linkwright.control.controllers.node import ControllerNode
+from linkwright.control.controllers.parameters import NoParameters, ParameterTable
+from linkwright.control.hardware.interfaces import CommandInterface, Interfaces, StateInterface
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign
+from linkwright.graph.lifecycle.states import UNCONFIGURED, LifecycleState
+
+if TYPE_CHECKING:
+    from linkwright.urdf import Robot
+
+P = TypeVar("P")
+
+InterfaceNames = Sequence[str] | Interfaces
+"""Names of interfaces, ``joint1/position``; or all that there are."""
+
+
+class ControllerError(LinkwrightError):
+    """Why a controller refuses to be configured or activated; its text is logged.
+
+    Args:
+        message: what is wrong, and how it is mended.
+    """
+
+    def __init__(self, message: str) -> None:
+        super().__init__(Diagnostic("CTL102", foreign(message)))
+
+
+@dataclass(frozen=True, slots=True)
+class ControllerPlace:
+    """Where a controller runs.
+
+    Attributes:
+        name: the controller's name, that of its node.
+        node: its node.
+        update_rate: how often it is updated, in Hz.
+        robot_description: the URDF of the robot; empty if none is known.
+    """
+
+    name: str
+    node: ControllerNode
+    update_rate: float
+    robot_description: str = ""
+
+
+class Controller(Generic[P]):
+    """A controller.
+
+    Args:
+        place: where it runs.
+
+    Raises:
+        LinkwrightError: one of its parameters has a value that it cannot have.
+
+    Attributes:
+        PARAMETERS: the dataclass with its parameters.
+        name: its name.
+        node: what it has of ROS; its parameters are this node's.
+        update_rate: how often it is updated, in Hz.
+        robot_description: the URDF of the robot; empty if none is known.
+        commands: the command interfaces that it has while it is active, in the order that it asked for them.
+        states: the state interfaces; likewise.
+        references: what another controller may command in chained mode, see `reference_interfaces`.
+        exported: the states that it gives to others, see `exported_states`.
+        chained: whether another controller commands its references.
+        time_ns: the time of the latest update, in nanoseconds.
+        state: where in its life it is.
+    """
+
+    PARAMETERS: ClassVar[type[Any]] = NoParameters
+
+    def __init__(self, place: ControllerPlace) -> None:
+        self.name = place.name
+        self.node = place.node
+        self.update_rate = place.update_rate
+        self.robot_description = place.robot_description
+        self.commands: list[CommandInterface] = []
+        self.states: list[StateInterface] = []
+        self.references: list[CommandInterface] = []
+        self.exported: list[StateInterface] = []
+        self.chained = False
+        self.time_ns = 0
+        self.state: LifecycleState = UNCONFIGURED
+        self._parameters: ParameterTable[P] = ParameterTable(place.node.graph_node, self.PARAMETERS)
+        for told in self._parameters.unknown():
+            self.node.logger.warning(told)
+
+    @property
+    def parameters(self) -> P:
+        """Its parameters now: read those that may change while it runs anew."""
+        return self._parameters.values
+
+    @cached_property
+    def robot(self) -> Robot | None:
+        """The robot; None where no description is known, or it cannot be read."""
+        from linkwright.descriptions import DescriptionLibrary
+
+        return DescriptionLibrary().read(self.robot_description).robot if self.robot_description else None
+
+    # --- what it needs and gives, asked after `on_configure` ----------------------------------------------------------
+
+    def command_interfaces(self) -> InterfaceNames:
+        """The names of the command interfaces that it is to have while it is active."""
+        return ()
+
+    def state_interfaces(self) -> InterfaceNames:
+        """The names of the state interfaces that it is to have while it is active."""
+        return ()
+
+    def reference_interfaces(self) -> Sequence[str]:
+        """What another controller may command in place of its topics, named without this one's name."""
+        return ()
+
+    def exported_states(self) -> Sequence[str]:
+        """What it lets others read, named without its own name."""
+        return ()
+
+    # --- its life -----------------------------------------------------------------------------------------------------
+
+    def on_configure(self) -> None:
+        """Read the parameters, make topics.
+
+        Raises:
+            ControllerError: it cannot work so; it stays unconfigured.
+        """
+
+    def on_activate(self) -> None:
+        """Begin: `commands` and `states` are there now.
+
+        Raises:
+            ControllerError: it cannot; it stays inactive.
+        """
+
+    def on_deactivate(self) -> None:
+        """Stop: say what hardware is to do now, such as stand still. `commands` and `states` go afterwards."""
+
+    def on_cleanup(self) -> None:
+        """Forget what `on_configure` made; topics and services go by themselves."""
+
+    def on_error(self) -> None:
+        """One of the others, or an update, raised what is no ControllerError."""
+
+    def on_set_chained_mode(self, chained: bool) -> None:
+        """Another controller is to command the references, or does not any more.
+
+        Raises:
+            ControllerError: it refuses.
+        """
+
+    # --- its work -----------------------------------------------------------------------------------------------------
+
+    def update_references(self, time_ns: int, period_s: float) -> None:
+        """Take what came by topics into `references`; called before `update` unless it is chained."""
+
+    def update(self, time_ns: int, period_s: float) -> None:
+        """Read `states`, write `commands`.
+
+        Args:
+            time_ns: the time, in nanoseconds.
+            period_s: the time since the last update, in seconds.
+
+        Raises:
+            Exception: whatever it raises is logged, and the controller is deactivated.
+        """
+
+    def step(self, time_ns: int, period_s: float) -> None:
+        """What the manager calls: `update_references` where that is due, and `update`."""
+        self.time_ns = time_ns
+        if not self.chained and self.references:
+            self.update_references(time_ns, period_s)
+        self.update(time_ns, period_s)

@@ -1,0 +1,106 @@
+"""``joint_state_broadcaster/JointStateBroadcaster``: what hardware tells of joints, as topics.
+
+Source: ros2_controllers (parameters, defaults, topics, NaN for what a joint does not tell). Joints come in the order in
+which the hardware has them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import nan
+
+from linkwright.control.controllers.controller import Controller, InterfaceNames
+from linkwright.control.controllers.parameters import parameter
+from linkwright.control.hardware.interfaces import EFFORT, POSITION, VELOCITY, Interfaces, StateInterface
+from linkwright.messages import Header, JointState, Time, get_message
+
+_NANOSECONDS = 1_000_000_000
+
+
+@dataclass(frozen=True, kw_only=True)
+class InterfaceMap:
+    """Which interfaces fill the fields of joint states."""
+
+    position: str = POSITION
+    velocity: str = VELOCITY
+    effort: str = EFFORT
+
+
+@dataclass(frozen=True, kw_only=True)
+class Parameters:
+    """Of the broadcaster."""
+
+    use_local_topics: bool = parameter(False, description="topics in the namespace of the controller's own name")
+    joints: tuple[str, ...] = parameter((), description="only these joints; used together with interfaces")
+    extra_joints: tuple[str, ...] = parameter((), description="joints that are published too, with 0")
+    interfaces: tuple[str, ...] = parameter((), description="only these interfaces; used together with joints")
+    map_interface_to_joint_state: InterfaceMap = InterfaceMap()
+    use_urdf_to_filter: bool = parameter(True, description="joint_states has only joints of the robot's description")
+    frame_id: str = parameter("", description="the frame_id of joint_states")
+
+
+class JointStateBroadcaster(Controller[Parameters]):
+    """Publishes ``joint_states`` and ``dynamic_joint_states``."""
+
+    PARAMETERS = Parameters
+
+    def state_interfaces(self) -> InterfaceNames:
+        """All, or those that are named."""
+        joints, interfaces = self.parameters.joints, self.parameters.interfaces
+        if not joints or not interfaces:
+            return Interfaces.ALL
+        return [f"{joint}/{interface}" for joint in joints for interface in interfaces]
+
+    def on_configure(self) -> None:
+        """Make the topics."""
+        begin = "~/" if self.parameters.use_local_topics else ""
+        self._output = self.node.publisher("sensor_msgs/msg/JointState", f"{begin}joint_states")
+        self._dynamic = self.node.publisher("control_msgs/msg/DynamicJointState", f"{begin}dynamic_joint_states")
+
+    def on_activate(self) -> None:
+        """Find what there is to tell."""
+        named = self.parameters.map_interface_to_joint_state
+        fields = {named.position: 0, named.velocity: 1, named.effort: 2}
+        self._of: dict[str, dict[str, StateInterface]] = {}
+        joints: dict[str, list[StateInterface | None]] = {}
+        known = self._joints_of_robot()
+        for state in self.states:
+            self._of.setdefault(state.component, {})[state.kind] = state
+            if state.kind in fields and (known is None or state.component in known):
+                joints.setdefault(state.component, [None, None, None])[fields[state.kind]] = state
+        self._joints = joints
+        self._extra = [each for each in self.parameters.extra_joints if each not in joints]
+
+    def update(self, time_ns: int, period_s: float) -> None:  # noqa: ARG002
+        """Publish, as far as anybody listens."""
+        if self._output.is_wanted:
+            self._output.publish(self._joint_states(self._header(time_ns)))
+        if self._dynamic.is_wanted:
+            self._dynamic.publish(self._dynamic_states(self._header(time_ns)))
+
+    def _joints_of_robot(self) -> set[str] | None:
+        if not self.parameters.use_urdf_to_filter or self.parameters.joints:
+            return None
+        return set(self.robot.joints) if self.robot is not None else None
+
+    def _header(self, time_ns: int) -> Header:
+        return Header(stamp=Time(*divmod(time_ns, _NANOSECONDS)), frame_id=self.parameters.frame_id)
+
+    def _joint_states(self, header: Header) -> JointState:
+        more = [0.0] * len(self._extra)
+        columns = [
+            [nan if state is None else state.value for state in column]
+            for column in zip(*self._joints.values(), strict=True)
+        ] or [[], [], []]
+        message = JointState(header=header, name=[*self._joints, *self._extra])
+        message.position, message.velocity, message.effort = (column + more for column in columns)
+        return message
+
+    def _dynamic_states(self, header: Header) -> object:
+        values = get_message("control_msgs/msg/InterfaceValue")
+        rows = [values(list(states), [state.value for state in states.values()]) for states in self._of.values()] + [
+            values([POSITION, VELOCITY, EFFORT], [0.0, 0.0, 0.0]) for _ in self._extra
+        ]
+        names: Sequence[str] = [*self._of, *self._extra]
+        return get_message("control_msgs/msg/DynamicJointState")(header, list(names), rows)

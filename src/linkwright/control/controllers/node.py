@@ -1,0 +1,32 @@
+"""The node of a controller, as the controller uses it, in the thread of its updates."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from linkwright.graph import Node
+from linkwright.simulation.exchange import Exchange
+from linkwright.simulation.plugins.node import PluginNode
+
+
+class ControllerNode(PluginNode):
+    """What a controller has of ROS: `publisher`, `subscribe` and `service` of `PluginNode`, and more.
+
+    Callbacks come in the thread of the updates, between two of them; what is published goes out after the update.
+
+    Args:
+        node: the node; it ends with the controller.
+        exchange: between the thread of the updates and the graph.
+    """
+
+    def __init__(self, node: Node, exchange: Exchange) -> None:
+        super().__init__(node, exchange, owned=True, qos={}, usual=None)
+
+    @property
+    def graph_node(self) -> Node:
+        """The node itself, for what is not here, such as actions: its callbacks come on the event loop."""
+        return self._node
+
+    def post(self, command: Callable[[], object]) -> None:
+        """Have something done in the thread of the updates, before the next one; from any thread."""
+        self._exchange.post(command)

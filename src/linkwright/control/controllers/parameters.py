@@ -1,0 +1,233 @@
+"""Parameters of controllers: a dataclass is the table of their names, types and defaults.
+
+    @dataclass(frozen=True, kw_only=True)
+    class Gains:
+        p: float = 0.0
+
+    @dataclass(frozen=True, kw_only=True)
+    class Parameters:
+        joints: tuple[str, ...] = parameter((), check=not_empty)
+        cmd_vel_timeout: float = parameter(0.5, description="seconds")
+        linear: Axes = Axes()  # another table: linear.x.max_velocity
+        gains: Mapping[str, Gains] = for_each("joints", Gains)  # gains.JOINT.p
+
+The types are ``str``, ``float``, ``int``, ``bool``, and ``tuple[...]`` of them; ``float | None`` is declared without a
+value. Source: generate_parameter_library, which the controllers of ros2_controllers use.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Iterator, Mapping
+from dataclasses import MISSING, dataclass, field, fields, is_dataclass
+from functools import cache
+from typing import Any, Generic, TypeVar, get_type_hints
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, joined, phrase
+from linkwright.graph import Node, Parameter, ParameterDescriptor, SetParametersResult
+from linkwright.graph.parameters.parameter import ParameterType
+
+P = TypeVar("P")
+
+Check = Callable[[str, Any], "Phrase | None"]
+"""What is wrong with the value of a parameter of a name."""
+
+_TYPES: dict[Any, ParameterType] = {
+    str: ParameterType.STRING,
+    float: ParameterType.DOUBLE,
+    int: ParameterType.INTEGER,
+    bool: ParameterType.BOOL,
+    tuple[str, ...]: ParameterType.STRING_ARRAY,
+    tuple[float, ...]: ParameterType.DOUBLE_ARRAY,
+    tuple[int, ...]: ParameterType.INTEGER_ARRAY,
+    tuple[bool, ...]: ParameterType.BOOL_ARRAY,
+    float | None: ParameterType.DOUBLE,
+}
+_NAMES, _TABLE, _ABOUT = "names", "table", "about"
+_OF_EVERY_NODE = ("use_sim_time", "params_file", "type", "qos_overrides", "start_type_description_service")
+
+
+@dataclass(frozen=True)
+class NoParameters:
+    """The parameters of what has none."""
+
+
+@dataclass(frozen=True, slots=True)
+class _About:
+    description: str = ""
+    read_only: bool = False
+    check: Check | None = None
+
+
+def parameter(default: Any, *, description: str = "", read_only: bool = False, check: Check | None = None) -> Any:
+    """A parameter of which more is to be said than its default.
+
+    Args:
+        default: its value where none is given.
+        description: what it is for, with its unit.
+        read_only: whether it has the value that it was declared with for good.
+        check: what its values must be.
+    """
+    return field(default=default, metadata={_ABOUT: _About(description, read_only, check)})
+
+
+def for_each(names: str, table: type[Any]) -> Any:
+    """A table for each of the names that another parameter has, ``gains.JOINT.p``.
+
+    Args:
+        names: that parameter, which stands before it in the same table; several, separated by blanks.
+        table: the dataclass with the parameters of one.
+    """
+    return field(default_factory=dict, metadata={_NAMES: tuple(names.split()), _TABLE: table})
+
+
+@dataclass(frozen=True, slots=True)
+class _Declaration:
+    name: str
+    kind: ParameterType
+    default: Any
+    about: _About
+
+
+class ParameterTable(Generic[P]):
+    """The parameters of a node, declared as a dataclass says; they follow what is set later.
+
+    Args:
+        node: the node.
+        table: the dataclass.
+
+    Raises:
+        LinkwrightError: a value has another type (GRAPH201) or is not allowed (CTL101).
+
+    Attributes:
+        values: the parameters now; another object after each change.
+    """
+
+    def __init__(self, node: Node, table: type[P]) -> None:
+        self._node = node
+        self._table = table
+        self._declared: dict[str, _Declaration] = {}
+        self.values: P = self._read()
+        node.add_on_set_parameters_callback(self._objection)
+        node.add_post_set_parameters_callback(lambda _: self.refresh())
+
+    def refresh(self) -> None:
+        """Read the parameters anew; names that have come bring theirs."""
+        self.values = self._read()
+
+    def unknown(self) -> Iterator[Phrase]:
+        """Sentences about what the node was given and is no parameter."""
+        for name in self._node.undeclared_overrides():
+            if not name.startswith(_OF_EVERY_NODE):
+                hint = did_you_mean(name, self._declared)
+                told = phrase("'{name}' is no parameter of this controller", name=name)
+                yield told if hint is None else joined((told, hint), "; ")
+
+    def _read(self) -> P:
+        values: P = self._table_values(self._table, "")
+        return values
+
+    def _table_values(self, table: Any, prefix: str) -> Any:
+        kinds = _kinds(table)
+        values: dict[str, Any] = {}
+        for each in fields(table):
+            kind, name = kinds[each.name], f"{prefix}{each.name}"
+            if _NAMES in each.metadata:
+                keys = dict.fromkeys(key for names in each.metadata[_NAMES] for key in values[names])
+                inside = each.metadata[_TABLE]
+                values[each.name] = {key: self._table_values(inside, f"{name}.{key}.") for key in keys}
+            elif is_dataclass(kind):
+                values[each.name] = self._table_values(kind, f"{name}.")
+            else:
+                default = each.default if each.default is not MISSING else None
+                about = each.metadata.get(_ABOUT, _About())
+                values[each.name] = self._value(_Declaration(name, _TYPES[kind], default, about))
+        return table(**values)
+
+    def _value(self, wanted: _Declaration) -> Any:
+        name = wanted.name
+        if name not in self._declared:
+            about = wanted.about
+            descriptor = ParameterDescriptor(
+                type=wanted.kind.value, description=about.description, read_only=about.read_only
+            )
+            default = list(wanted.default) if isinstance(wanted.default, tuple) else wanted.default
+            if not self._node.has_parameter(name):
+                self._node.declare_parameter(name, wanted.kind if default is None else default, descriptor)
+            self._declared[name] = wanted
+            value = self._get(name)
+            wrong = about.check(name, value) if about.check is not None and value is not None else None
+            if wrong is not None:
+                raise LinkwrightError(Diagnostic("CTL101", wrong))
+            return value
+        return self._get(name)
+
+    def _get(self, name: str) -> Any:
+        value = self._node.get_parameter_or(name).value
+        return tuple(value) if self._declared[name].kind.is_array and value is not None else value
+
+    def _objection(self, parameters: list[Parameter]) -> SetParametersResult:
+        for each in parameters:
+            known = self._declared.get(each.name)
+            if known is None or known.about.check is None or each.value is None:
+                continue
+            wrong = known.about.check(each.name, each.value)
+            if wrong is not None:
+                return SetParametersResult(successful=False, reason=wrong)
+        return SetParametersResult(successful=True)
+
+
+@cache
+def _kinds(table: Hashable) -> Mapping[str, Any]:
+    return get_type_hints(table)
+
+
+# --- checks ----------------------------------------------------------------------------------------------------------
+
+
+def not_empty(name: str, value: Any) -> Phrase | None:
+    """A text, or a list, is not empty."""
+    return None if len(value) else phrase("Parameter '{name}' cannot be empty", name=name)
+
+
+def above(limit: float) -> Check:
+    """More than a number."""
+    return lambda name, value: (
+        None
+        if value > limit
+        else phrase(
+            "Parameter '{name}' with the value {value:g} must be above {limit:g}", name=name, value=value, limit=limit
+        )
+    )
+
+
+def at_least(limit: float) -> Check:
+    """A number or more."""
+    return lambda name, value: (
+        None
+        if value >= limit
+        else phrase(
+            "Parameter '{name}' with the value {value:g} must not be below {limit:g}",
+            name=name,
+            value=value,
+            limit=limit,
+        )
+    )
+
+
+def one_of(*words: str) -> Check:
+    """One of some words, or a list of such."""
+
+    def check(name: str, value: Any) -> Phrase | None:
+        for each in (value,) if isinstance(value, str) else value:
+            if each not in words:
+                text = phrase(
+                    "Parameter '{name}' with the value '{value}' is not one of: {words}",
+                    name=name,
+                    value=each,
+                    words=", ".join(words),
+                )
+                hint = did_you_mean(each, words)
+                return text if hint is None else joined((text, hint), "; ")
+        return None
+
+    return check

@@ -1,0 +1,1 @@
+"""Hardware as controllers see it: interfaces, and what a description says of them."""

@@ -1,0 +1,57 @@
+"""What hardware and controllers exchange: numbers with names.
+
+Source: hardware_interface of ros2_control (names, units by REP 103, NaN for what is not known yet).
+"""
+
+from __future__ import annotations
+
+from enum import Enum
+from math import nan
+
+POSITION, VELOCITY, ACCELERATION, EFFORT = "position", "velocity", "acceleration", "effort"
+"""The standard interfaces: rad or m, rad/s or m/s, rad/s² or m/s², Nm or N."""
+
+
+class Interface:
+    """A number with a name.
+
+    Args:
+        component: the joint, sensor or GPIO; of what a chained controller takes or gives, the controller.
+        kind: ``position``, ``velocity``, ``orientation.x``, ...
+        value: NaN while nothing is known.
+
+    Attributes:
+        component, kind: see above.
+        name: both, ``joint1/position``.
+        value: the number now.
+    """
+
+    __slots__ = ("component", "kind", "name", "value")
+
+    def __init__(self, component: str, kind: str, value: float = nan) -> None:
+        self.component = component
+        self.kind = kind
+        self.name = f"{component}/{kind}"
+        self.value = value
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({self.name} = {self.value:g})"
+
+
+class StateInterface(Interface):
+    """What hardware tells; controllers read it, any number of them."""
+
+    __slots__ = ()
+
+
+class CommandInterface(Interface):
+    """What hardware, or a chained controller, is told. One active controller at a time has it."""
+
+    __slots__ = ()
+
+
+class Interfaces(Enum):
+    """What a controller may ask for in place of names."""
+
+    ALL = "all"
+    """Every interface that there is."""

@@ -1,0 +1,62 @@
+from __future__ import annotations
+
+from math import isnan
+
+from linkwright.control.controllers.joint_state_broadcaster import JointStateBroadcaster
+from linkwright.control.controllers.registry import controller_class
+
+DESCRIPTION = """<robot name='r'><link name='a'/><link name='b'/><joint name='hip' type='continuous'>
+<parent link='a'/><child link='b'/></joint></robot>"""
+
+
+def test_it_is_found_by_its_type():
+    assert controller_class("joint_state_broadcaster/JointStateBroadcaster") is JointStateBroadcaster
+
+
+async def test_positions_and_what_is_not_known(stand):
+    stand.joint("hip", position=0.5, velocity=1.0)
+    stand.joint("knee", position=-0.5, temperature=30.0)
+    heard = stand.heard("sensor_msgs/msg/JointState", "joint_states")
+    dynamic = stand.heard("control_msgs/msg/DynamicJointState", "dynamic_joint_states")
+    await stand.step(stand.start(JointStateBroadcaster))
+    (message,) = heard
+    assert message.name == ["hip", "knee"]
+    assert list(message.position) == [0.5, -0.5]
+    assert message.velocity[0] == 1.0
+    assert isnan(message.velocity[1])
+    assert message.header.stamp.nanoseconds == 10_000_000
+    assert dynamic[0].joint_names == ["hip", "knee"]
+    assert dynamic[0].interface_values[1].interface_names == ["position", "temperature"]
+    assert list(dynamic[0].interface_values[1].values) == [-0.5, 30.0]
+
+
+async def test_only_joints_of_the_description_and_extra_ones(stand):
+    stand.joint("hip", position=0.5)
+    stand.joint("imu", position=1.0)
+    heard = stand.heard("sensor_msgs/msg/JointState", "joint_states")
+    await stand.step(stand.start(JointStateBroadcaster, description=DESCRIPTION, extra_joints=["gripper"]))
+    assert heard[0].name == ["hip", "gripper"]
+    assert list(heard[0].position) == [0.5, 0.0]
+
+
+async def test_chosen_interfaces_and_local_topics(stand):
+    stand.joint("hip", position=0.5, velocity=1.0)
+    stand.joint("knee", position=0.7, velocity=2.0)
+    parameters = {"joints": ["knee"], "interfaces": ["velocity"], "use_local_topics": True}
+    broadcaster = stand.start(JointStateBroadcaster, "jsb", **parameters)
+    heard = stand.heard("sensor_msgs/msg/JointState", "/jsb/joint_states")
+    await stand.step(broadcaster)
+    assert (heard[0].name, list(heard[0].velocity)) == (["knee"], [2.0])
+
+
+async def test_interfaces_may_have_other_names(stand):
+    stand.joint("hip", kinematic=0.5)
+    heard = stand.heard("sensor_msgs/msg/JointState", "joint_states")
+    await stand.step(stand.start(JointStateBroadcaster, map_interface_to_joint_state={"position": "kinematic"}))
+    assert list(heard[0].position) == [0.5]
+
+
+async def test_what_is_no_parameter_is_named(stand):
+    stand.start(JointStateBroadcaster, joint=["hip"])
+    (told,) = [each.text for each in stand.log if "no parameter" in each.text]
+    assert told == "'joint' is no parameter of this controller; did you mean 'joints'?"

@@ -1,0 +1,80 @@
+"""Runs controllers by hand, without a manager: interfaces are what the test says, and time goes on in steps."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from linkwright.control.controllers.controller import Controller, ControllerPlace
+from linkwright.control.controllers.node import ControllerNode
+from linkwright.control.hardware.interfaces import CommandInterface, Interface, Interfaces, StateInterface
+from linkwright.graph import Graph, LogRecord
+from linkwright.simulation.exchange import Exchange
+
+
+class Stand:
+    def __init__(self, graph: Graph, log: list[LogRecord]) -> None:
+        self.graph, self.log = graph, log
+        self.node = graph.create_node("audience")
+        self.exchange = Exchange()
+        self.states: dict[str, StateInterface] = {}
+        self.commands: dict[str, CommandInterface] = {}
+        self.time_ns = 0
+
+    def joint(self, name: str, *, commands: tuple[str, ...] = (), **states: float) -> None:
+        """A joint with command interfaces and states."""
+        for kind in commands:
+            self.commands[f"{name}/{kind}"] = CommandInterface(name, kind)
+        for kind, value in states.items():
+            self.states[f"{name}/{kind}"] = StateInterface(name, kind, value)
+
+    def make(
+        self, controller: type[Controller[Any]], name: str = "controller", *, description: str = "", **parameters: Any
+    ) -> Any:
+        """A controller that is not configured yet; its parameters may be nested mappings."""
+        node = self.graph.create_node(name, parameters=parameters)
+        place = ControllerPlace(name, ControllerNode(node, self.exchange), 100.0, description)
+        return controller(place)
+
+    def activate(self, controller: Controller[Any], *, configure: bool = True) -> Any:
+        """Configure and activate a controller: it gets the interfaces that it asks for."""
+        if configure:
+            controller.on_configure()
+        controller.commands = _chosen(self.commands, controller.command_interfaces())
+        controller.states = _chosen(self.states, controller.state_interfaces())
+        controller.references = [CommandInterface(controller.name, each) for each in controller.reference_interfaces()]
+        controller.exported = [StateInterface(controller.name, each) for each in controller.exported_states()]
+        controller.on_activate()
+        return controller
+
+    def start(self, controller: type[Controller[Any]], name: str = "controller", **parameters: Any) -> Any:
+        """A controller that is active."""
+        return self.activate(self.make(controller, name, **parameters))
+
+    async def step(self, controller: Controller[Any], period_s: float = 0.01, count: int = 1) -> None:
+        """So many updates, each after what has come by topics, and before what goes out."""
+        for _ in range(count):
+            await self.graph.settle()
+            self.exchange.work()
+            self.time_ns += round(period_s * 1e9)
+            controller.step(self.time_ns, period_s)
+            self.exchange.deliver()
+            await self.graph.settle()
+
+    def heard(self, type_name: str, topic: str) -> list[Any]:
+        """The messages of a topic, from now on."""
+        messages: list[Any] = []
+        self.node.create_subscription(type_name, topic, messages.append, 100)
+        return messages
+
+    def say(self, type_name: str, topic: str, message: Any) -> None:
+        """Publish a message; the next step brings it."""
+        self.node.create_publisher(type_name, topic, 10).publish(message)
+
+
+def _chosen(there: dict[str, Any], asked: Any) -> list[Any]:
+    return list(there.values()) if asked is Interfaces.ALL else [there[name] for name in asked]
+
+
+def values(interfaces: list[Interface]) -> list[float]:
+    """The values of interfaces."""
+    return [each.value for each in interfaces]
