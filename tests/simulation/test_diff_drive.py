@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from math import cos, sin
-
 import pytest
 
 from linkwright.messages import get_message
-from linkwright.simulation.plugins.odometry import PlanarPose, yaw_of
+from linkwright.simulation.plugins.odometry import yaw_of
 from linkwright.testing import Recording
 from tests.simulation.test_plugins import SECOND, robot, served
 from tests.simulation.worlds import GROUND
@@ -124,13 +122,6 @@ async def test_what_cannot_drive_is_told(plugin, words):
     async with served(GROUND, robot(plugin)) as (server, _, log):
         assert server.plugins("mbot") == ()
         assert any(words in each.text for each in log)
-
-
-def test_wheels_that_roll_differently_go_round():
-    place = PlanarPose()
-    for _ in range(1000):
-        place.roll(0.0009, 0.0011, 0.2)
-    assert (place.x, place.y, place.yaw) == pytest.approx((sin(1.0), 1 - cos(1.0), 1.0), abs=1e-6)
 
 
 async def test_transforms_of_wheels_are_published_on_request():

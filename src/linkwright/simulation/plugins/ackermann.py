@@ -8,10 +8,11 @@ nothing, and the rear wheels hold their velocity with no more than the torque at
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import atan2, copysign, dist, hypot, tan
+from math import copysign, dist, hypot, tan
 from typing import Any
 
 from linkwright.diagnostics import phrase
+from linkwright.kinematics.drives import steered_apart
 from linkwright.messages import get_message
 from linkwright.simulation.plugins.odometry import OdometryTopics, planar_velocity, transforms_topic
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
@@ -142,5 +143,6 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
         for motor in self._motors:
             motor.target = self._speed / self._radius
         slope = tan(self._angle)
-        for servo, side in zip(self._servos, (-1.0, 1.0), strict=True):
-            servo.move(atan2(slope, 1.0 + side * self._separation / 2.0 / self._base * slope), seconds)
+        angles = steered_apart(slope, self._separation / self._base * slope)
+        for servo, angle in zip(self._servos, angles, strict=True):
+            servo.move(angle, seconds)

@@ -13,6 +13,8 @@ from typing import Any, ClassVar, Generic, TypeVar
 
 from linkwright.diagnostics import phrase
 from linkwright.geometry.single import compose, invert
+from linkwright.kinematics.drives import DifferentialDrive
+from linkwright.kinematics.planar import PlanarPose
 from linkwright.messages import Header
 from linkwright.sdf.poses import SEPARATOR
 from linkwright.simulation.plugins.gz_drive import (
@@ -26,7 +28,6 @@ from linkwright.simulation.plugins.gz_drive import (
 from linkwright.simulation.plugins.node import Output
 from linkwright.simulation.plugins.odometry import (
     OdometryTopics,
-    PlanarPose,
     planar_velocity,
     transform_message,
     transforms_topic,
@@ -77,13 +78,12 @@ class GzParameters(GzDriveParameters):
 
 @dataclass(frozen=True, slots=True)
 class _Pair:
-    """Two wheels on one axis: motors, the joints' names in the simulation, distance and radius in m."""
+    """Two wheels on one axis: motors, the joints' names in the simulation, and how they move the robot."""
 
     left: Motor
     right: Motor
     joints: tuple[str, str]
-    separation: float
-    radius: float
+    drive: DifferentialDrive
 
 
 class _DiffDrive(SimulatedPlugin[P], Generic[P]):
@@ -117,7 +117,7 @@ class _DiffDrive(SimulatedPlugin[P], Generic[P]):
         for names, (separation, radius) in zip(zip(left, right, strict=True), sizes, strict=False):
             joints = (self.joint(names[0]), self.joint(names[1]))
             motors = [self.simulation.add_velocity_motor(joint, MOTOR_GAIN, torque) for joint in joints]
-            pairs.append(_Pair(motors[0], motors[1], joints, separation, radius))
+            pairs.append(_Pair(motors[0], motors[1], joints, DifferentialDrive(separation, radius, radius)))
         self._pairs = tuple(pairs)
         self._begin()
 
@@ -127,8 +127,7 @@ class _DiffDrive(SimulatedPlugin[P], Generic[P]):
     def _turn_wheels(self) -> None:
         forward, turning = self._now
         for pair in self._pairs:
-            pair.left.target = (forward - turning * pair.separation / 2.0) / pair.radius
-            pair.right.target = (forward + turning * pair.separation / 2.0) / pair.radius
+            pair.left.target, pair.right.target = pair.drive.wheel_speeds(forward, turning)
 
     def _angles(self) -> tuple[float, float]:
         left, right = self._pairs[0].joints
@@ -137,14 +136,15 @@ class _DiffDrive(SimulatedPlugin[P], Generic[P]):
     def _speeds(self) -> tuple[float, float]:
         """How fast the first pair of wheels rolls and turns the robot, in m/s and rad/s."""
         pair = self._pairs[0]
-        left, right = (self.simulation.joint_state(joint)[1] * pair.radius for joint in pair.joints)
-        return (left + right) / 2.0, (right - left) / pair.separation
+        left, right = (self.simulation.joint_state(joint)[1] for joint in pair.joints)
+        return pair.drive.motion(left, right)
 
     def _measure(self) -> None:
         """Go on by what the first pair of wheels has turned since."""
         pair, (left, right), self._turned = self._pairs[0], self._turned, self._angles()
         new_left, new_right = self._turned
-        self._place.roll((new_left - left) * pair.radius, (new_right - right) * pair.radius, pair.separation)
+        way, turn = pair.drive.motion(new_left - left, new_right - right)
+        self._place.advance(way, 0.0, turn)
 
     def reset(self) -> None:
         """Stand still where it began."""
@@ -206,15 +206,15 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
         """Bring the wheels nearer to the command, by no more than they may speed up in m/s2 at their rims."""
         forward, turning = self._wanted
         for number, pair in enumerate(self._pairs):
-            wanted = forward - turning * pair.separation / 2.0, forward + turning * pair.separation / 2.0
-            now = self._wheel_speeds[number]
+            wanted, now = pair.drive.wheel_speeds(forward, turning), self._wheel_speeds[number]
             if now == wanted:
                 continue
             said = self.parameters
             greatest = inf if said.max_wheel_acceleration <= 0 else said.max_wheel_acceleration * self._interval
-            left, right = _nearer(now[0], wanted[0], greatest), _nearer(now[1], wanted[1], greatest)
+            change = greatest / pair.drive.left_radius
+            left, right = _nearer(now[0], wanted[0], change), _nearer(now[1], wanted[1], change)
             self._wheel_speeds[number] = left, right
-            pair.left.target, pair.right.target = left / pair.radius, right / pair.radius
+            pair.left.target, pair.right.target = left, right
 
     @property
     def _interval(self) -> float:

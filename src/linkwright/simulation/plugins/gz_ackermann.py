@@ -7,10 +7,12 @@ the car turns). Other than there a wheel is steered to its angle as fast as the 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import atan, atan2, copysign, cos, sin, tan
+from math import atan, copysign, cos, sin, tan
 from typing import Any
 
 from linkwright.diagnostics import phrase
+from linkwright.kinematics.drives import steered_apart
+from linkwright.kinematics.planar import PlanarPose
 from linkwright.simulation.plugins.gz_drive import (
     GZ_RATE,
     GZ_TORQUE,
@@ -19,7 +21,6 @@ from linkwright.simulation.plugins.gz_drive import (
     GzDriveParameters,
     connected,
 )
-from linkwright.simulation.plugins.odometry import PlanarPose
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
@@ -133,8 +134,7 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
         curvature = self._curvature(forward, turning)
         half = said.wheel_separation / 2.0 * curvature
         self._turn_wheels(forward * (1.0 - half), forward * (1.0 + half))
-        slope, aside = said.wheel_base * curvature, said.kingpin_width / 2.0 * curvature
-        self._steer(atan2(slope, 1.0 - aside), atan2(slope, 1.0 + aside))
+        self._steer(*steered_apart(said.wheel_base * curvature, said.kingpin_width * curvature))
 
     def _curvature(self, forward: float, turning: float) -> float:
         """One over the radius of the circle to drive, in 1/m, to the left positive; no tighter than the limit."""

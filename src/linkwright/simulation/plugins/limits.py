@@ -1,12 +1,14 @@
-"""How fast a drive of gz may go, speed up and change that: its parameters, and what keeps to them.
+"""How fast a drive of gz may go, speed up and change that: its parameters.
 
-Source: gz-sim's drives and gz-math's SpeedLimiter.
+Source: gz-sim's drives.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from math import inf
+
+from linkwright.kinematics.limits import SpeedLimiter
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,38 +43,3 @@ class SpeedLimits:
         general = (getattr(self, f"{side}_{derivative}") for side in ("min", "max"))
         lower, upper = (both if one is None else one for one, both in zip(special, general, strict=True))
         return lower, upper
-
-
-class SpeedLimiter:
-    """Follows a wanted velocity within bounds.
-
-    Args:
-        velocity, acceleration, jerk: the least and the greatest.
-
-    Attributes:
-        speed: the velocity now.
-    """
-
-    def __init__(
-        self, velocity: tuple[float, float], acceleration: tuple[float, float], jerk: tuple[float, float]
-    ) -> None:
-        self._velocity = velocity
-        self._acceleration = acceleration
-        self._jerk = jerk
-        self.restart()
-
-    def restart(self) -> None:
-        """Stand still."""
-        self.speed = self._before = 0.0
-
-    def follow(self, wanted: float, seconds: float) -> float:
-        """The velocity so many seconds after the last one."""
-        changed = self.speed - self._before
-        change = changed + _within(self._jerk, wanted - self.speed - changed, seconds * seconds)
-        speed = self.speed + _within(self._acceleration, change, seconds)
-        self.speed, self._before = _within(self._velocity, speed), self.speed
-        return self.speed
-
-
-def _within(bounds: tuple[float, float], value: float, factor: float = 1.0) -> float:
-    return min(max(value, bounds[0] * factor), bounds[1] * factor)

@@ -11,6 +11,8 @@ from dataclasses import dataclass
 from math import inf
 
 from linkwright.diagnostics import phrase
+from linkwright.kinematics.drives import MecanumDrive
+from linkwright.kinematics.planar import PlanarPose
 from linkwright.simulation.plugins.gz_drive import (
     GZ_RATE,
     MOTOR_GAIN,
@@ -18,7 +20,6 @@ from linkwright.simulation.plugins.gz_drive import (
     GzDriveParameters,
     connected,
 )
-from linkwright.simulation.plugins.odometry import PlanarPose
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.planar_move import PlanarDrive
 
@@ -34,10 +35,6 @@ class MecanumParameters(GzDriveParameters):
     wheel_separation: float = 1.0
     wheelbase: float = 1.0
     wheel_radius: float = 0.2
-
-
-_SIGNS = ((1.0, -1.0, -1.0), (1.0, 1.0, 1.0), (1.0, 1.0, -1.0), (1.0, -1.0, 1.0))
-"""How wheels turn when the robot goes forward, goes to the left, turns to the left: front left and right, back ones."""
 
 
 class GzMecanum(PlanarDrive[MecanumParameters]):
@@ -65,7 +62,7 @@ class GzMecanum(PlanarDrive[MecanumParameters]):
             [simulation.add_velocity_motor(joint, MOTOR_GAIN, inf) for joint in joints] for joints in wheels
         ]
         self._wheels = [joints[0] for joints in wheels]
-        self._arm = (said.wheel_separation + said.wheelbase) / 2.0
+        self._drive_train = MecanumDrive((said.wheel_separation + said.wheelbase) / 2.0, said.wheel_radius)
         self._commands = DriveCommands(said)
         self._topics = connected(self, said, self._commands)
         self._begin()
@@ -87,11 +84,9 @@ class GzMecanum(PlanarDrive[MecanumParameters]):
         self._turn_wheels(self._commands.follow())
 
     def _turn_wheels(self, velocity: tuple[float, float, float]) -> None:
-        forward, sideways, turning = velocity
-        for motors, signs in zip(self._motors, _SIGNS, strict=True):
-            rim = signs[0] * forward + signs[1] * sideways + signs[2] * turning * self._arm
+        for motors, speed in zip(self._motors, self._drive_train.wheel_speeds(*velocity), strict=True):
             for motor in motors:
-                motor.target = rim / self.parameters.wheel_radius
+                motor.target = speed
 
     def _states(self, derivative: int) -> list[float]:
         """The angles of the four wheels in rad, or how fast they turn in rad/s."""
@@ -99,12 +94,7 @@ class GzMecanum(PlanarDrive[MecanumParameters]):
 
     def _rolled(self, turned: list[float]) -> tuple[float, float, float]:
         """The way or velocity of a robot whose wheels have turned so far, or turn so fast."""
-        radius = self.parameters.wheel_radius
-        forward, sideways, turning = (
-            sum(signs[way] * angle for signs, angle in zip(_SIGNS, turned, strict=True)) * radius / len(_SIGNS)
-            for way in range(3)
-        )
-        return forward, sideways, turning / self._arm
+        return self._drive_train.motion(*turned)
 
     def _move(self) -> None:
         before, self._angles = self._angles, self._states(0)

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from linkwright.geometry.arrays import Array
-from linkwright.geometry.single import Transform, quaternion_from_rpy
+from linkwright.geometry.single import Transform
 from linkwright.messages import Header, Quaternion, Time, TransformStamped, Vector3, get_message
 from linkwright.messages import Transform as TransformMessage
 from linkwright.simulation.plugins.node import Output, PluginNode
@@ -20,34 +20,6 @@ Covariance = tuple[float, float, float]
 
 _UNKNOWN = 1e12
 """The variance of what a robot on wheels does not measure: z, roll and pitch."""
-
-
-@dataclass(slots=True)
-class PlanarPose:
-    """A place in a plane in m, and a heading in rad."""
-
-    x: float = 0.0
-    y: float = 0.0
-    yaw: float = 0.0
-
-    def roll(self, left: float, right: float, separation: float) -> None:
-        """Go on as wheels do that roll some way each, in m; in the middle of the turn the heading is half of it.
-
-        Source: gazebo_ros_diff_drive, the method of Runge and Kutta of the second order.
-        """
-        self.advance((left + right) / 2.0, 0.0, (right - left) / separation)
-
-    def advance(self, forward: float, sideways: float, turn: float) -> None:
-        """Go some way forward and to the left in m, while turning by an angle in rad."""
-        middle = self.yaw + turn / 2.0
-        self.x += forward * cos(middle) - sideways * sin(middle)
-        self.y += forward * sin(middle) + sideways * cos(middle)
-        self.yaw += turn
-
-    @property
-    def transform(self) -> Transform:
-        """The pose in space."""
-        return (self.x, self.y, 0.0, *quaternion_from_rpy((0.0, 0.0, self.yaw)))
 
 
 def yaw_of(pose: Transform) -> float:

@@ -1,0 +1,157 @@
+"""Which motion of a robot goes with which turning of its wheels.
+
+The robot goes forward (x) and to the left (y), and turns to the left around z. A function that takes velocities in m/s
+and rad/s takes ways in m and angles in rad as well, where the wheels' angles do not change on the way.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import atan, atan2, copysign, cos, hypot, pi, sin, tan
+
+_QUARTER_TURN = pi / 2.0
+
+
+@dataclass(frozen=True, slots=True)
+class DifferentialDrive:
+    """Two wheels, or two sides, on one axis.
+
+    Attributes:
+        separation: between the wheels in m.
+        left_radius, right_radius: of the wheels in m.
+    """
+
+    separation: float
+    left_radius: float
+    right_radius: float
+
+    def wheel_speeds(self, forward: float, turning: float) -> tuple[float, float]:
+        """How fast the left and the right wheel turn in rad/s."""
+        aside = turning * self.separation / 2.0
+        return (forward - aside) / self.left_radius, (forward + aside) / self.right_radius
+
+    def motion(self, left: float, right: float) -> tuple[float, float]:
+        """The velocity forward in m/s and around z in rad/s of wheels that turn so fast."""
+        left, right = left * self.left_radius, right * self.right_radius
+        return (left + right) / 2.0, (right - left) / self.separation
+
+
+@dataclass(frozen=True, slots=True)
+class MecanumDrive:
+    """Four wheels with rollers at 45 degrees, which form an X when seen from above.
+
+    Attributes:
+        arm: half the wheelbase and half the track together in m.
+        radius: of the wheels in m.
+    """
+
+    arm: float
+    radius: float
+
+    def wheel_speeds(self, forward: float, sideways: float, turning: float) -> tuple[float, float, float, float]:
+        """How fast the front left, front right, rear left and rear right wheel turn in rad/s."""
+        aside = turning * self.arm
+        return (
+            (forward - sideways - aside) / self.radius,
+            (forward + sideways + aside) / self.radius,
+            (forward + sideways - aside) / self.radius,
+            (forward - sideways + aside) / self.radius,
+        )
+
+    def motion(
+        self, front_left: float, front_right: float, rear_left: float, rear_right: float
+    ) -> tuple[float, float, float]:
+        """The velocity forward and to the left in m/s and around z in rad/s, of wheels that turn so fast.
+
+        Of speeds that no motion without sliding has it is the nearest one (least squares).
+        """
+        quarter = self.radius / 4.0
+        return (
+            (front_left + front_right + rear_left + rear_right) * quarter,
+            (-front_left + front_right + rear_left - rear_right) * quarter,
+            (-front_left + front_right - rear_left + rear_right) * quarter / self.arm,
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class CarDrive:
+    """An axle that drives and another one that steers; the robot is the middle of the first.
+
+    Attributes:
+        wheelbase: between the axles in m, positive.
+        traction_track: between the wheels that drive in m; 0 for one wheel.
+        steering_track: between the wheels that are steered in m; 0 for one.
+        radius: of the wheels that drive in m.
+    """
+
+    wheelbase: float
+    traction_track: float
+    steering_track: float
+    radius: float
+
+    def steering_angle(self, forward: float, turning: float) -> float:
+        """The angle of a wheel in the middle of the steered axle in rad; 0 for a robot that stands."""
+        return 0.0 if forward == 0.0 else atan(turning * self.wheelbase / forward)
+
+    def steering_angles(self, angle: float) -> tuple[float, float]:
+        """The angles of the left and the right wheel in rad that go with one in the middle."""
+        slope = tan(angle)
+        return steered_apart(slope, self.steering_track * slope / self.wheelbase)
+
+    def middle_angle(self, left: float, right: float) -> float:
+        """The angle of a wheel in the middle in rad: the mean of what the left and the right one say."""
+        half = self.steering_track / 2.0
+        of_left = atan2(self.wheelbase * sin(left), self.wheelbase * cos(left) + half * sin(left))
+        of_right = atan2(self.wheelbase * sin(right), self.wheelbase * cos(right) - half * sin(right))
+        return (of_left + of_right) / 2.0
+
+    def wheel_speeds(self, forward: float, angle: float) -> tuple[float, float]:
+        """How fast the left and the right wheel turn in rad/s, with the steering at an angle in rad."""
+        speed, aside = forward / self.radius, self._aside(angle)
+        return speed * (1.0 - aside), speed * (1.0 + aside)
+
+    def motion(self, left: float, right: float, angle: float) -> tuple[float, float]:
+        """The velocity forward in m/s, the mean of what two wheels say that turn so fast, and around z in rad/s."""
+        aside = self._aside(angle)
+        forward = (left / (1.0 - aside) + right / (1.0 + aside)) * self.radius / 2.0
+        return forward, forward * tan(angle) / self.wheelbase
+
+    def _aside(self, angle: float) -> float:
+        """How much slower the inner wheel is than the middle, as a share."""
+        return self.traction_track / 2.0 * tan(angle) / self.wheelbase
+
+
+def steered_apart(slope: float, track: float) -> tuple[float, float]:
+    """The angles of the left and the right steered wheel in rad, so that both roll about one point.
+
+    Args:
+        slope: the tangent of the angle of a wheel in the middle; to the left positive.
+        track: the way between the wheels over the radius of the circle that the middle of the other axle goes on.
+    """
+    return atan2(slope, 1.0 - track / 2.0), atan2(slope, 1.0 + track / 2.0)
+
+
+@dataclass(frozen=True, slots=True)
+class TricycleDrive:
+    """One wheel in front that drives and is steered, two behind that follow; the robot is the middle of those.
+
+    Attributes:
+        wheelbase: from the wheel to the axle behind in m.
+        radius: of the wheel in m.
+    """
+
+    wheelbase: float
+    radius: float
+
+    def wheel(self, forward: float, turning: float) -> tuple[float, float]:
+        """How fast the wheel turns in rad/s, and its angle in rad; across for a turn on the spot."""
+        across = turning * self.wheelbase
+        rim = hypot(forward, across)
+        if forward == 0.0:
+            return rim / self.radius, copysign(_QUARTER_TURN, turning) if turning else 0.0
+        return copysign(rim, forward) / self.radius, atan(across / forward)
+
+    def motion(self, speed: float, angle: float) -> tuple[float, float]:
+        """The velocity forward in m/s and around z in rad/s, of a wheel that turns so fast at an angle in rad."""
+        rim = speed * self.radius
+        return rim * cos(angle), rim * sin(angle) / self.wheelbase

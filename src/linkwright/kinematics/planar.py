@@ -1,0 +1,50 @@
+"""Where a body is that moves in a plane."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import cos, sin
+
+from linkwright.geometry.single import Transform, quaternion_from_rpy
+
+_STRAIGHT = 1e-6
+"""The angle in rad below which an arc is a straight line: dividing by less loses digits."""
+
+
+@dataclass(slots=True)
+class PlanarPose:
+    """A place in a plane in m, and a heading in rad."""
+
+    x: float = 0.0
+    y: float = 0.0
+    yaw: float = 0.0
+
+    def advance(self, forward: float, sideways: float, turn: float) -> None:
+        """Go some way forward and to the left in m, straight, in the middle of a turn by an angle in rad.
+
+        Source: the method of Runge and Kutta of the second order, as in gazebo_ros_diff_drive.
+        """
+        middle = self.yaw + turn / 2.0
+        self.x += forward * cos(middle) - sideways * sin(middle)
+        self.y += forward * sin(middle) + sideways * cos(middle)
+        self.yaw += turn
+
+    def follow_arc(self, forward: float, sideways: float, turn: float) -> None:
+        """Go on for a while at one velocity: some way forward and to the left in m while turning by an angle in rad.
+
+        The way is an arc of a circle, without an error of integration. Source: diff_drive_controller, where it is
+        for ways forward only.
+        """
+        if abs(turn) < _STRAIGHT:
+            self.advance(forward, sideways, turn)
+            return
+        yaw = self.yaw + turn
+        along, across = (sin(yaw) - sin(self.yaw)) / turn, (cos(yaw) - cos(self.yaw)) / turn
+        self.x += forward * along + sideways * across
+        self.y += sideways * along - forward * across
+        self.yaw = yaw
+
+    @property
+    def transform(self) -> Transform:
+        """The pose in space."""
+        return (self.x, self.y, 0.0, *quaternion_from_rpy((0.0, 0.0, self.yaw)))
