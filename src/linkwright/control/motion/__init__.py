@@ -1,0 +1,1 @@
+"""The arithmetic of controllers, without ROS: each module can be tested alone."""

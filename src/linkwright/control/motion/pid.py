@@ -1,0 +1,104 @@
+"""PID control as control_toolbox of ros2_control does it.
+
+Source: control_toolbox's ``Pid`` of Humble and Jazzy. gz's own, which differs in when it bounds what, is
+`linkwright.simulation.plugins.pid`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf, isfinite, sqrt
+
+NONE, CLAMPED, BACK_CALCULATION, CONDITIONAL = "none", "legacy", "back_calculation", "conditional_integration"
+STRATEGIES = (NONE, CLAMPED, BACK_CALCULATION, CONDITIONAL)
+"""What keeps the integral from growing while it does no good, by control_toolbox's names."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class PidGains:
+    """Gains and bounds.
+
+    Attributes:
+        p, i, d: by the error, its integral and its derivative.
+        i_min, i_max: bounds of what the integral adds to the command.
+        u_min, u_max: bounds of the command.
+        antiwindup: ``none`` bounds what the integral adds while the integral grows on; ``legacy`` bounds the integral
+            itself; ``conditional_integration`` does not integrate what would drive a bounded command farther;
+            ``back_calculation`` takes back from the integral what a bounded command lacks.
+        tracking_time_constant: how fast ``back_calculation`` does that, in s; 0 for one that follows from the gains.
+        error_deadband: an error that is not greater is not integrated by the last two strategies.
+    """
+
+    p: float = 0.0
+    i: float = 0.0
+    d: float = 0.0
+    i_min: float = -inf
+    i_max: float = inf
+    u_min: float = -inf
+    u_max: float = inf
+    antiwindup: str = NONE
+    tracking_time_constant: float = 0.0
+    error_deadband: float = 1e-16
+
+    @property
+    def tracking_time(self) -> float:
+        """The time constant of ``back_calculation`` in s; 0 where the gains give none."""
+        if self.tracking_time_constant > 0.0 or not self.i:
+            return self.tracking_time_constant
+        return sqrt(self.d / self.i) if self.d and self.d / self.i > 0.0 else abs(self.p / self.i)
+
+
+class Pid:
+    """A command of an error, by its size, its integral and its change.
+
+    Attributes:
+        gains: may be replaced at any time.
+        integral: what the integral adds to the command, before it is bounded; in units of the command.
+    """
+
+    def __init__(self, gains: PidGains) -> None:
+        self.gains = gains
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget the errors before."""
+        self.integral = 0.0
+        self._before = 0.0
+
+    def command(self, error: float, period_s: float, rate: float | None = None) -> float:
+        """The command for an error: what is wanted less what is there.
+
+        Args:
+            error: in any unit.
+            period_s: the time since the last one, in seconds.
+            rate: how fast the error changes, in its unit a second; None to take the one before.
+
+        Returns:
+            0 where an argument is not finite or no time has passed, which changes nothing else.
+        """
+        if period_s <= 0.0 or not isfinite(error):
+            return 0.0
+        if rate is None:
+            rate = (error - self._before) / period_s
+            self._before = error
+        elif not isfinite(rate):
+            return 0.0
+        gains = self.gains
+        step = gains.i * error * period_s
+        others = gains.p * error + gains.d * rate
+        if gains.antiwindup == CLAMPED:
+            self.integral = min(max(self.integral + step, gains.i_min), gains.i_max)
+        elif gains.antiwindup == NONE:
+            self.integral += step
+        unbounded = others + min(max(self.integral, gains.i_min), gains.i_max)
+        command = min(max(unbounded, gains.u_min), gains.u_max)
+        if abs(error) > gains.error_deadband:
+            self._unwind(error, step, period_s, command, unbounded)
+        return command
+
+    def _unwind(self, error: float, step: float, period_s: float, command: float, unbounded: float) -> None:
+        if self.gains.antiwindup == BACK_CALCULATION and self.gains.i:
+            time = self.gains.tracking_time
+            self.integral += step + ((command - unbounded) * period_s / time if time else 0.0)
+        elif self.gains.antiwindup == CONDITIONAL and (command == unbounded or error * unbounded <= 0.0):
+            self.integral += step

@@ -1,0 +1,97 @@
+"""Segments of trajectories: how joints go from one point to the next.
+
+Source: joint_trajectory_controller of ros2_controllers. Between positions alone a joint goes straight, with
+velocities along a cubic, and with accelerations as well along a quintic polynomial.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+_Polynomial = tuple[float, float, float, float, float, float]
+"""The coefficients of powers 0 to 5 of the time."""
+
+
+@dataclass(slots=True)
+class MotionState:
+    """Where joints are, or are to be; each list is empty or as long as there are joints.
+
+    Attributes:
+        positions: rad or m.
+        velocities: rad/s or m/s.
+        accelerations: rad/s² or m/s².
+    """
+
+    positions: list[float] = field(default_factory=list)
+    velocities: list[float] = field(default_factory=list)
+    accelerations: list[float] = field(default_factory=list)
+
+    def copy(self) -> MotionState:
+        """Another one with the same numbers."""
+        return MotionState(list(self.positions), list(self.velocities), list(self.accelerations))
+
+
+class Segment:
+    """The way between two states.
+
+    Args:
+        start: where it begins, with positions.
+        end: where it ends, with positions.
+        duration_s: how long it takes, in seconds; more than 0.
+    """
+
+    __slots__ = ("_polynomials",)
+
+    def __init__(self, start: MotionState, end: MotionState, duration_s: float) -> None:
+        count = len(start.positions)
+        polynomials: list[_Polynomial] = []
+        for joint in range(count):
+            begin, stop = start.positions[joint], end.positions[joint]
+            if not (start.velocities and end.velocities):
+                polynomials.append((begin, (stop - begin) / duration_s, 0.0, 0.0, 0.0, 0.0))
+                continue
+            speeds = start.velocities[joint], end.velocities[joint]
+            if not (start.accelerations and end.accelerations):
+                polynomials.append(_cubic(begin, stop, *speeds, duration_s))
+                continue
+            changes = start.accelerations[joint], end.accelerations[joint]
+            polynomials.append(_quintic(begin, stop, *speeds, *changes, duration_s))
+        self._polynomials = polynomials
+
+    def at(self, seconds: float) -> MotionState:
+        """The state so many seconds after the beginning; all three lists are full."""
+        positions: list[float] = []
+        velocities: list[float] = []
+        accelerations: list[float] = []
+        t = seconds
+        for a0, a1, a2, a3, a4, a5 in self._polynomials:
+            positions.append(a0 + t * (a1 + t * (a2 + t * (a3 + t * (a4 + t * a5)))))
+            velocities.append(a1 + t * (2.0 * a2 + t * (3.0 * a3 + t * (4.0 * a4 + t * 5.0 * a5))))
+            accelerations.append(2.0 * a2 + t * (6.0 * a3 + t * (12.0 * a4 + t * 20.0 * a5)))
+        return MotionState(positions, velocities, accelerations)
+
+
+def _cubic(p0: float, p1: float, v0: float, v1: float, duration: float) -> _Polynomial:
+    """From a position to another, with the velocities there."""
+    way, length = p1 - p0, duration
+    return (
+        p0,
+        v0,
+        (3.0 * way - (2.0 * v0 + v1) * length) / length**2,
+        ((v0 + v1) * length - 2.0 * way) / length**3,
+        0.0,
+        0.0,
+    )
+
+
+def _quintic(p0: float, p1: float, v0: float, v1: float, a0: float, a1: float, duration: float) -> _Polynomial:
+    """From a position to another, with the velocities and accelerations there."""
+    way, length = p1 - p0, duration
+    return (
+        p0,
+        v0,
+        0.5 * a0,
+        (20.0 * way - (8.0 * v1 + 12.0 * v0) * length - (3.0 * a0 - a1) * length**2) / (2.0 * length**3),
+        ((14.0 * v1 + 16.0 * v0) * length - 30.0 * way + (3.0 * a0 - 2.0 * a1) * length**2) / (2.0 * length**4),
+        (12.0 * way - 6.0 * (v1 + v0) * length - (a0 - a1) * length**2) / (2.0 * length**5),
+    )

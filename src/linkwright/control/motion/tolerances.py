@@ -1,0 +1,96 @@
+"""How far joints may be from where they are to be.
+
+Source: joint_trajectory_controller of ros2_controllers, and control_msgs' ``JointTolerance``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+UNSPECIFIED, ERASED = 0.0, -1.0
+"""What a goal's tolerance says that leaves it to the controller, and that allows anything."""
+
+
+@dataclass(frozen=True, slots=True)
+class StateTolerance:
+    """The greatest errors of a joint; 0 allows any.
+
+    Attributes:
+        position: rad or m.
+        velocity: rad/s or m/s.
+        acceleration: rad/s² or m/s².
+    """
+
+    position: float = 0.0
+    velocity: float = 0.0
+    acceleration: float = 0.0
+
+    def holds(self, position: float, velocity: float, acceleration: float) -> bool:
+        """Whether errors are within it."""
+        return (
+            not (self.position > 0.0 and abs(position) > self.position)
+            and not (self.velocity > 0.0 and abs(velocity) > self.velocity)
+            and not (self.acceleration > 0.0 and abs(acceleration) > self.acceleration)
+        )
+
+    def violations(self, position: float, velocity: float, acceleration: float) -> Iterator[tuple[str, float, float]]:
+        """Each error that is too great: its name, the error and the tolerance."""
+        errors = (
+            ("Position", position, self.position),
+            ("Velocity", velocity, self.velocity),
+            ("Acceleration", acceleration, self.acceleration),
+        )
+        for name, error, limit in errors:
+            if limit > 0.0 and abs(error) > limit:
+                yield name, error, limit
+
+    def overridden(self, position: float, velocity: float, acceleration: float) -> StateTolerance:
+        """That of a goal: 0 leaves one as it is, -1 erases it.
+
+        Raises:
+            ValueError: another negative number.
+        """
+        return StateTolerance(
+            resolved(self.position, position),
+            resolved(self.velocity, velocity),
+            resolved(self.acceleration, acceleration),
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Tolerances:
+    """Those of a trajectory.
+
+    Attributes:
+        path: on the way, of each joint.
+        goal: at the end, of each joint.
+        goal_time_s: how many seconds after the end the goal must be reached; 0 for whenever.
+    """
+
+    path: tuple[StateTolerance, ...]
+    goal: tuple[StateTolerance, ...]
+    goal_time_s: float = 0.0
+
+    def with_path(self, joint: int, tolerance: StateTolerance) -> Tolerances:
+        """With another one for a joint on the way."""
+        return replace(self, path=(*self.path[:joint], tolerance, *self.path[joint + 1 :]))
+
+    def with_goal(self, joint: int, tolerance: StateTolerance) -> Tolerances:
+        """With another one for a joint at the end."""
+        return replace(self, goal=(*self.goal[:joint], tolerance, *self.goal[joint + 1 :]))
+
+
+def resolved(default: float, given: float) -> float:
+    """The tolerance that counts where a goal gives one.
+
+    Raises:
+        ValueError: it is negative and not -1.
+    """
+    if given > 0.0:
+        return given
+    if given == UNSPECIFIED:
+        return default
+    if given == ERASED:
+        return 0.0
+    raise ValueError(given)

@@ -1,0 +1,149 @@
+"""Trajectories in time: which state is due when.
+
+Source: joint_trajectory_controller of ros2_controllers, its ``Trajectory``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import pi, tau
+
+from linkwright.control.motion.splines import MotionState, Segment
+
+_SECOND = 1_000_000_000
+
+
+@dataclass(slots=True)
+class TrajectoryPoint:
+    """A state that is due.
+
+    Attributes:
+        time_ns: nanoseconds after the beginning of the trajectory.
+        state: of all joints; what is empty is worked out, see `Trajectory.begin`.
+    """
+
+    time_ns: int
+    state: MotionState
+
+
+@dataclass(frozen=True, slots=True)
+class Sample:
+    """What a trajectory says of a moment.
+
+    Attributes:
+        state: the state then.
+        index: the number of the point that was passed last; 0 before the first one, too.
+        point_ns: when that point is due, as a point in time in nanoseconds.
+        ended: whether it is the last point, which has been reached.
+    """
+
+    state: MotionState
+    index: int
+    point_ns: int
+    ended: bool
+
+
+class Trajectory:
+    """Points, and the ways between them.
+
+    Args:
+        points: at least one, in the order of time.
+        start_ns: the point in time at which it begins; 0 for when `begin` is called.
+        interpolated: whether joints go from point to point; else they are sent to the next one at once.
+    """
+
+    def __init__(self, points: Sequence[TrajectoryPoint], start_ns: int = 0, *, interpolated: bool = True) -> None:
+        self.points = list(points)
+        self._given_start_ns = start_ns
+        self._interpolated = interpolated
+        self.begun = False
+
+    def begin(self, time_ns: int, before: MotionState, wrapped: Sequence[bool] = ()) -> None:
+        """Set off from a state.
+
+        A point without positions gets them, and velocities where these are missing too, by going on evenly from the
+        point before.
+
+        Args:
+            time_ns: when the joints are there.
+            before: where they are; velocities and accelerations count where the first point has them.
+            wrapped: which joints turn without an end: these go the shorter way to the first point.
+        """
+        self.begun = True
+        self._start_ns = self._given_start_ns or time_ns
+        self._before_ns = time_ns
+        first = self._start_ns + self.points[0].time_ns
+        before = before.copy()
+        due_ns, state = time_ns, before
+        for point in self.points:
+            next_ns = self._start_ns + point.time_ns
+            point.state = _deduced(state, point.state, max(next_ns - due_ns, 0) / _SECOND)
+            due_ns, state = next_ns, point.state
+        for joint, turns in enumerate(wrapped):
+            if turns:
+                target = self.points[0].state.positions[joint]
+                before.positions[joint] = target - shortest_turn(before.positions[joint], target)
+        self._before = before
+        last = self.points[-1].state
+        none = [0.0] * len(last.positions)
+        self._end = MotionState(last.positions, last.velocities or none, last.accelerations or none)
+        self._segments: list[Segment | None] = [None] * len(self.points)
+        self._starts = [self._before_ns, first, *(self._start_ns + each.time_ns for each in self.points[1:])]
+        self._index = 0
+
+    @property
+    def end_ns(self) -> int:
+        """The point in time of the last point; only once it has begun."""
+        return self._starts[-1]
+
+    def sample(self, time_ns: int) -> Sample | None:
+        """What is due at a point in time, in nanoseconds; None before it has begun.
+
+        Segment number n leads from ``_starts[n]`` to ``_starts[n + 1]``, and the first one from the state before.
+        """
+        starts = self._starts
+        if time_ns < starts[0]:
+            return None
+        if time_ns >= starts[-1]:
+            return Sample(self._end, len(self.points) - 1, starts[-1], ended=True)
+        index = self._index
+        if not starts[index] <= time_ns < starts[index + 1]:
+            index = next(each for each in range(len(self.points)) if time_ns < starts[each + 1])
+            self._index = index
+        passed = max(index - 1, 0)
+        return Sample(self._state(index, time_ns), passed, starts[passed + 1], ended=False)
+
+    def _state(self, index: int, time_ns: int) -> MotionState:
+        if not self._interpolated:
+            return self.points[index].state if index else self._before
+        segment = self._segments[index]
+        begin_ns, end_ns = self._starts[index], self._starts[index + 1]
+        if segment is None:
+            start = self.points[index - 1].state if index else self._before
+            segment = Segment(start, self.points[index].state, (end_ns - begin_ns) / _SECOND)
+            self._segments[index] = segment
+        return segment.at((time_ns - begin_ns) / _SECOND)
+
+
+def shortest_turn(start: float, end: float) -> float:
+    """The angle in rad from one to another, more than -pi and not more than pi."""
+    turn = (end - start) % tau
+    return turn - tau if turn > pi else turn
+
+
+def _deduced(before: MotionState, state: MotionState, seconds: float) -> MotionState:
+    """A state with positions, which follow from its derivatives where there are none."""
+    if state.positions:
+        return state
+    none = [0.0] * len(before.positions)
+    begin = before.velocities or none
+    velocities = state.velocities or [
+        speed + 0.5 * (first + second) * seconds
+        for speed, first, second in zip(begin, before.accelerations or none, state.accelerations, strict=True)
+    ]
+    positions = [
+        place + 0.5 * (first + second) * seconds
+        for place, first, second in zip(before.positions, begin, velocities, strict=True)
+    ]
+    return MotionState(positions, velocities, state.accelerations)

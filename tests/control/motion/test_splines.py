@@ -1,0 +1,132 @@
+"""Segments of trajectories against the theory of polynomials, and trajectories in time."""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from linkwright.control.motion.splines import MotionState, Segment
+from linkwright.control.motion.trajectory import Sample, Trajectory, TrajectoryPoint, shortest_turn
+
+SECOND = 1_000_000_000
+numbers = st.floats(-10.0, 10.0)
+durations = st.floats(0.1, 10.0)
+
+
+def point(seconds: float, *lists: list[float]) -> TrajectoryPoint:
+    """A point with as many lists as there are."""
+    return TrajectoryPoint(round(seconds * SECOND), MotionState(*lists))
+
+
+def sampled(trajectory: Trajectory, seconds: float) -> Sample:
+    """The sample at so many seconds."""
+    sample = trajectory.sample(round(seconds * SECOND))
+    assert sample is not None
+    return sample
+
+
+def solution(start: list[float], end: list[float], duration: float) -> np.ndarray:
+    """The polynomial with given derivatives at both ends, by solving the linear system: least power first."""
+    order = len(start) + len(end)
+    rows = []
+    for time in (0.0, duration):
+        for derivative in range(len(start)):
+            unit = [np.polynomial.Polynomial.basis(power).deriv(derivative)(time) for power in range(order)]
+            rows.append([float(each) for each in unit])
+    return np.linalg.solve(np.array(rows), np.array([*start, *end]))
+
+
+@given(numbers, numbers, durations)
+def test_between_positions_alone_a_joint_goes_straight(p0: float, p1: float, duration: float):
+    segment = Segment(MotionState([p0]), MotionState([p1]), duration)
+    for share in (0.0, 0.3, 1.0):
+        state = segment.at(share * duration)
+        assert state.positions == pytest.approx([p0 + share * (p1 - p0)], abs=1e-9)
+        assert state.velocities == pytest.approx([(p1 - p0) / duration])
+        assert state.accelerations == [0.0]
+
+
+@given(*[numbers] * 6, durations, st.sampled_from([2, 3]))
+def test_a_segment_is_the_polynomial_that_has_what_both_points_say(p0, v0, a0, p1, v1, a1, duration, known):
+    start, end = [p0, v0, a0][:known], [p1, v1, a1][:known]
+    segment = Segment(MotionState(*([each] for each in start)), MotionState(*([each] for each in end)), duration)
+    theory = np.polynomial.Polynomial(solution(start, end, duration))
+    scale = 1.0 + max(map(abs, (p0, p1, v0, v1, a0, a1))) * max(1.0, duration, duration**-2)
+    for share in (0.0, 0.1, 0.5, 0.9, 1.0):
+        time = share * duration
+        state = segment.at(time)
+        assert state.positions[0] == pytest.approx(float(theory(time)), abs=1e-9 * scale)
+        assert state.velocities[0] == pytest.approx(float(theory.deriv()(time)), abs=1e-8 * scale)
+        assert state.accelerations[0] == pytest.approx(float(theory.deriv(2)(time)), abs=1e-7 * scale)
+
+
+def test_a_segment_of_velocities_and_accelerations_of_one_side_only_goes_by_what_both_have():
+    state = Segment(MotionState([0.0], [1.0], [1.0]), MotionState([1.0]), 2.0).at(1.0)
+    assert (state.positions, state.velocities) == ([0.5], [0.5])
+    cubic = Segment(MotionState([0.0], [0.0], [9.0]), MotionState([1.0], [0.0]), 2.0).at(1.0)
+    assert cubic.positions == pytest.approx([0.5])
+    assert cubic.velocities == pytest.approx([0.75])
+
+
+def test_a_trajectory_begins_where_the_joints_are_and_ends_at_its_last_point():
+    trajectory = Trajectory([point(1.0, [1.0]), point(3.0, [2.0])])
+    trajectory.begin(10 * SECOND, MotionState([0.0]))
+    assert trajectory.sample(9 * SECOND) is None
+    assert [sampled(trajectory, time).state.positions[0] for time in (10.0, 10.5, 11.0, 12.0, 13.0, 99.0)] == (
+        pytest.approx([0.0, 0.5, 1.0, 1.5, 2.0, 2.0])
+    )
+    assert [sampled(trajectory, time).index for time in (10.0, 11.0, 12.9, 13.0)] == [0, 0, 0, 1]
+    assert [sampled(trajectory, time).ended for time in (12.9, 13.0)] == [False, True]
+    assert sampled(trajectory, 99.0).point_ns == trajectory.end_ns == 13 * SECOND
+    assert sampled(trajectory, 99.0).state == MotionState([2.0], [0.0], [0.0])
+
+
+def test_a_trajectory_can_be_asked_for_earlier_moments_again():
+    trajectory = Trajectory([point(float(each), [float(each)]) for each in range(1, 6)])
+    trajectory.begin(SECOND, MotionState([0.0]))
+    assert [sampled(trajectory, time).state.positions[0] for time in (5.5, 1.5, 3.5)] == pytest.approx([4.5, 0.5, 2.5])
+
+
+def test_a_trajectory_with_a_start_in_the_future_goes_to_its_first_point_from_now_on():
+    trajectory = Trajectory([point(0.0, [1.0])], start_ns=4 * SECOND)
+    trajectory.begin(2 * SECOND, MotionState([0.0]))
+    assert sampled(trajectory, 3.0).state.positions == pytest.approx([0.5])
+    assert sampled(trajectory, 4.0).ended
+
+
+def test_a_trajectory_with_a_start_in_the_past_goes_on_at_the_segment_that_is_due():
+    trajectory = Trajectory([point(1.0, [1.0]), point(5.0, [5.0])], start_ns=SECOND)
+    trajectory.begin(4 * SECOND, MotionState([0.0]))
+    assert sampled(trajectory, 4.0).state.positions == pytest.approx([3.0])
+
+
+def test_positions_follow_from_velocities_and_velocities_from_accelerations():
+    trajectory = Trajectory([point(1.0, [], [2.0]), point(2.0, [], [4.0]), point(3.0, [], [], [0.0])])
+    trajectory.begin(SECOND, MotionState([0.0]))
+    assert [each.state.positions for each in trajectory.points] == [[1.0], [4.0], [8.0]]
+    assert trajectory.points[2].state.velocities == [4.0]
+
+
+def test_without_interpolation_the_next_point_is_sent_at_once():
+    trajectory = Trajectory([point(1.0, [1.0]), point(2.0, [2.0])], interpolated=False)
+    trajectory.begin(SECOND, MotionState([0.0]))
+    assert [sampled(trajectory, time).state.positions for time in (1.5, 2.0, 3.0)] == [[0.0], [2.0], [2.0]]
+
+
+@given(st.floats(-20.0, 20.0), st.floats(-20.0, 20.0))
+def test_the_shortest_turn_leads_there_and_is_at_most_half_a_turn(start: float, end: float):
+    turn = shortest_turn(start, end)
+    assert -pi <= turn <= pi
+    assert np.cos(start + turn) == pytest.approx(np.cos(end), abs=1e-9)
+    assert np.sin(start + turn) == pytest.approx(np.sin(end), abs=1e-9)
+
+
+def test_a_joint_that_turns_without_an_end_goes_the_shorter_way():
+    trajectory = Trajectory([point(1.0, [-3.0, -3.0])])
+    trajectory.begin(0, MotionState([3.0, 3.0]), (True, False))
+    middle = sampled(trajectory, 0.5).state.positions
+    assert middle == pytest.approx([-pi, 0.0])
