@@ -41,6 +41,7 @@ class NodeOptions:
         arguments: its command line without the program's name; ``--ros-args`` sections count.
         library: the readings of robot descriptions that the process shares.
         output: takes the lines that a node prints as its result; standard output unless it is said.
+        terminal: file descriptor of the terminal that is the node's alone; None where it shares its process.
     """
 
     name: str | None = None
@@ -50,6 +51,7 @@ class NodeOptions:
     arguments: list[str] = field(default_factory=list)
     library: DescriptionLibrary = field(default_factory=_library)
     output: Callable[[str], None] = _print
+    terminal: int | None = None
 
 
 class RunningNode(Protocol):

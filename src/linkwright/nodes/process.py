@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import os
 import signal
 import sys
 from collections.abc import Sequence
@@ -17,11 +18,12 @@ if TYPE_CHECKING:
     from linkwright.graph.command_line.log_setup import Logging
     from linkwright.nodes.options import Factory
 
-_SIGNALS = (signal.SIGINT, signal.SIGTERM)
+_SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
+"""What ends a node: Ctrl-C, another program, the terminal that is closed."""
 
 
 def main(package: str, executable: str, arguments: Sequence[str]) -> int:
-    """Run a node until it is done, or told to end by SIGINT or SIGTERM, which end it cleanly with status 0.
+    """Run a node until it is done, or told to end by SIGINT, SIGTERM or SIGHUP, which end it cleanly with status 0.
 
     Args:
         package: its package.
@@ -58,13 +60,15 @@ async def _run(factory: Factory, arguments: list[str], logging: Logging) -> int:
     loop = asyncio.get_running_loop()
     ended = asyncio.Event()
     for number in _SIGNALS:
+        if number == getattr(signal, "SIGHUP", None) and signal.getsignal(number) is signal.SIG_IGN:
+            continue  # nohup
         # Not every platform's loops have this; there KeyboardInterrupt ends the process.
         with contextlib.suppress(NotImplementedError):
             loop.add_signal_handler(number, ended.set)
     graph = Graph(on_log=logging.sink, levels=logging.levels)
     try:
         _join_network(graph)
-        running = factory(graph, NodeOptions(arguments=arguments))
+        running = factory(graph, NodeOptions(arguments=arguments, terminal=_terminal()))
         if isinstance(running, FinishingNode):
             running.finished.add_done_callback(lambda _: ended.set())
         await ended.wait()
@@ -73,6 +77,15 @@ async def _run(factory: Factory, arguments: list[str], logging: Logging) -> int:
         return status
     finally:
         await graph.close()
+
+
+def _terminal() -> int | None:
+    """The terminal on standard input."""
+    try:
+        descriptor = sys.stdin.fileno()
+    except (AttributeError, OSError, ValueError):
+        return None
+    return descriptor if os.isatty(descriptor) else None
 
 
 def _join_network(graph: object) -> None:

@@ -1,0 +1,1 @@
+"""Nodes that steer robots by hand: keyboards, joysticks, and what chooses between velocities and smooths them."""

@@ -1,0 +1,96 @@
+"""The keys of teleop_twist_keyboard and what they do; the layout is that of the ROS node."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from linkwright.diagnostics import Phrase, phrase
+
+INTERRUPT = "\x03"
+"""Ctrl-C, where the terminal does not make a signal of it."""
+
+_KEYS = re.compile(r"\x1b(?:\[[0-?]*[ -/]*[@-~]|O.)?|.", re.DOTALL)
+
+
+class Direction(NamedTuple):
+    """Where to, as parts of the greatest speed: forwards, to the left, up, and turning to the left."""
+
+    x: float = 0.0
+    y: float = 0.0
+    z: float = 0.0
+    turn: float = 0.0
+
+
+STILL = Direction()
+
+MOVES = {
+    "i": Direction(1.0),
+    "o": Direction(1.0, turn=-1.0),
+    "u": Direction(1.0, turn=1.0),
+    "j": Direction(turn=1.0),
+    "l": Direction(turn=-1.0),
+    ",": Direction(-1.0),
+    ".": Direction(-1.0, turn=1.0),
+    "m": Direction(-1.0, turn=-1.0),
+    "I": Direction(1.0),
+    "O": Direction(1.0, -1.0),
+    "U": Direction(1.0, 1.0),
+    "J": Direction(y=1.0),
+    "L": Direction(y=-1.0),
+    "<": Direction(-1.0),
+    ">": Direction(-1.0, -1.0),
+    "M": Direction(-1.0, 1.0),
+    "t": Direction(z=1.0),
+    "b": Direction(z=-1.0),
+}
+
+SPEEDS = {
+    "q": (1.1, 1.1),
+    "z": (0.9, 0.9),
+    "w": (1.1, 1.0),
+    "x": (0.9, 1.0),
+    "e": (1.0, 1.1),
+    "c": (1.0, 0.9),
+}
+"""By which factors keys change the speed and the turning speed."""
+
+
+def keys_in(text: str) -> Iterator[str]:
+    """The keys that a terminal sent; an arrow or function key, which sends several characters, is one of them."""
+    return (found[0] for found in _KEYS.finditer(text))
+
+
+def help_text() -> Phrase:
+    """What the keys do."""
+    return phrase("""
+Keys are published as velocities, Twist or TwistStamped.
+---------------------------
+Moving:
+   u    i    o
+   j    k    l
+   m    ,    .
+
+Sideways, for holonomic robots (with Shift):
+---------------------------
+   U    I    O
+   J    K    L
+   M    <    >
+
+t : up (+z)
+b : down (-z)
+
+any other key : stop
+
+q/z : both speeds 10% faster/slower
+w/x : only the linear speed
+e/c : only the angular speed
+
+CTRL-C ends
+""")
+
+
+def speeds_text(speed: float, turn: float) -> str:
+    """The line that tells the speeds, in m/s and rad/s."""
+    return f"currently:\tspeed {speed}\tturn {turn} "

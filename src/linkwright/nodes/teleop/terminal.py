@@ -1,0 +1,101 @@
+"""A terminal that gives each key as it is pressed, and is left as it was."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import os
+import sys
+from collections.abc import Callable
+from typing import Any
+
+_READ_BYTES = 1024
+_POLL_SECONDS = 0.02
+
+
+class KeyTerminal:
+    """Reads keys from a terminal while it is open.
+
+    Keys are not echoed. Ctrl-C stays a signal. What would suspend or abort the program (Ctrl-Z and the like) is a
+    key as others: a program that stands still cannot stop a robot.
+
+    Args:
+        descriptor: the terminal's file descriptor.
+        on_text: called with what was typed.
+        on_end: called once when the terminal is gone.
+
+    Raises:
+        OSError: it is no terminal.
+    """
+
+    def __init__(self, descriptor: int, on_text: Callable[[str], None], on_end: Callable[[], None]) -> None:
+        if not os.isatty(descriptor):
+            raise OSError(f"{descriptor} is no terminal")
+        self._on_text, self._on_end = on_text, on_end
+        self._undo = _watch_windows(self._took) if sys.platform == "win32" else self._watch(descriptor)
+
+    def close(self) -> None:
+        """Give the terminal back as it was; again does nothing."""
+        undo, self._undo = self._undo, lambda: None
+        undo()
+
+    def _took(self, data: bytes) -> None:
+        if data:
+            self._on_text(data.decode("utf-8", "replace"))
+            return
+        self.close()
+        self._on_end()
+
+    def _watch(self, descriptor: int) -> Callable[[], None]:
+        import termios
+
+        before = termios.tcgetattr(descriptor)
+        settings: list[Any] = [*before[:6], list(before[6])]
+        settings[3] &= ~(termios.ICANON | termios.ECHO)
+        settings[6][termios.VMIN], settings[6][termios.VTIME] = 1, 0
+        for key in (termios.VSUSP, termios.VQUIT):
+            settings[6][key] = b"\0"
+        termios.tcsetattr(descriptor, termios.TCSADRAIN, settings)
+        loop = asyncio.get_running_loop()
+
+        def read() -> None:
+            try:
+                data = os.read(descriptor, _READ_BYTES)
+            except BlockingIOError:
+                return
+            except OSError:  # the other side of the terminal is closed
+                data = b""
+            self._took(data)
+
+        def undo() -> None:
+            loop.remove_reader(descriptor)
+            with contextlib.suppress(termios.error):  # it may be gone
+                termios.tcsetattr(descriptor, termios.TCSADRAIN, before)
+
+        loop.add_reader(descriptor, read)
+        return undo
+
+
+def _watch_windows(took: Callable[[bytes], None]) -> Callable[[], None]:
+    """Ask the console of Windows for keys, again and again: its keys cannot be waited for beside other things."""
+    import msvcrt
+
+    console: Any = msvcrt  # mypy knows its functions on Windows only
+    loop = asyncio.get_running_loop()
+    handle: asyncio.TimerHandle | None = None
+
+    def poll() -> None:
+        nonlocal handle
+        handle = loop.call_later(_POLL_SECONDS, poll)
+        text = ""
+        while console.kbhit():
+            text += console.getwch()
+        if text:
+            took(text.encode())
+
+    def undo() -> None:
+        if handle is not None:
+            handle.cancel()
+
+    poll()
+    return undo

@@ -1,0 +1,89 @@
+"""Publishing velocities as geometry_msgs/msg/Twist or TwistStamped, whichever those who listen take."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from linkwright.graph import EndpointInfo, EndpointKind, Node, Publisher
+
+TWIST = "geometry_msgs/msg/Twist"
+TWIST_STAMPED = "geometry_msgs/msg/TwistStamped"
+_DEPTH = 10
+
+
+class VelocityTopic:
+    """A topic of velocities.
+
+    Args:
+        node: who publishes.
+        topic: its name, before remapping.
+        stamped: whether to publish TwistStamped; None to do what the subscribers of the topic do, and to publish Twist
+            where there is none, or some of each.
+        frame_id: the frame in the header of a TwistStamped.
+    """
+
+    def __init__(self, node: Node, topic: str, stamped: bool | None = None, frame_id: str = "") -> None:
+        self._node = node
+        self._topic = topic
+        self._stamped = stamped
+        self._frame_id = frame_id
+        self._publisher: Publisher[Any] | None = None
+        self.name = node.resolve_topic_name(topic)
+        self.review()
+
+    @property
+    def type_name(self) -> str:
+        """The type that is published now."""
+        return self._publisher.type_name if self._publisher is not None else ""
+
+    def others(self) -> list[EndpointInfo]:
+        """Who else publishes on the topic or subscribes to it."""
+        own = None if self._publisher is None else self._publisher.gid
+        return [each for each in self._node.graph.endpoints() if each.name == self.name and each.gid != own]
+
+    def review(self, *, may_change: bool = True) -> int:
+        """Look which type the subscribers take, and take it too.
+
+        Args:
+            may_change: whether the type may become another one; not while something moves.
+
+        Returns:
+            How many subscribers take what is published.
+        """
+        listeners = [each.type_name for each in self.others() if each.kind is EndpointKind.SUBSCRIPTION]
+        kind = self._wanted(listeners)
+        if self._publisher is None or (may_change and self._publisher.type_name != kind):
+            self.close()
+            self._publisher = self._node.create_publisher(kind, self._topic, _DEPTH)
+        return listeners.count(self._publisher.type_name)
+
+    def publish(self, linear: Sequence[float], angular: Sequence[float]) -> None:
+        """Publish a velocity: along x, y, z in m/s, and about them in rad/s. A closed topic publishes nothing."""
+        publisher = self._publisher
+        if publisher is None:
+            return
+        message = publisher.msg_type()
+        twist = message
+        if publisher.type_name == TWIST_STAMPED:
+            message.header.stamp = self._node.get_clock().now().to_msg()
+            message.header.frame_id = self._frame_id
+            twist = message.twist
+        for vector, values in ((twist.linear, linear), (twist.angular, angular)):
+            vector.x, vector.y, vector.z = map(float, values)
+        publisher.publish(message)
+
+    def stop(self) -> None:
+        """Publish zero."""
+        self.publish((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+
+    def close(self) -> None:
+        """Leave the topic."""
+        if self._publisher is not None:
+            self._node.destroy_publisher(self._publisher)
+            self._publisher = None
+
+    def _wanted(self, listeners: Sequence[str]) -> str:
+        if self._stamped is not None:
+            return TWIST_STAMPED if self._stamped else TWIST
+        return TWIST_STAMPED if TWIST_STAMPED in listeners and TWIST not in listeners else TWIST
