@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from linkwright.graph import DESCRIPTION_QOS, TF_QOS, DurabilityPolicy, QoSProfile
+from linkwright.graph import DESCRIPTION_QOS, SENSOR_DATA_QOS, TF_QOS, DurabilityPolicy, QoSProfile
 from linkwright.messages import String, TFMessage, get_message, get_service
 from tests.browser.live import configuration
 from tests.waiting import wait_until
@@ -141,3 +141,36 @@ def test_a_world_is_in_the_light_of_the_camera_a_studio_or_its_own_lights(live, 
         page = open_page(viewer)
         viewer.settle(page)
         assert lit(page) == expected
+
+
+SENSING = """
+  <model name="tower"><static>true</static><link name="top"><pose>0 0 2 0 0 0</pose>
+    <sensor name="laser" type="ray"><visualize>true</visualize><ray><scan><horizontal><samples>8</samples>
+      <min_angle>-3</min_angle><max_angle>3</max_angle></horizontal></scan><range><min>0.1</min><max>5</max></range></ray>
+    </sensor>
+    <sensor name="eye" type="camera"><camera><clip><near>0.5</near><far>4</far></clip></camera></sensor>
+  </link></model>
+</world>"""
+
+
+def test_rays_and_frustums_are_drawn_as_the_display_chooses(live, open_page):
+    def drawn(page) -> dict:
+        return page.evaluate("() => window.linkwright.displays[0].drawn.sensors")
+
+    viewer = described(live)
+    viewer.publish("/world_description", String(WORLD.replace("</world>", SENSING)), DESCRIPTION_QOS)
+    page = open_page(viewer)
+    viewer.settle(page)
+    assert drawn(page) == {"rays": {}, "frustums": []}
+    scan = get_message("sensor_msgs/msg/LaserScan")(ranges=[4.0, 3.0, 2.0, float("inf"), float("-inf"), 1.0, 1.0, 1.0])
+    scan.header.frame_id = "tower::top::laser"
+    viewer.publish("/world_rays", scan, SENSOR_DATA_QOS)
+    wait_until(lambda: drawn(page)["rays"] == {"tower::top::laser": 8})
+
+    def choose(name: str, choice: str) -> None:
+        viewer.run(lambda: viewer.viewer.displays[0].set_property((name,), choice))
+
+    choose("Camera Frustums", "All")
+    wait_until(lambda: drawn(page)["frustums"] == ["tower::top::eye"])
+    choose("Lidar Rays", "None")
+    wait_until(lambda: drawn(page)["rays"] == {})

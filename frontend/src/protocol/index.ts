@@ -111,7 +111,7 @@ import type {
   ViewClasses,
   ViewState,
 } from "./views-and-tools";
-import type { WorldPoses, WorldScene } from "./worlds";
+import type { WorldPoses, WorldRays, WorldScene } from "./worlds";
 
 export * from "./binary";
 export * from "./configuration";
@@ -271,4 +271,5 @@ export type DataContent =
   | RangeCone
   | Screw
   | WorldPoses
+  | WorldRays
   | WorldScene;

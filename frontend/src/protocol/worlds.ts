@@ -15,6 +15,41 @@ export interface LightScene {
   cone: number[];
 }
 
+/** The directions of rays in one plane: `count` of them, from `first` on by `step`, in rad. */
+export interface RayAngles {
+  first: number;
+  step: number;
+  count: number;
+}
+
+/** A lidar of a world, with those of its rays that are drawn. */
+export interface LidarScene {
+  name: string;
+  link: string;
+  position: number[];
+  quaternion: number[];
+  visualized: boolean;
+  horizontal: RayAngles;
+  vertical: RayAngles;
+  nearest: number;
+  farthest: number;
+}
+
+/** A camera of a world; as `LidarScene`, and it looks along x with z up. */
+export interface CameraScene {
+  name: string;
+  link: string;
+  position: number[];
+  quaternion: number[];
+  visualized: boolean;
+  left: number;
+  right: number;
+  up: number;
+  down: number;
+  near: number;
+  far: number;
+}
+
 /** World: what is drawn; `revision` counts descriptions. */
 export interface WorldScene {
   revision: number;
@@ -24,6 +59,8 @@ export interface WorldScene {
   ambient: number[];
   background: number[];
   shadows: boolean;
+  lidars: LidarScene[];
+  cameras: CameraScene[];
   kind: "world_scene";
 }
 
@@ -32,4 +69,11 @@ export interface WorldPoses {
   revision: number;
   poses: Float32Array;
   kind: "world_poses";
+}
+
+/** World: how far the rays of the lidar with this name go, m, shape (vertical * horizontal,). */
+export interface WorldRays {
+  lidar: string;
+  ranges: Float32Array;
+  kind: "world_rays";
 }

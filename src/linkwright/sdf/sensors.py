@@ -28,6 +28,16 @@ class Sweep:
     min_angle: float = 0.0
     max_angle: float = 0.0
 
+    @property
+    def count(self) -> int:
+        """How many rays it has: a resolution makes more or fewer of them than samples."""
+        return max(round(self.samples * self.resolution), 1) if self.resolution > 0 else max(self.samples, 1)
+
+    @property
+    def step(self) -> float:
+        """The angle from one ray to the next; 0 for a single ray."""
+        return (self.max_angle - self.min_angle) / (self.count - 1) if self.count > 1 else 0.0
+
 
 @dataclass(frozen=True, slots=True)
 class Reach:

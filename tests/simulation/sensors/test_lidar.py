@@ -7,7 +7,7 @@ from math import cos, pi, sin, sqrt
 import numpy as np
 import pytest
 
-from linkwright.simulation.sensors.lidar import LidarSensor, angles_of
+from linkwright.simulation.sensors.lidar import LidarSensor
 from linkwright.simulation.sensors.mount import Mount
 from linkwright.simulation.simulation import Simulation
 from tests.simulation.sensors.rooms import block, carrier, flat, lidar, on_carrier, room
@@ -112,6 +112,6 @@ def test_models_that_come_are_seen():
 
 def test_the_angles_are_those_of_gazebo():
     said = flat(360, 0.0, 6.28)
-    angles = angles_of(said.horizontal)
+    angles = said.horizontal
     assert (angles.count, angles.step) == (360, pytest.approx(6.28 / 359))
-    assert angles_of(flat(1, 0.5, 0.7).horizontal).step == 0.0
+    assert flat(1, 0.5, 0.7).horizontal.step == 0.0

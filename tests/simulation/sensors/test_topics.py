@@ -85,6 +85,34 @@ async def test_a_laser_says_nothing_while_nobody_listens():
         assert len(recording) == 10
 
 
+@pytest.mark.parametrize(("said", "topic"), [("true", "/world_rays"), ("false", "/world_rays/others")])
+async def test_the_rays_of_a_lidar_are_told_to_who_draws_them_of_the_same_measurement(said: str, topic: str):
+    two_rows = RAYS.replace(
+        "</horizontal>",
+        "</horizontal><vertical><samples>2</samples><min_angle>0</min_angle><max_angle>0</max_angle></vertical>",
+    )
+    text = sensor("gpu_lidar", f"<visualize>{said}</visualize><topic>scan</topic><lidar>{two_rows}</lidar>")
+    async with served(WALL, carrier(text)) as (server, graph, _):
+        (lidar,) = server.plugins("robot")
+        measured = []
+        measure = lidar.lidar.measure
+        lidar.lidar.measure = lambda: measured.append(None) or measure()
+        server.advance(SECOND)
+        assert not measured
+        rays, other = await heard(server, graph, topic, "/scan")
+        assert len(measured) == 1
+        assert rays.header.frame_id == "robot::head::eye"
+        assert list(rays.ranges) == [inf, 2.0, inf] * 2
+        assert list(other.ranges) == [inf, 2.0, inf]
+
+
+async def test_a_lidar_that_nobody_listens_to_measures_while_its_rays_are_drawn():
+    text = carrier(sensor("ray", f"<ray>{RAYS}</ray>" + plugin("libgazebo_ros_ray_sensor.so")))
+    async with served(WALL, text) as (server, graph, _):
+        (rays,) = await heard(server, graph, "/world_rays/others")
+        assert list(rays.ranges) == [inf, 2.0, inf]
+
+
 @pytest.mark.parametrize("kind", ["PointCloud2", "PointCloud", "Range"])
 async def test_the_other_types_of_a_lasers_output(kind: str):
     said = plugin(

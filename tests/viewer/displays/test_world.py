@@ -7,13 +7,14 @@ import math
 import numpy as np
 import pytest
 
-from linkwright.graph import DESCRIPTION_QOS, TF_QOS
-from linkwright.messages import String, TFMessage, TransformBatch
+from linkwright.graph import DESCRIPTION_QOS, SENSOR_DATA_QOS, TF_QOS
+from linkwright.messages import Header, String, TFMessage, TransformBatch, get_message
 from linkwright.viewer import RvizConfig
 from tests.viewer.contents import contents
 from tests.viewer.scene import IDENTITY, world
 from tests.waiting import eventually
 
+SCAN = get_message("sensor_msgs/msg/LaserScan")
 CONFIG = """\
 Visualization Manager:
   Global Options: {Fixed Frame: FIXED}
@@ -228,3 +229,60 @@ async def test_the_lights_of_a_world_are_sent_with_where_they_are_and_how_they_s
         assert (bulb["kind"], bulb["link"], bulb["position"]) == ("spot", "lamp::link", [0, 0, 1])
         assert bulb["direction"] == pytest.approx([-1, 0, 0])
         assert (bulb["range"], bulb["fading"], bulb["cone"]) == (20, [0.5, 0.1, 0.01], [0.5, 1])
+
+
+SEEING = """
+  <model name="scout"><link name="head"><pose>0 0 1 0 0 0</pose>
+    <sensor name="laser" type="gpu_lidar"><pose>0.1 0 0 0 0 0</pose><visualize>true</visualize>
+      <lidar><scan><horizontal><samples>1000</samples><min_angle>-1</min_angle><max_angle>0.998</max_angle></horizontal>
+        <vertical><samples>32</samples><min_angle>-0.31</min_angle><max_angle>0.31</max_angle></vertical></scan>
+        <range><min>0.2</min><max>20</max></range></lidar></sensor>
+    <sensor name="spare" type="ray"><ray><scan><horizontal><samples>3</samples></horizontal></scan></ray></sensor>
+    <sensor name="eye" type="camera"><camera><horizontal_fov>1.5707963267948966</horizontal_fov>
+      <image><width>200</width><height>100</height></image><clip><near>0.5</near><far>8</far></clip></camera></sensor>
+  </link></model>
+</world>"""
+
+
+def listened(made) -> set[str]:
+    names = ("/world_rays", "/world_rays/others")
+    return {name for name in names if made.graph.create_node("asking").count_subscribers(name)}
+
+
+async def test_the_rays_of_lidars_are_listened_to_while_they_are_drawn():
+    async with world(config("world")) as made:
+        simulation = Simulation(made)
+        await simulation.describe(WORLD)
+        assert listened(made) == set()
+        await simulation.describe(WORLD.replace("</world>", SEEING), links=4)
+        laser, spare = sent(made, "world_scene").fields["lidars"]
+        assert (laser["name"], laser["link"], laser["visualized"]) == ("scout::head::laser", "scout::head", True)
+        assert (laser["position"], laser["nearest"], laser["farthest"]) == ([0.1, 0.0, 0.0], 0.2, 20.0)
+        assert (laser["vertical"]["count"], laser["vertical"]["step"]) == (16, pytest.approx(0.04))
+        assert (laser["horizontal"]["count"], laser["horizontal"]["step"]) == (44, pytest.approx(0.046))
+        assert (spare["visualized"], spare["farthest"]) == (False, 30.0)
+        assert listened(made) == {"/world_rays"}
+        rays = made.graph.create_node("rays").create_publisher(SCAN, "/world_rays", SENSOR_DATA_QOS)
+        ranges = np.arange(32_000, dtype=np.float32)
+        rays.publish(SCAN(header=Header(frame_id="scout::head::laser"), ranges=ranges))
+        rays.publish(SCAN(header=Header(frame_id="scout::head::laser"), ranges=ranges[:7]))
+        rays.publish(SCAN(header=Header(frame_id="nobody"), ranges=ranges))
+        await made.settle()
+        shown = sent(made, "world_rays").fields
+        assert shown["lidar"] == "scout::head::laser"
+        assert shown["ranges"].reshape(16, 44)[1, :3].tolist() == [2000.0, 2023.0, 2046.0]
+
+        made.display("World").set_property(("Lidar Rays",), "All")
+        assert listened(made) == {"/world_rays", "/world_rays/others"}
+        made.display("World").set_property(("Lidar Rays",), "None")
+        assert listened(made) == set()
+        assert sent(made, "world_rays") is None
+
+
+async def test_cameras_are_sent_with_what_they_see():
+    async with world(config("world")) as made:
+        await Simulation(made).describe(WORLD.replace("</world>", SEEING), links=4)
+        (camera,) = sent(made, "world_scene").fields["cameras"]
+        assert (camera["name"], camera["visualized"]) == ("scout::head::eye", False)
+        assert [camera[side] for side in ("left", "right", "up", "down")] == pytest.approx([1, 1, 0.5, 0.5])
+        assert (camera["near"], camera["far"]) == (0.5, 8.0)

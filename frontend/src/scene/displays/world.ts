@@ -6,13 +6,17 @@ import { dataPose, poseMatrix } from "../pose";
 import { RobotDrawing } from "../robot/robot-drawing";
 import { WorldLights } from "../world-lights";
 import type { Drawing, DrawingContext } from "./drawing";
+import { Displacement, modelOf } from "./world-models";
+import { WorldSensors } from "./world-sensors";
 
 /** How a world lights the scene by itself: whether with shadows, and the colour behind it, if it has one. */
 export interface OwnLight {
   readonly shadows: boolean;
   readonly background: string | null;
 }
-import { Displacement, modelOf } from "./world-models";
+
+/** Begins the keys of the rays of lidars. */
+const RAYS = "rays ";
 
 /** linkwright/World: the links of all models of a simulated world. */
 export class WorldDrawing implements Drawing {
@@ -25,11 +29,12 @@ export class WorldDrawing implements Drawing {
   private styleIsOld = true;
   private poseIsOld = true;
   private readonly lights: WorldLights;
+  private readonly sensors = new WorldSensors();
 
   constructor(private readonly context: DrawingContext) {
     this.root.matrixAutoUpdate = false;
     this.lights = new WorldLights(() => context.hasGpu());
-    this.root.add(this.lights.root);
+    this.root.add(this.lights.root, this.sensors.root);
   }
 
   dataChanged(data: DisplayData): void {
@@ -39,11 +44,18 @@ export class WorldDrawing implements Drawing {
       if (this.placed) this.displacement.compare(this.placed.content.poses, content.poses, this.rowOf);
       this.placed = { data, content };
       this.poseIsOld = true;
+    } else if (content.kind === "world_rays") {
+      this.sensors.measured(content);
+      this.poseIsOld = true;
     }
   }
 
   dataForgotten(key: string | null): void {
-    if (key !== null) return;
+    if (key !== null) {
+      if (key.startsWith(RAYS)) this.sensors.forget(key.slice(RAYS.length));
+      return;
+    }
+    this.sensors.dispose();
     this.shown?.dispose();
     this.shown = this.scene = this.placed = null;
   }
@@ -60,9 +72,11 @@ export class WorldDrawing implements Drawing {
       this.lights.style(context.display.rows, this.scene);
       shown.style(context.display.rows, context.session.inspect.current.contrast, this.lights.isLit);
       this.lights.shade(shown.root);
+      this.sensors.style(context.display.rows);
     }
     if (this.styleIsOld || this.poseIsOld) {
       this.place(shown);
+      this.sensors.place((link) => this.poseOf(link));
       this.lights.place(this.world(), (link) => this.poseOf(link), () => shown.bounds());
     }
     this.styleIsOld = this.poseIsOld = false;
@@ -151,12 +165,13 @@ export class WorldDrawing implements Drawing {
   }
 
   inspect(): object {
-    return { revision: this.scene?.revision ?? 0, ...this.shown?.tell(), light: this.lights.tell() };
+    return { revision: this.scene?.revision ?? 0, ...this.shown?.tell(), light: this.lights.tell(), sensors: this.sensors.tell() };
   }
 
   dispose(): void {
     this.shown?.dispose();
     this.lights.dispose();
+    this.sensors.dispose();
   }
 
   private place(shown: RobotDrawing): void {
@@ -172,7 +187,6 @@ export class WorldDrawing implements Drawing {
       return true;
     });
   }
-
 
   private take(scene: WorldScene): void {
     const { session, display, meshes, invalidate } = this.context;
@@ -190,6 +204,7 @@ export class WorldDrawing implements Drawing {
       },
     );
     this.root.add(this.shown.root);
+    this.sensors.take(scene);
     this.styleIsOld = true;
   }
 }

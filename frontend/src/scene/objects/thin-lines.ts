@@ -14,6 +14,7 @@ import { segmentsOf } from "./ribbons";
 export class ThinLines {
   readonly root = new LineSegments<BufferGeometry, LineBasicMaterial>(new BufferGeometry(), new LineBasicMaterial());
   private opacity = 1;
+  private isShown = true;
 
   constructor() {
     this.root.frustumCulled = false;
@@ -26,8 +27,19 @@ export class ThinLines {
     if (colors) geometry.setAttribute("color", new BufferAttribute(colors, 4));
     this.root.geometry.dispose();
     this.root.geometry = geometry;
-    this.root.visible = segments.length > 0;
+    this.show();
     this.settle();
+  }
+
+  /** How many segments there are. */
+  get count(): number {
+    return (this.root.geometry.attributes["position"]?.count ?? 0) / 2;
+  }
+
+  /** Whether they are to be seen. */
+  set shown(shown: boolean) {
+    this.isShown = shown;
+    this.show();
   }
 
   /** Lines through the points of each strip; `colors` r g b a of each point, 0 to 1, multiplied with the style's. */
@@ -54,6 +66,10 @@ export class ThinLines {
     this.root.removeFromParent();
     this.root.geometry.dispose();
     this.root.material.dispose();
+  }
+
+  private show(): void {
+    this.root.visible = this.isShown && this.count > 0;
   }
 
   private settle(): void {

@@ -40,30 +40,10 @@ class Scan:
     intensities: Array
 
 
-@dataclass(frozen=True, slots=True)
-class Angles:
-    """The directions of rays in one plane: from `first`, in rad, by `step`."""
-
-    first: float
-    last: float
-    count: int
-
-    @property
-    def step(self) -> float:
-        """The angle from one ray to the next; 0 for a single ray."""
-        return (self.last - self.first) / (self.count - 1) if self.count > 1 else 0.0
-
-    @property
-    def array(self) -> Array:
-        """All of them: shape (count,)."""
-        angles: Array = self.first + self.step * np.arange(self.count, dtype=np.float64)
-        return angles
-
-
-def angles_of(sweep: Sweep) -> Angles:
-    """The rays that a sweep describes; a resolution makes more or fewer of them."""
-    count = max(round(sweep.samples * sweep.resolution), 1) if sweep.resolution > 0 else max(sweep.samples, 1)
-    return Angles(sweep.min_angle, sweep.max_angle, count)
+def angles_of(sweep: Sweep) -> Array:
+    """The directions of the rays that a sweep describes, in rad: shape (count,)."""
+    angles: Array = sweep.min_angle + sweep.step * np.arange(sweep.count, dtype=np.float64)
+    return angles
 
 
 class LidarSensor:
@@ -80,8 +60,8 @@ class LidarSensor:
     """
 
     def __init__(self, mount: Mount, lidar: Lidar, *, sees_visuals: bool, generator: np.random.Generator) -> None:
-        self.horizontal = angles_of(lidar.horizontal)
-        self.vertical = angles_of(lidar.vertical)
+        self.horizontal = lidar.horizontal
+        self.vertical = lidar.vertical
         self.range_min = max(lidar.range.min, 0.0)
         self.range_max = lidar.range.max if lidar.range.max > self.range_min else float("inf")
         self._mount = mount
@@ -96,7 +76,7 @@ class LidarSensor:
     @cached_property
     def directions(self) -> Array:
         """Where its rays go, in its own frame: unit vectors, shape (vertical * horizontal, 3)."""
-        up, across = np.meshgrid(self.vertical.array, self.horizontal.array, indexing="ij")
+        up, across = np.meshgrid(angles_of(self.vertical), angles_of(self.horizontal), indexing="ij")
         x, y, z = np.cos(up) * np.cos(across), np.cos(up) * np.sin(across), np.sin(up)
         rays: Array = np.stack([x, y, z], axis=-1).reshape(-1, 3)
         return rays

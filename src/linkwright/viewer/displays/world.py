@@ -22,14 +22,17 @@ from linkwright.viewer.config.rviz_config import DisplayConfig
 from linkwright.viewer.config.schema import Path, PropertySpec, alpha, topic_spec
 from linkwright.viewer.displays.base.display import DisplayHost, Pose
 from linkwright.viewer.displays.base.topic_display import SideTopic, TopicDisplay
+from linkwright.viewer.displays.world_rays import CHOICES, LidarRays
 from linkwright.viewer.lights import lights_of
 from linkwright.viewer.protocol.displays import StatusLevel
 from linkwright.viewer.protocol.robot import MeshStatus
-from linkwright.viewer.protocol.worlds import WorldPoses, WorldScene
+from linkwright.viewer.protocol.worlds import WorldPoses, WorldRays, WorldScene
+from linkwright.viewer.sensors import sensors_of
 from linkwright.viewer.web.files import MeshIndex
 from linkwright.viewer.worlds import WorldContent, content_of
 
 _POSES = "Poses Topic"
+_RAYS_TOPIC, _RAYS, _FRUSTUMS = "Rays Topic", "Lidar Rays", "Camera Frustums"
 _FRAME = "Frame"
 _WORLD = "World"
 _SCENE_KEY, _POSES_KEY = "scene", "poses"
@@ -69,11 +72,31 @@ class WorldDisplay(TopicDisplay):
             options=("Automatic", "Camera", "Studio", "World"),
         ),
         PropertySpec("Shadows", "bool", True, "Let the lights of the studio and of the world cast shadows."),
+        PropertySpec(
+            _RAYS,
+            "enum",
+            CHOICES[0],
+            "Draw the rays of lidars as far as they go: of those with <visualize>true</visualize>, of all, or of none. "
+            "Of a lidar with very many rays some are drawn.",
+            options=CHOICES,
+        ),
+        PropertySpec(
+            _RAYS_TOPIC, "string", "/world_rays", "The topic that carries the rays, as sensor_msgs/msg/LaserScan."
+        ),
+        PropertySpec(
+            _FRUSTUMS,
+            "enum",
+            CHOICES[0],
+            "Draw what cameras see, from the near to the far plane: of those with <visualize>true</visualize>, of all, "
+            "or of none.",
+            options=CHOICES,
+        ),
     )
 
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
         super().__init__(host, identity, config)
         self._side = SideTopic(host, "tf2_msgs/msg/TFMessage", self._moved)
+        self._rays = LidarRays(host, self._show_rays, lambda lidar: self.forget(_rays_key(lidar)))
         self._reading: asyncio.Task[None] | None = None
         self._revision = 0
         self._content = WorldContent()
@@ -96,6 +119,7 @@ class WorldDisplay(TopicDisplay):
         """Leave both topics, and withdraw the world's files from pages."""
         super().stop()
         self._side.close()
+        self._rays.close()
         self.context.meshes.replace(self.id, {})
 
     def changed(self, path: Path) -> None:
@@ -103,16 +127,20 @@ class WorldDisplay(TopicDisplay):
         super().changed(path)
         if path == (_POSES,):
             self._follow()
+        elif path in ((_RAYS,), (_RAYS_TOPIC,)):
+            self._follow_rays()
 
     def enabled_changed(self) -> None:
         """Listen only while the display is enabled."""
         super().enabled_changed()
         self._follow()
+        self._follow_rays()
 
     def time_changed(self) -> None:
         """Take what came while time stood still."""
         super().time_changed()
         self._side.go_on()
+        self._rays.go_on()
 
     def time_reset(self) -> None:
         """The world is what it was: nobody would say it again."""
@@ -122,6 +150,7 @@ class WorldDisplay(TopicDisplay):
         self._cancel()
         self._content, self._rows_of, self._sent = WorldContent(), {}, ()
         self._page_problems.clear()
+        self._rays.describe(())
         self.context.meshes.replace(self.id, {})
         self.forget()
 
@@ -159,6 +188,15 @@ class WorldDisplay(TopicDisplay):
         if problem is not None:
             self.say(_POSES, "error", problem)
 
+    def _follow_rays(self) -> None:
+        problem = self._rays.follow(
+            self.properties.text(_RAYS_TOPIC).strip() if self.enabled else "", self.properties.text(_RAYS)
+        )
+        if problem is None:
+            self.unsay(_RAYS_TOPIC)
+        else:
+            self.say(_RAYS_TOPIC, "error", problem)
+
     # --- descriptions ------------------------------------------------------------------------------------------
 
     def take(self, message: Any, pose: Pose | None) -> None:  # noqa: ARG002 - descriptions are in no frame
@@ -192,6 +230,7 @@ class WorldDisplay(TopicDisplay):
         self._rows_of = {link.name: row for row, link in enumerate(content.links)}
         self._anchors = _anchors(content)
         self._page_problems.clear()
+        lidars, cameras = sensors_of(world)
         scene = WorldScene(
             self._revision,
             world.name,
@@ -200,8 +239,12 @@ class WorldDisplay(TopicDisplay):
             list(world.scene.ambient[:3]),
             list(world.scene.background[:3]),
             world.scene.shadows,
+            [each.scene for each in lidars],
+            cameras,
         )
+        self._rays.describe(lidars)
         self.send(scene, key=_SCENE_KEY)
+        self._follow_rays()
         self.say(_WORLD, "ok", f"{len(world.models)} models, {len(content.links)} links")
         self._tell_problems()
         self._show_poses()
@@ -255,6 +298,9 @@ class WorldDisplay(TopicDisplay):
         content = WorldPoses(self._revision, self._poses.astype(np.float32))
         self.send(content, key=_POSES_KEY, frame=frame, pose=pose, stamp_ns=self._stamp_ns)
 
+    def _show_rays(self, rays: WorldRays) -> None:
+        self.send(rays, key=_rays_key(rays.lidar))
+
     def _locate(self) -> None:
         """Find out where the world is, as of the last poses."""
         if not self._content.links:
@@ -302,6 +348,10 @@ def _content(text: str, index: MeshIndex) -> tuple[World, WorldContent]:
         raise LinkwrightError(*reading.diagnostics)
     world = sdf.worlds[0] if sdf.worlds else World(sdf.models[0].name, models=sdf.models)
     return world, content_of(world, index)
+
+
+def _rays_key(lidar: str) -> str:
+    return f"rays {lidar}"
 
 
 def _unscoped(name: str) -> str:

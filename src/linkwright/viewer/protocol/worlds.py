@@ -30,6 +30,53 @@ class LightScene(Record):
     cone: list[float] = field(default_factory=lambda: [0.0, 0.0])
 
 
+class RayAngles(Record):
+    """The directions of rays in one plane: `count` of them, from `first` on by `step`, in rad."""
+
+    first: float
+    step: float
+    count: int
+
+
+class LidarScene(Record):
+    """A lidar of a world, with those of its rays that are drawn.
+
+    `name` is its own with those of model and link, `position` (m) and `quaternion` (x y z w) are in the frame of the
+    link. It looks along x; horizontal angles are about z, vertical ones upwards. `nearest` and `farthest` is what it
+    measures, in m. `visualized` tells whether it says itself that it is to be drawn.
+    """
+
+    name: str
+    link: str
+    position: list[float]
+    quaternion: list[float]
+    visualized: bool
+    horizontal: RayAngles
+    vertical: RayAngles
+    nearest: float
+    farthest: float
+
+
+class CameraScene(Record):
+    """A camera of a world; as `LidarScene`, and it looks along x with z up.
+
+    `left`, `right`, `up` and `down` are how far its picture goes at a distance of 1; it sees from `near` to `far`, in
+    m along x.
+    """
+
+    name: str
+    link: str
+    position: list[float]
+    quaternion: list[float]
+    visualized: bool
+    left: float
+    right: float
+    up: float
+    down: float
+    near: float
+    far: float
+
+
 class WorldScene(DataContent):
     """World: what is drawn; `revision` counts descriptions.
 
@@ -43,6 +90,8 @@ class WorldScene(DataContent):
     ambient: list[float]
     background: list[float]
     shadows: bool
+    lidars: list[LidarScene]
+    cameras: list[CameraScene]
 
 
 class WorldPoses(DataContent):
@@ -53,3 +102,13 @@ class WorldPoses(DataContent):
 
     revision: int
     poses: Floats
+
+
+class WorldRays(DataContent):
+    """World: how far the rays of the lidar with this name go, m, shape (vertical * horizontal,).
+
+    inf for those that met nothing, -inf for those that met something too near to be measured.
+    """
+
+    lidar: str
+    ranges: Floats

@@ -52,6 +52,10 @@ class SensorPlugin(SimulatedPlugin[P], ABC, Generic[P]):
     def is_wanted(self) -> bool:
         """Whether anybody listens."""
 
+    def is_needed(self) -> bool:
+        """Whether it is to measure."""
+        return self.is_wanted()
+
     @abstractmethod
     def measure(self) -> None:
         """Measure and publish."""
@@ -98,7 +102,7 @@ class SensorPlugin(SimulatedPlugin[P], ABC, Generic[P]):
         return get_message(kind)(header=Header(stamp=self.stamp(), frame_id=frame))
 
     def _measure(self) -> None:
-        if self.is_wanted():
+        if self.is_needed():
             self.measure()
 
 

@@ -6,6 +6,7 @@ Source: gazebo_ros_pkgs for ROS 2 (types of output, the middle row of several, w
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from dataclasses import dataclass
 from typing import Any, ClassVar, Generic, TypeVar
 
@@ -23,11 +24,41 @@ from linkwright.simulation.sensors.lidar import LidarSensor, Scan
 
 P = TypeVar("P")
 _SCAN, _CLOUD = "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/PointCloud2"
+RAYS, OTHER_RAYS = "/world_rays", "/world_rays/others"
+"""The rays of lidars with ``<visualize>true</visualize>``, and of those without."""
 _RADIATIONS = {"ultrasound": 0, "infrared": 1}
 
 
 class _LidarPlugin(SensorPlugin[P], Generic[P]):
-    """A lidar, whatever it publishes."""
+    """A lidar, whatever it publishes; its rays are told as well while somebody draws them."""
+
+    def start(self) -> None:
+        """Make lidar and topics."""
+        said = self.sensor.sensor.visualize
+        self._rays = self.node.publisher(_SCAN, RAYS if said else OTHER_RAYS, SENSOR_DATA_QOS)
+        super().start()
+
+    def is_needed(self) -> bool:
+        """Whether anybody listens to it or looks at its rays."""
+        return self.is_wanted() or self._rays.is_wanted
+
+    def measure(self) -> None:
+        """Measure, and publish that to who listens."""
+        scan = self.lidar.measure()
+        if self._rays.is_wanted:
+            self._rays.publish(self._rays_message(scan))
+        if self.is_wanted():
+            self.publish(scan)
+
+    @abstractmethod
+    def publish(self, scan: Scan) -> None:
+        """Publish what was measured."""
+
+    def _rays_message(self, scan: Scan) -> Any:
+        """All rows of what was measured, one after the other, from the lowest; the frame is the name of the sensor."""
+        message = self._bare_scan(self.sensor.name)
+        message.ranges = scan.ranges.ravel().astype(np.float32)
+        return message
 
     def make_sensor(self) -> None:
         """Make the lidar."""
@@ -39,13 +70,17 @@ class _LidarPlugin(SensorPlugin[P], Generic[P]):
 
     def scan_message(self, frame: str, scan: Scan, least_intensity: float = 0.0) -> Any:
         """The middle row of what was measured."""
-        lidar, row = self.lidar, self.lidar.vertical.count // 2
-        message = self.message(_SCAN, frame)
-        message.angle_min, message.angle_max = float(lidar.horizontal.first), float(lidar.horizontal.last)
-        message.angle_increment = float(lidar.horizontal.step)
-        message.range_min, message.range_max = float(lidar.range_min), float(lidar.range_max)
+        message, row = self._bare_scan(frame), self.lidar.vertical.count // 2
         message.ranges = scan.ranges[row].astype(np.float32)
         message.intensities = np.maximum(scan.intensities[row], least_intensity).astype(np.float32)
+        return message
+
+    def _bare_scan(self, frame: str) -> Any:
+        """A scan without distances."""
+        lidar, message = self.lidar, self.message(_SCAN, frame)
+        message.angle_min, message.angle_max = float(lidar.horizontal.min_angle), float(lidar.horizontal.max_angle)
+        message.angle_increment = float(lidar.horizontal.step)
+        message.range_min, message.range_max = float(lidar.range_min), float(lidar.range_max)
         return message
 
     def points(self, scan: Scan) -> Any:
@@ -72,7 +107,7 @@ class _LidarPlugin(SensorPlugin[P], Generic[P]):
         """The least distance."""
         message = self.message("sensor_msgs/msg/Range", frame)
         lidar = self.lidar
-        spans = [angles.last - angles.first for angles in (lidar.horizontal, lidar.vertical)]
+        spans = [sweep.max_angle - sweep.min_angle for sweep in (lidar.horizontal, lidar.vertical)]
         message.radiation_type = _RADIATIONS.get(radiation.lower(), 1)
         message.field_of_view = float(max(spans))
         message.min_range, message.max_range = float(lidar.range_min), float(lidar.range_max)
@@ -117,9 +152,9 @@ class ClassicRaySensor(_OneLidar[RayParameters]):
         self._publish = kinds[kind]
         self.output = self.node.publisher(f"sensor_msgs/msg/{kind}", "~/out", SENSOR_QOS)
 
-    def measure(self) -> None:
-        """Measure and publish."""
-        self.output.publish(self._publish(self.lidar.measure()))
+    def publish(self, scan: Scan) -> None:
+        """Publish it as what is asked for."""
+        self.output.publish(self._publish(scan))
 
     def _scan(self, scan: Scan) -> Any:
         return self.scan_message(self._frame, scan, self.parameters.min_intensity)
@@ -160,9 +195,9 @@ class OldLaser(_OneLidar[LaserParameters]):
         """That of the sensor, or of the plugin."""
         return self.sensor.sensor.update_rate or self.parameters.update_rate
 
-    def measure(self) -> None:
-        """Measure and publish."""
-        self.output.publish(self.told(self.classic_frame(), self.lidar.measure()))
+    def publish(self, scan: Scan) -> None:
+        """Publish it."""
+        self.output.publish(self.told(self.classic_frame(), scan))
 
     def told(self, frame: str, scan: Scan) -> Any:
         """The message of what was measured."""
@@ -218,9 +253,9 @@ class Velodyne(_OneLidar[VelodyneParameters]):
         """Make the topic."""
         self.output = self.node.publisher(_CLOUD, self.parameters.topic_name, SENSOR_QOS)
 
-    def measure(self) -> None:
-        """Measure and publish."""
-        said, scan = self.parameters, self.lidar.measure()
+    def publish(self, scan: Scan) -> None:
+        """Publish it as a cloud."""
+        said = self.parameters
         message = self.message(_CLOUD, self.classic_frame())
         if said.organize_cloud:
             intensities = np.maximum(scan.intensities.ravel(), said.min_intensity)
@@ -249,9 +284,8 @@ class GzLidar(_LidarPlugin[NoParameters]):
         """Whether anybody listens."""
         return self._scans.is_wanted or self._clouds.is_wanted
 
-    def measure(self) -> None:
-        """Measure and publish."""
-        scan = self.lidar.measure()
+    def publish(self, scan: Scan) -> None:
+        """Publish scan and points."""
         self._scans.publish(self.scan_message(self._frame, scan))
         if self._clouds.is_wanted:
             message = self.message(_CLOUD, self._frame)

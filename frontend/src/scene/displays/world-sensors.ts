@@ -1,0 +1,144 @@
+import { Group, Matrix4, Quaternion, Vector3 } from "three";
+import type { CameraScene, LidarScene, WorldRays, WorldScene } from "../../protocol";
+import type { PropertyRows } from "../../state/properties";
+import { ThinLines } from "../objects/thin-lines";
+
+type Color = readonly [number, number, number, number];
+
+/** Rays where they begin, close together; where they hit something; and those that do not. r g b a from 0 to 1. */
+const BEGIN: Color = [0.25, 0.6, 1, 0.12];
+const HIT: Color = [0.25, 0.6, 1, 0.6];
+const MISS: Color = [0.25, 0.6, 1, 0.1];
+/** The edges of what a camera sees, those between the planes near the camera, and far away. */
+const FRUSTUM: Color = [1, 0.75, 0.3, 0.9];
+const FAR_OFF: Color = [1, 0.75, 0.3, 0.35];
+/** m. */
+const NEAR_BY = 1;
+
+/** What stands in the frame of a sensor, where its link is. */
+interface Mark {
+  readonly said: LidarScene | CameraScene;
+  readonly local: Matrix4;
+  readonly lines: ThinLines;
+}
+
+/** The rays of the lidars of a world and the frustums of its cameras. */
+export class WorldSensors {
+  readonly root = new Group();
+  private lidars = new Map<string, Mark & { said: LidarScene }>();
+  private cameras: Mark[] = [];
+
+  constructor() {
+    this.root.matrixAutoUpdate = false;
+  }
+
+  take(scene: WorldScene): void {
+    this.dispose();
+    for (const said of scene.lidars) this.lidars.set(said.name, { ...this.mark(said), said });
+    this.cameras = scene.cameras.map((said) => {
+      const mark = this.mark(said);
+      mark.lines.setSegments(...frustumOf(said));
+      return mark;
+    });
+  }
+
+  measured({ lidar, ranges }: WorldRays): void {
+    const mark = this.lidars.get(lidar);
+    if (!mark || ranges.length !== mark.said.horizontal.count * mark.said.vertical.count) return;
+    mark.lines.setSegments(...raysOf(mark.said, ranges));
+  }
+
+  /** The rays of a lidar are to be drawn no more. */
+  forget(lidar: string): void {
+    this.lidars.get(lidar)?.lines.setSegments(new Float32Array(0));
+  }
+
+  /** Draws only those that the display's properties choose. */
+  style(rows: PropertyRows): void {
+    const [rays, frustums] = [rows.text("Visualized", "Lidar Rays"), rows.text("Visualized", "Camera Frustums")];
+    for (const { said, lines } of this.lidars.values()) lines.shown = isChosen(rays, said);
+    for (const { said, lines } of this.cameras) lines.shown = isChosen(frustums, said);
+  }
+
+  /** Puts each where its link is in the fixed frame. */
+  place(poseOf: (link: string) => Matrix4 | null): void {
+    for (const { said, local, lines } of [...this.lidars.values(), ...this.cameras]) {
+      if (!lines.root.visible) continue;
+      const pose = poseOf(said.link);
+      if (pose) lines.root.matrix.multiplyMatrices(pose, local);
+    }
+  }
+
+  /** What is drawn, for tests: of each lidar how many rays, and the cameras. */
+  tell(): object {
+    const drawn = ({ lines }: Mark): boolean => lines.root.visible;
+    const rays: Record<string, number> = {};
+    for (const mark of this.lidars.values()) if (drawn(mark)) rays[mark.said.name] = mark.lines.count;
+    return { rays, frustums: this.cameras.filter(drawn).map(({ said }) => said.name) };
+  }
+
+  dispose(): void {
+    for (const { lines } of [...this.lidars.values(), ...this.cameras]) lines.dispose();
+    this.lidars.clear();
+    this.cameras = [];
+  }
+
+  private mark(said: LidarScene | CameraScene): Mark {
+    const local = new Matrix4().compose(
+      new Vector3().fromArray(said.position),
+      new Quaternion().fromArray(said.quaternion),
+      new Vector3(1, 1, 1),
+    );
+    const lines = new ThinLines();
+    lines.root.matrixAutoUpdate = false;
+    this.root.add(lines.root);
+    return { said, local, lines };
+  }
+}
+
+function isChosen(choice: string, { visualized }: LidarScene | CameraScene): boolean {
+  return choice === "All" || (choice === "Visualized" && visualized);
+}
+
+/** Segments and colours of rays, from the nearest distance that is measured to what they met, or the farthest. */
+function raysOf({ horizontal, vertical, nearest, farthest }: LidarScene, ranges: Float32Array): [Float32Array, Float32Array] {
+  const segments = new Float32Array(ranges.length * 6);
+  const colors = new Float32Array(ranges.length * 8);
+  for (let row = 0, ray = 0; row < vertical.count; row++) {
+    const up = vertical.first + row * vertical.step;
+    const [flat, z] = [Math.cos(up), Math.sin(up)];
+    for (let column = 0; column < horizontal.count; column++, ray++) {
+      const across = horizontal.first + column * horizontal.step;
+      const [x, y] = [flat * Math.cos(across), flat * Math.sin(across)];
+      const range = ranges[ray] ?? Infinity;
+      const length = Math.min(Math.max(range, nearest), farthest);
+      segments.set([nearest * x, nearest * y, nearest * z, length * x, length * y, length * z], ray * 6);
+      colors.set(BEGIN, ray * 8);
+      colors.set(range < farthest ? HIT : MISS, ray * 8 + 4);
+    }
+  }
+  return [segments, colors];
+}
+
+/** Segments and colours of what a camera sees: the near and the far plane, and the edges from its eye. */
+function frustumOf({ left, right, up, down, near, far }: CameraScene): [Float32Array, Float32Array] {
+  const segments: number[] = [];
+  const colors: number[] = [];
+  const line = (from: readonly number[], to: readonly number[], color: Color): void => {
+    segments.push(...from, ...to);
+    colors.push(...color, ...color);
+  };
+  const corners = [[left, up], [-right, up], [-right, -down], [left, -down]] as const;
+  let [beforeY, beforeZ] = corners[3];
+  for (const [y, z] of corners) {
+    const at = (x: number): number[] => [x, x * y, x * z];
+    let reached = Math.min(Math.max(NEAR_BY, near), far);
+    line([0, 0, 0], at(reached), FRUSTUM);
+    // In pieces: where the processor draws, a line that goes far behind who looks is not drawn at all.
+    for (; reached < far; reached *= 2) line(at(reached), at(Math.min(2 * reached, far)), FAR_OFF);
+    line(at(near), [near, near * beforeY, near * beforeZ], FRUSTUM);
+    line(at(far), [far, far * beforeY, far * beforeZ], FAR_OFF);
+    [beforeY, beforeZ] = [y, z];
+  }
+  return [new Float32Array(segments), new Float32Array(colors)];
+}

@@ -1,0 +1,88 @@
+"""The rays of the lidars of a simulated world, as the simulation measures them, while they are drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Any
+
+import numpy as np
+
+from linkwright.graph import SENSOR_DATA_QOS
+from linkwright.viewer.displays.base.display import DisplayHost
+from linkwright.viewer.displays.base.topic_display import SideTopic
+from linkwright.viewer.protocol.worlds import WorldRays
+from linkwright.viewer.sensors import ShownLidar
+
+CHOICES = ("Visualized", "All", "None")
+"""Which sensors are drawn: those that say so themselves, all, or none."""
+_OTHERS = "/others"
+"""Ends the topic of the lidars that do not say so."""
+
+
+class LidarRays:
+    """Listens to measured rays, and only while some of them are drawn.
+
+    Args:
+        host: of the display.
+        show: called with the rays of a lidar that are drawn.
+        hide: called with the name of a lidar whose rays are drawn no more.
+    """
+
+    def __init__(self, host: DisplayHost, show: Callable[[WorldRays], None], hide: Callable[[str], None]) -> None:
+        self._show, self._hide = show, hide
+        self._lidars: dict[str, ShownLidar] = {}
+        self._shown: set[str] = set()
+        self._topics: dict[str, SideTopic] = {}
+        self._host = host
+
+    def describe(self, lidars: Iterable[ShownLidar]) -> None:
+        """Take the lidars of a world."""
+        self._lidars = {each.scene.name: each for each in lidars}
+        self._let_go(set())
+
+    def follow(self, topic: str, choice: str) -> str | None:
+        """Listen to what is needed.
+
+        Args:
+            topic: of the rays; empty for none.
+            choice: which of the lidars are drawn, see `CHOICES`.
+
+        Returns:
+            RViz's words for what is wrong with the topic, or None.
+        """
+        wanted: dict[str, list[str]] = {}
+        for name, lidar in self._lidars.items():
+            if topic and (choice == "All" or (choice == "Visualized" and lidar.scene.visualized)):
+                wanted.setdefault(topic if lidar.scene.visualized else topic + _OTHERS, []).append(name)
+        self._let_go({name for names in wanted.values() for name in names})
+        for each in self._topics.keys() - wanted.keys():
+            self._topics.pop(each).close()
+        problem = None
+        for each in wanted.keys() - self._topics.keys():
+            self._topics[each] = SideTopic(self._host, "sensor_msgs/msg/LaserScan", self._measured)
+            problem = self._topics[each].listen(each, SENSOR_DATA_QOS) or problem
+        return problem
+
+    def go_on(self) -> None:
+        """Take what came while time stood still."""
+        for topic in self._topics.values():
+            topic.go_on()
+
+    def close(self) -> None:
+        """Listen no more."""
+        self.follow("", "")
+
+    def _let_go(self, kept: set[str]) -> None:
+        for name in self._shown - kept:
+            self._hide(name)
+        self._shown &= kept
+
+    def _measured(self, message: Any) -> None:
+        name = message.header.frame_id
+        lidar = self._lidars.get(name)
+        ranges = np.asarray(message.ranges, dtype=np.float32)
+        if lidar is None or ranges.size != lidar.measured[0] * lidar.measured[1]:
+            return
+        rows, columns = lidar.every
+        self._shown.add(name)
+        self._show(WorldRays(name, ranges.reshape(lidar.measured)[::rows, ::columns].ravel()))
