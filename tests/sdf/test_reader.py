@@ -415,3 +415,92 @@ def test_files_of_gazebo_classic_have_gazebo_as_their_root_or_models_in_names_of
     assert reading.sdf is not None
     assert reading.diagnostics == ()
     assert [each.name for each in reading.sdf.models[0].links] == ["base", "laser::link"]
+
+
+OLD = """<gazebo version="1.0">
+  <world name="w">
+    <scene><ambient rgba="1 0 0 1"/><shadows enabled="false"/></scene>
+    <physics type="ode" update_rate="500"><gravity xyz="0 0 -1.6"/></physics>
+    <model name="m" static="false">
+      <origin pose="1 2 3 0 0 0"/>
+      <link name="a" gravity="false">
+        <damping linear="0.1" angular="0.2"/>
+        <inertial mass="2.0"><inertia ixx="3" ixy="0" ixz="0" iyy="3" iyz="0" izz="3"/></inertial>
+        <collision name="c">
+          <origin pose="0 0 1 0 0 0"/>
+          <geometry><box size="1 2 3"/></geometry>
+          <surface><friction><ode mu="0.3" mu2="0.4"/></friction></surface>
+        </collision>
+        <visual name="v" cast_shadows="false">
+          <geometry><mesh filename="a.dae" scale="2 2 2"/></geometry>
+          <material script="Gazebo/Grey"/>
+        </visual>
+        <sensor name="s" type="camera" update_rate="10">
+          <camera><horizontal_fov angle="1.1"/><image width="32" height="24" format="R8G8B8"/></camera>
+        </sensor>
+      </link>
+      <link name="b"/>
+      <joint name="j" type="revolute">
+        <parent link="a"/>
+        <child link="b"/>
+        <axis xyz="0 1 0"><limit lower="-1" upper="1" effort="5" velocity="2"/></axis>
+      </joint>
+      <plugin name="p" filename="lib.so" origin="here"><origin pose="x"/></plugin>
+    </model>
+    <light name="l" type="directional"><origin pose="0 0 10 0 0 0"/><diffuse rgba=".5 .5 .5 1"/></light>
+  </world>
+</gazebo>"""
+
+
+def test_what_sdf_1_0_writes_in_attributes_is_read():
+    document, _ = parse_as_gazebo(OLD, "old.world")
+    reading = read(document)
+    assert reading.diagnostics == ()
+    assert reading.sdf is not None
+    (found,) = reading.sdf.worlds
+    assert found.scene.ambient == (1.0, 0.0, 0.0, 1.0)
+    assert not found.scene.shadows
+    assert found.physics[0].gravity == (0.0, 0.0, -1.6)
+    assert found.physics[0].real_time_update_rate == 500
+    (made,) = found.models
+    assert made.pose.pose.xyz == (1.0, 2.0, 3.0)
+    link = made.links[0]
+    assert link.gravity is False
+    assert link.velocity_decay.angular == 0.2
+    assert link.inertial is not None
+    assert link.inertial.mass == 2.0
+    assert link.inertial.inertia.ixx == 3.0
+    assert link.collisions[0].pose.pose.xyz == (0.0, 0.0, 1.0)
+    assert link.collisions[0].geometry == Box((1.0, 2.0, 3.0))
+    assert link.collisions[0].surface.friction.mu == 0.3
+    assert link.visuals[0].geometry == shapes.Mesh("a.dae", (2.0, 2.0, 2.0))
+    assert link.visuals[0].material is not None
+    assert link.visuals[0].material.script is not None
+    assert link.visuals[0].material.script.name == "Gazebo/Grey"
+    assert link.sensors[0].update_rate == 10
+    camera = link.sensors[0].cameras[0]
+    assert camera.horizontal_fov == 1.1
+    assert camera.image.width == 32
+    joint = made.joints[0]
+    assert (joint.parent, joint.child) == ("a", "b")
+    assert joint.axis is not None
+    assert joint.axis.xyz == (0.0, 1.0, 0.0)
+    assert joint.axis.limit.upper == 1.0
+    assert found.lights[0].pose.pose.xyz == (0.0, 0.0, 10.0)
+    assert made.plugins[0].element is not None
+    assert made.plugins[0].element.first("origin") is not None
+
+
+def test_what_is_wrong_in_an_attribute_of_sdf_1_0_is_told_of_its_element():
+    text = OLD.replace('<box size="1 2 3"/>', '<box size="1 2"/>')
+    document, _ = parse_as_gazebo(text, "old.world")
+    (found,) = read(document).diagnostics
+    assert found.code == "SDF121"
+    assert found.span is not None
+    assert text.splitlines()[found.span.line - 1][found.span.column - 1 :].startswith("<box")
+
+
+def test_frames_in_whatever_has_a_pose_are_let_be():
+    frame = '<frame name="f"><pose>0 0 0 0 0 0</pose></frame>'
+    box = "<geometry><box><size>1 1 1</size></box></geometry>"
+    model(f'<link name="a">{frame}<visual name="v">{frame}{box}</visual></link>')

@@ -13,15 +13,17 @@ from typing import Any
 
 from linkwright.diagnostics import Diagnostic, did_you_mean, phrase
 from linkwright.schema import ElementRule, reader_of
-from linkwright.sdf.poses import SEPARATOR, WORLD
+from linkwright.sdf.old_words import has_old_words, in_words_of_today
+from linkwright.sdf.poses import POSE, SEPARATOR, WORLD
 from linkwright.sdf.report import NEWEST, SdfReport
 from linkwright.sdf.worlds import SDF, Sdf
 from linkwright.xmltree import Document, Element
 
 _OLD_ROOT = "gazebo"
 """The root of SDF 1.0 to 1.2."""
+_FRAME = "frame"
+"""What whatever has a pose could have in SDF 1.5 and 1.6."""
 _VERSION = re.compile(r"1\.([0-9]{1,2})").fullmatch
-_OLDEST_MINOR = 3
 _NEWEST_FLAT_MINOR = 7
 _DEEPEST = 200
 """Elements in elements; a model of ten models in each other has twenty."""
@@ -36,10 +38,11 @@ _OTHER_FORMATS = {
 }
 
 WITHOUT_EFFECT = {
+    "actor": {"static"},
     "world": {"audio", "gui", "population"},
-    "physics": {"bullet", "dart", "dt", "ode", "profile", "simbody", "update_rate"},
+    "physics": {"bullet", "dart", "dt", "magnetic_field", "ode", "profile", "simbody", "update_rate"},
     "scene": {"cloud", "fog", "shadow_caster_material_name", "shadow_caster_render_back_faces", "sky"},
-    "model": {"battery", "frame", "gripper", "joint"},
+    "model": {"battery", "gripper", "joint"},
     "link": {
         "acceleration",
         "audio_sink",
@@ -126,7 +129,7 @@ def read(document: Document) -> Reading:
     _check_version(root, report)
     if is_too_deep(root, report):
         return Reading(None, report.in_order())
-    sdf: Sdf = read_element(root, SDF, report)
+    sdf: Sdf = read_element(in_words_of_today(root, SDF) if has_old_words(root) else root, SDF, report)
     if not (sdf.worlds or sdf.models or sdf.lights or sdf.actors):
         hint = phrase("put a <world> or a <model> in it")
         report.error("SDF131", phrase("<sdf> has neither a world nor a model in it"), root, hint=hint)
@@ -169,10 +172,10 @@ def _check_version(root: Element, report: SdfReport) -> None:
     if written is None:
         return  # which the reader tells
     found = _VERSION(written.strip())
-    if found and _OLDEST_MINOR <= int(found[1]) <= NEWEST[1]:
+    if found and int(found[1]) <= NEWEST[1]:
         return
     message = phrase("there is no SDF version '{written}' that is known", written=written)
-    hint = phrase("the versions are 1.3 to 1.12; the file is read as 1.12")
+    hint = phrase("the versions are 1.0 to 1.12; the file is read as 1.12")
     report.warning("SDF102", message, root, "version", hint=hint)
 
 
@@ -202,7 +205,8 @@ def _known(root: Element, rule: ElementRule) -> Iterator[tuple[Element, ElementR
 
 def _is_let_be(element: Element, rule: ElementRule) -> bool:
     """Whether an element that is not read is no mistake: one with a prefix, or a word of SDF without effect here."""
-    return ":" in element.tag or element.tag in WITHOUT_EFFECT.get(rule.tag, ())
+    tag = element.tag
+    return ":" in tag or tag in WITHOUT_EFFECT.get(rule.tag, ()) or (tag == _FRAME and POSE in rule.children)
 
 
 def _is_flat(root: Element) -> bool:

@@ -398,7 +398,7 @@ WORLD = ElementRule(
 SDF = ElementRule(
     "sdf",
     "worlds, or a model, light or actor by itself",
-    (AttributeRule("version", TEXT, "the version of SDF, 1.3 to 1.12", required=True, default="1.6"),),
+    (AttributeRule("version", TEXT, "the version of SDF, 1.0 to 1.12", required=True, default="1.6"),),
     (WORLD, MODEL, LIGHT, ACTOR),
     make=Sdf,
     keeps=True,

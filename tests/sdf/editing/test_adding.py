@@ -96,3 +96,9 @@ def test_a_model_is_included_by_its_address_with_a_free_name(tmp_path):
 def test_what_is_no_pose_is_refused(pose):
     with pytest.raises(EditError, match="a pose has six numbers"):
         add_shape(inside(), "box", pose)
+
+
+def test_a_world_with_values_in_attributes_is_not_edited(tmp_path):
+    text = '<gazebo version="1.0"><world name="w"><model name="m"><origin pose="1 2 3 0 0 0"/></model></world></gazebo>'
+    with pytest.raises(EditError, match="'linkwright convert' writes"):
+        world_text(text)

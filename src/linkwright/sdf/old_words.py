@@ -1,0 +1,75 @@
+"""SDF 1.0 to 1.2 in the words of today.
+
+SDF 1.0 wrote values in attributes, ``<origin pose="1 2 0 0 0 0"/>`` and ``<box size="1 1 1"/>``, where later versions
+have elements, ``<pose>1 2 0 0 0 0</pose>`` and ``<box><size>1 1 1</size></box>``. Which value belongs to which element
+follows from the table of the language; a few words were others. Source: ``1_0.convert`` of libsdformat.
+"""
+
+from __future__ import annotations
+
+import re
+
+from linkwright.schema import ElementRule
+from linkwright.xmltree import Element
+from linkwright.xmltree.nodes import Node, Text
+
+_RENAMED = {
+    ("mesh", "filename"): "uri",
+    ("heightmap", "filename"): "uri",
+    ("image", "filename"): "uri",
+    ("heightmap", "origin"): "pos",
+    ("link", "damping"): "velocity_decay",
+    ("physics", "update_rate"): "real_time_update_rate",
+}
+"""What attributes and elements are called today, by the element in which they stand and their old name."""
+_ORIGIN, _POSE = "origin", "pose"
+_VALUES = ("pose", "rgba", "xyz", "angle", "enabled", "link", "name")
+"""The attributes that had the value of an element."""
+_OLD = re.compile(r"1\.[012]").fullmatch
+
+
+def has_old_words(root: Element) -> bool:
+    """Whether a document says that it is SDF 1.0 to 1.2."""
+    return _OLD(root.attributes.get("version", "").strip()) is not None
+
+
+def in_words_of_today(element: Element, rule: ElementRule) -> Element:
+    """An element as SDF 1.3 writes it; what is told of its parts is told of the place that said them.
+
+    Args:
+        element: of SDF 1.0 to 1.2; not changed.
+        rule: what SDF says of it today.
+    """
+    new = Element(element.tag, dict(element.attributes), element.source, element.offset, element.origin)
+    new.children = [_child(each, rule) if isinstance(each, Element) else each for each in element.children]
+    present = {child.tag for child in new.elements()}
+    for name, value in element.attributes.items():
+        tag = _RENAMED.get((rule.tag, name), name)
+        if name not in rule.attribute_rules and tag in rule.child_rules and tag not in present:
+            new.children.append(_said(element, rule.child_rules[tag], value))
+    if rule.text is not None and not element.text().strip():
+        value = next((element.attributes[name] for name in _VALUES if name in element.attributes), "")
+        new.children.append(Text(value))
+    return new
+
+
+def _child(child: Element, rule: ElementRule) -> Node:
+    tag = _RENAMED.get((rule.tag, child.tag), child.tag)
+    if child.tag == _ORIGIN and _POSE in child.attributes:
+        tag = _POSE
+    child_rule = rule.child_rules.get(tag)
+    if child_rule is None or tag == "plugin":
+        return child
+    new = in_words_of_today(child, child_rule)
+    new.tag = tag
+    return new
+
+
+def _said(element: Element, rule: ElementRule, value: str) -> Element:
+    """The element for what an attribute of another one said."""
+    new = Element(rule.tag, None, element.source, element.offset, element.origin)
+    if "name" in rule.child_rules:
+        new.children.append(_said(element, rule.child_rules["name"], value))
+    else:
+        new.children.append(Text(value))
+    return new

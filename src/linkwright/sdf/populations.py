@@ -1,0 +1,165 @@
+"""``<population>``: many models of one kind, spread over a box or a cylinder.
+
+Source of the elements: the SDFormat specification 1.12, ``population.sdf``; of the places and names, Gazebo classic's
+``Population.cc``. There `random` and `uniform` are other places with each start; here they are the same with each one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from math import cos, pi, sin, sqrt
+from random import Random
+
+from linkwright.geometry.shapes import Box, Cylinder
+from linkwright.geometry.single import Pose, quaternion_of, rotate
+from linkwright.geometry.vectors import Vector3
+from linkwright.schema import ElementRule
+from linkwright.sdf.models import MODEL, Model
+from linkwright.sdf.poses import AT_ORIGIN, POSE, RawPose
+from linkwright.sdf.values import INTEGER, NUMBER, VECTOR3, choice, made, name_of, value
+from linkwright.xmltree import Element
+
+_AXES = ("linear-x", "linear-y", "linear-z")
+_KINDS = ("random", "uniform", "grid", *_AXES)
+_MOST = 100_000
+"""So many models may come of one population."""
+_GOLDEN_ANGLE = pi * (3 - sqrt(5))
+"""Points that turn on by it, one by one, fill a disc evenly."""
+
+
+@dataclass(frozen=True, slots=True)
+class Distribution:
+    """How models are spread: `rows`, `columns` and `step`, in metres, are those of a grid."""
+
+    type: str = "random"
+    rows: int = 1
+    columns: int = 1
+    step: Vector3 = (0.5, 0.5, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Population:
+    """Models of one kind.
+
+    Attributes:
+        pose: where the middle of the box is, of a cylinder that of its base, and of a grid its own.
+        models: the model that is repeated; others count for nothing.
+        count: how many there are, unless they stand in a grid.
+        box: where they are; None for no box.
+        cylinder: where they are; None for no cylinder.
+    """
+
+    name: str
+    pose: RawPose = AT_ORIGIN
+    models: tuple[Model, ...] = ()
+    count: int = 1
+    distribution: Distribution = Distribution()
+    box: Box | None = None
+    cylinder: Cylinder | None = None
+    element: Element | None = field(default=None, compare=False, repr=False)
+
+
+def models_of(population: Population) -> Iterator[Model]:
+    """The models of a population, ``NAME_clone_0`` and so on; none where it has no place for them, as in Gazebo."""
+    if not population.models:
+        return
+    model = population.models[0]
+    origin = population.pose.pose
+    corner = [each - half for each, half in zip(origin.xyz, _half(population), strict=True)]
+    rotation = quaternion_of(origin)
+    for index, place in enumerate(_places(population)):
+        x, y, z = (one + other for one, other in zip(corner, rotate(rotation, place), strict=True))
+        yield replace(model, name=f"{model.name}_clone_{index}", pose=RawPose(Pose((x, y, z))))
+
+
+def _half(population: Population) -> Vector3:
+    """From the corner that places count from to the pose, which Gazebo does not turn."""
+    distribution = population.distribution
+    if distribution.type == "grid":
+        x, y, _ = distribution.step
+        return x * (distribution.columns - 1) / 2, y * (distribution.rows - 1) / 2, 0.0
+    if population.box is None:
+        return 0.0, 0.0, 0.0
+    x, y, z = population.box.size
+    return x / 2, y / 2, z / 2
+
+
+def _places(population: Population) -> Iterator[Vector3]:
+    distribution, count = population.distribution, min(population.count, _MOST)
+    chance = Random(population.name)  # noqa: S311 - the same with each start, on purpose
+    if distribution.type == "grid":
+        x, y, _ = distribution.step
+        for index in range(min(distribution.rows * distribution.columns, _MOST)):
+            row, column = divmod(index, distribution.columns)
+            yield column * x, row * y, 0.0
+    elif population.box is not None:
+        yield from _in_box(distribution.type, count, population.box, chance)
+    elif population.cylinder is not None and distribution.type not in _AXES:
+        yield from _in_cylinder(distribution.type, count, population.cylinder, chance)
+
+
+def _in_box(kind: str, count: int, box: Box, chance: Random) -> Iterator[Vector3]:
+    x, y, z = box.size
+    columns = max(1, round(sqrt(count * x / y))) if x > 0 and y > 0 else 1
+    rows = -(-count // columns)
+    for index in range(count):
+        if kind == "random":
+            yield chance.uniform(0, x), chance.uniform(0, y), chance.uniform(0, z)
+        elif kind == "uniform":
+            row, column = divmod(index, columns)
+            yield (column + 0.5) * x / columns, (row + 0.5) * y / rows, chance.uniform(0, z)
+        else:
+            middle = [x / 2, y / 2, z / 2]
+            along = _AXES.index(kind)
+            middle[along] = box.size[along] * index / count
+            yield middle[0], middle[1], middle[2]
+
+
+def _in_cylinder(kind: str, count: int, cylinder: Cylinder, chance: Random) -> Iterator[Vector3]:
+    for index in range(count):
+        if kind == "random":
+            angle, radius = chance.uniform(0, 2 * pi), chance.uniform(0, cylinder.radius)
+        else:
+            angle, radius = index * _GOLDEN_ANGLE, cylinder.radius * sqrt((index + 0.5) / count)
+        yield radius * cos(angle), radius * sin(angle), chance.uniform(0, cylinder.length)
+
+
+POPULATION = ElementRule(
+    "population",
+    "models of one kind, spread over a place",
+    (name_of(),),
+    (
+        POSE,
+        MODEL,
+        value("model_count", INTEGER, "how many there are, unless they stand in a grid", default="1", field="count"),
+        made(
+            Distribution,
+            "distribution",
+            "how they are spread",
+            value("type", choice(*_KINDS), "the way", default="random"),
+            value("rows", INTEGER, "rows of a grid", default="1"),
+            value("cols", INTEGER, "columns of a grid", default="1", field="columns"),
+            value("step", VECTOR3, "from one to the next in a grid", "m", default="0.5 0.5 0"),
+            default=Distribution(),
+        ),
+        made(
+            Box,
+            "box",
+            "the box that they stand in",
+            value("size", VECTOR3, "edge lengths along x, y, z", "m", default="1 1 1"),
+        ),
+        made(
+            Cylinder,
+            "cylinder",
+            "the cylinder that they stand in, from its base upwards",
+            value("radius", NUMBER, "radius", "m", default="1"),
+            value("length", NUMBER, "length along z", "m", default="1"),
+        ),
+    ),
+    many=True,
+    make=Population,
+    keeps=True,
+    located=True,
+    field="populations",
+)
