@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -67,6 +67,7 @@ def examine_world(
     from linkwright.sdf.references import check_references
     from linkwright.sdf.resources import ResourceFinder
     from linkwright.sdf.scripts import with_scripts
+    from linkwright.sdf.worlds import populated
 
     path = Path(path)
     finder = (
@@ -82,7 +83,7 @@ def examine_world(
     resources = ResourceFinder(finder, environment)
     included = resolve_includes(reading.sdf, path, resources)
     found += [*included.diagnostics, *check_references(included.sdf)]
-    sdf = with_scripts(included.sdf, resources)
+    sdf = with_scripts(replace(included.sdf, worlds=tuple(map(populated, included.sdf.worlds))), resources)
     return WorldDescription(path, sdf, tuple(_each_once(found)), (*files, *included.files))
 
 

@@ -92,7 +92,18 @@ class _Resolver:
                 actors.append(thing)
             else:
                 left.append(include)
-        return replace(world, models=tuple(models), lights=tuple(lights), actors=tuple(actors), includes=tuple(left))
+        populations = [
+            replace(each, models=tuple(self.model(model, path, ()) for model in each.models[:1]))
+            for each in world.populations
+        ]
+        return replace(
+            world,
+            models=tuple(models),
+            lights=tuple(lights),
+            actors=tuple(actors),
+            includes=tuple(left),
+            populations=tuple(populations),
+        )
 
     def model(self, model: Model, path: Path, chain: tuple[Path, ...]) -> Model:
         if not (model.models or model.includes):

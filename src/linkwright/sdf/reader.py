@@ -39,7 +39,7 @@ _OTHER_FORMATS = {
 
 WITHOUT_EFFECT = {
     "actor": {"static"},
-    "world": {"audio", "gui", "population"},
+    "world": {"audio", "gui"},
     "physics": {"bullet", "dart", "dt", "magnetic_field", "ode", "profile", "simbody", "update_rate"},
     "scene": {"cloud", "fog", "shadow_caster_material_name", "shadow_caster_render_back_faces", "sky"},
     "model": {"battery", "gripper", "joint"},

@@ -16,6 +16,7 @@ from linkwright.sdf.joints import JOINT, Joint
 from linkwright.sdf.lights import LIGHT, Light
 from linkwright.sdf.models import FRAME, INCLUDE, MODEL, Frame, Include, Model
 from linkwright.sdf.plugins import PLUGIN, Plugin
+from linkwright.sdf.populations import POPULATION, Population, models_of
 from linkwright.sdf.poses import POSE, RawPose
 from linkwright.sdf.values import (
     COLOR,
@@ -192,6 +193,7 @@ class World:
     frames: tuple[Frame, ...] = ()
     plugins: tuple[Plugin, ...] = ()
     roads: tuple[Road, ...] = ()
+    populations: tuple[Population, ...] = ()
     states: tuple[State, ...] = ()
     element: Element | None = field(default=None, compare=False, repr=False)
 
@@ -214,6 +216,12 @@ def gravity_of(world: World) -> Vector3:
         return world.gravity
     physics = physics_of(world)
     return physics.gravity or (0.0, 0.0, -9.8)
+
+
+def populated(world: World) -> World:
+    """A world with the models of its populations among the others."""
+    more = (model for population in world.populations for model in models_of(population))
+    return replace(world, models=(*world.models, *more), populations=())
 
 
 def physics_of(world: World) -> Physics:
@@ -385,6 +393,7 @@ WORLD = ElementRule(
             located=True,
             field="roads",
         ),
+        POPULATION,
         STATE,
     ),
     many=True,

@@ -112,8 +112,7 @@ def test_a_skin_stands_where_its_skeleton_begins(tmp_path: Path, matrix, begins)
 def test_what_is_not_simulated_is_named_once():
     more = (
         '<model name="m"><static>true</static><link name="l"><projector name="p"/><projector name="q"/></link></model>'
-        '<population name="p"><model name="can"/></population>'
     )
     walker = ACTOR.replace("<script>", '<animation name="walk"/><plugin name="p" filename="libwalk.so"/><script>')
     found = unsimulated(simulated(GROUND, more, walker).world)
-    assert found == ["<animation> in <actor>", "<plugin> in <actor>", "<population>", "<projector>"]
+    assert found == ["<animation> in <actor>", "<plugin> in <actor>", "<projector>"]

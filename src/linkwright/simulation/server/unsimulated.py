@@ -9,9 +9,7 @@ from linkwright.sdf.reader import OPEN
 from linkwright.sdf.worlds import World
 from linkwright.xmltree import Element
 
-_NOWHERE = frozenset(
-    {"audio_source", "fluid_added_mass", "gripper", "particle_emitter", "population", "projector", "soft_contact"}
-)
+_NOWHERE = frozenset({"audio_source", "fluid_added_mass", "gripper", "particle_emitter", "projector", "soft_contact"})
 _IN = frozenset({("actor", "animation"), ("actor", "plugin"), ("geometry", "image")})
 """What is simulated elsewhere, with the element in which it is not."""
 
