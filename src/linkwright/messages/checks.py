@@ -149,7 +149,11 @@ def made_fixed_array(name: str, value: Any, kind: FieldType) -> NDArray[Any]:
     """What a constructor makes of numbers for a fixed array."""
     import numpy as np
 
-    made = np.array(value, dtype=cast(Primitive, kind.primitive).dtype)
+    primitive = cast(Primitive, kind.primitive)
+    if value.__class__ is np.ndarray and value.dtype.char == primitive.array_code:  # in a third of the time of the rest
+        made = value.copy()
+    else:
+        made = np.array(value, dtype=primitive.dtype)
     if made.size != kind.size:
         raise AssertionError(f"The '{name}' numpy.ndarray() must have a size of {kind.size}")
     return made

@@ -1,6 +1,6 @@
 """Writes the Python code of a message class: constructor and setters, each as short as its field allows.
 
-A setter tests for the usual case in line (``value.__class__ is float``) and leaves all others to
+Setters and constructors test for the usual case in line (``value.__class__ is float``) and leave all others to
 `linkwright.messages.checks`. A field's property reads its slot by a C function, so a read costs what a read costs.
 """
 
@@ -94,6 +94,8 @@ class _FieldCode:
         if self.kind.is_numeric_array:
             made = "made_fixed_array" if self.kind.container is Container.ARRAY else "made_sequence"
             return lines + f"    else: M._{name} = Checks.{made}({name!r}, {argument}, K_{name})\n"
+        if self._is_plain():  # as the setter does, but for the call
+            lines += f"    elif {self._usual(argument)}: M._{name} = {argument}\n"
         return lines + f"    else: S_{name}(M, {argument})\n"
 
     def setter(self) -> str:
@@ -111,26 +113,34 @@ class _FieldCode:
             cls = f"C_{name}" if primitive is None else primitive.python.__name__
             return f"    value = Checks.check_values({name!r}, value, K_{name}, {cls})\n"
         if primitive is None:
-            return _unless(f"value.__class__ is C_{name}", f"check_message({name!r}, value, C_{name})")
+            check = f"check_message({name!r}, value, C_{name})"
+        elif primitive.python is int:
+            check = f"check_int({name!r}, value, {primitive.low}, {primitive.high})"
+        elif primitive.python is float:
+            check = f"check_float({name!r}, value, {primitive.high!r})"
+        elif primitive.python is bool:
+            check = f"check_bool({name!r}, value)"
+        elif primitive.python is bytes:
+            check = f"check_byte({name!r}, value)"
+        else:
+            check = f"check_text({name!r}, value, {kind.string_bound})"
+        return f"    if not ({self._usual('value')}): value = Checks.{check}\n"
+
+    def _usual(self, value: str) -> str:
+        """The test for the usual case of a single value, in which it is kept as it is."""
+        kind, primitive = self.kind, self.kind.primitive
+        if primitive is None:
+            return f"{value}.__class__ is C_{self.name}"
+        test = f"{value}.__class__ is {primitive.python.__name__}"
         if primitive.python is int:
-            low, high = primitive.low, primitive.high
-            return _unless(
-                f"value.__class__ is int and {low} <= value <= {high}", f"check_int({name!r}, value, {low}, {high})"
-            )
-        if primitive.python is float:
-            high = primitive.high
-            test = "value.__class__ is float"
-            if primitive.code == "f":
-                test += f" and -{high!r} <= value <= {high!r}"
-            return _unless(test, f"check_float({name!r}, value, {high!r})")
-        if primitive.python is bool:
-            return _unless("value.__class__ is bool", f"check_bool({name!r}, value)")
-        if primitive.python is bytes:
-            return _unless("value.__class__ is bytes and len(value) == 1", f"check_byte({name!r}, value)")
-        test = "value.__class__ is str"
-        if kind.string_bound is not None:
-            test += f" and len(value) <= {kind.string_bound}"
-        return _unless(test, f"check_text({name!r}, value, {kind.string_bound})")
+            test += f" and {primitive.low} <= {value} <= {primitive.high}"
+        elif primitive.code == "f":
+            test += f" and -{primitive.high!r} <= {value} <= {primitive.high!r}"
+        elif primitive.python is bytes:
+            test += f" and len({value}) == 1"
+        elif primitive.python is str and kind.string_bound is not None:
+            test += f" and len({value}) <= {kind.string_bound}"
+        return test
 
     # --- the default ----------------------------------------------------------------------------------------
 
@@ -167,10 +177,6 @@ class _FieldCode:
         if primitive is None:
             return f"C_{self.name}()"
         return {int: "0", float: "0.0", bool: "False", str: "''", bytes: "b'\\0'"}[primitive.python]
-
-
-def _unless(test: str, check: str) -> str:
-    return f"    if not ({test}): value = Checks.{check}\n"
 
 
 def _constructor(fields: list[_FieldCode]) -> str:
