@@ -119,6 +119,16 @@ def rotate(quaternion: Quaternion, vector: Vector3) -> Vector3:
     )
 
 
+def rotation_matrix(quaternion: Quaternion) -> tuple[Vector3, Vector3, Vector3]:
+    """The rotation as the rows of a matrix."""
+    x, y, z, w = quaternion
+    return (
+        (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
+        (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
+        (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
+    )
+
+
 def quaternion_multiply(first: Quaternion, second: Quaternion) -> Quaternion:
     """The rotation that applies `second`, then `first`: the product first * second."""
     ax, ay, az, aw = first

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import cos, sin
 
-from linkwright.geometry.single import Transform, quaternion_from_rpy
+from linkwright.geometry.single import Transform
 
 _STRAIGHT = 1e-6
 """The angle in rad below which an arc is a straight line: dividing by less loses digits."""
@@ -47,4 +47,5 @@ class PlanarPose:
     @property
     def transform(self) -> Transform:
         """The pose in space."""
-        return (self.x, self.y, 0.0, *quaternion_from_rpy((0.0, 0.0, self.yaw)))
+        half = self.yaw / 2.0
+        return self.x, self.y, 0.0, 0.0, 0.0, sin(half), cos(half)

@@ -37,7 +37,7 @@ def planar_velocity(pose: Transform, linear: Array, angular: Array) -> tuple[flo
 
 
 class _Classes(NamedTuple):
-    """The classes of messages that odometry is made of."""
+    """The classes of messages that odometry and transforms are made of."""
 
     point: Any
     pose: Any
@@ -45,6 +45,7 @@ class _Classes(NamedTuple):
     pose_covariance: Any
     twist_covariance: Any
     odometry: Any
+    transforms: Any
 
 
 @cache
@@ -56,6 +57,7 @@ def _classes() -> _Classes:
         get_message("geometry_msgs/msg/PoseWithCovariance"),
         get_message("geometry_msgs/msg/TwistWithCovariance"),
         get_message("nav_msgs/msg/Odometry"),
+        get_message("tf2_msgs/msg/TFMessage"),
     )
 
 
@@ -95,10 +97,10 @@ class OdometryTopics:
 
     def publish(self, stamp: Time, pose: Transform, forward: float, sideways: float, turning: float) -> None:
         """Publish where the robot is, and its velocities in its own axes in m/s and rad/s."""
-        x, y, z, *rotation = pose
         if self.odometry is not None and self.odometry.is_wanted:
             make = _classes()
-            place = make.pose(make.point(x, y, z), Quaternion(*rotation))
+            x, y, z, qx, qy, qz, qw = pose
+            place = make.pose(make.point(x, y, z), Quaternion(qx, qy, qz, qw))
             speed = make.twist(Vector3(forward, sideways, 0.0), Vector3(0.0, 0.0, turning))
             places, speeds = make.pose_covariance(place, self._matrix), make.twist_covariance(speed, self._matrix)
             self.odometry.publish(make.odometry(Header(stamp, self.frame), self.child, places, speeds))
@@ -108,13 +110,13 @@ class OdometryTopics:
 
 def transform_message(header: Header, child: str, pose: Transform) -> Any:
     """A message for topics of transforms that says where one frame is."""
-    return get_message("tf2_msgs/msg/TFMessage")(transforms=[transform_stamped(header, child, pose)])
+    return _classes().transforms([transform_stamped(header, child, pose)])
 
 
 def transform_stamped(header: Header, child: str, pose: Transform) -> TransformStamped:
     """Where a frame is in that of the header."""
-    x, y, z, *rotation = pose
-    return TransformStamped(header, child, TransformMessage(Vector3(x, y, z), Quaternion(*rotation)))
+    x, y, z, qx, qy, qz, qw = pose
+    return TransformStamped(header, child, TransformMessage(Vector3(x, y, z), Quaternion(qx, qy, qz, qw)))
 
 
 def transforms_topic(node: PluginNode, name: str = "/tf", usual: str = "") -> Output:

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linkwright.geometry.arrays import Array
 from linkwright.geometry.single import (
     Quaternion,
     quaternion_from_rpy,
@@ -14,6 +13,7 @@ from linkwright.geometry.single import (
     quaternion_multiply,
     rotate,
 )
+from linkwright.geometry.vectors import Vector3
 from linkwright.sdf.sensors import Imu
 from linkwright.simulation.sensors.mount import Mount
 from linkwright.simulation.sensors.noise import VectorNoise
@@ -29,13 +29,13 @@ class Inertial:
 
     Attributes:
         orientation: of the unit in its reference frame: a quaternion x, y, z, w.
-        angular_velocity: in rad/s, shape (3,).
-        linear_acceleration: in m/s2, shape (3,): at rest the reaction to gravity.
+        angular_velocity: in rad/s.
+        linear_acceleration: in m/s2: at rest the reaction to gravity.
     """
 
-    orientation: Array
-    angular_velocity: Array
-    linear_acceleration: Array
+    orientation: Quaternion
+    angular_velocity: Vector3
+    linear_acceleration: Vector3
 
 
 class ImuSensor:
@@ -77,10 +77,9 @@ class ImuSensor:
         period, self._measured = (simulation.time - self._measured) * 1e-9, simulation.time
         orientation = self._mount.pose()[3:]
         into = quaternion_inverse(orientation)
-        turning = rotate(into, self._mount.velocity()[1])
-        felt = rotate(into, self._mount.acceleration())
+        turning, felt = self._mount.felt()
         return Inertial(
-            np.array(quaternion_multiply(quaternion_inverse(self._reference), orientation)),
-            self.turning_noise.apply(np.array(turning), period),
-            self.acceleration_noise.apply(np.array(felt), period),
+            quaternion_multiply(quaternion_inverse(self._reference), orientation),
+            self.turning_noise.on(rotate(into, turning), period),
+            self.acceleration_noise.on(rotate(into, felt), period),
         )

@@ -13,7 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from linkwright.geometry.arrays import Array, rotation_matrix
+from linkwright.geometry.arrays import Array
+from linkwright.geometry.single import rotation_matrix
 from linkwright.sdf.sensors import Lidar, Sweep
 from linkwright.simulation.casting import GROUPS, cast
 from linkwright.simulation.library import load_mujoco
@@ -100,7 +101,7 @@ class LidarSensor:
 
     def _cast(self) -> tuple[Array, Any]:
         simulation, pose = self._simulation, self._mount.pose()
-        rays = np.ascontiguousarray(self.directions @ rotation_matrix(pose[3:]).T)
+        rays = self.directions @ np.array(rotation_matrix(pose[3:])).T
         reach = self.range_max if isfinite(self.range_max) else self._mujoco.mjMAXVAL
         origin, body = np.array(pose[:3]), self._mount.body
         ranges, geoms = cast(

@@ -50,7 +50,8 @@ class Mount:
         Raises:
             KeyError: the link is gone.
         """
-        return compose(self.simulation.link_pose(self.link), self.offset)
+        pose = self.simulation.link_pose(self.link)
+        return pose if self.offset == IDENTITY else compose(pose, self.offset)
 
     def velocity(self) -> tuple[Vector3, Vector3]:
         """The velocity of the sensor in m/s and its angular one in rad/s, in the axes of the world."""
@@ -69,17 +70,21 @@ class Mount:
         """From the origin of the link to the sensor, in the axes of the world."""
         return rotate(self.simulation.link_pose(self.link)[3:], self.offset[:3])
 
-    def acceleration(self) -> Vector3:
-        """What an accelerometer feels in m/s2, in the axes of the world: at rest the reaction to gravity, upwards."""
+    def felt(self) -> tuple[Vector3, Vector3]:
+        """The angular velocity in rad/s and what an accelerometer feels in m/s2, in the axes of the world.
+
+        At rest an accelerometer feels the reaction to gravity, upwards.
+        """
         accelerations(self.simulation)
         simulation, mujoco, result = self.simulation, load_mujoco(), np.zeros(6)
         kind = mujoco.mjtObj.mjOBJ_XBODY
         mujoco.mj_objectAcceleration(simulation.model, simulation.data, kind, self.body, result, 0)
+        turning = _three(simulation.link_velocity(self.link)[1])
+        p, q, r, x, y, z = result.tolist()
         if self._is_at_origin:
-            return _three(result[3:])
-        arm, turning = self._arm(), _three(simulation.link_velocity(self.link)[1])
-        changing = _cross(_three(result[:3]), arm)
-        return _sum(_sum(_three(result[3:]), changing), _cross(turning, _cross(turning, arm)))
+            return turning, (x, y, z)
+        arm = self._arm()
+        return turning, _sum(_sum((x, y, z), _cross((p, q, r), arm)), _cross(turning, _cross(turning, arm)))
 
 
 def _three(values: Array) -> Vector3:

@@ -6,20 +6,26 @@ Source: gazebo_ros_pkgs for ROS 2 (parameters, covariances) and ROS 1 (names), g
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Generic, TypeVar
+from functools import cache
+from typing import Any, Generic, TypeVar
 
+from linkwright.geometry import vectors
 from linkwright.geometry.single import compose, quaternion_from_rpy
-from linkwright.geometry.vectors import Vector3
-from linkwright.messages import Header, Quaternion, get_message
+from linkwright.messages import Header, Quaternion, Vector3, get_message
 from linkwright.sdf.noise import Noise, NoiseXyz
 from linkwright.sdf.sensors import Imu
 from linkwright.simulation.plugins.parameters import NoParameters, parameter
-from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, FrameName, OneTopic, vector
+from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, FrameName, OneTopic
 from linkwright.simulation.sensors.imu import ImuSensor
 from linkwright.simulation.sensors.mount import Mount
 
 P = TypeVar("P")
 _TYPE = "sensor_msgs/msg/Imu"
+
+
+@cache
+def _message_class() -> Any:
+    return get_message(_TYPE)
 
 
 class _ImuPlugin(OneTopic[P], Generic[P]):
@@ -34,12 +40,12 @@ class _ImuPlugin(OneTopic[P], Generic[P]):
     def measure(self) -> None:
         """Measure and publish."""
         measured = self.imu.measure()
-        message = get_message(_TYPE)(
+        message = _message_class()(
             header=Header(self.stamp(), self.frame),
-            orientation=Quaternion(*measured.orientation.tolist()),
-            angular_velocity=vector(measured.angular_velocity),
+            orientation=Quaternion(*measured.orientation),
+            angular_velocity=Vector3(*measured.angular_velocity),
             angular_velocity_covariance=self.imu.turning_noise.covariance,
-            linear_acceleration=vector(measured.linear_acceleration),
+            linear_acceleration=Vector3(*measured.linear_acceleration),
             linear_acceleration_covariance=self.imu.acceleration_noise.covariance,
         )
         self.output.publish(message)
@@ -79,8 +85,8 @@ class OldImuParameters(FrameName):
     topic_name: str = parameter("imu", aliases=("topicName",))
     update_rate: float = parameter(0.0, aliases=("updateRate", "updateRateHZ"))
     gaussian_noise: float = parameter(0.0, aliases=("gaussianNoise",))
-    xyz_offset: Vector3 = parameter((0.0, 0.0, 0.0), aliases=("xyzOffset", "xyzOffsets"))  # noqa: RUF009 - a field of the table
-    rpy_offset: Vector3 = parameter((0.0, 0.0, 0.0), aliases=("rpyOffset", "rpyOffsets"))  # noqa: RUF009 - a field of the table
+    xyz_offset: vectors.Vector3 = parameter((0.0, 0.0, 0.0), aliases=("xyzOffset", "xyzOffsets"))  # noqa: RUF009 - a field of the table
+    rpy_offset: vectors.Vector3 = parameter((0.0, 0.0, 0.0), aliases=("rpyOffset", "rpyOffsets"))  # noqa: RUF009 - a field of the table
 
 
 class OldImu(_ImuPlugin[OldImuParameters]):
