@@ -1,0 +1,110 @@
+"""Parameters of nodes: those that must be given, those that words of a command line stand for, unknown ones."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, phrase
+from linkwright.graph import Node, Parameter, ParameterType
+from linkwright.graph.command_line.ros_arguments import parse
+from linkwright.nodes.options import NodeOptions
+
+_EVERYWHERE = ("qos_overrides.", "start_type_description_service", "diagnostic_updater.")
+"""How names begin that any node may be given, whether it reads them or not."""
+
+
+def declare_required(node: Node, name: str, kind: ParameterType, usage: str) -> Any:
+    """The value of a parameter that has no default.
+
+    Args:
+        node: declares it.
+        name: of the parameter.
+        kind: its type.
+        usage: how the node is started, for the hint.
+
+    Raises:
+        LinkwrightError: NODE431 it is not given, or GRAPH201 it has another type.
+    """
+    node.declare_parameter(name, kind)
+    value = node.get_parameter_or(name, Parameter(name)).value
+    if value is None:
+        message = phrase("parameter '{name}' of '{node}' is not given", name=name, node=node.get_name())
+        raise LinkwrightError(Diagnostic("NODE431", message, hint=phrase("usage: {usage}", usage=usage)))
+    return value
+
+
+def options_from_words(
+    options: NodeOptions, words: Sequence[str], names: Mapping[str, Callable[[str], Any]], usage: str
+) -> NodeOptions:
+    """The options with the words of a command line as parameters.
+
+    Args:
+        options: as the node is started.
+        words: its arguments without ROS arguments.
+        names: what the words stand for, in order, with what converts each; words may be fewer.
+        usage: how the node is started, for the hint.
+
+    Raises:
+        LinkwrightError: NODE432, a word is none that the parameter can have, or there are more words than names.
+    """
+    hint = phrase("usage: {usage}", usage=usage)
+    if len(words) > len(names):
+        message = phrase("there is no meaning for '{word}'", word=words[len(names)])
+        raise LinkwrightError(Diagnostic("NODE432", message, hint=hint))
+    given = {name: _converted(word, name, names[name], hint) for word, name in zip(words, names, strict=False)}
+    return replace(options, parameters={**options.parameters, **given})
+
+
+def _converted(word: str, name: str, convert: Callable[[str], Any], hint: Phrase) -> Any:
+    try:
+        return convert(word)
+    except ValueError:
+        message = phrase("'{word}' is no value of '{name}'", word=word, name=name)
+        raise LinkwrightError(Diagnostic("NODE432", message, hint=hint)) from None
+
+
+def words_of(options: NodeOptions) -> list[str]:
+    """The arguments of a node that are not ROS arguments."""
+    return parse(options.arguments).others
+
+
+def positive(node: Node, name: str, value: float) -> float:
+    """A parameter that must be more than zero.
+
+    Raises:
+        LinkwrightError: NODE433, it is not.
+    """
+    if not value > 0:
+        raise bad_value(name, value, node.get_name())
+    return value
+
+
+def bad_value(name: str, value: object, node: str, known: Sequence[str] = ()) -> LinkwrightError:
+    """The error for a parameter whose value means nothing: NODE433."""
+    message = phrase("parameter '{name}' of '{node}' cannot be '{value}'", name=name, node=node, value=value)
+    hint = None
+    if known:
+        hint = did_you_mean(str(value), known) or phrase("it is one of {known}", known=", ".join(known))
+    return LinkwrightError(Diagnostic("NODE433", message, hint=hint))
+
+
+def tell_unknown(node: Node) -> None:
+    """Name the parameters that were given to a node and that it does not have; called when all are declared.
+
+    Those that look misspelt are a warning. Parameters for all nodes of a launch (``/**``) reach nodes that do not know
+    them, so the rest is only told of.
+    """
+    known = node.parameter_names()
+    strange = [name for name in node.undeclared_overrides() if not name.startswith(_EVERYWHERE)]
+    logger = node.get_logger()
+    others = []
+    for name in strange:
+        hint = did_you_mean(name, known)
+        if hint is None:
+            others.append(name)
+        else:
+            logger.warning(f"'{name}' is no parameter of this node; {hint}")
+    if others:
+        logger.info(f"parameters that this node does not have are not read: {', '.join(others)}")

@@ -1,0 +1,256 @@
+"""transform and relay_field of topic_tools: messages made of those of another topic, by Python expressions.
+
+The expressions are as free as in topic_tools: who writes them on a command line or in a launch file may run programs
+anyway. Names of packages of messages stand for their types, ``std_msgs.msg.String``, other names for what
+``--import`` imports.
+"""
+
+from __future__ import annotations
+
+import argparse
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping
+from importlib import import_module
+from os import getpid
+from typing import Any, ClassVar, NoReturn
+
+import yaml
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
+from linkwright.graph import (
+    SENSOR_DATA_QOS,
+    DurabilityPolicy,
+    Graph,
+    HistoryPolicy,
+    Publisher,
+    QoSPresetProfiles,
+    QoSProfile,
+    ReliabilityPolicy,
+    Subscription,
+)
+from linkwright.graph.qos.compatibility import fit
+from linkwright.messages import get_message, interface_names, set_fields
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.settings import words_of
+
+
+class _Parser(argparse.ArgumentParser):
+    def error(self, message: str) -> NoReturn:
+        hint = phrase("usage: {usage}", usage=" ".join(self.format_usage().removeprefix("usage: ").split()))
+        raise LinkwrightError(Diagnostic("NODE432", phrase("{problem}", problem=foreign(message)), hint=hint))
+
+
+class _ExpressionTool(SingleNode, ABC):
+    """A node that makes a message of each message of its input.
+
+    Raises:
+        LinkwrightError: its words mean nothing (NODE432), or its expression (NODE434).
+    """
+
+    _output_class: Any
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        self._graph = graph
+        self._words = self._parser().parse_args(words_of(options))
+        self._node, _ = create_node(graph, options, f"{self.PROGRAM}_{getpid()}")
+        self._publisher: Publisher[Any] | None = None
+        self._subscription: Subscription[Any] | None = None
+        with starting(self._node):
+            self._output_class = _message_class(self._words.output_type)
+            self._prepare()
+        self._changed = self._node.create_guard_condition(self._look)
+        graph.watch(self._changed.trigger)
+        self._look()
+
+    PROGRAM: ClassVar[str]
+
+    def close(self) -> None:
+        """End it."""
+        self._graph.unwatch(self._changed.trigger)
+        super().close()
+
+    @abstractmethod
+    def _prepare(self) -> None:
+        """Read the expression."""
+
+    @abstractmethod
+    def _make(self, message: Any) -> Any:
+        """The message that is published for one that came."""
+
+    def _parser(self) -> argparse.ArgumentParser:
+        parser = _Parser(prog=self.PROGRAM, add_help=False)
+        for name in ("input", "output_topic", "output_type"):
+            parser.add_argument(name)
+        parser.add_argument("--wait-for-start", action="store_true")
+        parser.add_argument("--qos-profile", choices=QoSPresetProfiles.short_keys())
+        parser.add_argument("--qos-depth", type=int)
+        for name, kind in (
+            ("history", HistoryPolicy),
+            ("reliability", ReliabilityPolicy),
+            ("durability", DurabilityPolicy),
+        ):
+            parser.add_argument(f"--qos-{name}", choices=kind.short_keys())
+        return parser
+
+    def _look(self) -> None:
+        sources = self._node.get_publishers_info_by_topic(self._words.input)
+        if self._subscription is None and sources:
+            qos = self._profile([each.qos_profile for each in sources])
+            self._publisher = self._node.create_publisher(self._output_class, self._words.output_topic, qos)
+            self._subscription = self._node.create_subscription(
+                sources[0].topic_type, self._words.input, self._hear, qos
+            )
+
+    def _profile(self, offers: list[QoSProfile]) -> QoSProfile:
+        given = {
+            name: getattr(self._words, f"qos_{name}") for name in ("depth", "history", "reliability", "durability")
+        }
+        if self._words.qos_profile is None and not any(given.values()):
+            return fit(SENSOR_DATA_QOS, offers).profile
+        base = QoSPresetProfiles.get_from_short_key(self._words.qos_profile or "sensor_data")
+        return QoSProfile(
+            given["depth"] or base.depth,
+            ReliabilityPolicy[given["reliability"].upper()] if given["reliability"] else base.reliability,
+            DurabilityPolicy[given["durability"].upper()] if given["durability"] else base.durability,
+            HistoryPolicy[given["history"].upper()] if given["history"] else base.history,
+        )
+
+    def _hear(self, message: Any) -> None:
+        try:
+            made = self._make(message)
+        except Exception as error:  # noqa: BLE001 - whatever the user's expression raises
+            self._node.get_logger().error(
+                f"{self._words.expression}: {type(error).__name__}: {error}", throttle_duration_sec=5.0
+            )
+            return
+        if self._publisher is not None:
+            self._publisher.publish(made)
+
+
+class Transform(_ExpressionTool):
+    """The running transform: an expression in which the message, or a field of it, is ``m``, gives the new message."""
+
+    PROGRAM = "transform"
+
+    def _parser(self) -> argparse.ArgumentParser:
+        parser = super()._parser()
+        parser.add_argument("expression", nargs="?", default="m")
+        parser.add_argument("-i", "--import", dest="modules", nargs="+", default=["numpy"])
+        parser.add_argument("--field")
+        return parser
+
+    def _prepare(self) -> None:
+        self._field = [name for name in (self._words.field or "").split(".") if name]
+        names = {name: _imported(name) for name in self._words.modules}
+        self._expression = _compiled(self._words.expression, {name.partition(".")[0]: names[name] for name in names})
+
+    def _make(self, message: Any) -> Any:
+        for name in self._field:
+            message = getattr(message, name)
+        made = self._expression(message)
+        if isinstance(made, self._output_class):
+            return made
+        if isinstance(made, Mapping):
+            result = self._output_class()
+            set_fields(result, made)
+            return result
+        raise TypeError(f"the expression gives a {type(made).__name__}, not a {self._words.output_type}")
+
+
+class RelayField(_ExpressionTool):
+    """The running relay_field: YAML whose texts are expressions in which the message is ``m`` gives the fields."""
+
+    PROGRAM = "relay_field"
+
+    def _parser(self) -> argparse.ArgumentParser:
+        parser = super()._parser()
+        parser.add_argument("expression")
+        return parser
+
+    def _prepare(self) -> None:
+        try:
+            fields = yaml.safe_load(self._words.expression)
+        except yaml.YAMLError as error:
+            raise _not_understood(self._words.expression, error) from None
+        if not isinstance(fields, dict):
+            raise _not_understood(self._words.expression, "it is not a mapping of fields")
+        self._fields = {name: _prepared(value) for name, value in fields.items()}
+
+    def _make(self, message: Any) -> Any:
+        result = self._output_class()
+        stamps = set_fields(
+            result,
+            {name: value(message) for name, value in self._fields.items()},
+            expand_header_auto=True,
+            expand_time_now=True,
+        )
+        now = self._node.get_clock().now().to_msg()
+        for stamp in stamps:
+            stamp(now)
+        return result
+
+
+class _Types:
+    """A package of messages in an expression: ``std_msgs.msg.String``."""
+
+    def __init__(self, package: str) -> None:
+        self.msg = _Messages(package)
+
+
+class _Messages:
+    def __init__(self, package: str) -> None:
+        self._package = package
+
+    def __getattr__(self, name: str) -> Any:
+        return get_message(f"{self._package}/msg/{name}")
+
+
+def _imported(name: str) -> Any:
+    package = name.partition(".")[0]
+    if any(each.startswith(f"{package}/msg/") for each in interface_names("msg")):
+        return _Types(package)
+    try:
+        module = import_module(name)
+    except ImportError as error:
+        raise _not_understood(f"--import {name}", error) from None
+    return import_module(package) if package != name else module
+
+
+def _prepared(value: Any) -> Callable[[Any], Any]:
+    """What gives a value of YAML for a message: a text is an expression, or stands for itself where it is none."""
+    if isinstance(value, dict):
+        fields = {name: _prepared(each) for name, each in value.items()}
+        return lambda message: {name: each(message) for name, each in fields.items()}
+    if not isinstance(value, str):
+        return lambda message: value  # noqa: ARG005  # it is the same for all
+    try:
+        expression = _compiled(value, {})
+    except LinkwrightError:
+        return lambda message: value  # noqa: ARG005  # it is the same for all
+
+    def worked_out(message: Any) -> Any:
+        try:
+            return expression(message)
+        except NameError:
+            return value
+
+    return worked_out
+
+
+def _compiled(text: str, names: Mapping[str, Any]) -> Callable[[Any], Any]:
+    try:
+        function: Callable[[Any], Any] = eval(f"lambda m: ({text})", dict(names))  # noqa: S307 - see the module
+    except SyntaxError as error:
+        raise _not_understood(text, error.msg) from None
+    return function
+
+
+def _message_class(name: str) -> Any:
+    package, _, short = name.replace("/msg/", "/").partition("/")
+    return get_message(f"{package}/msg/{short}")
+
+
+def _not_understood(text: str, reason: object) -> LinkwrightError:
+    return LinkwrightError(
+        Diagnostic("NODE434", phrase("'{text}' is not understood: {reason}", text=text, reason=foreign(reason)))
+    )

@@ -1,0 +1,183 @@
+"""mux and demux of topic_tools: one of several topics to another, or a topic to one of several."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from dataclasses import replace
+from typing import Any, ClassVar
+
+from linkwright.graph import Graph, ParameterType
+from linkwright.messages import get_service
+from linkwright.nodes.options import NodeOptions
+from linkwright.nodes.settings import bad_value, declare_required
+from linkwright.nodes.topic_tools.tool import TopicTool
+
+NO_TOPIC = "__none"
+"""What is selected when nothing is."""
+
+
+class _Switch(TopicTool):
+    """A tool with several topics, one of which is selected; services add, delete, list and select them."""
+
+    _KIND: ClassVar[str]
+    """How the types of the services begin."""
+    _SINGLE: ClassVar[str]
+    """The parameter with the one topic on the other side."""
+    _SEVERAL: ClassVar[str]
+    """The parameter with the topics to select from."""
+    _SINGLE_DEFAULT: ClassVar[str]
+    _VERB: ClassVar[str]
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        super().__init__(graph, options)
+        for verb, answer in (
+            ("add", self._add),
+            ("delete", self._delete),
+            ("list", self._list),
+            ("select", self._select),
+        ):
+            kind = get_service(f"topic_tools_interfaces/srv/{self._KIND}{verb.capitalize()}")
+            self._node.create_service(kind, f"~/{verb}", answer)
+
+    def _options(self, options: NodeOptions, words: list[str]) -> NodeOptions:
+        given: dict[str, object] = {self._SINGLE: words[0]} if words else {}
+        if words[1:]:
+            given[self._SEVERAL] = words[1:]
+        return replace(options, parameters={**options.parameters, **given})
+
+    def _declare(self) -> None:
+        node = self._node
+        self._topics: list[str] = list(
+            declare_required(node, self._SEVERAL, ParameterType.STRING_ARRAY, self.USAGE),
+        )
+        if not self._topics:
+            raise bad_value(self._SEVERAL, "[]", node.get_name())
+        selected: str = node.declare_parameter("initial_topic", "").value
+        single: str = node.declare_parameter(self._SINGLE, self._SINGLE_DEFAULT).value
+        self._lazy = node.declare_parameter("lazy", False).value
+        self._place(single, selected or self._topics[0])
+
+    @abstractmethod
+    def _place(self, single: str, selected: str) -> None:
+        """Set `_input` and `_output`."""
+
+    @property
+    @abstractmethod
+    def _selected(self) -> str:
+        """The topic that is selected."""
+
+    @abstractmethod
+    def _change(self, selected: str) -> None:
+        """Select another one."""
+
+    def _look(self) -> None:
+        if self._selected == NO_TOPIC:
+            self._stop()
+        else:
+            super()._look()
+
+    def _hear(self, message: Any) -> None:
+        self._send(message)
+
+    def _same(self, first: str, second: str) -> bool:
+        if NO_TOPIC in (first, second):
+            return first == second
+        return self._node.resolve_topic_name(first) == self._node.resolve_topic_name(second)
+
+    def _add(self, request: Any, response: Any) -> Any:
+        name, topic, logger = self.DEFAULT_NAME, request.topic, self._node.get_logger()
+        logger.info(f"trying to add {topic} to {name}")
+        response.success = False
+        if topic == NO_TOPIC:
+            logger.warning(f"failed to add topic {topic} to {name}, because it's reserved for special use")
+        elif topic in self._topics:
+            logger.warning(f"tried to add a topic that {name} was already {self._VERB}: [{topic}]")
+        else:
+            self._topics.append(topic)
+            logger.info(f"added {topic} to {name}")
+            response.success = True
+        return response
+
+    def _delete(self, request: Any, response: Any) -> Any:
+        name, topic, logger = self.DEFAULT_NAME, request.topic, self._node.get_logger()
+        logger.info(f"trying to delete {topic} to {name}")
+        response.success = False
+        for each in self._topics:
+            if not self._same(each, topic):
+                continue
+            if self._same(self._selected, topic):
+                logger.warning(f"tried to delete currently selected topic {topic} from {name}")
+                return response
+            self._topics.remove(each)
+            logger.info(f"deleted topic {topic} from {name}")
+            response.success = True
+            return response
+        logger.warning(f"tried to delete non-subscribed topic {topic} from {name}")
+        return response
+
+    def _list(self, request: Any, response: Any) -> Any:  # noqa: ARG002  # it is empty
+        response.topics = list(self._topics)
+        return response
+
+    def _select(self, request: Any, response: Any) -> Any:
+        name, topic, logger = self.DEFAULT_NAME, request.topic, self._node.get_logger()
+        before = self._selected
+        response.prev_topic = before if any(self._same(each, before) for each in self._topics) else ""
+        response.success = True
+        if topic == NO_TOPIC:
+            logger.info(f"{name} selected to no {'input' if name == 'mux' else 'output'}.")
+        else:
+            logger.info(f"trying to switch {name} to {topic}")
+            response.success = any(self._same(each, topic) for each in self._topics)
+            if not response.success:
+                return response
+            logger.info(f"{name} selected {'input' if name == 'mux' else 'output'}: [{topic}]")
+        self._change(topic)
+        self._look()
+        return response
+
+
+class Mux(_Switch):
+    """The running mux: it hands on what comes on the selected one of its inputs.
+
+    Raises:
+        LinkwrightError: the parameter ``input_topics`` is missing (NODE431) or empty (NODE433).
+    """
+
+    DEFAULT_NAME = "mux"
+    USAGE = "mux OUTPUT_TOPIC INPUT_TOPIC [INPUT_TOPIC ...]"
+    _KIND, _SINGLE, _SEVERAL, _SINGLE_DEFAULT = "Mux", "output_topic", "input_topics", "~/selected"
+    _VERB = "listening to"
+
+    def _place(self, single: str, selected: str) -> None:
+        self._input, self._output = selected, single
+
+    @property
+    def _selected(self) -> str:
+        return self._input
+
+    def _change(self, selected: str) -> None:
+        self._input = selected
+
+
+class Demux(_Switch):
+    """The running demux: it hands on what comes to the selected one of its outputs.
+
+    Raises:
+        LinkwrightError: the parameter ``output_topics`` is missing (NODE431) or empty (NODE433).
+    """
+
+    DEFAULT_NAME = "demux"
+    USAGE = "demux INPUT_TOPIC OUTPUT_TOPIC [OUTPUT_TOPIC ...]"
+    _KIND, _SINGLE, _SEVERAL, _SINGLE_DEFAULT = "Demux", "input_topic", "output_topics", "~/input"
+    _VERB = "publishing to"
+
+    def _place(self, single: str, selected: str) -> None:
+        self._input, self._output = single, selected
+
+    @property
+    def _selected(self) -> str:
+        return self._output
+
+    def _change(self, selected: str) -> None:
+        self._output = selected

@@ -1,0 +1,123 @@
+"""What the programs of topic_tools have in common: a topic whose type the graph tells, and one to publish on.
+
+Differences from topic_tools 1.3: a change of the graph is seen at once and not within 100 ms, and a source that comes
+back with another type is subscribed to anew.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping
+from typing import Any, ClassVar
+
+from linkwright.graph import DEFAULT_QOS, Graph, Publisher, QoSProfile, Subscription
+from linkwright.graph.qos.compatibility import fit
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.settings import options_from_words, tell_unknown, words_of
+
+
+class TopicTool(SingleNode, ABC):
+    """A node that hands messages on.
+
+    It publishes while somebody publishes on its input, with the same type, reliability and durability. A class sets
+    `_input` and `_output` in `_declare`.
+
+    Attributes:
+        USAGE: how it is called.
+        WORDS: the parameters that words of its command line stand for, with what converts them.
+    """
+
+    USAGE: ClassVar[str]
+    WORDS: ClassVar[Mapping[str, Callable[[str], Any]]] = {}
+
+    _input: str
+    _output: str
+    _lazy = False
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        options = self._options(options, words_of(options))
+        self._graph = graph
+        self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
+        self._publisher: Publisher[Any] | None = None
+        self._subscription: Subscription[Any] | None = None
+        self._mixed = False
+        with starting(self._node):
+            self._declare()
+            tell_unknown(self._node)
+        self._changed = self._node.create_guard_condition(self._look)
+        graph.watch(self._changed.trigger)
+        self._look()
+
+    def close(self) -> None:
+        """End it."""
+        self._graph.unwatch(self._changed.trigger)
+        super().close()
+
+    def _options(self, options: NodeOptions, words: list[str]) -> NodeOptions:
+        """The options with what the words of the command line say."""
+        return options_from_words(options, words, self.WORDS, self.USAGE)
+
+    @abstractmethod
+    def _declare(self) -> None:
+        """Declare the parameters and read them."""
+
+    @abstractmethod
+    def _hear(self, message: Any) -> None:
+        """Take in a message of the input."""
+
+    def _send(self, message: Any) -> None:
+        if self._publisher is not None:
+            self._publisher.publish(message)
+
+    def _look(self) -> None:
+        """Have the publisher and the subscription that go with the graph as it is now."""
+        sources = self._sources()
+        if not sources:
+            self._stop()
+            return
+        kind = sources[0].topic_type
+        qos = self._fitting([each.qos_profile for each in sources])
+        if not self._is_like(self._publisher, self._output, kind, qos):
+            self._stop()
+            self._publisher = self._node.create_publisher(kind, self._output, qos)
+        if not self._is_like(self._subscription, self._input, kind, qos):
+            self._unsubscribe()
+        if self._lazy and not (self._publisher and self._publisher.get_subscription_count()):
+            self._unsubscribe()
+        elif self._subscription is None:
+            self._subscription = self._node.create_subscription(kind, self._input, self._hear, qos)
+
+    def _sources(self) -> list[Any]:
+        return self._node.get_publishers_info_by_topic(self._input)
+
+    def _fitting(self, offers: list[QoSProfile]) -> QoSProfile:
+        fitting = fit(DEFAULT_QOS, offers)
+        if fitting.mixed and not self._mixed:
+            for offered, taken in fitting.mixed:
+                self._node.get_logger().warning(
+                    f"Some, but not all, publishers on topic {self._input} offer {offered}. Falling back to {taken} in "
+                    "order to connect to all publishers."
+                )
+        self._mixed = bool(fitting.mixed)
+        return fitting.profile
+
+    def _is_like(
+        self, endpoint: Publisher[Any] | Subscription[Any] | None, topic: str, kind: str, qos: QoSProfile
+    ) -> bool:
+        return (
+            endpoint is not None
+            and endpoint.type_name == kind
+            and endpoint.name == self._node.resolve_topic_name(topic)
+            and endpoint.qos_profile == qos
+        )
+
+    def _stop(self) -> None:
+        self._unsubscribe()
+        if self._publisher is not None:
+            self._node.destroy_publisher(self._publisher)
+            self._publisher = None
+
+    def _unsubscribe(self) -> None:
+        if self._subscription is not None:
+            self._node.destroy_subscription(self._subscription)
+            self._subscription = None

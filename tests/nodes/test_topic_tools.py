@@ -1,0 +1,264 @@
+from __future__ import annotations
+
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from linkwright.messages import String, get_message, get_service
+from linkwright.nodes import NodeOptions
+from linkwright.nodes.topic_tools.expressions import RelayField, Transform
+from linkwright.nodes.topic_tools.mux import Demux, Mux
+from linkwright.nodes.topic_tools.relay import Delay, Drop, Relay, Throttle
+from linkwright.testing.stepped import AsyncSteppedGraph
+
+
+@pytest.fixture
+async def test():
+    async with AsyncSteppedGraph() as graph:
+        yield graph
+
+
+def start(test, kind, *words, **parameters):
+    return kind(test.graph, NodeOptions(arguments=list(words), parameters=parameters))
+
+
+def said(test, level):
+    return [record.text for record in test.log if record.level.name == level]
+
+
+async def say(test, topic, *texts):
+    for text in texts:
+        test.publish(topic, String(data=text))
+        await test.settle()
+
+
+def heard(recording):
+    return [message.data for message in recording]
+
+
+async def test_relay_finds_the_type_and_hands_on_every_message(test):
+    start(test, Relay, "chatter", "copy")
+    copy = test.record("/copy", String)
+    await test.settle()
+    assert test.graph.count_publishers("/copy") == 0
+    test.node.create_publisher(String, "chatter", 10)
+    await test.settle()
+    await say(test, "chatter", "one", "two")
+    assert heard(copy) == ["one", "two"]
+
+
+async def test_relay_hands_on_the_very_message(test):
+    start(test, Relay, input_topic="chatter")
+    relayed = test.record("/chatter_relay", String)
+    test.node.create_publisher(String, "chatter", 10)
+    await test.settle()
+    message = String(data="one")
+    test.publish("chatter", message)
+    await test.settle()
+    assert relayed.last is message
+
+
+async def test_relay_has_the_quality_of_its_sources_and_goes_with_them(test):
+    start(test, Relay, "chatter", "copy")
+    lasting = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    source = test.node.create_publisher(String, "chatter", lasting)
+    source.publish(String(data="kept"))
+    await test.settle()
+    (copy,) = test.graph.get_publishers_info_by_topic("/copy")
+    assert copy.qos_profile.durability is DurabilityPolicy.TRANSIENT_LOCAL
+    late = test.record("/copy")
+    await test.settle()
+    assert heard(late) == ["kept"]
+    test.node.create_publisher(String, "chatter", QoSProfile(1, ReliabilityPolicy.BEST_EFFORT))
+    await test.settle()
+    (copy,) = test.graph.get_publishers_info_by_topic("/copy")
+    assert copy.qos_profile.durability is DurabilityPolicy.VOLATILE
+    assert copy.qos_profile.reliability is ReliabilityPolicy.BEST_EFFORT
+    assert len([text for text in said(test, "WARN") if text.startswith("Some, but not all, publishers")]) == 2
+    for publisher in [each for each in test.node.publishers if each.name == "/chatter"]:
+        test.node.destroy_publisher(publisher)
+    await test.settle()
+    assert test.graph.count_publishers("/copy") == 0
+    number = get_message("std_msgs/msg/Int32")
+    test.node.create_publisher(number, "chatter", 10)
+    await test.settle()
+    assert [each.topic_type for each in test.graph.get_publishers_info_by_topic("/copy")] == ["std_msgs/msg/Int32"]
+
+
+async def test_a_lazy_relay_listens_only_for_listeners(test):
+    running = start(test, Relay, "chatter", "copy", lazy=True)
+    test.node.create_publisher(String, "chatter", 10)
+    await test.settle()
+    assert test.graph.count_subscribers("/chatter") == 0
+    listener = test.node.create_subscription(String, "copy", lambda _: None, 10)
+    await test.settle()
+    assert test.graph.count_subscribers("/chatter") == 1
+    test.node.destroy_subscription(listener)
+    await test.settle()
+    assert test.graph.count_subscribers("/chatter") == 0
+    running.close()
+    await test.settle()
+    assert test.graph.count_publishers("/copy") == 0
+
+
+async def test_throttle_lets_so_many_messages_a_second_through(test):
+    start(test, Throttle, "messages", "chatter", "2.0")
+    slow = test.record("/chatter_throttle", String)
+    publisher = test.node.create_publisher(String, "chatter", 100)
+    test.node.create_timer(0.1, lambda: publisher.publish(String()))
+    await test.advance(10.0)
+    assert slow.times == pytest.approx([0.5 * count for count in range(1, 21)])
+
+
+async def test_throttle_by_bytes(test):
+    start(test, Throttle, "bytes", "chatter", "100", "1.0", "slow")
+    slow = test.record("/slow", String)
+    publisher = test.node.create_publisher(String, "chatter", 100)
+    test.node.create_timer(0.1, lambda: publisher.publish(String(data="x" * 31)))  # 40 bytes with header and length
+    await test.advance(1.05)
+    assert len(slow) == 3
+
+
+async def test_drop_drops_the_first_of_each_round(test):
+    start(test, Drop, "chatter", "1", "3")
+    rest = test.record("/chatter_drop", String)
+    test.node.create_publisher(String, "chatter", 10)
+    await test.settle()
+    await say(test, "chatter", *"abcdefg")
+    assert heard(rest) == ["b", "c", "e", "f"]
+
+
+async def test_delay_keeps_the_order_and_the_gaps(test):
+    start(test, Delay, "chatter", "0.5")
+    late = test.record("/chatter_delay", String)
+    test.node.create_publisher(String, "chatter", 10)
+    await test.settle()
+    await say(test, "chatter", "a", "b")
+    await test.advance(0.2)
+    await say(test, "chatter", "c")
+    await test.advance(0.29)
+    assert heard(late) == []
+    await test.advance(0.5)
+    assert heard(late) == ["a", "b", "c"]
+    assert late.times == pytest.approx([0.5, 0.5, 0.7])
+
+
+async def test_mux_selects_adds_lists_and_deletes(test):
+    start(test, Mux, "out", "first", "second")
+    out = test.record("/out", String)
+    for topic in ("first", "second", "third"):
+        test.node.create_publisher(String, topic, 10)
+    await test.settle()
+    await say(test, "first", "1")
+    await say(test, "second", "2")
+    assert heard(out) == ["1"]
+
+    async def ask(verb, topic=None):
+        request = get_service(f"topic_tools_interfaces/srv/Mux{verb.capitalize()}").Request()
+        if topic is not None:
+            request.topic = topic
+        return await test.call(f"/mux/{verb}", request)
+
+    answer = await ask("select", "/second")
+    assert (answer.success, answer.prev_topic) == (True, "first")
+    await say(test, "first", "1")
+    await say(test, "second", "2")
+    assert heard(out) == ["1", "2"]
+    assert not (await ask("select", "third")).success
+    assert (await ask("add", "third")).success
+    assert not (await ask("add", "third")).success
+    assert (await ask("list")).topics == ["first", "second", "third"]
+    assert not (await ask("delete", "second")).success
+    assert (await ask("delete", "first")).success
+    assert (await ask("select", "__none")).success
+    await say(test, "second", "2")
+    assert heard(out) == ["1", "2"]
+    assert said(test, "WARN") == [
+        "tried to add a topic that mux was already listening to: [third]",
+        "tried to delete currently selected topic second from mux",
+    ]
+
+
+async def test_demux_publishes_on_the_selected_output(test):
+    start(test, Demux, "in", "left", "right")
+    left, right = test.record("/left", String), test.record("/right", String)
+    test.node.create_publisher(String, "in", 10)
+    await test.settle()
+    await say(test, "in", "1")
+    request = get_service("topic_tools_interfaces/srv/DemuxSelect").Request(topic="right")
+    assert (await test.call("/demux/select", request)).prev_topic == "left"
+    await say(test, "in", "2")
+    assert (heard(left), heard(right)) == (["1"], ["2"])
+
+
+async def test_transform_works_an_expression_out(test):
+    words = ["/imu", "--field", "orientation", "/norm", "std_msgs/Float64"]
+    expression = "std_msgs.msg.Float64(data=numpy.linalg.norm([m.x, m.y, m.z, m.w]))"
+    start(test, Transform, *words, expression, "--import", "std_msgs", "numpy")
+    norm = test.record("/norm")
+    imu = get_message("sensor_msgs/msg/Imu")()
+    imu.orientation.x, imu.orientation.w = 3.0, 4.0
+    test.publish("/imu", imu)
+    await test.settle()
+    test.publish("/imu", imu)
+    await test.settle()
+    assert norm.last.data == 5.0
+
+
+async def test_relay_field_fills_fields_by_expressions(test):
+    start(test, RelayField, "/chatter", "/header", "std_msgs/Header", "{stamp: {sec: 7}, frame_id: m.data + '_link'}")
+    header = test.record("/header")
+    test.node.create_publisher(String, "/chatter", 10)
+    await test.settle()
+    await say(test, "/chatter", "base")
+    assert (header.last.stamp.sec, header.last.frame_id) == (7, "base_link")
+
+
+async def test_an_expression_that_fails_is_told_and_the_next_message_counts(test):
+    start(
+        test,
+        Transform,
+        "/chatter",
+        "/number",
+        "std_msgs/Int32",
+        "std_msgs.msg.Int32(data=int(m.data))",
+        "-i",
+        "std_msgs",
+    )
+    number = test.record("/number")
+    test.node.create_publisher(String, "/chatter", 10)
+    await test.settle()
+    await say(test, "/chatter", "one", "1")
+    assert [message.data for message in number] == [1]
+    (text,) = said(test, "ERROR")
+    assert text.endswith("ValueError: invalid literal for int() with base 10: 'one'")
+
+
+@pytest.mark.parametrize(
+    ("kind", "words", "text"),
+    [
+        (Relay, [], "parameter 'input_topic' of 'relay' is not given"),
+        (Relay, ["a", "b", "c"], "there is no meaning for 'c'"),
+        (Throttle, ["often", "a", "1"], "parameter 'throttle_type' of 'throttle' cannot be 'often'"),
+        (Throttle, ["messages", "a", "fast"], "'fast' is no value of 'msgs_per_sec'"),
+        (Throttle, ["messages", "a", "0"], "parameter 'msgs_per_sec' of 'throttle' cannot be '0.0'"),
+        (Drop, ["a", "1"], "parameter 'Y' of 'drop' is not given"),
+        (Delay, ["a", "-1"], "parameter 'delay' of 'delay' cannot be '-1.0'"),
+        (Mux, ["out"], "parameter 'input_topics' of 'mux' is not given"),
+        (Transform, ["a", "b", "std_msgs/Nothing"], "there is no message 'std_msgs/msg/Nothing'"),
+        (Transform, ["a", "b", "std_msgs/String", "m +"], "'m +' is not understood"),
+        (Transform, ["a", "b"], "the following arguments are required: output_type"),
+        (RelayField, ["a", "b", "std_msgs/String", "data"], "'data' is not understood: it is not a mapping of fields"),
+    ],
+)
+async def test_words_that_mean_nothing(test, kind, words, text):
+    with pytest.raises(LinkwrightError) as caught:
+        start(test, kind, *words)
+    assert text in str(caught.value)
+    assert test.graph.node_names() == []
+
+
+async def test_parameters_that_a_node_does_not_have_are_named_once(test):
+    start(test, Relay, input_topic="a", lasy=True, robot_model="x")
+    assert said(test, "WARN") == ["'lasy' is no parameter of this node; did you mean 'lazy'?"]
+    assert said(test, "INFO") == ["parameters that this node does not have are not read: robot_model"]
