@@ -11,6 +11,8 @@ import threading
 import time
 from collections.abc import Callable
 
+from linkwright.graph.executors.work import WorkQueue
+
 SECONDS = 60.0
 _PAUSE = 0.005
 
@@ -32,9 +34,11 @@ async def eventually(condition: Callable[[], object], seconds: float = SECONDS, 
 
 
 def is_waiting(thread: threading.Thread) -> bool:
-    """Whether a thread waits for another one (for a lock, an event, a condition)."""
+    """Whether a thread waits for another one (for an event, a condition, the work of an executor)."""
     frame = sys._current_frames().get(thread.ident or 0)
-    return frame is not None and frame.f_code.co_filename == threading.__file__
+    return frame is not None and (
+        frame.f_code.co_filename == threading.__file__ or frame.f_code is WorkQueue._sleep.__code__
+    )
 
 
 def _said(seconds: float, what: object) -> str:

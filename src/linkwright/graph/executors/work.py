@@ -8,6 +8,7 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any
 
 _LONGEST_WAIT_S = 0.1 if os.name == "nt" else 3600.0
@@ -42,6 +43,8 @@ class WorkQueue:
     """A queue that any thread may add to. Whoever takes from it also sets off the alarms that are due.
 
     Adding to it takes no lock while nobody waits, so that a message handed to the own thread costs next to nothing.
+    Nor does waiting hold one: Ctrl-C may raise KeyboardInterrupt at any point of it, and a ``threading.Condition``
+    would be left with a lock that its thread does not hold (RuntimeError: cannot release un-acquired lock).
     """
 
     def __init__(self) -> None:
@@ -49,23 +52,20 @@ class WorkQueue:
         self._alarms: list[ScheduledCall] = []
         self._numbers = 0
         self._cancelled = 0
-        self._condition = threading.Condition(threading.RLock())
-        self._waiting = 0
+        self._alarms_lock = threading.RLock()
+        self._sleepers: deque[threading.Lock] = deque()
         self._woken = False
 
     def add(self, item: Any) -> None:
         """Put something at the end."""
         self._ready.append(item)
-        if self._waiting:
-            with self._condition:
-                self._condition.notify_all()
+        if self._sleepers:
+            self._rouse()
 
     def add_first(self, items: list[Any]) -> None:
         """Put things back at the beginning, in their order."""
         self._ready.extendleft(reversed(items))
-        if self._waiting:
-            with self._condition:
-                self._condition.notify_all()
+        self._rouse()
 
     def has_ready(self) -> bool:
         """Whether something is ready."""
@@ -85,58 +85,33 @@ class WorkQueue:
 
         It may also return for no reason.
         """
-        with self._condition:
-            self._waiting += 1
-            try:
-                if self._ready or self._woken:
-                    return
-                if self._alarms and (deadline_ns is None or self._alarms[0].steady_ns < deadline_ns):
-                    deadline_ns = self._alarms[0].steady_ns
-                seconds = _LONGEST_WAIT_S
-                if deadline_ns is not None:
-                    seconds = min((deadline_ns - time.monotonic_ns()) / _NANOSECONDS_PER_SECOND, seconds)
-                if seconds > 0:
-                    self._condition.wait(seconds)
-            finally:
-                self._waiting -= 1
-                self._woken = False
+        self._sleep(deadline_ns, until_wake=False)
 
     def wait_for_wake(self, deadline_ns: int | None) -> None:
         """Wait until somebody calls `wake`, or `deadline_ns` has come; what is ready stays."""
-        with self._condition:
-            self._waiting += 1
-            try:
-                seconds = _LONGEST_WAIT_S
-                if deadline_ns is not None:
-                    seconds = min((deadline_ns - time.monotonic_ns()) / _NANOSECONDS_PER_SECOND, seconds)
-                if seconds > 0 and not self._woken:
-                    self._condition.wait(seconds)
-            finally:
-                self._waiting -= 1
-                self._woken = False
+        self._sleep(deadline_ns, until_wake=True)
 
     def wake(self) -> None:
         """End the wait of whoever waits, or the next one."""
         self._woken = True
-        if self._waiting:
-            with self._condition:
-                self._condition.notify_all()
+        self._rouse()
 
     def call_at(self, steady_ns: int, callback: Callable[[], None]) -> ScheduledCall:
         """Have something called, by whoever takes from the queue, once ``time.monotonic_ns`` has come to a value."""
-        with self._condition:
+        with self._alarms_lock:
             self._numbers += 1
             call = ScheduledCall(self, steady_ns, self._numbers, callback)
             heapq.heappush(self._alarms, call)
-            if self._waiting and self._alarms[0] is call:
-                self._condition.notify_all()
+            is_next = self._alarms[0] is call
+        if is_next:
+            self._rouse()
         return call
 
     def forget_one(self) -> None:
         """Take note that an alarm was cancelled; many of them are cleared away."""
         self._cancelled += 1
         if self._cancelled > _MANY_CANCELLED:
-            with self._condition:
+            with self._alarms_lock:
                 if self._cancelled * 2 > len(self._alarms):
                     self._alarms = [call for call in self._alarms if call.callback is not None]
                     heapq.heapify(self._alarms)
@@ -144,14 +119,14 @@ class WorkQueue:
 
     def clear(self) -> None:
         """Forget everything."""
-        with self._condition:
+        with self._alarms_lock:
             self._ready.clear()
             self._alarms.clear()
             self._cancelled = 0
 
     def _call_due(self) -> None:
         while True:
-            with self._condition:
+            with self._alarms_lock:
                 if not self._alarms or self._alarms[0].steady_ns > time.monotonic_ns():
                     return
                 call = heapq.heappop(self._alarms)
@@ -160,3 +135,33 @@ class WorkQueue:
                     self._cancelled -= 1
                     continue
             callback()
+
+    def _sleep(self, deadline_ns: int | None, *, until_wake: bool) -> None:
+        sleeper = threading.Lock()
+        sleeper.acquire()
+        self._sleepers.append(sleeper)  # before the look at what is there: whoever adds after that look rouses it
+        try:
+            if self._woken or (self._ready and not until_wake):
+                return
+            if not until_wake:
+                deadline_ns = self._first_of_alarm_and(deadline_ns)
+            seconds = _LONGEST_WAIT_S
+            if deadline_ns is not None:
+                seconds = min((deadline_ns - time.monotonic_ns()) / _NANOSECONDS_PER_SECOND, seconds)
+            if seconds > 0:
+                sleeper.acquire(timeout=seconds)
+        finally:
+            self._woken = False
+            with suppress(ValueError):  # it was roused
+                self._sleepers.remove(sleeper)
+
+    def _first_of_alarm_and(self, deadline_ns: int | None) -> int | None:
+        with self._alarms_lock:
+            if self._alarms and (deadline_ns is None or self._alarms[0].steady_ns < deadline_ns):
+                return self._alarms[0].steady_ns
+        return deadline_ns
+
+    def _rouse(self) -> None:
+        while self._sleepers:
+            with suppress(IndexError):  # another thread was quicker
+                self._sleepers.popleft().release()
