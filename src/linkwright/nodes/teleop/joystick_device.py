@@ -1,0 +1,131 @@
+"""Joysticks of Linux, read from /dev/input/js*: the kernel's joystick interface, which needs no library.
+
+Source of the format: the kernel's documentation of the joystick API (``linux/joystick.h``).
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import os
+import struct
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+FOLDER = Path("/dev/input")
+FULL = 32767
+"""What an axis reads at its end; the other end is its negative."""
+
+_EVENT = struct.Struct("=IhBB")
+_BUTTON, _AXIS, _INITIAL = 0x01, 0x02, 0x80
+_EVENTS_AT_ONCE = 64
+_NAME_BYTES = 128
+_GET_NAME = 0x80006A13 | _NAME_BYTES << 16
+
+
+class JoystickEvent(NamedTuple):
+    """A change of a joystick.
+
+    Attributes:
+        is_axis: whether it is an axis, else a button.
+        number: which of them, from 0.
+        value: of an axis -32767 to 32767, right and backwards positive; of a button 1 while it is pressed.
+        initial: whether it tells how things were when the device was opened.
+    """
+
+    is_axis: bool
+    number: int
+    value: int
+    initial: bool = False
+
+
+class JoystickDevice:
+    """An open joystick.
+
+    Args:
+        path: the device.
+        on_events: called with what changed.
+        on_end: called once when the device is gone.
+
+    Raises:
+        OSError: it cannot be opened.
+    """
+
+    def __init__(
+        self, path: Path, on_events: Callable[[list[JoystickEvent]], None], on_end: Callable[[], None]
+    ) -> None:
+        self._on_events, self._on_end = on_events, on_end
+        self._rest = b""
+        self._descriptor: int | None = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0))
+        self.name = _name_of(self._descriptor)
+        try:
+            asyncio.get_running_loop().add_reader(self._descriptor, self._read)
+        except OSError:  # a folder, or a file: nothing that could be waited for
+            os.close(self._descriptor)
+            raise
+
+    def close(self) -> None:
+        """Let go of the device; again does nothing."""
+        descriptor, self._descriptor = self._descriptor, None
+        if descriptor is not None:
+            asyncio.get_running_loop().remove_reader(descriptor)
+            os.close(descriptor)
+
+    def _read(self) -> None:
+        assert self._descriptor is not None
+        try:
+            data = os.read(self._descriptor, _EVENT.size * _EVENTS_AT_ONCE)
+        except BlockingIOError:
+            return
+        except OSError:  # it was pulled out
+            data = b""
+        if not data:
+            self.close()
+            self._on_end()
+            return
+        data = self._rest + data
+        whole = len(data) - len(data) % _EVENT.size
+        self._rest = data[whole:]
+        self._on_events(list(_events(data[:whole])))
+
+
+def find_device(number: int, name: str = "") -> Path | None:
+    """The joystick of a number, or the first whose name contains a text; None when there is none.
+
+    Args:
+        number: that in ``/dev/input/jsNUMBER``.
+        name: part of its name; empty to go by the number.
+    """
+    if not name:
+        path = FOLDER / f"js{number}"
+        return path if path.exists() else None
+    for path in sorted(FOLDER.glob("js*")):
+        with contextlib.suppress(OSError):
+            descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0))
+            try:
+                if name in _name_of(descriptor):
+                    return path
+            finally:
+                os.close(descriptor)
+    return None
+
+
+def _events(data: bytes) -> Iterator[JoystickEvent]:
+    for _, value, kind, number in _EVENT.iter_unpack(data):
+        if kind & ~_INITIAL in (_BUTTON, _AXIS):
+            yield JoystickEvent(bool(kind & _AXIS), number, value, bool(kind & _INITIAL))
+
+
+def _name_of(descriptor: int) -> str:
+    if sys.platform == "win32":
+        return ""
+    import fcntl
+
+    buffer = bytearray(_NAME_BYTES)
+    try:
+        fcntl.ioctl(descriptor, _GET_NAME, buffer)
+    except OSError:  # not a real joystick
+        return ""
+    return buffer.split(b"\0", 1)[0].decode("utf-8", "replace")

@@ -1,0 +1,139 @@
+"""teleop_node of teleop_twist_joy: messages of a joystick become velocities while a button is held.
+
+Parameters and defaults are those of the ROS node. Different on purpose: unless ``publish_stamped_twist`` is set it
+publishes what the topic's subscribers take; and when nobody publishes ``joy`` any more, the robot is stopped.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from linkwright.graph import Clock, ClockType, EndpointKind, Graph, Node, ParameterType
+from linkwright.messages import get_message
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.teleop.velocity_topic import VelocityTopic
+
+_DEPTH = 10
+_REVIEW_SECONDS = 0.5
+_LINEAR, _ANGULAR = ("x", "y", "z"), ("roll", "pitch", "yaw")
+_AXES = {"linear.x": 5, "angular.yaw": 2}
+_SCALES = {"linear.x": 0.5, "angular.yaw": 0.5}
+_TURBO_SCALES = {"linear.x": 1.0, "angular.yaw": 1.0}
+
+
+@dataclass(frozen=True, slots=True)
+class _Axis:
+    """What of a joystick moves along or about one axis of the robot.
+
+    Attributes:
+        number: the joystick's axis, below 0 for none.
+        scale: m/s or rad/s at its end.
+        turbo_scale: the same while the turbo button is held.
+    """
+
+    number: int
+    scale: float
+    turbo_scale: float
+
+    def velocity(self, axes: Sequence[float], *, turbo: bool) -> float:
+        """The velocity that a message asks for; 0 where the joystick has no such axis."""
+        if not 0 <= self.number < len(axes):
+            return 0.0
+        return axes[self.number] * (self.turbo_scale if turbo else self.scale)
+
+
+class TeleopTwistJoy(SingleNode):
+    """The running node."""
+
+    DEFAULT_NAME = "teleop_twist_joy_node"
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
+        self._drives = False
+        with starting(self._node):
+            self._start()
+
+    def _start(self) -> None:
+        node = self._node
+        stamped: bool | None = node.declare_parameter("publish_stamped_twist", ParameterType.BOOL).value
+        frame: str = node.declare_parameter("frame", "teleop_twist_joy").value
+        for name, default in (
+            ("require_enable_button", True),
+            ("enable_button", 5),
+            ("enable_turbo_button", -1),
+            ("inverted_reverse", False),
+        ):
+            node.declare_parameter(name, default)
+        for kind, names in (("linear", _LINEAR), ("angular", _ANGULAR)):
+            for name in names:
+                key = f"{kind}.{name}"
+                node.declare_parameter(f"axis_{key}", _AXES.get(key, -1))
+                node.declare_parameter(f"scale_{key}", _SCALES.get(key, 0.0))
+                node.declare_parameter(f"scale_{kind}_turbo.{name}", _TURBO_SCALES.get(key, 0.0))
+        self._follow_parameters()
+        node.add_post_set_parameters_callback(lambda _: self._follow_parameters())
+        self._topic = VelocityTopic(node, "cmd_vel", stamped, frame)
+        self._joy = node.resolve_topic_name("joy")
+        node.create_subscription(get_message("sensor_msgs/msg/Joy"), "joy", self._heard, _DEPTH)
+        clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=node.get_clock().timebase)
+        node.create_timer(_REVIEW_SECONDS, self._review, clock=clock)
+        logger = node.get_logger()
+        if self._needs_button:
+            logger.info(f"Teleop enable button {self._button}.")
+        if self._turbo_button >= 0:
+            logger.info(f"Turbo on button {self._turbo_button}.")
+
+    def close(self) -> None:
+        """Stop the robot where it was driven, and end."""
+        if self._drives:
+            self._topic.stop()
+        super().close()
+
+    def _follow_parameters(self) -> None:
+        node = self._node
+        self._needs_button: bool = node.get_parameter("require_enable_button").value
+        self._button: int = node.get_parameter("enable_button").value
+        self._turbo_button: int = node.get_parameter("enable_turbo_button").value
+        self._inverted: bool = node.get_parameter("inverted_reverse").value
+        self._linear = [_axis(node, "linear", name) for name in _LINEAR]
+        self._angular = [_axis(node, "angular", name) for name in _ANGULAR]
+
+    def _heard(self, message: Any) -> None:
+        buttons, axes = message.buttons, message.axes
+        turbo = _pressed(buttons, self._turbo_button)
+        if turbo or not self._needs_button or _pressed(buttons, self._button):
+            linear = [axis.velocity(axes, turbo=turbo) for axis in self._linear]
+            angular = [axis.velocity(axes, turbo=turbo) for axis in self._angular]
+            if self._inverted and linear[0] < 0.0:
+                angular[2] = -angular[2]
+            self._drives = True
+            self._topic.publish(linear, angular)
+        else:
+            self._stop()
+
+    def _stop(self) -> None:
+        """Publish zero once after something else."""
+        if self._drives:
+            self._drives = False
+            self._topic.stop()
+
+    def _review(self) -> None:
+        self._topic.review(may_change=not self._drives)
+        if self._drives and not any(
+            each.name == self._joy and each.kind is EndpointKind.PUBLISHER for each in self._node.graph.endpoints()
+        ):
+            self._stop()
+
+
+def _axis(node: Node, kind: str, name: str) -> _Axis:
+    return _Axis(
+        node.get_parameter(f"axis_{kind}.{name}").value,
+        node.get_parameter(f"scale_{kind}.{name}").value,
+        node.get_parameter(f"scale_{kind}_turbo.{name}").value,
+    )
+
+
+def _pressed(buttons: Sequence[int], number: int) -> bool:
+    return 0 <= number < len(buttons) and buttons[number] != 0
