@@ -23,6 +23,8 @@ function shape(part: Partial<Shape> & Pick<Shape, "kind" | "size">): Shape {
     repaints: false,
     submesh: null,
     outlines: [],
+    heights: null,
+    columns: 0,
     ...part,
   };
 }

@@ -35,6 +35,8 @@ export interface Shape {
   repaints: boolean;
   submesh: Submesh | null;
   outlines: number[][];
+  heights: Float32Array | null;
+  columns: number;
 }
 
 /** A link to draw in the frame of its name. */

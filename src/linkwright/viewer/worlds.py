@@ -5,6 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.diagnostics import LinkwrightError
 from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere
 from linkwright.geometry.single import Transform, compose, rotation_from_z
 from linkwright.sdf.frames import Frames, PlacedLink, links_of
@@ -24,11 +28,14 @@ from linkwright.sdf.shapes import (
 )
 from linkwright.sdf.shapes import Shape as SdfShape
 from linkwright.sdf.worlds import World
+from linkwright.simulation.scene.heights import read_heights
 from linkwright.viewer.protocol.robot import LinkScene, Shape, Submesh
 from linkwright.viewer.web.files import IMAGE_TYPES, MESH_TYPES, MeshIndex
 
 _UNCOLOURED = [0.7, 0.7, 0.7, 1.0]
 """What has no material is grey in Gazebo."""
+_MOST_HEIGHTS = 257
+"""So many heights along a side of a ground are drawn."""
 _COLLISION = [1.0, 0.55, 0.1, 0.6]
 
 _Place = Callable[[RawPose], Transform]
@@ -153,14 +160,30 @@ class _Builder:
             shape.submesh = Submesh(mesh.submesh.name, mesh.submesh.center)
 
     def _terrain(self, link: str, shape: Shape, terrain: Heightmap) -> None:
-        shape.url = self._located(link, terrain.uri, IMAGE_TYPES)
-        if shape.url is None:
+        heights = self._heights(link, terrain.uri)
+        if heights is None:
             return
+        shape.heights, shape.columns = heights.ravel(), heights.shape[1]
         texture = terrain.textures[0] if terrain.textures else None
         shape.kind = "heightmap"
         shape.size = [*terrain.size, *terrain.position, texture.size if texture else 1.0]
         if texture is not None and texture.diffuse:
             shape.texture = self._located(link, texture.diffuse, IMAGE_TYPES)
+
+    def _heights(self, link: str, uri: str) -> NDArray[np.float32] | None:
+        """The heights of a ground, by the reader of the simulation; browsers read neither TIFF nor 16 bits of grey."""
+        if self._located(link, uri, IMAGE_TYPES) is None:
+            return None
+        try:
+            values = read_heights(self._index.finder.resolve(uri)).values
+        except LinkwrightError as error:
+            self._problem(link, error.diagnostics[0].message)
+            return None
+        rows, columns = (
+            np.linspace(0, size - 1, min(size, _MOST_HEIGHTS)).round().astype(int) for size in values.shape
+        )
+        drawn: NDArray[np.float32] = values[np.ix_(rows, columns)].astype(np.float32)
+        return drawn
 
     def _paint(self, link: str, shape: Shape, visual: Visual) -> None:
         material = visual.material
@@ -176,11 +199,13 @@ class _Builder:
     def _located(self, link: str, uri: str, types: dict[str, str]) -> str | None:
         located = self._index.locate(uri, None, types)
         if located.url is None:
-            problems = self._made.problems.setdefault(link, [])
-            text = f"Could not load '{uri}': {located.problem}"
-            if text not in problems:
-                problems.append(text)
+            self._problem(link, f"Could not load '{uri}': {located.problem}")
         return located.url
+
+    def _problem(self, link: str, text: str) -> None:
+        problems = self._made.problems.setdefault(link, [])
+        if text not in problems:
+            problems.append(text)
 
 
 def _look(material: Material) -> tuple[Sequence[float] | None, str]:

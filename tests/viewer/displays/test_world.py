@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from linkwright.graph import DESCRIPTION_QOS, SENSOR_DATA_QOS, TF_QOS
 from linkwright.messages import Header, String, TFMessage, TransformBatch, get_message
@@ -183,11 +184,29 @@ async def test_files_of_a_model_are_served_with_its_textures_and_those_that_are_
         meshes = made.viewer.context.meshes
         assert relative == "meshes/crate.stl"
         assert meshes.file(key, "materials/textures/wood.png") == model / "materials/textures/wood.png"
+        assert meshes.file(key, "meshes/wood.png") == model / "materials/textures/wood.png"  # as Gazebo looks for it
         with pytest.raises(Exception, match="only meshes and images"):
             meshes.file(key, "secret.txt")
         level, told = made.status("World")["Files"]
         assert level == "error"
         assert "crate::link: Could not load 'file:///nowhere.stl'" in told
+
+
+async def test_the_heights_of_a_ground_are_sent_as_the_simulation_has_them_and_not_too_many(tmp_path):
+    steps = np.tile(np.linspace(0, 65535, 600).astype(np.uint16), (2, 1))
+    Image.fromarray(steps).save(tmp_path / "hill.png")
+    ground = "<heightmap><uri>{}</uri><size>10 10 2</size></heightmap>"
+    visual = f"<visual name='v'><geometry>{ground.format((tmp_path / 'hill.png').as_uri())}</geometry></visual>"
+    visual += f"<visual name='w'><geometry>{ground.format('file:///nowhere.png')}</geometry></visual>"
+    text = f"<sdf version='1.9'><model name='hill'><link name='l'>{visual}</link></model></sdf>"
+    async with world(config("world")) as made:
+        await Simulation(made).describe(text, links=1)
+        (link,) = sent(made, "world_scene").fields["links"]
+        (hill,) = link["visuals"]
+        assert (hill["kind"], hill["columns"], hill["url"]) == ("heightmap", 257, None)
+        heights = hill["heights"].reshape(2, 257)
+        assert heights[1, [0, 128, 256]].tolist() == pytest.approx([0.0, 0.5, 1.0], abs=2e-3)
+        assert "file:///nowhere.png" in made.status("World")["Files"][1]
 
 
 async def test_materials_of_gazebo_are_known_by_their_names():

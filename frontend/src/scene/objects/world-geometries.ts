@@ -2,9 +2,6 @@ import { Box3, ExtrudeGeometry, Path, PlaneGeometry, Shape as Outline, ShapeUtil
 import type { Submesh } from "../../protocol";
 import type { MeshPart } from "../meshes/mesh-template";
 
-/** Heights along a side; more are not told apart. */
-const MOST_HEIGHTS = 257;
-
 /** The polygons x y x y ..., raised along z; those that lie in others are holes, and what lies in holes is solid again. */
 export function extrusion(outlines: readonly (readonly number[])[], height: number): BufferGeometry {
   const polygons = outlines.map((numbers) => {
@@ -42,33 +39,24 @@ export function submesh(parts: readonly MeshPart[], wanted: Submesh | null): { p
 }
 
 /**
- * A ground whose heights are the grey values of an image.
+ * A ground.
  *
+ * @param heights shares of the greatest height, row by row from the least y, each from the least x.
+ * @param columns heights in a row.
  * @param size x, y, z of the ground, the offset of its middle, and the edge length that a texture covers, m.
  */
-export async function terrain(url: string, size: readonly number[]): Promise<BufferGeometry> {
-  const image = new Image();
-  image.src = url;
-  await image.decode();
-  const [width, height] = [Math.min(image.naturalWidth, MOST_HEIGHTS), Math.min(image.naturalHeight, MOST_HEIGHTS)];
-  const canvas = document.createElement("canvas");
-  Object.assign(canvas, { width, height });
-  const context = canvas.getContext("2d");
-  if (!context) throw new Error("the image of the heights cannot be read");
-  context.drawImage(image, 0, 0, width, height);
-  return ground(context.getImageData(0, 0, width, height).data, width, height, size);
-}
-
-/** `terrain`, of the image's pixels r g b a, the upper row first: it is the one with the greatest y. */
-export function ground(pixels: ArrayLike<number>, width: number, height: number, size: readonly number[]): BufferGeometry {
+export function ground(heights: Float32Array, columns: number, size: readonly number[]): BufferGeometry {
   const [x = 1, y = 1, z = 1, dx = 0, dy = 0, dz = 0, tile = 1] = size;
-  const geometry = new PlaneGeometry(x, y, Math.max(1, width - 1), Math.max(1, height - 1));
+  const rows = Math.floor(heights.length / Math.max(1, columns));
+  const geometry = new PlaneGeometry(x, y, Math.max(1, columns - 1), Math.max(1, rows - 1));
   const positions = geometry.getAttribute("position");
   const uvs = geometry.getAttribute("uv");
-  const repeats = tile > 0 ? [x / tile, y / tile] : [1, 1];
+  const [across, along] = tile > 0 ? [x / tile, y / tile] : [1, 1];
   for (let i = 0; i < positions.count; i++) {
-    positions.setZ(i, ((pixels[4 * i] ?? 0) / 255) * z);
-    uvs.setXY(i, uvs.getX(i) * (repeats[0] ?? 1), uvs.getY(i) * (repeats[1] ?? 1));
+    // A plane begins with the greatest y.
+    const row = rows - 1 - Math.floor(i / columns);
+    positions.setZ(i, (heights[row * columns + (i % columns)] ?? 0) * z);
+    uvs.setXY(i, uvs.getX(i) * across, uvs.getY(i) * along);
   }
   geometry.translate(dx, dy, dz);
   geometry.computeVertexNormals();

@@ -4,7 +4,7 @@ import { TOUCHED } from "../layers";
 import { errorMaterial, loadTexture, OPAQUE_FROM, RVIZ_RED, type Look, type MaterialPool } from "../materials";
 import type { MeshLibrary } from "../meshes/mesh-library";
 import { UNCOLOURED_GREY, type MeshTemplate, type OwnMaterial } from "../meshes/mesh-template";
-import { extrusion, submesh, terrain } from "../objects/world-geometries";
+import { extrusion, ground, submesh } from "../objects/world-geometries";
 import { capsule, unitBox, unitCone, unitCylinder, unitPlane, unitSphere } from "../objects/geometries";
 import { solidKind, type SolidKind } from "./solids";
 
@@ -73,9 +73,8 @@ export class ShapeDrawing {
    * @throws Error when the mesh cannot be drawn.
    */
   async load(library: MeshLibrary): Promise<string | null> {
-    const { kind, size, url, format, texture } = this.shape;
+    const { kind, url, format, texture } = this.shape;
     if (kind === "mesh" && url !== null) this.buildMesh(await library.load(url, format ?? ""));
-    if (kind === "heightmap" && url !== null) this.buildPart(await terrain(library.files.address(url), size));
     const problem = this.problem;
     if (texture === null) return problem;
     try {
@@ -157,8 +156,10 @@ export class ShapeDrawing {
       case "polyline":
         this.buildPart(extrusion(this.shape.outlines, a));
         break;
-      case "mesh":
       case "heightmap":
+        if (this.shape.heights) this.buildPart(ground(this.shape.heights, this.shape.columns, this.shape.size));
+        break;
+      case "mesh":
         break;
     }
     this.freeze();

@@ -6,6 +6,7 @@ from typing import ClassVar, Literal
 
 from msgspec import field
 
+from linkwright.viewer.protocol.binary import Floats
 from linkwright.viewer.protocol.description import LinkInertia
 from linkwright.viewer.protocol.displays import Place
 from linkwright.viewer.protocol.message import PageMessage, Record, ServerMessage
@@ -33,7 +34,8 @@ class Shape(Record):
 
     Of worlds: `size` is the radii of an ellipsoid; radius, length of a cone (its tip above); x, y of a plane; the
     height of a polyline, whose `outlines` (x, y, x, y, ...) cut holes into each other; x, y, z of a heightmap, the
-    offset of its middle, and the edge length of its texture; `url` is the image of its heights.
+    offset of its middle, and the edge length of its texture; `heights` are shares of z, shape (rows, columns), from
+    the least x and y on along x.
     """
 
     kind: ShapeKind
@@ -48,6 +50,8 @@ class Shape(Record):
     repaints: bool = False
     submesh: Submesh | None = None
     outlines: list[list[float]] = field(default_factory=list)
+    heights: Floats | None = None
+    columns: int = 0
 
 
 class LinkScene(Record):

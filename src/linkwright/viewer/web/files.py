@@ -210,7 +210,7 @@ def resolve(folder: ServedFolder, relative: str) -> Path:
     if folder.package is None and not folder.is_model and len(parts) > _LOOSE_DEPTH:
         raise FileRefusedError(403, "too deep below a mesh that is in no package")
     try:
-        real = (folder.root / relative).resolve(strict=True)
+        real = _beside(folder.root / relative).resolve(strict=True)
         root = folder.root.resolve(strict=True)
     except (OSError, RuntimeError, ValueError):
         raise FileRefusedError(404, "no such file") from None
@@ -221,6 +221,16 @@ def resolve(folder: ServedFolder, relative: str) -> Path:
     if not real.is_relative_to(root) and not _of_package(real, folder.package):
         raise FileRefusedError(403, "a link leads out of the package")
     return real
+
+
+def _beside(path: Path) -> Path:
+    """A file, or the image of its name where a model of Gazebo keeps those that meshes name without a folder."""
+    if path.suffix.lower() in IMAGE_TYPES and not path.exists():
+        model = path.parent.parent
+        kept = model / "materials" / "textures" / path.name
+        if kept.exists() and (model / _MODEL_CONFIG).is_file():
+            return kept
+    return path
 
 
 def _of_package(path: Path, name: str | None) -> bool:
