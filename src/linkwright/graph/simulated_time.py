@@ -76,6 +76,9 @@ class _ClockSubscription(Subscription[Any]):
 
     def receive(self, message: Any, info: Any = None) -> None:  # noqa: ARG002  # a subscription's signature
         """Set the clock."""
+        if type(message) is self._as_it_is:
+            self._move(message)
+            return
         call = self._prepared(message)
         if call is not None:
             call()

@@ -62,7 +62,8 @@ class Exchange:
 
     def work(self) -> None:
         """Do what was posted before."""
-        self.come.clear()
+        if self.come.is_set():
+            self.come.clear()
         while self._in:
             self._in.popleft()()
 

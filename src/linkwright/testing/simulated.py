@@ -136,7 +136,7 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
             before = simulation.time
             server.exchange.work()
             simulation.advance(min(self._period, self._until - before))
-            await self.clock.advance((simulation.time - before) / NANOSECONDS)
+            await self.clock.advance((simulation.time - before) / NANOSECONDS, is_settled=True)
             self._tell_time()
             server.exchange.deliver()
             await self.graph.settle()

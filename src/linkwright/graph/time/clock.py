@@ -352,15 +352,10 @@ class ROSClock(Clock):
             if not self._active:
                 self._override_ns = now_ns
                 return
-            jump = TimeJump(ClockChange.ROS_TIME_NO_CHANGE, Duration(nanoseconds=now_ns - self._override_ns))
-            handles = [handle for handle in self._jump_handles if handle.threshold.is_exceeded(jump)]
-            self._tell_before(handles)
-            self._override_ns = now_ns
-            if jump.delta.nanoseconds < 0:
-                self._alarms.clear()
-                for timer in tuple(self._timers):
-                    timer.after_jump_back()
-            self._tell_after(handles, jump)
+            if self._jump_handles or now_ns < self._override_ns:
+                self._jump_to(now_ns)
+            else:  # as nearly always
+                self._override_ns = now_ns
             self._changed.notify_all()
             due = []
             while self._alarms and self._alarms[0].at_ns <= now_ns:
@@ -368,6 +363,18 @@ class ROSClock(Clock):
         for alarm in due:
             if not alarm.cancelled:
                 alarm.callback()
+
+    def _jump_to(self, now_ns: int) -> None:
+        """Set simulated time, and tell those who asked to be told of it, and timers if it goes back."""
+        jump = TimeJump(ClockChange.ROS_TIME_NO_CHANGE, Duration(nanoseconds=now_ns - self._override_ns))
+        handles = [handle for handle in self._jump_handles if handle.threshold.is_exceeded(jump)]
+        self._tell_before(handles)
+        self._override_ns = now_ns
+        if jump.delta.nanoseconds < 0:
+            self._alarms.clear()
+            for timer in tuple(self._timers):
+                timer.after_jump_back()
+        self._tell_after(handles, jump)
 
     def interrupt(self) -> None:
         """Let sleepers look at their contexts."""

@@ -120,10 +120,16 @@ class JumpClock(Timebase):
         """Let a dispatcher finish its work before each step of the clock."""
         self._dispatchers.append(dispatcher)
 
-    async def advance(self, seconds: float) -> None:
-        """Let time go by; each timer is called when it falls due, and what it causes is done before the next."""
+    async def advance(self, seconds: float, *, is_settled: bool = False) -> None:
+        """Let time go by; each timer is called when it falls due, and what it causes is done before the next.
+
+        Args:
+            seconds: how much.
+            is_settled: whether all that is ready has been done, and need not be waited for.
+        """
         end = self._steady_ns + round(seconds * NANOSECONDS_PER_SECOND)
-        await self._settle()
+        if not is_settled:
+            await self._settle()
         while self._alarms and self._alarms[0].steady_ns <= end:
             alarm = heapq.heappop(self._alarms)
             if not alarm.cancelled:
