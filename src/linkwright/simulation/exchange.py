@@ -6,13 +6,20 @@ import threading
 from collections import deque
 from collections.abc import Callable
 from functools import partial
-from typing import Any
+from typing import Any, Protocol
 
-from linkwright.graph.endpoints.publisher import Publisher
 from linkwright.graph.faults import InvalidHandleError
 from linkwright.graph.loop.dispatcher import LoopDispatcher
 
 Command = Callable[[], object]
+
+
+class Outlet(Protocol):
+    """Where messages go: a publisher, or whatever is to be called on the event loop."""
+
+    def publish(self, message: Any) -> object:
+        """Take a message."""
+
 
 _BATCHES = 4
 """So many batches of messages may wait for the event loop; then the simulation waits for it."""
@@ -30,12 +37,12 @@ class Exchange:
 
     def __init__(self) -> None:
         self.come = threading.Event()
-        self._out: list[tuple[Publisher[Any], Any]] = []
+        self._out: list[tuple[Outlet, Any]] = []
         self._in: deque[Command] = deque()
         self._free = threading.Semaphore(_BATCHES)
         self._closed = False
 
-    def send(self, publisher: Publisher[Any], message: Any) -> None:
+    def send(self, publisher: Outlet, message: Any) -> None:
         """Publish a message with the next batch; nobody changes it any more."""
         self._out.append((publisher, message))
 
@@ -75,13 +82,13 @@ class Exchange:
             self._free.release()
         self.come.set()
 
-    def _deliver(self, batch: list[tuple[Publisher[Any], Any]]) -> None:
+    def _deliver(self, batch: list[tuple[Outlet, Any]]) -> None:
         self._free.release()
         if not self._closed:
             _publish(batch)
 
 
-def _publish(batch: list[tuple[Publisher[Any], Any]]) -> None:
+def _publish(batch: list[tuple[Outlet, Any]]) -> None:
     for publisher, message in batch:
         try:
             publisher.publish(message)

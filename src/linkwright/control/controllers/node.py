@@ -30,3 +30,20 @@ class ControllerNode(PluginNode):
     def post(self, command: Callable[[], object]) -> None:
         """Have something done in the thread of the updates, before the next one; from any thread."""
         self._exchange.post(command)
+
+    def call_on_loop(self, call: Callable[[], object]) -> None:
+        """Have something done on the event loop, after what was published before it."""
+        self._exchange.send(_Call(call), None)
+
+
+class _Call:
+    """What is done where messages are published."""
+
+    __slots__ = ("_call",)
+
+    def __init__(self, call: Callable[[], object]) -> None:
+        self._call = call
+
+    def publish(self, message: None) -> None:  # noqa: ARG002 - the place of a message
+        """Do it."""
+        self._call()

@@ -42,7 +42,7 @@ _TYPES: dict[Any, ParameterType] = {
     tuple[bool, ...]: ParameterType.BOOL_ARRAY,
     float | None: ParameterType.DOUBLE,
 }
-_NAMES, _TABLE, _ABOUT = "names", "table", "about"
+_NAMES, _TABLE, _BELOW, _ABOUT = "names", "table", "below", "about"
 _OF_EVERY_NODE = ("use_sim_time", "params_file", "type", "qos_overrides", "start_type_description_service")
 
 
@@ -70,14 +70,15 @@ def parameter(default: Any, *, description: str = "", read_only: bool = False, c
     return field(default=default, metadata={_ABOUT: _About(description, read_only, check)})
 
 
-def for_each(names: str, table: type[Any]) -> Any:
+def for_each(names: str, table: type[Any], *, below: str = "") -> Any:
     """A table for each of the names that another parameter has, ``gains.JOINT.p``.
 
     Args:
         names: that parameter, which stands before it in the same table; several, separated by blanks.
         table: the dataclass with the parameters of one.
+        below: the name that they stand below, where it is not that of the field.
     """
-    return field(default_factory=dict, metadata={_NAMES: tuple(names.split()), _TABLE: table})
+    return field(default_factory=dict, metadata={_NAMES: tuple(names.split()), _TABLE: table, _BELOW: below})
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,6 +135,7 @@ class ParameterTable(Generic[P]):
             if _NAMES in each.metadata:
                 keys = dict.fromkeys(key for names in each.metadata[_NAMES] for key in values[names])
                 inside = each.metadata[_TABLE]
+                name = f"{prefix}{each.metadata[_BELOW] or each.name}"
                 values[each.name] = {key: self._table_values(inside, f"{name}.{key}.") for key in keys}
             elif is_dataclass(kind):
                 values[each.name] = self._table_values(kind, f"{name}.")

@@ -1,0 +1,122 @@
+"""Actions of controllers: asked for on the event loop, worked on in the thread of the updates."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from linkwright.control.controllers.node import ControllerNode
+from linkwright.graph.actions.goal import CancelResponse, GoalEvent, GoalResponse, ServerGoalHandle
+from linkwright.graph.actions.server import ActionServer
+
+
+class Goal:
+    """A goal that was accepted, in the thread of the updates.
+
+    It ends once: what is said of it afterwards changes nothing.
+
+    Attributes:
+        request: the goal message.
+    """
+
+    def __init__(self, handle: ServerGoalHandle, node: ControllerNode) -> None:
+        self.request = handle.request
+        self._handle = handle
+        self._node = node
+        self._ended = False
+
+    def is_of(self, handle: ServerGoalHandle) -> bool:
+        """Whether it is the goal of a handle."""
+        return self._handle is handle
+
+    def feedback(self, message: Any) -> None:
+        """Tell how it goes on."""
+        self._node.call_on_loop(partial(self._handle.publish_feedback, message))
+
+    def succeed(self, result: Any) -> None:
+        """It has been reached."""
+        self._end(self._handle.succeed, result)
+
+    def abort(self, result: Any) -> None:
+        """It cannot be reached."""
+        self._end(self._handle.abort, result)
+
+    def cancel(self, result: Any) -> None:
+        """It is given up, whether its client asked for that or not."""
+        self._end(self._canceled, result)
+
+    def _canceled(self, result: Any) -> None:
+        if not self._handle.is_cancel_requested:
+            self._handle.update(GoalEvent.CANCEL_GOAL)
+        self._handle.canceled(result)
+
+    def _end(self, end: Callable[[Any], object], result: Any) -> None:
+        if not self._ended:
+            self._ended = True
+            self._node.call_on_loop(partial(self._on_loop, end, result))
+
+    def _on_loop(self, end: Callable[[Any], object], result: Any) -> None:
+        if self._handle.is_active:
+            end(result)
+
+
+class ControllerAction:
+    """An action of a controller.
+
+    Args:
+        node: the controller's node.
+        action_type: the name of the action's type.
+        name: the action's name.
+        is_allowed: whether a goal message is accepted; called on the event loop.
+        begin: called with each accepted goal, in the thread of the updates.
+        cancel: called with the goal that is to be given up, likewise; only with the one that `begin` got last.
+    """
+
+    def __init__(
+        self,
+        node: ControllerNode,
+        action_type: str,
+        name: str,
+        *,
+        is_allowed: Callable[[Any], bool],
+        begin: Callable[[Goal], None],
+        cancel: Callable[[Goal], None],
+    ) -> None:
+        self._node = node
+        self._is_allowed = is_allowed
+        self._begin = begin
+        self._cancel = cancel
+        self._goal: Goal | None = None
+        self._server = ActionServer(
+            node.graph_node,
+            action_type,
+            name,
+            lambda _: None,
+            goal_callback=self._asked,
+            handle_accepted_callback=self._accepted,
+            cancel_callback=self._asked_to_cancel,
+        )
+
+    def close(self) -> None:
+        """Take it out of the graph."""
+        self._server.destroy()
+
+    def _asked(self, request: Any) -> GoalResponse:
+        return GoalResponse.ACCEPT if self._is_allowed(request) else GoalResponse.REJECT
+
+    def _accepted(self, handle: ServerGoalHandle) -> None:
+        handle.update(GoalEvent.EXECUTE)
+        self._node.post(partial(self._started, handle))
+
+    def _started(self, handle: ServerGoalHandle) -> None:
+        self._goal = Goal(handle, self._node)
+        self._begin(self._goal)
+
+    def _asked_to_cancel(self, handle: ServerGoalHandle) -> CancelResponse:
+        self._node.post(partial(self._canceled, handle))
+        return CancelResponse.ACCEPT
+
+    def _canceled(self, handle: ServerGoalHandle) -> None:
+        if self._goal is not None and self._goal.is_of(handle):
+            self._cancel(self._goal)

@@ -1,0 +1,432 @@
+"""``joint_trajectory_controller/JointTrajectoryController``: joints follow trajectories.
+
+Source: ros2_controllers (parameters, topics, action, service, what is commanded when, tolerances, texts). What is
+commanded is what is due at the next update, and what is judged is what is due now.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import isfinite
+from typing import Any
+
+from linkwright.control.controllers.action import ControllerAction, Goal
+from linkwright.control.controllers.controller import Controller, ControllerError, InterfaceNames
+from linkwright.control.controllers.joint_trajectory_goals import (
+    nanoseconds,
+    objection,
+    tolerances_of,
+    trajectory_of,
+)
+from linkwright.control.controllers.joint_trajectory_parameters import Parameters
+from linkwright.control.hardware.interfaces import (
+    ACCELERATION,
+    EFFORT,
+    POSITION,
+    VELOCITY,
+    CommandInterface,
+    Interface,
+    StateInterface,
+)
+from linkwright.control.motion.pid import Pid
+from linkwright.control.motion.splines import MotionState
+from linkwright.control.motion.tolerances import StateTolerance
+from linkwright.control.motion.trajectory import Sample, Trajectory, TrajectoryPoint, shortest_turn
+from linkwright.diagnostics import phrase
+from linkwright.messages import Header, Time, get_action, get_message
+
+_SECOND = 1_000_000_000
+_ACTION = "control_msgs/action/FollowJointTrajectory"
+
+
+class JointTrajectoryController(Controller[Parameters]):
+    """Follows trajectories of ``~/joint_trajectory`` and of the action ``~/follow_joint_trajectory``."""
+
+    PARAMETERS = Parameters
+
+    def command_interfaces(self) -> InterfaceNames:
+        """All kinds of the first joint, then of the next."""
+        said = self.parameters
+        return [f"{joint}/{kind}" for joint in said.command_joints or said.joints for kind in said.command_interfaces]
+
+    def state_interfaces(self) -> InterfaceNames:
+        """All kinds of the first joint, then of the next."""
+        return [f"{joint}/{kind}" for joint in self.parameters.joints for kind in self.parameters.state_interfaces]
+
+    # --- its life -----------------------------------------------------------------------------------------------------
+
+    def on_configure(self) -> None:
+        """Make topics, service and action."""
+        said = self.parameters
+        self._check(said)
+        self._active = False
+        self._goal: Goal | None = None
+        self._wrapped = [self._turns(joint) for joint in said.joints]
+        self._has_pid = said.has_pid
+        self._tune(said)
+        self._period_ns = round(_SECOND / self.update_rate)
+        state_type = "control_msgs/msg/JointTrajectoryControllerState"
+        self._point = get_message("trajectory_msgs/msg/JointTrajectoryPoint")
+        self._state_message = get_message(state_type)
+        self._result = get_action(_ACTION).Result
+        self._feedback = get_action(_ACTION).Feedback
+        self._outputs = [self.node.publisher(state_type, topic) for topic in ("~/controller_state", "~/state")]
+        self.node.subscribe("trajectory_msgs/msg/JointTrajectory", "~/joint_trajectory", self._commanded)
+        self.node.service("control_msgs/srv/QueryTrajectoryState", "~/query_state", self._query)
+        self._action = ControllerAction(
+            self.node,
+            _ACTION,
+            "~/follow_joint_trajectory",
+            is_allowed=self._is_allowed,
+            begin=self._begin,
+            cancel=self._cancel,
+        )
+
+    def on_activate(self) -> None:
+        """Hold the joints where they are."""
+        said = self.parameters
+        count = len(said.command_interfaces)
+        self._command: dict[str, list[CommandInterface]] = {
+            kind: self.commands[number::count] for number, kind in enumerate(said.command_interfaces)
+        }
+        count = len(said.state_interfaces)
+        self._state: dict[str, list[StateInterface]] = {
+            kind: self.states[number::count] for number, kind in enumerate(said.state_interfaces)
+        }
+        self._has_velocity_error = VELOCITY in self._state and (VELOCITY in self._command or EFFORT in self._command)
+        self._has_acceleration_error = ACCELERATION in self._state and ACCELERATION in self._command
+        self._timeout_s = self._allowed_timeout(said)
+        self._tune(said)
+        self._current = self._read()
+        if said.set_last_command_interface_value_as_state_on_activation:
+            self._current = self._as_commanded(self._current)
+        if not all(map(isfinite, self._current.positions)):
+            raise ControllerError(phrase("the positions of the joints are not known yet"))
+        self._last_command = self._current.copy()
+        self._error = MotionState([0.0] * len(said.joints))
+        self._goal = None
+        self._next_state_ns = self._next_feedback_ns = 0
+        self._following: Sample | None = None
+        self._hold(MotionState(list(self._current.positions)))
+        self._active = True
+
+    def on_deactivate(self) -> None:
+        """Stay at the last positions, without velocity, acceleration or effort."""
+        self._active = False
+        self._give_up("Current goal cancelled during deactivate transition.")
+        for kind in (VELOCITY, ACCELERATION, EFFORT):
+            for command in self._command.get(kind, ()):
+                command.value = 0.0
+
+    def on_cleanup(self) -> None:
+        """Take the action out of the graph."""
+        self._action.close()
+
+    def _check(self, said: Parameters) -> None:
+        if said.command_joints and len(said.command_joints) != len(said.joints):
+            raise ControllerError("'command_joints' parameter has to have the same size as 'joints' parameter.")
+        states = set(said.state_interfaces)
+        for kind in (VELOCITY, EFFORT):
+            if said.command_interfaces == (kind,) and not {POSITION, VELOCITY} <= states:
+                raise ControllerError(
+                    f"'{kind}' command interface can only be used alone if 'velocity' and 'position' state "
+                    "interfaces are present"
+                )
+
+    def _tune(self, said: Parameters) -> None:
+        self._tuned_by = said
+        self._pids = [Pid(said.gains[joint].pid) for joint in said.joints]
+        self._scales = [said.gains[joint].ff_velocity_scale for joint in said.joints]
+
+    def _turns(self, joint: str) -> bool:
+        gains = self.parameters.gains[joint]
+        known = self.robot.joints.get(joint) if self.robot is not None else None
+        return gains.angle_wraparound or gains.normalize_error or (known is not None and known.type == "continuous")
+
+    def _allowed_timeout(self, said: Parameters) -> float:
+        goal_time = said.constraints.goal_time
+        if 0.0 < said.cmd_timeout <= goal_time:
+            self.node.logger.warning(
+                f"Command timeout must be higher than goal_time tolerance ({said.cmd_timeout:f} vs. {goal_time:f})"
+            )
+            return 0.0
+        return said.cmd_timeout
+
+    # --- trajectories -------------------------------------------------------------------------------------------------
+
+    def _commanded(self, message: Any) -> None:
+        wrong = objection(message, self.parameters, self.time_ns)
+        if wrong is not None:
+            self.node.logger.error(wrong)
+        elif self._active:
+            self._give_up("Current goal cancelled due to new incoming trajectory.")
+            self._tolerances = self.parameters.tolerances
+            self._follow(trajectory_of(message, self.parameters, self._held()))
+
+    def _is_allowed(self, request: Any) -> bool:
+        self.node.logger.info("Received new action goal")
+        wrong = objection(request.trajectory, self.parameters, self.time_ns)
+        if not self._active:
+            wrong = "Can't accept new action goals. Controller is not running."
+        if wrong is not None:
+            self.node.logger.error(wrong)
+            return False
+        self.node.logger.info("Accepted new action goal")
+        return True
+
+    def _begin(self, goal: Goal) -> None:
+        if not self._active:
+            goal.abort(self._result(error_code=self._result.INVALID_GOAL, error_string="Controller is not running."))
+            return
+        self._give_up("Current goal cancelled due to new incoming action.")
+        said = self.parameters
+        self._goal = goal
+        self._tolerances = tolerances_of(goal.request, said.joints, said.tolerances, self.node.logger.error)
+        self._follow(trajectory_of(goal.request.trajectory, said, self._held()))
+
+    def _cancel(self, goal: Goal) -> None:
+        self.node.logger.info("Got request to cancel goal")
+        if self._goal is goal:
+            self.node.logger.info("Canceling active action goal because cancel callback received.")
+            self._goal = None
+            goal.cancel(self._result())
+            self._hold()
+
+    def _give_up(self, reason: str) -> None:
+        if self._goal is not None:
+            self._goal.cancel(self._result(error_code=self._result.INVALID_GOAL, error_string=reason))
+            self._goal = None
+
+    def _held(self) -> list[float]:
+        """Where joints stay of which a trajectory says nothing: at their commands, as far as there are any."""
+        return self._finite_or(self._command.get(POSITION), self._current.positions)
+
+    def _follow(self, trajectory: Trajectory) -> None:
+        self._trajectory, self._is_held = trajectory, False
+        self._following_ns = -1
+
+    def _hold(self, state: MotionState | None = None) -> None:
+        """Stay where the joints are, or in another state."""
+        held = MotionState(self._read().positions) if state is None else state
+        self._follow(Trajectory([TrajectoryPoint(0, held)]))
+        self._is_held = True
+        self._tolerances = self.parameters.tolerances
+
+    # --- states -------------------------------------------------------------------------------------------------------
+
+    def _read(self) -> MotionState:
+        states = self._state
+        return MotionState(
+            *([each.value for each in states.get(kind, ())] for kind in (POSITION, VELOCITY, ACCELERATION))
+        )
+
+    def _as_commanded(self, state: MotionState) -> MotionState:
+        """A state with the last commands, as far as there are any: hardware that sags is not let down."""
+        return MotionState(
+            self._finite_or(self._command.get(POSITION), state.positions),
+            self._finite_or(self._command.get(VELOCITY) if state.velocities else None, state.velocities),
+            self._finite_or(self._command.get(ACCELERATION) if state.accelerations else None, state.accelerations),
+        )
+
+    @staticmethod
+    def _finite_or(interfaces: Sequence[Interface] | None, values: Sequence[float]) -> list[float]:
+        given = [each.value for each in interfaces or ()]
+        return given if given and all(map(isfinite, given)) else list(values)
+
+    def _compare(self, desired: MotionState) -> MotionState:
+        """What is wanted less what is there; zeros where velocities or accelerations are not compared."""
+        current = self._current
+        positions = [
+            shortest_turn(is_at, wanted) if turns else wanted - is_at
+            for wanted, is_at, turns in zip(desired.positions, current.positions, self._wrapped, strict=True)
+        ]
+        none = [0.0] * len(positions)
+        return MotionState(
+            positions,
+            [a - b for a, b in zip(desired.velocities, current.velocities, strict=True)]
+            if self._has_velocity_error
+            else none,
+            [a - b for a, b in zip(desired.accelerations, current.accelerations, strict=True)]
+            if self._has_acceleration_error
+            else none,
+        )
+
+    # --- its work -----------------------------------------------------------------------------------------------------
+
+    def update(self, time_ns: int, period_s: float) -> None:
+        """Command what is due at the next update, and see how far the joints are from what is due now."""
+        if time_ns < self._following_ns - self._period_ns:
+            self._give_up("Time has begun anew.")
+            self._hold()
+        self._current = self._read()
+        trajectory = self._trajectory
+        first = not trajectory.begun
+        if first:
+            before = self._last_command if self.parameters.open_loop else self._current
+            trajectory.begin(time_ns, before, self._wrapped)
+        desired = self._following if time_ns == self._following_ns else trajectory.sample(time_ns)
+        following = trajectory.sample(time_ns + self._period_ns)
+        assert desired is not None
+        assert following is not None, "it has begun now or earlier"
+        self._following_ns, self._following = time_ns + self._period_ns, following
+        self._error = self._compare(desired.state)
+        self._judge(time_ns, period_s, desired.state, following, first=first)
+        self._publish(time_ns, desired.state)
+
+    def _judge(self, time_ns: int, period_s: float, desired: MotionState, following: Sample, *, first: bool) -> None:
+        tolerances, late_s = self._tolerances, (time_ns - following.point_ns) / _SECOND
+        strayed = missed = False
+        if not self._is_held:
+            strayed = (first or not following.ended) and not self._holds(tolerances.path)
+            missed = following.ended and not self._holds(tolerances.goal)
+        overdue = missed and 0.0 < tolerances.goal_time_s < late_s
+        if not strayed and not overdue:
+            self._write(following.state, period_s)
+        if self._goal is not None:
+            self._tell(self._goal, time_ns, desired)
+        if strayed:
+            self._report(tolerances.path)
+            self._fail(
+                self._result.PATH_TOLERANCE_VIOLATED,
+                "Aborted due to path tolerance violation",
+                "Holding position due to state tolerance violation",
+            )
+        elif overdue:
+            self._report(tolerances.goal)
+            self._fail(
+                self._result.GOAL_TOLERANCE_VIOLATED,
+                f"Aborted due to goal_time_tolerance exceeding by {late_s:f} seconds",
+                "Exceeded goal_time_tolerance: holding position...",
+            )
+        elif following.ended and not missed and self._goal is not None:
+            self._goal.succeed(self._result(error_string="Goal successfully reached!"))
+            self._goal = None
+            self.node.logger.info("Goal reached, success!")
+            self._hold(following.state)
+        elif following.ended and not self._is_held and 0.0 < self._timeout_s < late_s:
+            self.node.logger.warning("Aborted due to command timeout")
+            self._hold()
+
+    def _holds(self, tolerances: Sequence[StateTolerance]) -> bool:
+        error = self._error
+        errors = zip(tolerances, error.positions, error.velocities, error.accelerations, strict=True)
+        return all(tolerance.holds(*each) for tolerance, *each in errors)
+
+    def _report(self, tolerances: Sequence[StateTolerance]) -> None:
+        error = self._error
+        errors = zip(
+            self.parameters.joints, tolerances, error.positions, error.velocities, error.accelerations, strict=True
+        )
+        for joint, tolerance, *values in errors:
+            for name, value, limit in tolerance.violations(*values):
+                self.node.logger.error(
+                    f"State tolerances failed for joint '{joint}': {name} Error: {value:f}, {name} Tolerance: {limit:f}"
+                )
+
+    def _fail(self, code: int, told: str, without_goal: str) -> None:
+        if self._goal is None:
+            self.node.logger.error(without_goal)
+        else:
+            self.node.logger.warning(told)
+            self._goal.abort(self._result(error_code=code, error_string=told))
+            self._goal = None
+        self._hold()
+
+    def _write(self, wanted: MotionState, period_s: float) -> None:
+        if self._has_pid:
+            self._retune()
+            (commands,) = self._command.values()
+            errors = self._error
+            for number, pid in enumerate(self._pids):
+                command = pid.command(errors.positions[number], period_s, errors.velocities[number])
+                commands[number].value = wanted.velocities[number] * self._scales[number] + command
+        else:
+            for kind, commands in self._command.items():
+                values = (
+                    wanted.positions
+                    if kind == POSITION
+                    else wanted.velocities
+                    if kind == VELOCITY
+                    else wanted.accelerations
+                )
+                for interface, value in zip(commands, values, strict=True):
+                    interface.value = value
+        self._last_command = wanted
+
+    def _retune(self) -> None:
+        """Take gains that were changed; what was integrated stays."""
+        said = self.parameters
+        if said is not self._tuned_by:
+            integrals = [each.integral for each in self._pids]
+            self._tune(said)
+            for pid, integral in zip(self._pids, integrals, strict=True):
+                pid.integral = integral
+
+    # --- what it tells ------------------------------------------------------------------------------------------------
+
+    def _message(self, state: MotionState) -> Any:
+        return self._point(positions=state.positions, velocities=state.velocities, accelerations=state.accelerations)
+
+    def _tell(self, goal: Goal, time_ns: int, desired: MotionState) -> None:
+        if time_ns < self._next_feedback_ns:
+            return
+        self._next_feedback_ns = time_ns + round(_SECOND / self.parameters.action_monitor_rate)
+        goal.feedback(
+            self._feedback(
+                header=Header(stamp=Time(*divmod(time_ns, _SECOND))),
+                joint_names=list(self.parameters.joints),
+                desired=self._message(desired),
+                actual=self._message(self._current),
+                error=self._message(self._error),
+            )
+        )
+
+    def _publish(self, time_ns: int, desired: MotionState) -> None:
+        rate = self.parameters.state_publish_rate
+        if rate and time_ns < self._next_state_ns:
+            return
+        self._next_state_ns = time_ns + (round(_SECOND / rate) if rate else 0)
+        outputs = [each for each in self._outputs if each.is_wanted]
+        if not outputs:
+            return
+        reference, feedback = self._message(desired), self._message(self._current)
+        commands = {kind: [each.value for each in given] for kind, given in self._command.items()}
+        message = self._state_message(
+            header=Header(stamp=Time(*divmod(time_ns, _SECOND))),
+            joint_names=list(self.parameters.joints),
+            reference=reference,
+            feedback=feedback,
+            error=self._message(self._error),
+            output=self._point(
+                positions=commands.get(POSITION, []),
+                velocities=commands.get(VELOCITY, []),
+                accelerations=commands.get(ACCELERATION, []),
+                effort=commands.get(EFFORT, []),
+            ),
+            desired=reference,
+            actual=feedback,
+        )
+        for output in outputs:
+            output.publish(message)
+
+    def _query(self, request: Any, response: Any) -> Any:
+        sample = None
+        if not self._active:
+            response.message = "Can't sample trajectory. Controller is not active."
+        elif not self._trajectory.begun:
+            response.message = "Currently there is no valid trajectory instance."
+        else:
+            sample = self._trajectory.sample(nanoseconds(request.time))
+            if sample is None:
+                response.message = "Requested sample time is earlier than the current trajectory start time."
+            elif sample.ended:
+                response.message = "Requested sample time precedes the current trajectory end time."
+        if response.message:
+            self.node.logger.error(response.message)
+        response.success = sample is not None and not sample.ended
+        if self._active:
+            state = self._current if sample is None else sample.state
+            response.name = list(self.parameters.joints)
+            response.position, response.velocity = state.positions, state.velocities
+            response.acceleration = state.accelerations
+        return response

@@ -1,0 +1,153 @@
+"""The parameters of ``joint_trajectory_controller/JointTrajectoryController``.
+
+Source: ros2_controllers, those of Humble and Jazzy together; where they differ in a default it is Humble's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import inf
+
+from linkwright.control.controllers.parameters import at_least, for_each, not_empty, one_of, parameter
+from linkwright.control.hardware.interfaces import ACCELERATION, EFFORT, POSITION, VELOCITY
+from linkwright.control.motion.pid import CLAMPED, NONE, STRATEGIES, PidGains
+from linkwright.control.motion.tolerances import StateTolerance, Tolerances
+from linkwright.diagnostics import Phrase, phrase
+
+_ONE_COMMAND = one_of(POSITION, VELOCITY, ACCELERATION, EFFORT)
+_ONE_STATE = one_of(POSITION, VELOCITY, ACCELERATION)
+
+
+def _command_combination(name: str, value: tuple[str, ...]) -> Phrase | None:
+    """Which commands go together: effort, velocity, or position [velocity [acceleration]]."""
+    wrong = not_empty(name, value) or _ONE_COMMAND(name, value)
+    if wrong is not None:
+        return wrong
+    if VELOCITY in value and len(value) > 1 and POSITION not in value:
+        return phrase("'velocity' command interface can be used either alone or 'position' interface has to be present")
+    if ACCELERATION in value and (VELOCITY not in value or POSITION not in value):
+        return phrase(
+            "'acceleration' command interface can only be used if 'velocity' and 'position' interfaces are present"
+        )
+    if EFFORT in value and len(value) > 1:
+        return phrase("'effort' command interface has to be used alone")
+    return None
+
+
+def _state_combination(name: str, value: tuple[str, ...]) -> Phrase | None:
+    """Which states go together: position [velocity [acceleration]]."""
+    wrong = not_empty(name, value) or _ONE_STATE(name, value)
+    if wrong is not None:
+        return wrong
+    if VELOCITY in value and POSITION not in value:
+        return phrase("'velocity' state interface cannot be used if 'position' interface is missing.")
+    if ACCELERATION in value and not (POSITION in value and VELOCITY in value):
+        return phrase(
+            "'acceleration' state interface cannot be used if 'position' and 'velocity' interfaces are not present."
+        )
+    return None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Gains:
+    """Of a joint's PID controller; without `i_clamp` the bounds `i_clamp_min` and `i_clamp_max` count."""
+
+    p: float = 0.0
+    i: float = 0.0
+    d: float = 0.0
+    i_clamp: float | None = parameter(None, description="what the integral adds at most, and at least less than 0")
+    i_clamp_max: float = inf
+    i_clamp_min: float = -inf
+    u_clamp_max: float = parameter(inf, description="the greatest command")
+    u_clamp_min: float = parameter(-inf, description="the least command")
+    antiwindup: bool = parameter(False, description="bound the integral, and not only what it adds")
+    antiwindup_strategy: str = parameter(NONE, check=one_of(*STRATEGIES))
+    tracking_time_constant: float = 0.0
+    error_deadband: float = 1e-16
+    ff_velocity_scale: float = parameter(0.0, description="how much of the wanted velocity is added to the command")
+    angle_wraparound: bool = parameter(False, description="whether the joint turns without an end")
+    normalize_error: bool = parameter(False, description="an older name of angle_wraparound")
+
+    @property
+    def pid(self) -> PidGains:
+        """What the PID controller is made with."""
+        low, high = self.i_clamp_min, self.i_clamp_max
+        if self.i_clamp is not None:
+            low, high = -abs(self.i_clamp), abs(self.i_clamp)
+        return PidGains(
+            p=self.p,
+            i=self.i,
+            d=self.d,
+            i_min=low,
+            i_max=high,
+            u_min=self.u_clamp_min,
+            u_max=self.u_clamp_max,
+            antiwindup=CLAMPED if self.antiwindup else self.antiwindup_strategy,
+            tracking_time_constant=self.tracking_time_constant,
+            error_deadband=self.error_deadband,
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class JointConstraints:
+    """How far a joint may be from where it is to be, in rad or m; 0 for any distance."""
+
+    trajectory: float = parameter(0.0, description="on the way, in rad or m; 0 for any")
+    goal: float = parameter(0.0, description="at the end, in rad or m; 0 for any")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Constraints:
+    """Of all joints."""
+
+    stopped_velocity_tolerance: float = parameter(0.01, description="the velocity at the end, in rad/s or m/s")
+    goal_time: float = parameter(0.0, description="seconds after the end; 0 for any time", check=at_least(0.0))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Parameters:
+    """Of the controller."""
+
+    joints: tuple[str, ...] = parameter((), read_only=True, check=not_empty)
+    command_joints: tuple[str, ...] = parameter(
+        (), read_only=True, description="the joints that are commanded, where these have other names"
+    )
+    command_interfaces: tuple[str, ...] = parameter((), read_only=True, check=_command_combination)
+    state_interfaces: tuple[str, ...] = parameter((), read_only=True, check=_state_combination)
+    allow_partial_joints_goal: bool = parameter(False, description="trajectories may name some of the joints")
+    open_loop_control: bool = parameter(False, read_only=True, description="trajectories begin at the last command")
+    interpolate_from_desired_state: bool = parameter(False, read_only=True, description="as open_loop_control")
+    allow_integration_in_goal_trajectories: bool = parameter(False, description="points may have no positions")
+    set_last_command_interface_value_as_state_on_activation: bool = True
+    state_publish_rate: float | None = parameter(None, description="Hz; without it the state comes at each update")
+    action_monitor_rate: float = parameter(
+        20.0, read_only=True, description="how often feedback comes, in Hz", check=at_least(0.1)
+    )
+    interpolation_method: str = parameter("splines", read_only=True, check=one_of("splines", "none"))
+    allow_nonzero_velocity_at_trajectory_end: bool = True
+    cmd_timeout: float = parameter(0.0, description="seconds after the end of a trajectory; more than goal_time")
+    gains: Mapping[str, Gains] = for_each("joints", Gains)
+    constraints: Constraints = Constraints()
+    joint_constraints: Mapping[str, JointConstraints] = for_each("joints", JointConstraints, below="constraints")
+
+    @property
+    def open_loop(self) -> bool:
+        """Whether trajectories begin at the last command, not at the state."""
+        return self.open_loop_control or self.interpolate_from_desired_state
+
+    @property
+    def has_pid(self) -> bool:
+        """Whether commands are made of errors."""
+        return self.command_interfaces == (EFFORT,) or (self.command_interfaces == (VELOCITY,) and not self.open_loop)
+
+    @property
+    def tolerances(self) -> Tolerances:
+        """Those of trajectories that bring none."""
+        of_joints = [self.joint_constraints[joint] for joint in self.joints]
+        stopped = self.constraints.stopped_velocity_tolerance
+        return Tolerances(
+            tuple(StateTolerance(each.trajectory) for each in of_joints),
+            tuple(StateTolerance(each.goal, stopped) for each in of_joints),
+            self.constraints.goal_time,
+        )

@@ -1,0 +1,85 @@
+"""Arms for controllers: joints with commands and states on a stand, trajectories as messages, goals of actions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from linkwright.graph.actions.client import ActionClient
+from linkwright.messages import Duration, Header, Time, get_action, get_message
+from tests.control.stand import Stand
+
+SECOND = 1_000_000_000
+JOINTS = ("shoulder", "elbow")
+
+
+def trajectory(
+    *points: tuple[float, list[float]] | tuple[float, list[float], list[float]] | Any,
+    names: tuple[str, ...] = JOINTS,
+    start_ns: int = 0,
+) -> Any:
+    """A trajectory message: seconds, positions, velocities and accelerations of each point."""
+    kind = get_message("trajectory_msgs/msg/JointTrajectoryPoint")
+    fields = ("positions", "velocities", "accelerations", "effort")
+    made = [
+        kind(
+            **dict(zip(fields, lists, strict=False)),
+            time_from_start=Duration(*divmod(round(seconds * SECOND), SECOND)),
+        )
+        for seconds, *lists in points
+    ]
+    header = Header(stamp=Time(*divmod(start_ns, SECOND)))
+    return get_message("trajectory_msgs/msg/JointTrajectory")(header=header, joint_names=list(names), points=made)
+
+
+def tolerance(name: str, position: float = 0.0, velocity: float = 0.0) -> Any:
+    """A tolerance of a goal."""
+    return get_message("control_msgs/msg/JointTolerance")(name=name, position=position, velocity=velocity)
+
+
+class Asked:
+    """A goal that was sent to an action of a controller.
+
+    Attributes:
+        feedback: the messages that came so far.
+        accepted, status, result: what is known so far; None before.
+    """
+
+    def __init__(self, stand: Stand, action_type: str, name: str, goal: Any) -> None:
+        self.feedback: list[Any] = []
+        self.status: int | None = None
+        self.result: Any = None
+        self._client = ActionClient(stand.node, get_action(action_type), name)
+        self._handle: Any = None
+        self._sent = self._client.send_goal_async(goal, feedback_callback=self._fed)
+        self._sent.add_done_callback(self._answered)
+
+    @property
+    def accepted(self) -> bool | None:
+        """Whether the goal was accepted."""
+        return None if self._handle is None else self._handle.accepted
+
+    def cancel(self) -> None:
+        """Ask for it to be given up."""
+        self._handle.cancel_goal_async()
+
+    def _fed(self, message: Any) -> None:
+        self.feedback.append(message.feedback)
+
+    def _answered(self, future: Any) -> None:
+        self._handle = future.result()
+        if self._handle.accepted:
+            self._handle.get_result_async().add_done_callback(self._ended)
+
+    def _ended(self, future: Any) -> None:
+        self.status, self.result = future.result().status, future.result().result
+
+
+async def run(
+    stand: Stand, controller: Any, seconds: float, hardware: Callable[[], object] | None = None, rate: float = 100.0
+) -> None:
+    """Update a controller for a while; the hardware moves after each update."""
+    for _ in range(round(seconds * rate)):
+        await stand.step(controller, 1.0 / rate)
+        if hardware is not None:
+            hardware()

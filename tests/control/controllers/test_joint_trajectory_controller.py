@@ -1,0 +1,561 @@
+"""The controller of trajectories: what it commands when, what it refuses, and how goals end."""
+
+from __future__ import annotations
+
+from math import inf, nan, pi
+from typing import Any
+
+import pytest
+
+from linkwright.control.controllers.controller import ControllerError
+from linkwright.control.controllers.joint_trajectory_controller import JointTrajectoryController
+from linkwright.control.controllers.registry import controller_class
+from linkwright.diagnostics import LinkwrightError
+from linkwright.messages import Duration, Time, get_action, get_service
+from tests.control.controllers.arm import JOINTS, SECOND, Asked, run, tolerance, trajectory
+
+ACTION = "control_msgs/action/FollowJointTrajectory"
+TYPE = "trajectory_msgs/msg/JointTrajectory"
+SUCCEEDED, CANCELED, ABORTED = 4, 5, 6
+BY_POSITION = {"joints": list(JOINTS), "command_interfaces": ["position"], "state_interfaces": ["position", "velocity"]}
+
+
+class Arm:
+    """A controller on a stand, and hardware that does what it is told at once, but for what is stuck."""
+
+    def __init__(self, stand: Any, **parameters: Any) -> None:
+        self.stand = stand
+        said = {**BY_POSITION, **parameters}
+        for joint in JOINTS:
+            stand.joint(joint, commands=tuple(said["command_interfaces"]), position=0.0, velocity=0.0)
+        self.stuck: set[str] = set()
+        self.controller = stand.start(JointTrajectoryController, **said)
+
+    def command(self, joint: str, kind: str = "position") -> float:
+        return self.stand.commands[f"{joint}/{kind}"].value
+
+    def obey(self) -> None:
+        for name, command in self.stand.commands.items():
+            joint, _, kind = name.partition("/")
+            if joint not in self.stuck and kind == "position":
+                self.stand.states[name].value = command.value
+
+    async def run(self, seconds: float) -> None:
+        await run(self.stand, self.controller, seconds, self.obey)
+
+    def say(self, message: Any) -> None:
+        self.stand.say(TYPE, "/controller/joint_trajectory", message)
+
+    def ask(self, message: Any, **more: Any) -> Asked:
+        goal = get_action(ACTION).Goal(trajectory=message, **more)
+        return Asked(self.stand, ACTION, "/controller/follow_joint_trajectory", goal)
+
+    def told(self) -> list[str]:
+        return [str(each.text) for each in self.stand.log]
+
+
+def test_it_is_found_by_its_type():
+    assert controller_class("joint_trajectory_controller/JointTrajectoryController") is JointTrajectoryController
+
+
+async def test_joints_are_held_where_they_are_until_a_trajectory_comes(stand):
+    stand.joint("shoulder", commands=("position",), position=0.3, velocity=0.0)
+    stand.joint("elbow", commands=("position",), position=-0.2, velocity=0.0)
+    controller = stand.start(JointTrajectoryController, **BY_POSITION)
+    await run(stand, controller, 0.05)
+    assert [each.value for each in controller.commands] == [0.3, -0.2]
+
+
+async def test_positions_alone_are_connected_by_lines_and_commanded_one_update_ahead(stand):
+    arm = Arm(stand)
+    await arm.run(0.1)
+    arm.say(trajectory((1.0, [1.0, -2.0]), (2.0, [0.0, 0.0])))
+    await arm.run(0.5)
+    assert arm.command("shoulder") == pytest.approx(0.5)
+    await arm.run(0.5)
+    assert (arm.command("shoulder"), arm.command("elbow")) == pytest.approx((1.0, -2.0))
+    await arm.run(0.25)
+    assert arm.command("shoulder") == pytest.approx(0.75)
+    await arm.run(5.0)
+    assert (arm.command("shoulder"), arm.command("elbow")) == (0.0, 0.0)
+
+
+async def test_velocities_make_cubics_and_go_out_where_they_are_commanded(stand):
+    arm = Arm(stand, command_interfaces=["position", "velocity"])
+    arm.say(trajectory((2.0, [1.0, 1.0], [0.0, 0.0])))
+    await arm.run(1.0)
+    assert arm.command("shoulder") == pytest.approx(0.5, abs=1e-6)
+    assert arm.command("shoulder", "velocity") == pytest.approx(0.75, abs=1e-4)
+    await arm.run(2.0)
+    assert arm.command("shoulder", "velocity") == 0.0
+
+
+async def test_accelerations_go_out_where_they_are_commanded(stand):
+    for joint in JOINTS:
+        stand.joint(
+            joint, commands=("position", "velocity", "acceleration"), position=0.0, velocity=0.0, acceleration=0.0
+        )
+    three = ["position", "velocity", "acceleration"]
+    controller = stand.start(
+        JointTrajectoryController, joints=list(JOINTS), command_interfaces=three, state_interfaces=three
+    )
+    point = (2.0, [1.0, 1.0], [0.0, 0.0], [0.0, 0.0])
+    stand.say(TYPE, "/controller/joint_trajectory", trajectory(point))
+    await run(stand, controller, 1.0)
+    values = [stand.commands[f"shoulder/{kind}"].value for kind in three]
+    assert values == pytest.approx([0.5, 15.0 / 16.0, 0.0], abs=1e-9)
+
+
+async def test_velocities_of_a_joint_come_from_its_error_and_the_wanted_velocity(stand):
+    gains = {joint: {"p": 2.0, "ff_velocity_scale": 1.0} for joint in JOINTS}
+    arm = Arm(stand, command_interfaces=["velocity"], gains=gains)
+    arm.say(trajectory((1.0, [1.0, 1.0])))
+    await arm.run(0.5)
+    assert arm.command("shoulder", "velocity") == pytest.approx(1.0 + 2.0 * 0.49)
+
+
+async def test_effort_by_pid_brings_a_mass_along_a_trajectory(stand):
+    gains = {joint: {"p": 400.0, "d": 40.0, "i": 10.0, "i_clamp": 5.0} for joint in JOINTS}
+    arm = Arm(stand, command_interfaces=["effort"], gains=gains)
+
+    def fall() -> None:
+        for joint in JOINTS:
+            position, velocity = (stand.states[f"{joint}/{kind}"] for kind in ("position", "velocity"))
+            velocity.value += 0.01 * (arm.command(joint, "effort") - 1.0)
+            position.value += 0.01 * velocity.value
+
+    asked = arm.ask(trajectory((2.0, [1.0, 0.5], [0.0, 0.0])))
+    await run(stand, arm.controller, 4.0, fall)
+    assert stand.states["shoulder/position"].value == pytest.approx(1.0, abs=0.01)
+    assert asked.status == SUCCEEDED
+
+
+async def test_gains_may_be_changed_while_it_runs(stand):
+    arm = Arm(stand, command_interfaces=["velocity"], gains={joint: {"p": 1.0} for joint in JOINTS})
+    arm.say(trajectory((0.01, [1.0, 1.0])))
+    await arm.run(0.1)
+    assert arm.command("shoulder", "velocity") == pytest.approx(1.0)
+    node = arm.controller.node.graph_node
+    node.set_parameters([type(node.get_parameter("gains.shoulder.p"))("gains.shoulder.p", value=3.0)])
+    await arm.run(0.05)
+    assert (arm.command("shoulder", "velocity"), arm.command("elbow", "velocity")) == pytest.approx((3.0, 1.0))
+
+
+async def test_a_goal_is_reached_with_feedback_on_the_way(stand):
+    arm = Arm(stand, action_monitor_rate=10.0)
+    asked = arm.ask(trajectory((1.0, [1.0, 0.5])))
+    await arm.run(1.1)
+    assert asked.status == SUCCEEDED
+    assert (asked.result.error_code, asked.result.error_string) == (0, "Goal successfully reached!")
+    assert len(asked.feedback) == 10
+    assert asked.feedback[5].joint_names == list(JOINTS)
+    assert asked.feedback[5].desired.positions[0] == pytest.approx(0.5)
+    assert asked.feedback[5].error.positions[0] == pytest.approx(0.0)
+    assert "Goal reached, success!" in arm.told()
+
+
+async def test_joints_may_come_in_another_order(stand):
+    arm = Arm(stand)
+    arm.say(trajectory((0.5, [2.0, 1.0]), names=("elbow", "shoulder")))
+    await arm.run(1.0)
+    assert (arm.command("shoulder"), arm.command("elbow")) == (1.0, 2.0)
+
+
+async def test_joints_that_a_partial_goal_does_not_name_stay(stand):
+    arm = Arm(stand, allow_partial_joints_goal=True)
+    arm.say(trajectory((0.5, [0.7, 0.4])))
+    await arm.run(1.0)
+    asked = arm.ask(trajectory((0.5, [1.0], [0.0]), names=("elbow",)))
+    await arm.run(1.0)
+    assert asked.status == SUCCEEDED
+    assert (arm.command("shoulder"), arm.command("elbow")) == (0.7, 1.0)
+
+
+GOOD = (1.0, [1.0, 1.0])
+
+
+@pytest.mark.parametrize(
+    ("message", "told"),
+    [
+        (trajectory(GOOD, names=("shoulder",)), "Joints on incoming trajectory don't match the controller joints."),
+        (trajectory(names=JOINTS), "Empty trajectory received."),
+        (trajectory(GOOD, names=("shoulder", "knee")), "Incoming joint knee doesn't match the controller's joints."),
+        (trajectory(GOOD, names=("elbow", "elbow")), "Incoming joint elbow is there twice."),
+        (
+            trajectory(GOOD, (1.0, [0.0, 0.0])),
+            "Time between points 0 and 1 is not strictly increasing, it is 1.000000 and 1.000000 respectively",
+        ),
+        (
+            trajectory((1.0, [1.0])),
+            "Mismatch between joint_names size (2) and positions (1) at point #0.",
+        ),
+        (
+            trajectory((1.0, [1.0, 1.0], [0.0])),
+            "Mismatch between joint_names size (2) and velocities (1) at point #0.",
+        ),
+        (
+            trajectory((1.0, [], [1.0, 1.0])),
+            "Mismatch between joint_names size (2) and positions (0) at point #0.",
+        ),
+        (trajectory((1.0, [1.0, nan])), "The positions at point #0 are not all finite."),
+        (trajectory((1.0, [1.0, 1.0], [inf, 0.0])), "The velocities at point #0 are not all finite."),
+        (
+            trajectory((1.0, [1.0, 1.0], [], [], [1.0, 1.0])),
+            "Trajectories with effort fields are currently not supported.",
+        ),
+        (
+            trajectory((0.5, [1.0, 1.0]), start_ns=SECOND // 4),
+            "Received trajectory with non-zero start time (0.250000) that ends in the past (0.750000)",
+        ),
+    ],
+)
+async def test_what_no_trajectory_can_be_is_refused_with_its_reason(stand, message, told):
+    arm = Arm(stand)
+    await arm.run(1.0)
+    asked = arm.ask(message)
+    arm.say(message)
+    await arm.run(1.5)
+    assert asked.accepted is False
+    assert arm.told().count(told) == 2
+    assert arm.command("shoulder") == 0.0
+
+
+async def test_names_must_be_there_even_where_some_joints_are_enough(stand):
+    arm = Arm(stand, allow_partial_joints_goal=True)
+    asked = arm.ask(trajectory(names=()))
+    await arm.run(0.05)
+    assert asked.accepted is False
+    assert "Empty joint names on incoming trajectory." in arm.told()
+
+
+async def test_a_last_velocity_may_be_forbidden(stand):
+    arm = Arm(stand, allow_nonzero_velocity_at_trajectory_end=False)
+    asked = arm.ask(trajectory((1.0, [1.0, 1.0], [0.0, 0.1])))
+    await arm.run(0.05)
+    assert asked.accepted is False
+    assert "Velocity of last trajectory point of joint elbow is not zero: 0.100000000000000" in arm.told()
+
+
+async def test_points_without_positions_are_integrated_where_that_is_allowed(stand):
+    arm = Arm(stand, allow_integration_in_goal_trajectories=True)
+    asked = arm.ask(trajectory((1.0, [], [2.0, 0.0]), (2.0, [], [0.0, 0.0])))
+    await arm.run(2.5)
+    assert asked.status == SUCCEEDED
+    assert arm.command("shoulder") == pytest.approx(2.0)
+    empty = arm.ask(trajectory((1.0, [])))
+    await arm.run(0.05)
+    assert empty.accepted is False
+
+
+async def test_a_start_in_the_future_gives_the_first_point_that_time(stand):
+    arm = Arm(stand)
+    await arm.run(1.0)
+    arm.say(trajectory((1.0, [1.0, 1.0]), start_ns=2 * SECOND))
+    await arm.run(1.0)
+    assert arm.command("shoulder") == pytest.approx(0.5, abs=0.01)
+    await arm.run(1.0)
+    assert arm.command("shoulder") == pytest.approx(1.0)
+
+
+async def test_a_start_in_the_past_goes_on_where_it_would_be(stand):
+    arm = Arm(stand)
+    await arm.run(1.0)
+    arm.say(trajectory((0.5, [0.5, 0.5]), (2.5, [2.5, 2.5]), start_ns=SECOND // 2))
+    await arm.run(0.5)
+    assert arm.command("shoulder") == pytest.approx(1.01)
+
+
+async def test_a_path_tolerance_that_is_violated_aborts_and_holds(stand):
+    arm = Arm(stand, constraints={"shoulder": {"trajectory": 0.1}})
+    arm.stuck.add("shoulder")
+    asked = arm.ask(trajectory((1.0, [1.0, 1.0])))
+    await arm.run(0.5)
+    assert asked.status == ABORTED
+    assert asked.result.error_code == asked.result.PATH_TOLERANCE_VIOLATED
+    assert asked.result.error_string == "Aborted due to path tolerance violation"
+    assert arm.command("shoulder") == 0.0
+    assert arm.command("elbow") == pytest.approx(0.11)
+    assert "State tolerances failed for joint 'shoulder': Position Error: 0.110000, Position Tolerance: 0.100000" in (
+        arm.told()
+    )
+
+
+async def test_a_goal_that_is_not_reached_in_time_is_aborted(stand):
+    arm = Arm(stand, constraints={"goal_time": 0.5, "shoulder": {"goal": 0.1}})
+    arm.stuck.add("shoulder")
+    asked = arm.ask(trajectory((1.0, [1.0, 1.0])))
+    await arm.run(1.5)
+    assert asked.status is None
+    await arm.run(0.05)
+    assert asked.status == ABORTED
+    assert asked.result.error_code == asked.result.GOAL_TOLERANCE_VIOLATED
+    assert asked.result.error_string.startswith("Aborted due to goal_time_tolerance exceeding by 0.51")
+    assert arm.command("shoulder") == 0.0
+
+
+async def test_without_a_goal_time_the_goal_is_waited_for(stand):
+    arm = Arm(stand, constraints={"shoulder": {"goal": 0.1}})
+    arm.stuck.add("shoulder")
+    asked = arm.ask(trajectory((0.1, [1.0, 1.0])))
+    await arm.run(5.0)
+    assert asked.status is None
+    arm.stuck.clear()
+    await arm.run(0.05)
+    assert asked.status == SUCCEEDED
+
+
+async def test_a_goal_brings_tolerances_of_its_own(stand):
+    arm = Arm(stand, constraints={"goal_time": 0.1, "shoulder": {"trajectory": 0.1, "goal": 0.1}})
+    arm.stuck.add("shoulder")
+    erased = [tolerance("shoulder", -1.0)]
+    first = arm.ask(trajectory((0.5, [1.0, 1.0])), path_tolerance=erased, goal_tolerance=erased)
+    await arm.run(1.0)
+    assert first.status == SUCCEEDED
+    second = arm.ask(
+        trajectory((0.5, [1.0, 0.0])),
+        path_tolerance=[tolerance("shoulder", 3.0)],
+        goal_time_tolerance=Duration(1, 0),
+    )
+    await arm.run(1.2)
+    assert second.status is None
+    await arm.run(0.5)
+    assert (second.status, second.result.error_code) == (ABORTED, second.result.GOAL_TOLERANCE_VIOLATED)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "told"),
+    [
+        (
+            tolerance("knee", 1.0),
+            "joint 'knee' specified in goal.path_tolerance does not exist. Using default tolerances.",
+        ),
+        (
+            tolerance("elbow", -0.5),
+            "joint 'elbow' specified in goal.path_tolerance has a negative tolerance that is not -1.",
+        ),
+    ],
+)
+async def test_wrong_tolerances_of_a_goal_leave_those_of_the_controller(stand, wrong, told):
+    arm = Arm(stand, constraints={"shoulder": {"trajectory": 0.1}})
+    arm.stuck.add("shoulder")
+    asked = arm.ask(trajectory((0.5, [1.0, 1.0])), path_tolerance=[tolerance("shoulder", -1.0), wrong])
+    await arm.run(0.5)
+    assert asked.status == ABORTED
+    assert told in arm.told()
+
+
+async def test_a_canceled_goal_leaves_the_joints_where_they_are(stand):
+    arm = Arm(stand)
+    asked = arm.ask(trajectory((1.0, [1.0, 1.0])))
+    await arm.run(0.5)
+    asked.cancel()
+    await arm.run(1.0)
+    assert asked.status == CANCELED
+    assert arm.command("shoulder") == pytest.approx(0.5)
+    await arm.run(1.0)
+    assert arm.command("shoulder") == pytest.approx(0.5)
+
+
+async def test_a_new_goal_takes_the_place_of_the_last_one(stand):
+    arm = Arm(stand)
+    first = arm.ask(trajectory((1.0, [1.0, 1.0])))
+    await arm.run(0.5)
+    second = arm.ask(trajectory((1.0, [0.0, 0.0])))
+    await arm.run(1.2)
+    assert (first.status, second.status) == (CANCELED, SUCCEEDED)
+    assert first.result.error_code == first.result.INVALID_GOAL
+    assert first.result.error_string == "Current goal cancelled due to new incoming action."
+
+
+async def test_a_trajectory_by_topic_takes_the_place_of_a_goal(stand):
+    arm = Arm(stand)
+    asked = arm.ask(trajectory((1.0, [1.0, 1.0])))
+    await arm.run(0.5)
+    arm.say(trajectory((0.5, [0.0, 0.0])))
+    await arm.run(1.0)
+    assert asked.status == CANCELED
+    assert arm.command("shoulder") == 0.0
+
+
+async def test_a_goal_that_is_refused_leaves_the_one_before_alone(stand):
+    arm = Arm(stand)
+    first = arm.ask(trajectory((1.0, [1.0, 1.0])))
+    await arm.run(0.5)
+    arm.ask(trajectory())
+    await arm.run(0.6)
+    assert first.status == SUCCEEDED
+
+
+async def test_an_inactive_controller_takes_no_goals_and_ends_the_one_that_it_has(stand):
+    arm = Arm(stand, command_interfaces=["position", "velocity"])
+    running = arm.ask(trajectory((1.0, [1.0, 1.0], [0.0, 0.0])))
+    await arm.run(0.5)
+    arm.controller.on_deactivate()
+    stand.exchange.deliver()
+    late = arm.ask(trajectory(GOOD))
+    await stand.graph.settle()
+    assert (running.status, late.accepted) == (CANCELED, False)
+    assert running.result.error_string == "Current goal cancelled during deactivate transition."
+    assert "Can't accept new action goals. Controller is not running." in arm.told()
+    assert arm.command("shoulder") == pytest.approx(0.5, abs=0.01)
+    assert arm.command("shoulder", "velocity") == 0.0
+
+
+async def test_activated_again_it_holds_the_last_commands_of_hardware_that_sags(stand):
+    arm = Arm(stand)
+    arm.say(trajectory((0.5, [1.0, 1.0])))
+    await arm.run(1.0)
+    arm.controller.on_deactivate()
+    stand.states["shoulder/position"].value = 0.9
+    arm.controller.on_activate()
+    assert arm.controller._trajectory.points[0].state.positions == [1.0, 1.0]
+
+
+async def test_open_loop_trajectories_begin_at_the_last_command(stand):
+    arm = Arm(stand, open_loop_control=True)
+    arm.say(trajectory((0.5, [1.0, 1.0])))
+    await arm.run(1.0)
+    arm.stuck.update(JOINTS)
+    for joint in JOINTS:
+        stand.states[f"{joint}/position"].value = 0.5
+    arm.say(trajectory((1.0, [2.0, 2.0])))
+    await arm.run(0.5)
+    assert arm.command("shoulder") == pytest.approx(1.5)
+
+
+async def test_a_continuous_joint_turns_the_shorter_way(stand):
+    arm = Arm(stand, gains={"shoulder": {"angle_wraparound": True}})
+    stand.states["shoulder/position"].value = 3.0
+    stand.commands["shoulder/position"].value = 3.0
+    arm.controller.on_activate()
+    asked = arm.ask(trajectory((1.0, [-3.0, 0.0])))
+    await arm.run(0.5)
+    assert arm.command("shoulder") == pytest.approx(-pi)
+    await arm.run(0.6)
+    assert asked.status == SUCCEEDED
+
+
+async def test_without_interpolation_points_are_commanded_when_they_are_due(stand):
+    arm = Arm(stand, interpolation_method="none")
+    arm.say(trajectory((1.0, [1.0, 1.0]), (2.0, [2.0, 2.0])))
+    await arm.run(0.9)
+    assert arm.command("shoulder") == 0.0
+    await arm.run(0.2)
+    assert arm.command("shoulder") == 2.0
+
+
+async def test_a_trajectory_that_ended_long_ago_is_given_up_where_a_timeout_is_set(stand):
+    arm = Arm(stand, cmd_timeout=0.5)
+    arm.stuck.update(JOINTS)
+    arm.say(trajectory((0.5, [1.0, 1.0])))
+    await arm.run(0.9)
+    assert arm.command("shoulder") == 1.0
+    await arm.run(0.2)
+    assert "Aborted due to command timeout" in arm.told()
+    assert arm.command("shoulder") == 0.0
+
+
+async def test_a_timeout_within_the_goal_time_is_none(stand):
+    arm = Arm(stand, cmd_timeout=0.5, constraints={"goal_time": 0.6})
+    assert "Command timeout must be higher than goal_time tolerance (0.500000 vs. 0.600000)" in arm.told()
+
+
+async def test_states_come_at_each_update_or_as_often_as_said(stand):
+    arm = Arm(stand, state_publish_rate=20.0)
+    new, old = (
+        stand.heard("control_msgs/msg/JointTrajectoryControllerState", f"/controller/{topic}")
+        for topic in ("controller_state", "state")
+    )
+    arm.say(trajectory((1.0, [1.0, 1.0])))
+    await arm.run(0.5)
+    assert len(new) == len(old) == 10
+    message = new[-1]
+    assert message.joint_names == list(JOINTS)
+    assert message.reference.positions[0] == pytest.approx(0.45)
+    assert (message.desired, message.actual) == (message.reference, message.feedback)
+    assert message.output.positions[0] == pytest.approx(0.46)
+
+
+async def test_the_state_at_a_time_can_be_asked_for(stand):
+    arm = Arm(stand)
+    query = get_service("control_msgs/srv/QueryTrajectoryState")
+    client = stand.node.create_client(query, "/controller/query_state")
+
+    async def ask(seconds: float) -> Any:
+        future = client.call_async(query.Request(time=Time(*divmod(round(seconds * SECOND), SECOND))))
+        await arm.run(0.01)
+        return future.result()
+
+    arm.say(trajectory((1.0, [1.0, 0.0])))
+    await arm.run(0.1)
+    answer = await ask(0.51)
+    assert (answer.success, answer.name) == (True, list(JOINTS))
+    assert answer.position[0] == pytest.approx(0.5)
+    assert answer.velocity[0] == pytest.approx(1.0)
+    for seconds, told in (
+        (0.001, "Requested sample time is earlier than the current trajectory start time."),
+        (9.0, "Requested sample time precedes the current trajectory end time."),
+    ):
+        answer = await ask(seconds)
+        assert (answer.success, answer.message) == (False, told)
+
+
+@pytest.mark.parametrize(
+    ("parameters", "told"),
+    [
+        ({"joints": []}, "Parameter 'joints' cannot be empty"),
+        ({"command_interfaces": ["torque"]}, "'torque' is not one of"),
+        ({"command_interfaces": ["velocity", "effort"]}, "'velocity' command interface can be used either alone"),
+        ({"command_interfaces": ["position", "acceleration"]}, "'acceleration' command interface can only be used"),
+        ({"command_interfaces": ["position", "effort"]}, "'effort' command interface has to be used alone"),
+        ({"state_interfaces": ["velocity"]}, "'velocity' state interface cannot be used"),
+        ({"state_interfaces": ["position", "acceleration"]}, "'acceleration' state interface cannot be used"),
+        ({"interpolation_method": "linear"}, "'linear' is not one of"),
+    ],
+)
+async def test_parameters_that_cannot_be_are_refused(stand, parameters, told):
+    with pytest.raises(LinkwrightError, match=told):
+        stand.make(JointTrajectoryController, **{**BY_POSITION, **parameters})
+
+
+@pytest.mark.parametrize("kind", ["velocity", "effort"])
+async def test_commands_by_pid_need_positions_and_velocities(stand, kind):
+    parameters = {"joints": ["hip"], "command_interfaces": [kind], "state_interfaces": ["position"]}
+    with pytest.raises(ControllerError, match=f"'{kind}' command interface can only be used alone if"):
+        stand.make(JointTrajectoryController, **parameters).on_configure()
+
+
+async def test_hardware_that_tells_no_positions_yet_cannot_be_held(stand):
+    stand.joint("hip", commands=("position",), position=nan)
+    parameters = {"joints": ["hip"], "command_interfaces": ["position"], "state_interfaces": ["position"]}
+    with pytest.raises(ControllerError, match="not known yet"):
+        stand.start(JointTrajectoryController, **parameters)
+
+
+async def test_other_joints_may_be_commanded_than_those_that_are_measured(stand):
+    stand.joint("hip", position=0.0)
+    stand.joint("motor", commands=("position",))
+    parameters = {"joints": ["hip"], "command_interfaces": ["position"], "state_interfaces": ["position"]}
+    controller = stand.start(JointTrajectoryController, command_joints=["motor"], **parameters)
+    await run(stand, controller, 0.02)
+    assert stand.commands["motor/position"].value == 0.0
+
+
+async def test_time_that_begins_anew_holds_the_joints(stand):
+    arm = Arm(stand)
+    arm.say(trajectory((1.0, [1.0, 1.0])))
+    await arm.run(0.5)
+    stand.time_ns = 0
+    await arm.run(0.1)
+    assert arm.command("shoulder") == pytest.approx(0.5)
+
+
+async def test_after_a_cleanup_it_can_be_configured_again(stand):
+    arm = Arm(stand)
+    arm.controller.on_deactivate()
+    arm.controller.on_cleanup()
+    await stand.graph.settle()
+    stand.activate(arm.controller)
+    asked = arm.ask(trajectory((0.1, [1.0, 1.0])))
+    await arm.run(0.2)
+    assert asked.status == SUCCEEDED
