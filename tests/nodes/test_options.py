@@ -1,3 +1,6 @@
+import os
+import sys
+
 import pytest
 
 from linkwright.graph import LogLevel
@@ -23,16 +26,33 @@ ARGUMENTS = {
 NAMED_BY_THEMSELVES = ("static_transform_publisher", "transform", "relay_field")
 """Those whose names have a number that differs each time."""
 
+NEED_A_TERMINAL = ("teleop_twist_keyboard",)
+
+
+@pytest.fixture
+def terminal():
+    """The terminal of nodes that need one."""
+    if sys.platform == "win32":
+        yield None
+        return
+    sides = os.openpty()
+    yield sides[1]
+    for side in sides:
+        os.close(side)
+
 
 @pytest.mark.parametrize("executable", EXECUTABLES, ids="/".join)
-async def test_every_executable_starts_and_ends(stage, executable):
+async def test_every_executable_starts_and_ends(stage, executable, terminal):
     options = NodeOptions(
         name="mine",
         namespace="/robot",
         parameters={"robot_description": robot(joint("a")), "port": 0},  # any, for the bridge
         arguments=ARGUMENTS.get(executable[1], []),
         library=stage.library,
+        terminal=terminal,
     )
+    if executable[0] in NEED_A_TERMINAL and terminal is None:
+        pytest.skip("Windows has no pseudo-terminals")
     running = EXECUTABLES[executable](stage.graph, options)
     assert running.node.get_fully_qualified_name() == "/robot/mine"
     running.close()
@@ -42,12 +62,15 @@ async def test_every_executable_starts_and_ends(stage, executable):
 
 
 @pytest.mark.parametrize("executable", EXECUTABLES, ids="/".join)
-async def test_the_name_of_a_node_that_is_given_none_is_known(stage, executable):
+async def test_the_name_of_a_node_that_is_given_none_is_known(stage, executable, terminal):
     options = NodeOptions(
         parameters={"robot_description": robot(joint("a")), "port": 0},  # any, for the bridge
         arguments=ARGUMENTS.get(executable[1], []),
         library=stage.library,
+        terminal=terminal,
     )
+    if executable[0] in NEED_A_TERMINAL and terminal is None:
+        pytest.skip("Windows has no pseudo-terminals")
     running = EXECUTABLES[executable](stage.graph, options)
     name = default_name(*executable)
     assert running.node.get_name() == name or (name is None and executable[1] in NAMED_BY_THEMSELVES)

@@ -73,6 +73,7 @@ class TeleopTwistKeyboard(SingleNode):
         """Stop the robot, give the terminal back, and end."""
         self._terminal.close()
         self._topic.stop()
+        self._topic.close()
         super().close()
 
     def _number(self, name: str, default: float) -> float:

@@ -89,6 +89,7 @@ class TeleopTwistJoy(SingleNode):
         """Stop the robot where it was driven, and end."""
         if self._drives:
             self._topic.stop()
+        self._topic.close()
         super().close()
 
     def _follow_parameters(self) -> None:
