@@ -7,11 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import inf
 
 from linkwright.control.controllers.parameters import at_least, for_each, not_empty, one_of, parameter
+from linkwright.control.controllers.pid_parameters import PidParameters
 from linkwright.control.hardware.interfaces import ACCELERATION, EFFORT, POSITION, VELOCITY
-from linkwright.control.motion.pid import CLAMPED, NONE, STRATEGIES, PidGains
 from linkwright.control.motion.tolerances import StateTolerance, Tolerances
 from linkwright.diagnostics import Phrase, phrase
 
@@ -50,43 +49,12 @@ def _state_combination(name: str, value: tuple[str, ...]) -> Phrase | None:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Gains:
-    """Of a joint's PID controller; without `i_clamp` the bounds `i_clamp_min` and `i_clamp_max` count."""
+class Gains(PidParameters):
+    """Of a joint's PID controller."""
 
-    p: float = 0.0
-    i: float = 0.0
-    d: float = 0.0
-    i_clamp: float | None = parameter(None, description="what the integral adds at most, and at least less than 0")
-    i_clamp_max: float = inf
-    i_clamp_min: float = -inf
-    u_clamp_max: float = parameter(inf, description="the greatest command")
-    u_clamp_min: float = parameter(-inf, description="the least command")
-    antiwindup: bool = parameter(False, description="bound the integral, and not only what it adds")
-    antiwindup_strategy: str = parameter(NONE, check=one_of(*STRATEGIES))
-    tracking_time_constant: float = 0.0
-    error_deadband: float = 1e-16
     ff_velocity_scale: float = parameter(0.0, description="how much of the wanted velocity is added to the command")
     angle_wraparound: bool = parameter(False, description="whether the joint turns without an end")
     normalize_error: bool = parameter(False, description="an older name of angle_wraparound")
-
-    @property
-    def pid(self) -> PidGains:
-        """What the PID controller is made with."""
-        low, high = self.i_clamp_min, self.i_clamp_max
-        if self.i_clamp is not None:
-            low, high = -abs(self.i_clamp), abs(self.i_clamp)
-        return PidGains(
-            p=self.p,
-            i=self.i,
-            d=self.d,
-            i_min=low,
-            i_max=high,
-            u_min=self.u_clamp_min,
-            u_max=self.u_clamp_max,
-            antiwindup=CLAMPED if self.antiwindup else self.antiwindup_strategy,
-            tracking_time_constant=self.tracking_time_constant,
-            error_deadband=self.error_deadband,
-        )
 
 
 @dataclass(frozen=True, kw_only=True)

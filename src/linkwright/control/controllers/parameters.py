@@ -17,7 +17,7 @@ value. Source: generate_parameter_library, which the controllers of ros2_control
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterator, Mapping
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
 from dataclasses import MISSING, dataclass, field, fields, is_dataclass
 from functools import cache
 from typing import Any, Generic, TypeVar, get_type_hints
@@ -133,7 +133,7 @@ class ParameterTable(Generic[P]):
         for each in fields(table):
             kind, name = kinds[each.name], f"{prefix}{each.name}"
             if _NAMES in each.metadata:
-                keys = dict.fromkeys(key for names in each.metadata[_NAMES] for key in values[names])
+                keys = dict.fromkeys(key for names in each.metadata[_NAMES] for key in _listed(values[names]))
                 inside = each.metadata[_TABLE]
                 name = f"{prefix}{each.metadata[_BELOW] or each.name}"
                 values[each.name] = {key: self._table_values(inside, f"{name}.{key}.") for key in keys}
@@ -176,6 +176,11 @@ class ParameterTable(Generic[P]):
             if wrong is not None:
                 return SetParametersResult(successful=False, reason=wrong)
         return SetParametersResult(successful=True)
+
+
+def _listed(names: Any) -> Iterable[str]:
+    """The names of a parameter that has one or several."""
+    return (names,) if isinstance(names, str) else names
 
 
 @cache

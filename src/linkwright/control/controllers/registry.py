@@ -15,6 +15,14 @@ if TYPE_CHECKING:
 
 GROUP = "linkwright.controllers"
 
+_LEFT_OUT = {
+    "admittance_controller/AdmittanceController": phrase(
+        "it is left out: it needs a plugin of kinematics and a force-torque sensor; "
+        "a joint_trajectory_controller moves the same joints without yielding"
+    ),
+}
+"""Controllers of ros2_controllers that are known and not here, and why."""
+
 
 def controller_types() -> list[str]:
     """The type names of all controllers."""
@@ -30,7 +38,8 @@ def controller_class(type_name: str) -> type[Controller[Any]]:
     entry = extensions(GROUP).get(type_name)
     if entry is None:
         message = phrase("there is no controller of type '{name}'", name=type_name)
-        raise LinkwrightError(Diagnostic("CTL103", message, hint=did_you_mean(type_name, controller_types())))
+        hint = _LEFT_OUT.get(type_name) or did_you_mean(type_name, controller_types())
+        raise LinkwrightError(Diagnostic("CTL103", message, hint=hint))
     try:
         found: type[Controller[Any]] = entry.load()
     except Exception as error:

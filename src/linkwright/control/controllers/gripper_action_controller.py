@@ -1,0 +1,264 @@
+"""Grippers that are opened and closed by an action.
+
+``position_controllers/GripperActionController`` sends the position on, ``effort_controllers/GripperActionController``
+makes an effort of it by PID, and ``parallel_gripper_action_controller/GripperActionController`` sends the greatest
+effort and velocity on as well.
+
+Source: ros2_controllers (parameters, actions, when a goal is reached and when the gripper is stalled).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import isfinite
+from typing import Any, ClassVar, TypeVar
+
+from linkwright.control.controllers.action import ControllerAction, Goal
+from linkwright.control.controllers.controller import Controller, ControllerError, InterfaceNames
+from linkwright.control.controllers.parameters import at_least, for_each, not_empty, parameter
+from linkwright.control.controllers.pid_parameters import PidParameters
+from linkwright.control.hardware.interfaces import EFFORT, POSITION, VELOCITY
+from linkwright.control.motion.pid import Pid
+from linkwright.diagnostics import phrase
+from linkwright.messages import JointState, get_action
+
+_SECOND = 1_000_000_000
+
+
+@dataclass(frozen=True, kw_only=True)
+class GripperParameters:
+    """Of all of them."""
+
+    action_monitor_rate: float = parameter(20.0, description="how often feedback comes, in Hz", check=at_least(0.1))
+    joint: str = parameter("", read_only=True, check=not_empty)
+    goal_tolerance: float = parameter(0.01, description="rad or m", check=at_least(0.0))
+    max_effort: float = parameter(0.0, description="Nm or N; 0 for any", check=at_least(0.0))
+    allow_stalling: bool = parameter(False, description="a goal succeeds when the gripper holds something")
+    stall_velocity_threshold: float = parameter(0.001, description="rad/s or m/s")
+    stall_timeout: float = parameter(1.0, description="seconds without motion", check=at_least(0.0))
+
+
+@dataclass(frozen=True, kw_only=True)
+class EffortGripperParameters(GripperParameters):
+    """Of the one that commands efforts."""
+
+    gains: Mapping[str, PidParameters] = for_each("joint", PidParameters)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ParallelGripperParameters(GripperParameters):
+    """Of the one with interfaces for the greatest effort and velocity."""
+
+    max_effort: float = parameter(10.0, description="N, where a goal says nothing", check=at_least(0.0))
+    max_velocity: float = parameter(0.1, description="m/s, where a goal says nothing", check=at_least(0.0))
+    state_interfaces: tuple[str, ...] = (POSITION, VELOCITY)
+    max_effort_interface: str = parameter("", description="the command interface that gets the greatest effort")
+    max_velocity_interface: str = parameter("", description="the command interface that gets the greatest velocity")
+
+
+P = TypeVar("P", bound=GripperParameters)
+
+
+class Gripper(Controller[P]):
+    """What grippers share: goals, and when they end."""
+
+    ACTION: ClassVar[str] = "control_msgs/action/GripperCommand"
+
+    def command_interfaces(self) -> InterfaceNames:
+        """The position of the joint."""
+        return [f"{self.parameters.joint}/{POSITION}"]
+
+    def state_interfaces(self) -> InterfaceNames:
+        """Position and velocity of the joint."""
+        return [f"{self.parameters.joint}/{kind}" for kind in (POSITION, VELOCITY)]
+
+    def on_configure(self) -> None:
+        """Make the action."""
+        self._active = False
+        self._goal: Goal | None = None
+        kind = get_action(self.ACTION)
+        self._result, self._feedback = kind.Result, kind.Feedback
+        self._action = ControllerAction(
+            self.node, self.ACTION, "~/gripper_cmd", is_allowed=self._is_allowed, begin=self._begin, cancel=self._cancel
+        )
+
+    def on_activate(self) -> None:
+        """Stay where the gripper is."""
+        self._position_state, self._velocity_state = self.states[0], self.states[1]
+        if not isfinite(self._position_state.value):
+            raise ControllerError(phrase("the positions of the joints are not known yet"))
+        self._stay()
+        self._goal = None
+        self._moved_ns = self._next_feedback_ns = 0
+        self._active = True
+
+    def on_deactivate(self) -> None:
+        """Give the goal up."""
+        self._active = False
+        self._give_up()
+
+    def on_cleanup(self) -> None:
+        """Take the action out of the graph."""
+        self._action.close()
+
+    def update(self, time_ns: int, period_s: float) -> None:
+        """Command, and see whether the goal is reached."""
+        position, velocity = self._position_state.value, self._velocity_state.value
+        effort = self._command(self._wanted - position, velocity, period_s)
+        goal = self._goal
+        if goal is None:
+            return
+        if time_ns >= self._next_feedback_ns:
+            self._next_feedback_ns = time_ns + round(_SECOND / self.parameters.action_monitor_rate)
+            goal.feedback(self._report(self._feedback(), position, velocity, effort))
+        if abs(velocity) > self.parameters.stall_velocity_threshold:
+            self._moved_ns = time_ns
+        reached = abs(self._wanted - position) < self.parameters.goal_tolerance
+        stalled = not reached and time_ns - self._moved_ns > self.parameters.stall_timeout * _SECOND
+        if not reached and not stalled:
+            return
+        result = self._report(self._result(), position, velocity, effort)
+        result.reached_goal, result.stalled = reached, stalled
+        end = goal.succeed if reached or self.parameters.allow_stalling else goal.abort
+        end(result)
+        self._goal = None
+
+    # --- goals --------------------------------------------------------------------------------------------------------
+
+    def _is_allowed(self, request: Any) -> bool:
+        wrong = self._objection(request)
+        if not self._active:
+            wrong = "Can't accept new action goals. Controller is not running."
+        if wrong is not None:
+            self.node.logger.error(wrong)
+            return False
+        self.node.logger.info("Received & accepted new action goal")
+        return True
+
+    def _begin(self, goal: Goal) -> None:
+        self._give_up()
+        if not self._active:
+            goal.abort(self._result())
+            return
+        self._take(goal.request)
+        self._goal = goal
+        self._moved_ns = self.time_ns
+        self._next_feedback_ns = 0
+
+    def _cancel(self, goal: Goal) -> None:
+        self.node.logger.info("Got request to cancel goal")
+        if self._goal is goal:
+            self.node.logger.info("Canceling active action goal because cancel callback received.")
+            self._give_up()
+            self._stay()
+
+    def _give_up(self) -> None:
+        if self._goal is not None:
+            self._goal.cancel(self._result())
+            self._goal = None
+
+    def _stay(self) -> None:
+        self._wanted = self._position_state.value
+        self._max_effort = self.parameters.max_effort
+
+    # --- what differs -------------------------------------------------------------------------------------------------
+
+    def _objection(self, request: Any) -> str | None:
+        """Why a goal is refused."""
+        return None if isfinite(request.command.position) else "Received action goal with a position that is no number"
+
+    def _take(self, request: Any) -> None:
+        """Take what a goal says."""
+        self._wanted = request.command.position
+        self._max_effort = request.command.max_effort
+
+    def _command(self, error: float, velocity: float, period_s: float) -> float:  # noqa: ARG002
+        """Command, and give the effort that is told: here the greatest one."""
+        self.commands[0].value = self._wanted
+        return self._max_effort
+
+    def _report(self, message: Any, position: float, velocity: float, effort: float) -> Any:  # noqa: ARG002
+        """Fill in a result or a feedback."""
+        message.position, message.effort = position, effort
+        return message
+
+
+class PositionGripper(Gripper[GripperParameters]):
+    """``position_controllers/GripperActionController``."""
+
+    PARAMETERS = GripperParameters
+
+
+class EffortGripper(Gripper[EffortGripperParameters]):
+    """``effort_controllers/GripperActionController``."""
+
+    PARAMETERS = EffortGripperParameters
+
+    def command_interfaces(self) -> InterfaceNames:
+        """The effort of the joint."""
+        return [f"{self.parameters.joint}/{EFFORT}"]
+
+    def on_activate(self) -> None:
+        """Stay where the gripper is."""
+        self._pid = Pid(self.parameters.gains[self.parameters.joint].pid)
+        super().on_activate()
+
+    def on_deactivate(self) -> None:
+        """Push no more."""
+        super().on_deactivate()
+        self.commands[0].value = 0.0
+
+    def _command(self, error: float, velocity: float, period_s: float) -> float:
+        self._pid.gains = self.parameters.gains[self.parameters.joint].pid
+        effort = self._pid.command(error, period_s, -velocity)
+        limit = abs(self._max_effort)
+        if limit:
+            effort = min(max(effort, -limit), limit)
+        self.commands[0].value = effort
+        return effort
+
+
+class ParallelGripper(Gripper[ParallelGripperParameters]):
+    """``parallel_gripper_action_controller/GripperActionController``."""
+
+    PARAMETERS = ParallelGripperParameters
+    ACTION = "control_msgs/action/ParallelGripperCommand"
+
+    def command_interfaces(self) -> InterfaceNames:
+        """The position of the joint, and the interfaces of the greatest effort and velocity that are named."""
+        said = self.parameters
+        more = [each for each in (said.max_effort_interface, said.max_velocity_interface) if each]
+        return [f"{said.joint}/{POSITION}", *more]
+
+    def _stay(self) -> None:
+        super()._stay()
+        self._max_velocity = self.parameters.max_velocity
+
+    def _objection(self, request: Any) -> str | None:
+        positions = request.command.position
+        if len(positions) != 1:
+            return f"Received action goal with wrong number of position values, expects 1, got {len(positions)}"
+        return None if isfinite(positions[0]) else "Received action goal with a position that is no number"
+
+    def _take(self, request: Any) -> None:
+        said, command = self.parameters, request.command
+        self._wanted = command.position[0]
+        self._max_effort = command.effort[0] if said.max_effort_interface and len(command.effort) else said.max_effort
+        fast = said.max_velocity_interface and len(command.velocity)
+        self._max_velocity = command.velocity[0] if fast else said.max_velocity
+
+    def _command(self, error: float, velocity: float, period_s: float) -> float:
+        effort = super()._command(error, velocity, period_s)
+        limits = iter(self.commands[1:])
+        if self.parameters.max_effort_interface:
+            next(limits).value = self._max_effort
+        if self.parameters.max_velocity_interface:
+            next(limits).value = self._max_velocity
+        return effort
+
+    def _report(self, message: Any, position: float, velocity: float, effort: float) -> Any:
+        message.state = JointState(
+            name=[self.parameters.joint], position=[position], velocity=[velocity], effort=[effort]
+        )
+        return message

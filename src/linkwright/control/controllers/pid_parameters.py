@@ -1,0 +1,46 @@
+"""The parameters of PID controllers, as control_toolbox has them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf
+
+from linkwright.control.controllers.parameters import one_of, parameter
+from linkwright.control.motion.pid import CLAMPED, NONE, STRATEGIES, PidGains
+
+
+@dataclass(frozen=True, kw_only=True)
+class PidParameters:
+    """Of a PID controller; without `i_clamp` the bounds `i_clamp_min` and `i_clamp_max` count."""
+
+    p: float = 0.0
+    i: float = 0.0
+    d: float = 0.0
+    i_clamp: float | None = parameter(None, description="what the integral adds at most, and at least less than 0")
+    i_clamp_max: float = inf
+    i_clamp_min: float = -inf
+    u_clamp_max: float = parameter(inf, description="the greatest command")
+    u_clamp_min: float = parameter(-inf, description="the least command")
+    antiwindup: bool = parameter(False, description="bound the integral, and not only what it adds")
+    antiwindup_strategy: str = parameter(NONE, check=one_of(*STRATEGIES))
+    tracking_time_constant: float = 0.0
+    error_deadband: float = 1e-16
+
+    @property
+    def pid(self) -> PidGains:
+        """What the PID controller is made with."""
+        low, high = self.i_clamp_min, self.i_clamp_max
+        if self.i_clamp is not None:
+            low, high = -abs(self.i_clamp), abs(self.i_clamp)
+        return PidGains(
+            p=self.p,
+            i=self.i,
+            d=self.d,
+            i_min=low,
+            i_max=high,
+            u_min=self.u_clamp_min,
+            u_max=self.u_clamp_max,
+            antiwindup=CLAMPED if self.antiwindup else self.antiwindup_strategy,
+            tracking_time_constant=self.tracking_time_constant,
+            error_deadband=self.error_deadband,
+        )

@@ -1,0 +1,286 @@
+"""What sensors of the hardware tell, as topics: IMUs, force-torque sensors, range sensors and poses.
+
+Source: ros2_controllers, its ``imu_sensor_broadcaster``, ``force_torque_sensor_broadcaster``,
+``range_sensor_broadcaster`` and ``pose_broadcaster`` (parameters, names of interfaces, topics).
+"""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import isfinite
+from typing import Any, ClassVar, TypeVar
+
+from linkwright.control.controllers.controller import Controller, ControllerError, InterfaceNames
+from linkwright.control.controllers.parameters import at_least, not_empty, parameter
+from linkwright.diagnostics import Phrase, phrase
+from linkwright.messages import Header, Quaternion, Time, Transform, TransformStamped, Vector3, get_message
+
+_SECOND = 1_000_000_000
+_UNKNOWN = (0.0,) * 9
+
+
+def _nine(name: str, value: tuple[float, ...]) -> Phrase | None:
+    """A covariance of three numbers, row by row."""
+    if len(value) != 9:
+        return phrase("Parameter '{name}' has {count} numbers and must have 9", name=name, count=len(value))
+    return None
+
+
+@dataclass(frozen=True, kw_only=True)
+class ImuParameters:
+    """Of the IMU broadcaster."""
+
+    sensor_name: str = parameter("", check=not_empty)
+    frame_id: str = parameter("", check=not_empty)
+    static_covariance_orientation: tuple[float, ...] = parameter(_UNKNOWN, check=_nine)
+    static_covariance_angular_velocity: tuple[float, ...] = parameter(_UNKNOWN, check=_nine)
+    static_covariance_linear_acceleration: tuple[float, ...] = parameter(_UNKNOWN, check=_nine)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Vector:
+    """The names of three interfaces."""
+
+    x: str = ""
+    y: str = ""
+    z: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Turn(Vector):
+    """The names of four interfaces."""
+
+    w: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class WrenchNames:
+    """The names of the interfaces of a force-torque sensor."""
+
+    force: Vector = Vector()
+    torque: Vector = Vector()
+
+
+@dataclass(frozen=True, kw_only=True)
+class PoseNames:
+    """The names of the interfaces of a pose."""
+
+    position: Vector = Vector()
+    orientation: Turn = Turn()
+
+
+@dataclass(frozen=True, kw_only=True)
+class WrenchParameters:
+    """Of the force-torque broadcaster."""
+
+    frame_id: str = parameter("", check=not_empty)
+    sensor_name: str = ""
+    interface_names: WrenchNames = WrenchNames()
+
+
+@dataclass(frozen=True, kw_only=True)
+class RangeParameters:
+    """Of the range broadcaster."""
+
+    sensor_name: str = parameter("", check=not_empty)
+    frame_id: str = parameter("", check=not_empty)
+    radiation_type: int = parameter(0, description="0 for ultrasound, 1 for infrared")
+    field_of_view: float = parameter(0.52, description="rad")
+    min_range: float = parameter(0.52, description="m")
+    max_range: float = parameter(4.0, description="m")
+
+
+@dataclass(frozen=True, kw_only=True)
+class TransformParameters:
+    """Of the transform that is published with a pose."""
+
+    enable: bool = True
+    child_frame_id: str = parameter("", description="the frame at the pose; the name of the pose where it is empty")
+    publish_rate: float = parameter(0.0, description="Hz; 0 for each update", check=at_least(0.0))
+
+
+@dataclass(frozen=True, kw_only=True)
+class PoseParameters:
+    """Of the pose broadcaster."""
+
+    frame_id: str = parameter("", check=not_empty)
+    pose_name: str = ""
+    interface_names: PoseNames = PoseNames()
+    tf: TransformParameters = TransformParameters()
+
+
+P = TypeVar("P")
+
+
+class SensorBroadcaster(Controller[P]):
+    """Publishes a message of its states at each update, while anybody listens."""
+
+    TYPE: ClassVar[str]
+    TOPIC: ClassVar[str]
+
+    @abstractmethod
+    def state_interfaces(self) -> InterfaceNames:
+        """Those of the sensor."""
+
+    @abstractmethod
+    def message(self, kind: Any, header: Header, values: Sequence[float]) -> Any:
+        """A message of the values of the interfaces, which stand in the order that was asked for."""
+
+    def on_configure(self) -> None:
+        """Make the topic."""
+        self._kind = get_message(self.TYPE)
+        self._output = self.node.publisher(self.TYPE, self.TOPIC)
+
+    def update(self, time_ns: int, period_s: float) -> None:  # noqa: ARG002
+        """Publish."""
+        if self._output.is_wanted:
+            self._output.publish(self.message(self._kind, self.header(time_ns), [each.value for each in self.states]))
+
+    def header(self, time_ns: int) -> Header:
+        """The time, and the frame of the parameters."""
+        frame: str = self.parameters.frame_id  # type: ignore[attr-defined]  # all of them have one
+        return Header(stamp=Time(*divmod(time_ns, _SECOND)), frame_id=frame)
+
+
+def _vector(values: Sequence[float]) -> Vector3:
+    return Vector3(values[0], values[1], values[2])
+
+
+class ImuBroadcaster(SensorBroadcaster[ImuParameters]):
+    """``imu_sensor_broadcaster/IMUSensorBroadcaster``."""
+
+    PARAMETERS = ImuParameters
+    TYPE, TOPIC = "sensor_msgs/msg/Imu", "~/imu"
+
+    def state_interfaces(self) -> InterfaceNames:
+        """Orientation, angular velocity and linear acceleration."""
+        turn = [f"orientation.{axis}" for axis in "xyzw"]
+        rest = [f"{kind}.{axis}" for kind in ("angular_velocity", "linear_acceleration") for axis in "xyz"]
+        return [f"{self.parameters.sensor_name}/{each}" for each in (*turn, *rest)]
+
+    def message(self, kind: Any, header: Header, values: Sequence[float]) -> Any:
+        """An IMU message with the covariances of the parameters."""
+        said = self.parameters
+        return kind(
+            header=header,
+            orientation=Quaternion(*values[:4]),
+            orientation_covariance=said.static_covariance_orientation,
+            angular_velocity=_vector(values[4:7]),
+            angular_velocity_covariance=said.static_covariance_angular_velocity,
+            linear_acceleration=_vector(values[7:]),
+            linear_acceleration_covariance=said.static_covariance_linear_acceleration,
+        )
+
+
+class ForceTorqueBroadcaster(SensorBroadcaster[WrenchParameters]):
+    """``force_torque_sensor_broadcaster/ForceTorqueSensorBroadcaster``."""
+
+    PARAMETERS = WrenchParameters
+    TYPE, TOPIC = "geometry_msgs/msg/WrenchStamped", "~/wrench"
+
+    def on_configure(self) -> None:
+        """Find out which interfaces there are; axes without one are 0."""
+        said = self.parameters
+        given = said.interface_names
+        named = [getattr(vector, axis) for vector in (given.force, given.torque) for axis in "xyz"]
+        if not said.sensor_name and not any(named):
+            raise ControllerError(
+                "'sensor_name' or at least one 'interface_names.[force|torque].[x|y|z]' parameter has to be specified."
+            )
+        if said.sensor_name and any(named):
+            raise ControllerError(
+                "both 'sensor_name' and 'interface_names.[force|torque].[x|y|z]' parameters can not be specified "
+                "together."
+            )
+        kinds = [f"{kind}.{axis}" for kind in ("force", "torque") for axis in "xyz"]
+        self._names = [f"{said.sensor_name}/{each}" for each in kinds] if said.sensor_name else named
+        super().on_configure()
+
+    def state_interfaces(self) -> InterfaceNames:
+        """Forces, then torques."""
+        return [each for each in self._names if each]
+
+    def message(self, kind: Any, header: Header, values: Sequence[float]) -> Any:
+        """A wrench."""
+        there = iter(values)
+        six = [next(there) if name else 0.0 for name in self._names]
+        wrench = get_message("geometry_msgs/msg/Wrench")
+        return kind(header=header, wrench=wrench(force=_vector(six[:3]), torque=_vector(six[3:])))
+
+
+class RangeBroadcaster(SensorBroadcaster[RangeParameters]):
+    """``range_sensor_broadcaster/RangeSensorBroadcaster``."""
+
+    PARAMETERS = RangeParameters
+    TYPE, TOPIC = "sensor_msgs/msg/Range", "~/range"
+
+    def state_interfaces(self) -> InterfaceNames:
+        """The range."""
+        return [f"{self.parameters.sensor_name}/range"]
+
+    def message(self, kind: Any, header: Header, values: Sequence[float]) -> Any:
+        """A range with the limits of the parameters."""
+        said = self.parameters
+        return kind(
+            header=header,
+            radiation_type=said.radiation_type,
+            field_of_view=said.field_of_view,
+            min_range=said.min_range,
+            max_range=said.max_range,
+            range=values[0],
+        )
+
+
+class PoseBroadcaster(SensorBroadcaster[PoseParameters]):
+    """``pose_broadcaster/PoseBroadcaster``: a pose, and its transform."""
+
+    PARAMETERS = PoseParameters
+    TYPE, TOPIC = "geometry_msgs/msg/PoseStamped", "~/pose"
+
+    def on_configure(self) -> None:
+        """Find out which interfaces there are."""
+        said = self.parameters
+        place, turn = said.interface_names.position, said.interface_names.orientation
+        named = [place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w]
+        if not said.pose_name and not all(named):
+            raise ControllerError(
+                "'pose_name' or 'interface_names.[position.[x|y|z]|orientation.[x|y|z|w]]' parameter has to be "
+                "specified."
+            )
+        if said.pose_name and any(named):
+            raise ControllerError(
+                "'pose_name' and 'interface_names.[position.[x|y|z]|orientation.[x|y|z|w]]' parameters can not be "
+                "specified together."
+            )
+        kinds = [*(f"position.{axis}" for axis in "xyz"), *(f"orientation.{axis}" for axis in "xyzw")]
+        self._names = [f"{said.pose_name}/{each}" for each in kinds] if said.pose_name else named
+        self._next_transform_ns = 0
+        self._child = said.tf.child_frame_id or said.pose_name
+        self._transforms = self.node.publisher("tf2_msgs/msg/TFMessage", "/tf", 100) if said.tf.enable else None
+        super().on_configure()
+
+    def state_interfaces(self) -> InterfaceNames:
+        """Position, then orientation."""
+        return self._names
+
+    def message(self, kind: Any, header: Header, values: Sequence[float]) -> Any:
+        """A pose."""
+        pose = get_message("geometry_msgs/msg/Pose")
+        point = get_message("geometry_msgs/msg/Point")
+        return kind(header=header, pose=pose(position=point(*values[:3]), orientation=Quaternion(*values[3:])))
+
+    def update(self, time_ns: int, period_s: float) -> None:
+        """Publish the pose, and the transform when that is due and known."""
+        super().update(time_ns, period_s)
+        if self._transforms is None or not self._child or time_ns < self._next_transform_ns:
+            return
+        values = [each.value for each in self.states]
+        if not self._transforms.is_wanted or not all(map(isfinite, values)):
+            return
+        rate = self.parameters.tf.publish_rate
+        self._next_transform_ns = time_ns + (round(_SECOND / rate) if rate else 0)
+        transform = Transform(_vector(values), Quaternion(*values[3:]))
+        stamped = TransformStamped(self.header(time_ns), self._child, transform)
+        self._transforms.publish(get_message("tf2_msgs/msg/TFMessage")([stamped]))

@@ -1,0 +1,161 @@
+"""Grippers: goals that are reached, stalled, canceled."""
+
+from __future__ import annotations
+
+from math import nan
+from typing import Any
+
+import pytest
+
+from linkwright.control.controllers.gripper_action_controller import EffortGripper, ParallelGripper, PositionGripper
+from linkwright.control.controllers.registry import controller_class
+from linkwright.messages import JointState, get_action, get_message
+from tests.control.controllers.arm import Asked, run
+
+ACTION = "control_msgs/action/GripperCommand"
+PARALLEL = "control_msgs/action/ParallelGripperCommand"
+SUCCEEDED, CANCELED, ABORTED = 4, 5, 6
+
+
+class Fingers:
+    """A gripper on a stand: hardware that moves to its command at 0.1 m/s, as far as it can."""
+
+    def __init__(
+        self, stand: Any, kind: type = PositionGripper, commands: tuple[str, ...] = ("position",), **said: Any
+    ):
+        self.stand = stand
+        stand.joint("finger", commands=commands, position=0.0, velocity=0.0)
+        self.limit = 1.0
+        self.controller = stand.start(kind, joint="finger", **said)
+
+    @property
+    def command(self) -> float:
+        return self.stand.commands["finger/position"].value
+
+    def move(self) -> None:
+        place, speed = (self.stand.states[f"finger/{kind}"] for kind in ("position", "velocity"))
+        step = min(max(min(self.command, self.limit) - place.value, -0.001), 0.001)
+        place.value += step
+        speed.value = step / 0.01
+
+    async def run(self, seconds: float) -> None:
+        await run(self.stand, self.controller, seconds, self.move)
+
+    def ask(self, position: float, effort: float = 0.0) -> Asked:
+        command = get_message("control_msgs/msg/GripperCommand")(position=position, max_effort=effort)
+        return Asked(self.stand, ACTION, "/controller/gripper_cmd", get_action(ACTION).Goal(command=command))
+
+
+@pytest.mark.parametrize(
+    ("name", "kind"),
+    [
+        ("position_controllers/GripperActionController", PositionGripper),
+        ("effort_controllers/GripperActionController", EffortGripper),
+        ("parallel_gripper_action_controller/GripperActionController", ParallelGripper),
+    ],
+)
+def test_they_are_found_by_their_types(name, kind):
+    assert controller_class(name) is kind
+
+
+async def test_it_stays_where_it_is_and_goes_where_a_goal_says(stand):
+    fingers = Fingers(stand)
+    await fingers.run(0.05)
+    assert fingers.command == 0.0
+    asked = fingers.ask(0.05, effort=7.0)
+    await fingers.run(0.3)
+    assert asked.status is None
+    await fingers.run(0.4)
+    assert asked.status == SUCCEEDED
+    assert (asked.result.reached_goal, asked.result.stalled, asked.result.effort) == (True, False, 7.0)
+    assert asked.result.position == pytest.approx(0.04, abs=0.0021)
+    assert asked.feedback
+
+
+@pytest.mark.parametrize(("allowed", "status"), [(False, ABORTED), (True, SUCCEEDED)])
+async def test_one_that_holds_something_is_stalled(stand, allowed, status):
+    fingers = Fingers(stand, allow_stalling=allowed, stall_timeout=0.5)
+    fingers.limit = 0.02
+    asked = fingers.ask(0.05)
+    await fingers.run(0.65)
+    assert asked.status is None
+    await fingers.run(0.2)
+    assert asked.status == status
+    assert (asked.result.reached_goal, asked.result.stalled) == (False, True)
+    assert fingers.command == 0.05
+
+
+async def test_a_canceled_goal_leaves_it_where_it_is(stand):
+    fingers = Fingers(stand)
+    asked = fingers.ask(0.5)
+    await fingers.run(0.2)
+    asked.cancel()
+    await fingers.run(0.2)
+    assert asked.status == CANCELED
+    assert fingers.command == pytest.approx(0.02, abs=0.0021)
+
+
+async def test_a_new_goal_takes_the_place_of_the_last_one(stand):
+    fingers = Fingers(stand)
+    first = fingers.ask(0.5)
+    await fingers.run(0.1)
+    second = fingers.ask(0.0)
+    await fingers.run(0.5)
+    assert (first.status, second.status) == (CANCELED, SUCCEEDED)
+
+
+async def test_a_goal_that_is_no_number_or_comes_too_late_is_refused(stand):
+    fingers = Fingers(stand)
+    wrong = fingers.ask(nan)
+    await fingers.run(0.02)
+    fingers.controller.on_deactivate()
+    late = fingers.ask(0.1)
+    await stand.graph.settle()
+    assert (wrong.accepted, late.accepted) == (False, False)
+
+
+async def test_efforts_come_of_errors_and_keep_to_what_a_goal_allows(stand):
+    fingers = Fingers(
+        stand, EffortGripper, ("effort", "position"), gains={"finger": {"p": 100.0, "d": 10.0}}, goal_tolerance=0.001
+    )
+    asked = fingers.ask(0.1, effort=4.0)
+    await run(stand, fingers.controller, 0.05)
+    assert stand.commands["finger/effort"].value == 4.0
+    fingers.stand.states["finger/position"].value = 0.08
+    fingers.stand.states["finger/velocity"].value = 0.1
+    await run(stand, fingers.controller, 0.01)
+    assert stand.commands["finger/effort"].value == pytest.approx(2.0 - 1.0)
+    fingers.controller.on_deactivate()
+    stand.exchange.deliver()
+    await stand.graph.settle()
+    assert stand.commands["finger/effort"].value == 0.0
+    assert asked.status == CANCELED
+
+
+async def test_a_parallel_gripper_passes_the_greatest_effort_and_velocity_on(stand):
+    stand.joint("limits", commands=("effort", "velocity"))
+    fingers = Fingers(
+        stand,
+        ParallelGripper,
+        max_effort_interface="limits/effort",
+        max_velocity_interface="limits/velocity",
+    )
+
+    def ask(position: list[float], velocity: list[float], effort: list[float]) -> Asked:
+        command = JointState(name=["finger"], position=position, velocity=velocity, effort=effort)
+        return Asked(stand, PARALLEL, "/controller/gripper_cmd", get_action(PARALLEL).Goal(command=command))
+
+    def limits() -> tuple[float, float]:
+        return stand.commands["limits/effort"].value, stand.commands["limits/velocity"].value
+
+    await fingers.run(0.02)
+    assert limits() == (10.0, 0.1)
+    asked, wrong = ask([0.02], [0.3], [5.0]), ask([], [], [])
+    await fingers.run(0.5)
+    assert limits() == (5.0, 0.3)
+    assert (asked.status, wrong.accepted) == (SUCCEEDED, False)
+    assert asked.result.state.name == ["finger"]
+    assert asked.result.state.effort[0] == 5.0
+    assert "Received action goal with wrong number of position values, expects 1, got 0" in [
+        str(each.text) for each in stand.log
+    ]

@@ -1,0 +1,131 @@
+"""The PID controller."""
+
+from __future__ import annotations
+
+from math import isnan, pi
+from typing import Any
+
+import pytest
+
+from linkwright.control.controllers.controller import ControllerError
+from linkwright.control.controllers.pid_controller import PidController
+from linkwright.diagnostics import LinkwrightError
+from linkwright.messages import get_message, get_service
+
+COMMAND = "control_msgs/msg/MultiDOFCommand"
+WHEEL = {"dof_names": ["wheel"], "command_interface": "effort", "reference_and_state_interfaces": ["velocity"]}
+BOTH = {**WHEEL, "reference_and_state_interfaces": ["position", "velocity"]}
+
+
+def wheel(stand: Any, position: float = 0.0, velocity: float = 0.0, **parameters: Any) -> Any:
+    """A controller of a wheel."""
+    stand.joint("wheel", commands=("effort",), position=position, velocity=velocity)
+    return stand.start(PidController, **parameters)
+
+
+def ask(stand: Any, *values: float, names: tuple[str, ...] = ("wheel",), rates: tuple[float, ...] = ()) -> None:
+    """Send a reference."""
+    stand.say(COMMAND, "/controller/reference", get_message(COMMAND)(list(names), list(values), list(rates)))
+
+
+async def test_a_command_is_made_of_the_error(stand):
+    controller = wheel(stand, velocity=1.0, **WHEEL, gains={"wheel": {"p": 2.0, "i": 1.0}})
+    await stand.step(controller)
+    assert isnan(stand.commands["wheel/effort"].value)
+    ask(stand, 4.0)
+    await stand.step(controller)
+    assert stand.commands["wheel/effort"].value == pytest.approx(6.03)
+
+
+async def test_the_derivative_of_the_error_comes_from_the_second_interface(stand):
+    controller = wheel(stand, position=1.0, velocity=0.5, **BOTH, gains={"wheel": {"p": 10.0, "d": 2.0}})
+    ask(stand, 2.0, rates=(1.0,))
+    await stand.step(controller)
+    assert stand.commands["wheel/effort"].value == pytest.approx(10.0 + 1.0)
+
+
+async def test_feed_forward_is_switched_on_by_a_service(stand):
+    controller = wheel(stand, **WHEEL, gains={"wheel": {"p": 1.0, "feedforward_gain": 3.0}})
+    ask(stand, 2.0)
+    await stand.step(controller)
+    assert stand.commands["wheel/effort"].value == pytest.approx(2.0)
+    switch = get_service("std_srvs/srv/SetBool")
+    future = stand.node.create_client(switch, "/controller/set_feedforward_control").call_async(
+        switch.Request(data=True)
+    )
+    await stand.step(controller)
+    assert stand.commands["wheel/effort"].value == pytest.approx(8.0)
+    assert future.result().success
+
+
+async def test_angles_may_wrap_around(stand):
+    said = {**WHEEL, "reference_and_state_interfaces": ["position"]}
+    controller = wheel(stand, position=3.0, **said, gains={"wheel": {"p": 1.0, "angle_wraparound": True}})
+    ask(stand, -3.0)
+    await stand.step(controller)
+    assert stand.commands["wheel/effort"].value == pytest.approx(2.0 * pi - 6.0)
+
+
+async def test_states_may_come_by_topic(stand):
+    controller = wheel(stand, **WHEEL, use_external_measured_states=True, gains={"wheel": {"p": 1.0}})
+    ask(stand, 4.0)
+    stand.say(COMMAND, "/controller/measured_state", get_message(COMMAND)(["wheel"], [1.0], []))
+    await stand.step(controller)
+    assert stand.commands["wheel/effort"].value == pytest.approx(3.0)
+
+
+async def test_another_controller_may_command_the_references(stand):
+    controller = wheel(stand, **BOTH, gains={"wheel": {"p": 1.0}})
+    assert [each.name for each in controller.references] == [
+        "controller/wheel/position",
+        "controller/wheel/velocity",
+    ]
+    controller.chained = True
+    controller.references[0].value = 0.5
+    ask(stand, 9.0)
+    await stand.step(controller)
+    assert stand.commands["wheel/effort"].value == pytest.approx(0.5)
+    assert [each.value for each in controller.exported] == [0.0, 0.0]
+
+
+async def test_a_reference_of_other_sizes_or_names_is_told_of(stand):
+    controller = wheel(stand, **WHEEL, gains={"wheel": {"p": 1.0}})
+    ask(stand, 1.0, 2.0)
+    await stand.step(controller)
+    ask(stand, 1.0, names=("arm",))
+    await stand.step(controller)
+    told = [str(each.text) for each in stand.log]
+    assert "Size of input data names (1) and/or values (2) is not matching the expected size (1)." in told
+    assert "DoF name 'wheel' is not in the message: it has arm." in told
+    assert isnan(stand.commands["wheel/effort"].value)
+
+
+async def test_it_tells_its_state(stand):
+    controller = wheel(stand, velocity=1.0, **WHEEL, gains={"wheel": {"p": 2.0}})
+    heard = stand.heard("control_msgs/msg/MultiDOFStateStamped", "/controller/controller_state")
+    ask(stand, 4.0)
+    await stand.step(controller)
+    (state,) = heard[-1].dof_states
+    assert (state.name, state.reference, state.feedback, state.error, state.output) == ("wheel", 4.0, 1.0, 3.0, 6.0)
+    assert state.time_step == pytest.approx(0.01)
+
+
+async def test_it_stops_pushing_when_it_is_deactivated(stand):
+    controller = wheel(stand, **WHEEL, gains={"wheel": {"p": 2.0}})
+    ask(stand, 4.0)
+    await stand.step(controller)
+    controller.on_deactivate()
+    assert stand.commands["wheel/effort"].value == 0.0
+    controller.on_activate()
+    assert isnan(controller.references[0].value)
+
+
+@pytest.mark.parametrize("missing", ["dof_names", "command_interface", "reference_and_state_interfaces"])
+async def test_what_must_be_given(stand, missing):
+    with pytest.raises(LinkwrightError, match=missing):
+        stand.make(PidController, **{name: value for name, value in WHEEL.items() if name != missing})
+
+
+async def test_as_many_states_as_commands(stand):
+    with pytest.raises(ControllerError, match="has to be the same"):
+        stand.make(PidController, **WHEEL, reference_and_state_dof_names=["a", "b"]).on_configure()

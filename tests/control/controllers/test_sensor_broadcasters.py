@@ -1,0 +1,134 @@
+"""Broadcasters of IMUs, force-torque sensors, range sensors and poses."""
+
+from __future__ import annotations
+
+from math import nan
+
+import pytest
+
+from linkwright.control.controllers.controller import ControllerError
+from linkwright.control.controllers.registry import controller_class
+from linkwright.control.controllers.sensor_broadcasters import (
+    ForceTorqueBroadcaster,
+    ImuBroadcaster,
+    PoseBroadcaster,
+    RangeBroadcaster,
+)
+from linkwright.diagnostics import LinkwrightError
+
+WRENCH = [f"{kind}.{axis}" for kind in ("force", "torque") for axis in "xyz"]
+POSE = [*(f"position.{axis}" for axis in "xyz"), *(f"orientation.{axis}" for axis in "xyzw")]
+
+
+@pytest.mark.parametrize(
+    ("name", "kind"),
+    [
+        ("imu_sensor_broadcaster/IMUSensorBroadcaster", ImuBroadcaster),
+        ("force_torque_sensor_broadcaster/ForceTorqueSensorBroadcaster", ForceTorqueBroadcaster),
+        ("range_sensor_broadcaster/RangeSensorBroadcaster", RangeBroadcaster),
+        ("pose_broadcaster/PoseBroadcaster", PoseBroadcaster),
+    ],
+)
+def test_they_are_found_by_their_types(name, kind):
+    assert controller_class(name) is kind
+
+
+async def test_an_imu(stand):
+    kinds = [*(f"orientation.{axis}" for axis in "xyzw")]
+    kinds += [f"{kind}.{axis}" for kind in ("angular_velocity", "linear_acceleration") for axis in "xyz"]
+    stand.joint("imu", **{kind: float(number) for number, kind in enumerate(reversed(kinds))})
+    covariance = [0.5, 0.0, 0.0, 0.0, 0.5, 0.0, 0.0, 0.0, 0.5]
+    broadcaster = stand.start(
+        ImuBroadcaster, sensor_name="imu", frame_id="imu_link", static_covariance_orientation=covariance
+    )
+    heard = stand.heard("sensor_msgs/msg/Imu", "/controller/imu")
+    await stand.step(broadcaster)
+    (message,) = heard
+    assert message.header.frame_id == "imu_link"
+    assert message.header.stamp.nanosec == 10_000_000
+    assert (message.orientation.x, message.orientation.w) == (9.0, 6.0)
+    assert (message.angular_velocity.x, message.linear_acceleration.z) == (5.0, 0.0)
+    assert list(message.orientation_covariance) == covariance
+    assert list(message.angular_velocity_covariance) == [0.0] * 9
+
+
+async def test_a_force_torque_sensor(stand):
+    stand.joint("tcp", **{kind: float(number) for number, kind in enumerate(WRENCH)})
+    broadcaster = stand.start(ForceTorqueBroadcaster, sensor_name="tcp", frame_id="tool0")
+    heard = stand.heard("geometry_msgs/msg/WrenchStamped", "/controller/wrench")
+    await stand.step(broadcaster)
+    assert (heard[0].header.frame_id, heard[0].wrench.force.y, heard[0].wrench.torque.z) == ("tool0", 1.0, 5.0)
+
+
+async def test_axes_of_a_wrench_may_have_other_names_and_some_may_lack(stand):
+    stand.joint("cell", pull=3.0, twist=4.0)
+    broadcaster = stand.start(
+        ForceTorqueBroadcaster,
+        frame_id="tool0",
+        interface_names={"force": {"z": "cell/pull"}, "torque": {"x": "cell/twist"}},
+    )
+    heard = stand.heard("geometry_msgs/msg/WrenchStamped", "/controller/wrench")
+    await stand.step(broadcaster)
+    wrench = heard[0].wrench
+    assert (wrench.force.x, wrench.force.z, wrench.torque.x) == (0.0, 3.0, 4.0)
+
+
+async def test_a_range_sensor(stand):
+    stand.joint("sonar", range=1.5)
+    broadcaster = stand.start(RangeBroadcaster, sensor_name="sonar", frame_id="sonar_link", max_range=3.0)
+    heard = stand.heard("sensor_msgs/msg/Range", "/controller/range")
+    await stand.step(broadcaster)
+    assert (heard[0].range, heard[0].max_range, heard[0].radiation_type) == (1.5, 3.0, 0)
+    assert heard[0].field_of_view == pytest.approx(0.52)
+
+
+async def test_a_pose_and_its_transform(stand):
+    stand.joint("tcp", **dict(zip(POSE, (1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0), strict=True)))
+    broadcaster = stand.start(
+        PoseBroadcaster, pose_name="tcp", frame_id="base", tf={"child_frame_id": "tool", "publish_rate": 20.0}
+    )
+    poses = stand.heard("geometry_msgs/msg/PoseStamped", "/controller/pose")
+    transforms = stand.heard("tf2_msgs/msg/TFMessage", "/tf")
+    await stand.step(broadcaster, count=10)
+    assert (len(poses), len(transforms)) == (10, 2)
+    assert (poses[0].pose.position.z, poses[0].pose.orientation.w) == (3.0, 1.0)
+    (transform,) = transforms[0].transforms
+    assert (transform.header.frame_id, transform.child_frame_id) == ("base", "tool")
+    assert transform.transform.translation.y == 2.0
+    stand.states["tcp/position.x"].value = nan
+    await stand.step(broadcaster, count=10)
+    assert (len(poses), len(transforms)) == (20, 2)
+
+
+@pytest.mark.parametrize(("kind", "name"), [(ForceTorqueBroadcaster, "sensor_name"), (PoseBroadcaster, "pose_name")])
+async def test_either_the_sensor_or_its_interfaces_are_named(stand, kind, name):
+    names = {"force": {"x": "a/b"}} if kind is ForceTorqueBroadcaster else {"position": {"x": "a/b"}}
+    with pytest.raises(ControllerError, match="has to be specified"):
+        stand.make(kind, "first", frame_id="base").on_configure()
+    with pytest.raises(ControllerError, match="specified together"):
+        stand.make(kind, "second", frame_id="base", interface_names=names, **{name: "tcp"}).on_configure()
+
+
+@pytest.mark.parametrize(
+    ("kind", "parameters", "told"),
+    [
+        (ImuBroadcaster, {"sensor_name": "imu"}, "Parameter 'frame_id' cannot be empty"),
+        (RangeBroadcaster, {"frame_id": "base"}, "Parameter 'sensor_name' cannot be empty"),
+        (
+            ImuBroadcaster,
+            {"sensor_name": "imu", "frame_id": "base", "static_covariance_orientation": [1.0]},
+            "Parameter 'static_covariance_orientation' has 1 numbers and must have 9",
+        ),
+    ],
+)
+async def test_what_must_be_given(stand, kind, parameters, told):
+    with pytest.raises(LinkwrightError, match=told):
+        stand.make(kind, **parameters)
+
+
+def test_the_admittance_controller_is_left_out_with_a_word():
+    with pytest.raises(LinkwrightError) as raised:
+        controller_class("admittance_controller/AdmittanceController")
+    (found,) = raised.value.diagnostics
+    assert found.code == "CTL103"
+    assert "left out" in str(found.hint)
