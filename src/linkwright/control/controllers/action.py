@@ -11,20 +11,32 @@ from linkwright.graph.actions.goal import CancelResponse, GoalEvent, GoalRespons
 from linkwright.graph.actions.server import ActionServer
 
 
+class _Server(ActionServer):
+    """Tells of goals that are to be given up after they know it themselves: they may end at once."""
+
+    on_cancel_requested: Callable[[ServerGoalHandle], object]
+
+    def state_changed(self, goal: ServerGoalHandle) -> None:
+        super().state_changed(goal)
+        if goal.is_cancel_requested:
+            self.on_cancel_requested(goal)
+
+
 class Goal:
     """A goal that was accepted, in the thread of the updates.
 
-    It ends once: what is said of it afterwards changes nothing.
+    It ends once, by `succeed`, `abort` or `cancel`: what is said of it afterwards changes nothing.
 
     Attributes:
         request: the goal message.
+        ended: whether one of these was said.
     """
 
     def __init__(self, handle: ServerGoalHandle, node: ControllerNode) -> None:
         self.request = handle.request
+        self.ended = False
         self._handle = handle
         self._node = node
-        self._ended = False
 
     def is_of(self, handle: ServerGoalHandle) -> bool:
         """Whether it is the goal of a handle."""
@@ -52,8 +64,8 @@ class Goal:
         self._handle.canceled(result)
 
     def _end(self, end: Callable[[Any], object], result: Any) -> None:
-        if not self._ended:
-            self._ended = True
+        if not self.ended:
+            self.ended = True
             self._node.call_on_loop(partial(self._on_loop, end, result))
 
     def _on_loop(self, end: Callable[[Any], object], result: Any) -> None:
@@ -88,15 +100,16 @@ class ControllerAction:
         self._begin = begin
         self._cancel = cancel
         self._goal: Goal | None = None
-        self._server = ActionServer(
+        self._server = _Server(
             node.graph_node,
             action_type,
             name,
             lambda _: None,
             goal_callback=self._asked,
             handle_accepted_callback=self._accepted,
-            cancel_callback=self._asked_to_cancel,
+            cancel_callback=lambda _: CancelResponse.ACCEPT,
         )
+        self._server.on_cancel_requested = self._asked_to_cancel
 
     def close(self) -> None:
         """Take it out of the graph."""
@@ -113,10 +126,9 @@ class ControllerAction:
         self._goal = Goal(handle, self._node)
         self._begin(self._goal)
 
-    def _asked_to_cancel(self, handle: ServerGoalHandle) -> CancelResponse:
+    def _asked_to_cancel(self, handle: ServerGoalHandle) -> None:
         self._node.post(partial(self._canceled, handle))
-        return CancelResponse.ACCEPT
 
     def _canceled(self, handle: ServerGoalHandle) -> None:
-        if self._goal is not None and self._goal.is_of(handle):
+        if self._goal is not None and self._goal.is_of(handle) and not self._goal.ended:
             self._cancel(self._goal)
