@@ -1,0 +1,120 @@
+"""How a body in space moves between two measurements: a state of 15 numbers, its prediction and the derivatives of it.
+
+The state is position (m) and roll, pitch, yaw (rad) in the world, linear (m/s) and angular velocity (rad/s) and linear
+acceleration (m/s2) in the body. Between measurements acceleration and angular velocity stay as they are. Source: T.
+Moore and D. Stouch, "A Generalized Extended Kalman Filter Implementation for the Robot Operating System", 2014.
+"""
+
+from __future__ import annotations
+
+from enum import IntEnum
+from math import cos, pi, sin
+
+import numpy as np
+from numpy.typing import NDArray
+
+Vector = NDArray[np.float64]
+Matrix = NDArray[np.float64]
+
+
+class State(IntEnum):
+    """Where each quantity stands in the state."""
+
+    X = 0
+    Y = 1
+    Z = 2
+    ROLL = 3
+    PITCH = 4
+    YAW = 5
+    VX = 6
+    VY = 7
+    VZ = 8
+    VROLL = 9
+    VPITCH = 10
+    VYAW = 11
+    AX = 12
+    AY = 13
+    AZ = 14
+
+
+SIZE = len(State)
+POSITION, ANGLES = slice(0, 3), slice(3, 6)
+POSE = slice(0, 6)
+VELOCITY, RATES = slice(6, 9), slice(9, 12)
+TWIST = slice(6, 12)
+ACCELERATION = slice(12, 15)
+
+
+def wrapped(angle: float) -> float:
+    """An angle between -pi and pi."""
+    return (angle + pi) % (2.0 * pi) - pi if not -pi <= angle <= pi else angle
+
+
+def wrap_angles(state: Vector) -> None:
+    """Bring roll, pitch and yaw of a state between -pi and pi, in place."""
+    for index in (State.ROLL, State.PITCH, State.YAW):
+        state[index] = wrapped(float(state[index]))
+
+
+def rotation(roll: float, pitch: float, yaw: float) -> Matrix:
+    """The matrix that takes vectors of the body to the world: Rz(yaw) Ry(pitch) Rx(roll), shape (3, 3)."""
+    sr, cr, sp, cp, sy, cy = sin(roll), cos(roll), sin(pitch), cos(pitch), sin(yaw), cos(yaw)
+    return np.array(
+        [
+            [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
+            [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
+            [-sp, cp * sr, cp * cr],
+        ]
+    )
+
+
+def predicted(state: Vector, seconds: float) -> Vector:
+    """The state some seconds later; a new array, shape (15,), its angles between -pi and pi."""
+    turn, angle_rates = rotation(*state[ANGLES]), _angle_rates(state)
+    later = state.copy()
+    later[POSITION] += turn @ _shift(state, seconds)
+    later[ANGLES] += angle_rates @ state[RATES] * seconds
+    later[VELOCITY] += state[ACCELERATION] * seconds
+    wrap_angles(later)
+    return later
+
+
+def derivatives(state: Vector, seconds: float) -> Matrix:
+    """The derivatives of `predicted` by the state, shape (15, 15)."""
+    roll, pitch, yaw = state[ANGLES]
+    turn, angle_rates = rotation(roll, pitch, yaw), _angle_rates(state)
+    jacobian = np.eye(SIZE)
+    jacobian[POSITION, VELOCITY] = turn * seconds
+    jacobian[POSITION, ACCELERATION] = turn * (0.5 * seconds * seconds)
+    jacobian[ANGLES, RATES] = angle_rates * seconds
+    jacobian[VELOCITY, ACCELERATION] = np.eye(3) * seconds
+
+    # Turning the body a little about an axis moves a point of it by the cross product of the axis with the point.
+    shift = _shift(state, seconds)
+    moved = turn @ shift
+    jacobian[POSITION, State.ROLL] = turn @ (0.0, -shift[2], shift[1])
+    jacobian[POSITION, State.PITCH] = np.cross((-sin(yaw), cos(yaw), 0.0), moved)
+    jacobian[POSITION, State.YAW] = (-moved[1], moved[0], 0.0)
+
+    sr, cr, sp, cp = sin(roll), cos(roll), sin(pitch), cos(pitch)
+    _, pitch_rate, yaw_rate = state[RATES] * seconds
+    across, along = cr * pitch_rate - sr * yaw_rate, sr * pitch_rate + cr * yaw_rate
+    jacobian[State.ROLL, State.ROLL] += across * sp / cp
+    jacobian[State.PITCH, State.ROLL] = -along
+    jacobian[State.YAW, State.ROLL] = across / cp
+    jacobian[State.ROLL, State.PITCH] = along / (cp * cp)
+    jacobian[State.YAW, State.PITCH] = along * sp / (cp * cp)
+    return jacobian
+
+
+def _shift(state: Vector, seconds: float) -> Vector:
+    """How far the body moves, in its own axes."""
+    shift: Vector = state[VELOCITY] * seconds + state[ACCELERATION] * (0.5 * seconds * seconds)
+    return shift
+
+
+def _angle_rates(state: Vector) -> Matrix:
+    """The matrix that takes angular velocity of the body to the rates of roll, pitch and yaw, shape (3, 3)."""
+    roll, pitch = float(state[State.ROLL]), float(state[State.PITCH])
+    sr, cr, sp, cp = sin(roll), cos(roll), sin(pitch), cos(pitch)
+    return np.array([[1.0, sr * sp / cp, cr * sp / cp], [0.0, cr, -sr], [0.0, sr / cp, cr / cp]])

@@ -1,0 +1,1 @@
+"""The nodes of robot_localization: they work out where the robot is of what several sensors measure."""
