@@ -1,0 +1,68 @@
+"""What the documentation says of controllers: the example runs, and every parameter is there."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import fields, is_dataclass
+from pathlib import Path
+from types import ModuleType
+from typing import Any, get_type_hints
+
+import pytest
+
+from linkwright.control.controllers.gripper_action_controller import EffortGripper, ParallelGripper, PositionGripper
+from linkwright.control.controllers.joint_trajectory_controller import JointTrajectoryController
+from linkwright.control.controllers.pid_controller import PidController
+from linkwright.control.controllers.sensor_broadcasters import (
+    ForceTorqueBroadcaster,
+    ImuBroadcaster,
+    PoseBroadcaster,
+    RangeBroadcaster,
+)
+from linkwright.messages import get_message
+
+DOCS = Path(__file__).resolve().parents[2] / "docs"
+PAGES = [DOCS / "control.md", DOCS / "zh" / "control.md"]
+DOCUMENTED = [
+    *(JointTrajectoryController, PidController, PositionGripper, EffortGripper, ParallelGripper),
+    *(ImuBroadcaster, ForceTorqueBroadcaster, RangeBroadcaster, PoseBroadcaster),
+]
+
+
+def example(page: Path) -> Any:
+    """The controller of a page."""
+    (code,) = re.findall(r"```python\n(.*?)```", page.read_text("utf-8"), re.DOTALL)
+    module = ModuleType("my_controllers.swing")
+    exec(compile(code, str(page), "exec", dont_inherit=True), module.__dict__)
+    return module.__dict__["Swing"]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=["en", "zh"])
+async def test_the_example_swings_a_joint(stand, page):
+    stand.joint("elbow", commands=("position",), position=1.0)
+    controller = stand.start(example(page), "swing", joint="elbow", amplitude=0.3, frequency=1.0, speed=2.0)
+    heard = stand.heard("std_msgs/msg/Float64", "/swing/angle")
+    await stand.step(controller, count=25)
+    assert stand.commands["elbow/position"].value == pytest.approx(1.3)
+    assert heard[-1].data == pytest.approx(0.3)
+    stand.say("std_msgs/msg/Float64", "/swing/amplitude", get_message("std_msgs/msg/Float64")(data=0.1))
+    await stand.step(controller, count=50)
+    assert stand.commands["elbow/position"].value == pytest.approx(0.9)
+    assert "'speed' is no parameter of this controller" in [str(each.text) for each in stand.log]
+
+
+def names(table: Any) -> set[str]:
+    """The names of the parameters of a table and those in it, without those that they stand below."""
+    hints = get_type_hints(table)
+    found: set[str] = set()
+    for each in fields(table):
+        inside = each.metadata.get("table") or (hints[each.name] if is_dataclass(hints[each.name]) else None)
+        found |= {each.name} if inside is None else names(inside)
+    return found
+
+
+@pytest.mark.parametrize("page", PAGES, ids=["en", "zh"])
+def test_every_parameter_is_documented(page):
+    words = set(re.findall(r"[a-z_]+", page.read_text("utf-8")))
+    for controller in DOCUMENTED:
+        assert names(controller.PARAMETERS) - set("xyzw") <= words, controller
