@@ -200,6 +200,13 @@ def test_a_fixed_frame_that_does_not_exist():
     assert near.hint == "did you mean 'base'?"
 
 
+def test_the_world_of_a_simulation_is_a_frame_that_can_be_shown():
+    shown = replace(WELL, fixed_frames=(FixedFrame("world", "'/viewer'"),))
+    assert codes(shown) == ["DOC309"]
+    simulated = replace(shown, endpoints=(*shown.endpoints, publisher("/gazebo", "/world_poses", TF)))
+    assert "DOC309" not in codes(simulated)
+
+
 def test_the_root_of_a_robot_of_one_link_is_a_frame():
     lonely = DescriptionSeen("/robot_description", RSP, '<robot name="r"><link name="only"/></robot>')
     seen = replace(WELL, transforms=(), joints=(), descriptions=(lonely,), fixed_frames=(FixedFrame("only", "x"),))

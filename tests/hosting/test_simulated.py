@@ -49,14 +49,14 @@ async def test_a_robot_tells_where_it_and_its_joints_are_until_its_seconds_are_o
     assert heard["/joint_states"].last.header.stamp.sec >= 1
 
 
-async def test_the_page_shows_the_world_in_the_frame_that_the_robot_moves_in():
+async def test_the_page_shows_the_world_standing_still():
     world = replace(in_an_empty_world(), headless=False, seconds=0.0)
     err = io.StringIO()
     view = SimulatedView(world, PackageFinder(start=MBOT.parent), OPTIONS, LaunchLog(io.StringIO(), err))
     running = asyncio.create_task(view.run(None))
     await eventually(lambda: "gzserver-2]: started" in err.getvalue() or running.done(), what=err.getvalue)
     config = view._viewer_config()
-    assert config.options.text("Fixed Frame") == "odom"
+    assert config.options.text("Fixed Frame") == "world"
     shown = {display.cls.rpartition("/")[2]: display.checked for display in config.displays}
     assert shown == {"Grid": True, "RobotModel": False, "TF": False, "World": True, "Odometry": False}
     listener = view.host.graph.create_node("listener")

@@ -11,6 +11,8 @@ from linkwright.graph.endpoints.info import EndpointKind
 from linkwright.urdf import Joint
 
 _JOINT_STATE = "sensor_msgs/msg/JointState"
+_WORLD, _WORLD_POSES = "world", "/world_poses"
+"""The frame of a simulated world, and the topic that tells where its links are."""
 
 
 def examine_frames(seen: Observation, robots: Sequence[RobotSeen]) -> Iterator[Diagnostic]:
@@ -286,6 +288,8 @@ def _size(root: str, transforms: Sequence[TransformSeen]) -> int:
 def _fixed_frames(seen: Observation, robots: Sequence[RobotSeen]) -> Iterator[Diagnostic]:
     known = {name for each in seen.transforms for name in (each.parent, each.child)}
     known |= {robot.frame(robot.root) for robot in robots}
+    if seen.publishers_of(_WORLD_POSES):
+        known.add(_WORLD)  # the viewer places tf's frames in it
     roots = sorted({each.parent for each in seen.transforms} - {each.child for each in seen.transforms})
     for frame in seen.fixed_frames:
         if frame.name in known:

@@ -37,7 +37,6 @@ _SCAN_DISPLAY, _IMAGE_DISPLAY = "rviz_default_plugins/LaserScan", "rviz_default_
 _ODOMETRY_DISPLAY, _ODOMETRY_TOPIC = "rviz_default_plugins/Odometry", "/odom"
 _DISTANCE = 5.0
 """Metres from which a robot and what is around it are seen."""
-_ODOMETRY_FRAME = re.compile(r"<(odometry_?[fF]rame|odom_frame)>\s*([\w/]+)\s*<")
 _DRIVES = re.compile(r"diff.drive|DiffDrive|skid_steer|planar_move|ackermann|mecanum|velocity.control", re.IGNORECASE)
 
 
@@ -204,14 +203,14 @@ class SimulatedView(ModelView):
             self._plan(*VIEWER, {"use_sim_time": True}, name="viewer", viewer_config=self._viewer_config)
 
     def _viewer_config(self) -> RvizConfig:
-        """The world with the robot in it, its scans and pictures, in the frame that the robot moves in.
+        """The world with the robot in it, its scans and pictures, so that the world stands still.
 
         Model and transforms of the robot are there too, but off: they would draw it a second time. Pictures cost time
         to make, so that only the first camera's are shown; odometry would cover the robot with arrows.
         """
         from linkwright.viewer import RvizConfig
 
-        config = RvizConfig.for_model(self._fixed_frame(), name=str(self._world.path))
+        config = RvizConfig.for_model(_WORLD_FRAME, name=str(self._world.path))
         for display in config.displays:
             display.checked = display.cls.endswith("/Grid")
         config.insert(config.make(_WORLD_DISPLAY, "World"))
@@ -231,18 +230,10 @@ class SimulatedView(ModelView):
         if _DRIVES.search(text):
             add(_ODOMETRY_DISPLAY, _ODOMETRY_TOPIC, checked=False)
         view = config.views.current
-        view.values |= {"Distance": _DISTANCE}
+        x, y = self._world.pose[:2]
+        view.values |= {"Distance": _DISTANCE, "Focal Point/X": x, "Focal Point/Y": y}
         config.views.current = view
         return config
-
-    def _fixed_frame(self) -> str:
-        description = self._world.description
-        if description is None or description.robot is None:
-            return _WORLD_FRAME
-        named = _ODOMETRY_FRAME.search(self._world.text)
-        if named is not None:
-            return named[2]
-        return "odom" if _DRIVES.search(self._world.text) else description.robot.root or _WORLD_FRAME
 
     def node_ended(self, plan: HostedPlan, status: int) -> None:
         """Without the simulator there is nothing to be seen."""

@@ -12,7 +12,7 @@ from linkwright.graph import DESCRIPTION_QOS, SENSOR_DATA_QOS, TF_QOS
 from linkwright.messages import Header, String, TFMessage, TransformBatch, get_message
 from linkwright.viewer import RvizConfig
 from tests.viewer.contents import contents
-from tests.viewer.scene import IDENTITY, world
+from tests.viewer.scene import IDENTITY, page, world
 from tests.waiting import eventually
 
 SCAN = get_message("sensor_msgs/msg/LaserScan")
@@ -125,6 +125,30 @@ async def test_without_a_frame_world_the_world_is_placed_by_a_frame_of_its_robot
         await made.settle()
         await simulation.move(robot__base=(1, 2, 0.5, 0, 0, 0, 1))  # where it was when tf had it there
         assert made.status("World")["Frame"] == ("ok", "tf has no 'world': the world is where 'base' is in both")
+
+
+async def test_with_the_fixed_frame_world_the_frames_of_tf_are_placed_in_the_world_that_stands_still():
+    async with world(config("world")) as made, page(made.viewer):
+        simulation = Simulation(made)
+        await simulation.describe(WORLD)
+        made.move({("odom", "base"): (3, 0, 0.5, *IDENTITY[3:])})
+        await made.settle()
+        await simulation.move(robot__base=(1, 2, 0.5, 0, 0, 0, 1))
+        await simulation.move(robot__base=(1, 2, 0.5, 0, 0, 0, 1))
+        assert sent(made, "world_poses").frame == "world"
+        told = "tf has no 'world': its frames are where 'base' is in both"
+        await eventually(lambda: made.status("World")["Frame"] == ("ok", told))
+        transforms = made.viewer.context.transforms
+        await eventually(lambda: transforms.own("world").parent == "odom")
+        assert transforms.pose("world", "base", 0) == pytest.approx([1, 2, 0.5, 0, 0, 0, 1])
+        assert transforms.pose("world", "odom", 0) == pytest.approx([-2, 2, 0, 0, 0, 0, 1])
+        frame, known = transforms.known("world", IDENTITY)
+        assert (frame, known) == ("odom", pytest.approx([2, -2, 0, 0, 0, 0, 1]))
+        await eventually(lambda: "base" in made.viewer.manager.frames.placed)
+
+        made.move({("map", "world"): IDENTITY}, static=True)
+        await eventually(lambda: made.status("World")["Frame"] == ("ok", "The world is at the frame 'world'"))
+        assert transforms.own("world") is None
 
 
 async def test_a_frame_world_of_tf_is_the_world():

@@ -8,7 +8,7 @@ import numpy as np
 
 from linkwright.graph import STATIC_TF_PUBLISHER_QOS, TF_QOS, Graph
 from linkwright.messages import TFMessage, TransformBatch
-from linkwright.viewer.frames.history import FrameHistory
+from linkwright.viewer.frames.history import FrameHistory, OwnFrame
 from linkwright.viewer.frames.stream import FrameStream, TimeControl
 from tests.skipping import LoopClock, skipping
 from tests.viewer.scene import IDENTITY, unpack
@@ -28,11 +28,12 @@ class Rig:
         self.watched = True
         self.said: list = []
         viewer = self.graph.create_node("viewer")
+        self.history = FrameHistory(viewer)
         self.stream = FrameStream(
             viewer,
             self,
             TimeControl(viewer.get_clock()),
-            FrameHistory(viewer),
+            self.history,
             on_frames=self.said.append,
             fade_time=lambda: self.fade_time,
             own_frames=lambda: self.own_frames,
@@ -153,6 +154,21 @@ async def test_what_comes_at_the_frame_rate_hardly_waits_though_updates_were_due
         at_once.append(len(rig.sent()) > 0)
         await asyncio.sleep(1 / 30 - 0.01)
     assert all(at_once[18:])
+
+
+@streaming
+async def test_the_fixed_frame_may_be_one_that_a_display_places(rig):
+    rig.stream.fixed_frame = "world"
+    rig.move(1.0)
+    await rig.settle()
+    assert rig.said[-1].placed == {"world"}
+    rig.history.place("display", OwnFrame("world", "base", np.array([0.0, 2.0, *IDENTITY[2:]])))
+    await asyncio.sleep(0.1)
+    assert rig.pose("tip") == [1, 2, 0, 0, 0, 0, 1]
+    assert rig.said[-1].placed == {"world", "base", "tip"}
+    rig.send({("base", "world"): IDENTITY})
+    await asyncio.sleep(0.1)
+    assert rig.pose("tip") == [1, 0, 0, 0, 0, 0, 1]
 
 
 @streaming

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import asyncio
 from collections import Counter
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity
-from linkwright.geometry.single import compose, invert
+from linkwright.geometry.single import Transform, compose, invert
 from linkwright.graph import TF_QOS, TransformException
 from linkwright.messages import TFMessage
 from linkwright.sdf.frames import FrameError
@@ -23,6 +24,7 @@ from linkwright.viewer.config.schema import Path, PropertySpec, alpha, topic_spe
 from linkwright.viewer.displays.base.display import DisplayHost, Pose
 from linkwright.viewer.displays.base.topic_display import SideTopic, TopicDisplay
 from linkwright.viewer.displays.world_rays import CHOICES, LidarRays
+from linkwright.viewer.frames.history import OwnFrame
 from linkwright.viewer.lights import lights_of
 from linkwright.viewer.protocol.displays import StatusLevel
 from linkwright.viewer.protocol.robot import MeshStatus
@@ -37,13 +39,16 @@ _FRAME = "Frame"
 _WORLD = "World"
 _SCENE_KEY, _POSES_KEY = "scene", "poses"
 _MOST_FINDINGS = 5
+_UNMOVED = 1e-6
+"""In m, and of quaternions: by less tf's frames are not moved in the world."""
 
 
 class WorldDisplay(TopicDisplay):
     """All models of a world, drawn by their visuals, each link where the simulation says that it is.
 
     The poses are in the frame ``world``. Where neither tf nor the Fixed Frame has that name, the world is placed so
-    that a link of it stands where tf has the frame of the same name: a robot, as a rule.
+    that a link of it stands where tf has the frame of the same name: a robot, as a rule. Where the Fixed Frame has it
+    and tf does not, it is the other way round: tf's frames are placed so that the world stands still.
     """
 
     CLASS = "linkwright/World"
@@ -104,6 +109,7 @@ class WorldDisplay(TopicDisplay):
         self._poses: NDArray[np.float64] = np.empty((0, 7))
         self._stamp_ns = 0
         self._anchors: tuple[int, ...] = ()
+        self._leads = False
         self._placed: tuple[str, Pose | None] = ("", None)
         self._sent: tuple[Any, ...] = ()
         self._page_problems: dict[tuple[str, str], str] = {}
@@ -120,6 +126,7 @@ class WorldDisplay(TopicDisplay):
         super().stop()
         self._side.close()
         self._rays.close()
+        self.context.transforms.place(self.id, None)
         self.context.meshes.replace(self.id, {})
 
     def changed(self, path: Path) -> None:
@@ -160,7 +167,8 @@ class WorldDisplay(TopicDisplay):
 
     def transforms_came(self) -> None:
         """Place the world once the frames of its robots are known; from then on its poses lead."""
-        if self._content.links and self._placed[0] != WORLD and self._placed[1] is None:
+        own = self.context.transforms.own(WORLD) if self._leads else self._placed[1]
+        if self._content.links and own is None and (self._leads or self._placed[0] != WORLD):
             self._show_poses()
 
     def receive(self, status: MeshStatus) -> None:
@@ -306,32 +314,55 @@ class WorldDisplay(TopicDisplay):
         if not self._content.links:
             return
         frames = self.context.transforms.names()
-        if WORLD in (self.host.frames.fixed_frame, *frames):
+        self._leads = self.host.frames.fixed_frame == WORLD and WORLD not in frames
+        if not self._leads:
+            self.context.transforms.place(self.id, None)
+        found = self._anchor(frames) if self._leads or WORLD not in frames else None
+        if self._leads or WORLD in frames:
             self._placed = (WORLD, None)
             self.say(_FRAME, "ok", f"The world is at the frame '{WORLD}'")
-            return
+            if found is not None:
+                self._place_frames(*found)
+        elif found is not None:
+            row, frame, pose = found
+            self._placed = ("", np.array(compose(pose, invert(tuple(self._poses[row])))))
+            self.say(_FRAME, "ok", f"tf has no '{WORLD}': the world is where '{frame}' is in both")
+        elif self._placed[1] is None:
+            self._placed = ("", None)
+            self.say(_FRAME, "warn", f"tf has no '{WORLD}' and no frame of a model: the world is at the Fixed Frame")
+
+    def _place_frames(self, row: int, frame: str, pose: Transform) -> None:
+        """Place tf's frames in the world so that a link is where it is; `pose` is that of its frame in tf's root."""
+        placed = np.array(compose(tuple(self._poses[row]), invert(pose)))
+        transforms, root = self.context.transforms, self._root(frame)
+        before = transforms.own(WORLD)
+        if before is None or before.parent != root or np.abs(before.pose - placed).max() > _UNMOVED:
+            transforms.place(self.id, OwnFrame(WORLD, root, placed))
+        self.say(_FRAME, "ok", f"tf has no '{WORLD}': its frames are where '{frame}' is in both")
+
+    def _anchor(self, frames: frozenset[str]) -> tuple[int, str, Transform] | None:
+        """A link that tf has a frame of, and where that is in the Fixed Frame; in tf's root where the world leads."""
         for row in self._anchors:
             frame = _unscoped(self._content.links[row].name)
             if frame not in frames:
                 continue
-            pose = self._pose_by(row, frame)
-            if pose is not None:
-                self._placed = ("", pose)
-                self.say(_FRAME, "ok", f"tf has no '{WORLD}': the world is where '{frame}' is in both")
-                return
-        if self._placed[1] is None:
-            self._placed = ("", None)
-            self.say(_FRAME, "warn", f"tf has no '{WORLD}' and no frame of a model: the world is at the Fixed Frame")
-
-    def _pose_by(self, row: int, frame: str) -> Pose | None:
-        """Where the world is so that a link of it is where tf has its frame; None where that is not known."""
-        for stamp_ns in (self._stamp_ns, 0):
-            try:
-                found = self.context.transforms.pose(self.host.frames.fixed_frame, frame, stamp_ns)
-            except TransformException:
-                continue
-            return np.array(compose(tuple(found), invert(tuple(self._poses[row]))))
+            reference = self._root(frame) if self._leads else self.host.frames.fixed_frame
+            for stamp_ns in (self._stamp_ns, 0):
+                with suppress(TransformException):
+                    return row, frame, tuple(self.context.transforms.pose(reference, frame, stamp_ns))
         return None
+
+    def _root(self, frame: str) -> str:
+        """The frame that all frames which a frame is connected with hang from."""
+        names, parents = self.host.frames.names, self.host.frames.parents
+        if frame not in names:
+            return frame
+        row = names.index(frame)
+        for _ in names:
+            if parents[row] < 0:
+                break
+            row = parents[row]
+        return names[row]
 
 
 def _content(text: str, index: MeshIndex) -> tuple[World, WorldContent]:

@@ -7,6 +7,7 @@ from collections.abc import Collection
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from linkwright.geometry.single import Transform
 from linkwright.graph import InvalidTopicNameError, Publisher
 from linkwright.messages import get_message
 from linkwright.viewer.config.property_store import qos_of
@@ -238,18 +239,19 @@ class ToolsFeature(PageFeature):
         if found is None:
             return
         entry, publisher = found
-        message = self._stamped(manager, entry)
+        turned = (0.0, 0.0, math.sin(chosen.yaw / 2), math.cos(chosen.yaw / 2))
+        message, place = self._stamped(manager, entry, (chosen.x, chosen.y, 0.0, *turned))
         pose = message.pose
         if entry.cls == _INITIAL_POSE:
             for index, axis in ((0, "x"), (7, "y"), (35, "yaw")):
                 message.pose.covariance[index] = entry.properties.number(f"Covariance {axis}")
             pose = message.pose.pose
-        pose.position.x, pose.position.y = chosen.x, chosen.y
-        pose.orientation.z, pose.orientation.w = math.sin(chosen.yaw / 2), math.cos(chosen.yaw / 2)
+        pose.position.x, pose.position.y, pose.position.z = place[:3]
+        pose.orientation.x, pose.orientation.y, pose.orientation.z, pose.orientation.w = place[3:]
         self.context.node.get_logger().info(
             f"Setting {_POSE_TOOLS[entry.cls]} pose: Frame:{message.header.frame_id}, "
-            f"Position({chosen.x:g}, {chosen.y:g}, 0), "
-            f"Orientation(0, 0, {pose.orientation.z:g}, {pose.orientation.w:g}) = Angle: {chosen.yaw:g}"
+            f"Position({pose.position.x:g}, {pose.position.y:g}, 0), "
+            f"Orientation(0, 0, {pose.orientation.z:g}, {pose.orientation.w:g}) = Angle: {_angle(place):g}"
         )
         publisher.publish(message)
 
@@ -258,17 +260,22 @@ class ToolsFeature(PageFeature):
         if found is None:
             return
         entry, publisher = found
-        message = self._stamped(manager, entry)
-        message.point.x, message.point.y, message.point.z = chosen.x, chosen.y, chosen.z
+        message, place = self._stamped(manager, entry, (chosen.x, chosen.y, chosen.z, 0.0, 0.0, 0.0, 1.0))
+        message.point.x, message.point.y, message.point.z = place[:3]
         publisher.publish(message)
 
-    def _stamped(self, manager: VisualizationManager, entry: ToolEntry) -> Any:
+    def _stamped(self, manager: VisualizationManager, entry: ToolEntry, pose: Transform) -> tuple[Any, list[float]]:
+        """The message of a tool without its pose; and that, given in the Fixed Frame, in the frame of the message."""
         kind = TOOL_KINDS[entry.cls]
         assert kind.publishes is not None
         message = get_message(kind.publishes)()
-        message.header.frame_id = manager.fixed_frame
+        message.header.frame_id, place = self.context.transforms.known(manager.fixed_frame, pose)
         message.header.stamp = self.context.node.get_clock().now().to_msg()
-        return message
+        return message, place.tolist()
+
+
+def _angle(pose: list[float]) -> float:
+    return 2 * math.atan2(pose[5], pose[6])
 
 
 def _told(shelf: _Shelf) -> Tools:

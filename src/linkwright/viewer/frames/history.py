@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
+from linkwright.geometry.arrays import compose, invert
 from linkwright.graph import STATIC_TF_SUBSCRIPTION_QOS, TF_QOS, Node, run_logged
 from linkwright.messages import TFMessage
 
@@ -18,17 +20,39 @@ if TYPE_CHECKING:
 _IDENTITY = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0])
 
 
+@dataclass(frozen=True)
+class OwnFrame:
+    """A frame that tf does not know, and that a display places all the same.
+
+    Attributes:
+        name: of the frame.
+        parent: a frame of tf.
+        pose: of that frame in this one: x, y, z, qx, qy, qz, qw.
+    """
+
+    name: str
+    parent: str
+    pose: NDArray[np.float64]
+
+
 class FrameHistory:
     """A tf2 buffer that subscribes only while a display uses it: robots alone need no history.
 
+    Displays may place frames that tf does not know, so that these can be the Fixed Frame; nobody else sees them.
+
     Args:
         node: to subscribe with.
+
+    Attributes:
+        on_own: called when a frame that tf does not know has another place.
     """
 
     def __init__(self, node: Node) -> None:
         self._node = node
         self._listeners: list[Callable[[], None]] = []
         self._subscriptions: list[Any] = []
+        self._own: dict[str, OwnFrame] = {}
+        self.on_own: list[Callable[[], None]] = []
 
     @cached_property
     def _buffer(self) -> BufferCore:
@@ -68,12 +92,47 @@ class FrameHistory:
         """
         if frame == fixed_frame:
             return _IDENTITY
+        own = self.own(fixed_frame)
+        if own is not None:
+            return compose(own.pose, self.pose(own.parent, frame, stamp_ns))
         found, _ = self._buffer.lookup(fixed_frame, frame, stamp_ns)
         return np.array(found)
 
     def names(self) -> frozenset[str]:
         """The frames that transforms named."""
         return frozenset(self._buffer.frame_names())
+
+    def own(self, name: str) -> OwnFrame | None:
+        """A frame of displays; None where no display places one of that name, or tf knows it."""
+        found = next((own for own in self._own.values() if own.name == name), None)
+        return None if found is None or name in self._buffer.frame_names() else found
+
+    def known(self, frame: str, pose: ArrayLike) -> tuple[str, NDArray[np.float64]]:
+        """A pose as other programs know it: what is in a frame of displays, in one of tf.
+
+        Args:
+            frame: the frame that the pose is in.
+            pose: x, y, z, qx, qy, qz, qw.
+        """
+        own = self.own(frame)
+        if own is None:
+            return frame, np.asarray(pose, dtype=np.float64)
+        return own.parent, compose(invert(own.pose), pose)
+
+    def place(self, display: str, own: OwnFrame | None) -> None:
+        """Place a frame for a display, or no more.
+
+        Args:
+            display: its id.
+            own: the frame and its place; None for none.
+        """
+        if own is None:
+            if self._own.pop(display, None) is None:
+                return
+        else:
+            self._own[display] = own
+        for listener in self.on_own:
+            listener()
 
     def forget(self) -> None:
         """Forget all moving transforms: time begins anew."""

@@ -8,12 +8,13 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable, Hashable
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from linkwright.geometry.arrays import compose
 from linkwright.graph import (
     STATIC_TF_SUBSCRIPTION_QOS,
     TF_QOS,
@@ -178,6 +179,8 @@ class FrameAudience(Protocol):
 class FrameStream:
     """Keeps the tf buffer of the viewer and sends what changed in it.
 
+    A frame that tf does not know may be the Fixed Frame where a display places it (`FrameHistory.place`).
+
     A robot of a single link has no transforms, so tf does not know its frame. When that is the Fixed Frame it is sent
     all the same, as the identity: RViz places a frame in itself without asking tf.
 
@@ -240,10 +243,13 @@ class FrameStream:
         self._node.create_subscription(
             TFMessage, "/tf_static", lambda message: self._take(message, True), STATIC_TF_SUBSCRIPTION_QOS
         )
+        self._history.on_own.append(self._wake)
         self._age()
 
     def close(self) -> None:
         """Stop sending."""
+        if self._wake in self._history.on_own:
+            self._history.on_own.remove(self._wake)
         for handle in (self._later, self._ageing):
             if handle is not None:
                 handle.cancel()
@@ -329,7 +335,7 @@ class FrameStream:
         self._wanted, self._later = False, None
         self._looked_at = self._loop.time()
         fixed_frame = self.fixed_frame
-        snapshot = self._buffer.snapshot(fixed_frame, self._paused_ns or self._clock.now_ns())
+        snapshot = self._snapshot(fixed_frame, self._paused_ns or self._clock.now_ns())
         poses, ages = self._poses_then(snapshot, fixed_frame), snapshot.ages
         alone = fixed_frame not in snapshot.names and fixed_frame in self._own_frames()
         if alone:
@@ -339,6 +345,14 @@ class FrameStream:
         if changed or self._is_news(rows, ages):
             self._send(rows, ages)
         self._tell_displays(snapshot, rows, fixed_frame, changed)
+
+    def _snapshot(self, fixed_frame: str, now_ns: int) -> FrameSnapshot:
+        """Where all frames are in the Fixed Frame, which a display may place."""
+        own = self._history.own(fixed_frame)
+        if own is None or fixed_frame in self._buffer.frames():  # which may have come before the history has it
+            return self._buffer.snapshot(fixed_frame, now_ns)
+        snapshot = self._buffer.snapshot(own.parent, now_ns)
+        return replace(snapshot, poses=compose(own.pose, snapshot.poses))
 
     def _poses_then(self, snapshot: FrameSnapshot, fixed_frame: str) -> NDArray[np.float64]:
         """Where frames are at the time to be shown; where nothing is known of that time, where they are now."""

@@ -328,7 +328,7 @@ class VisualizationManager:
     def _show_global_status(self) -> None:
         frame, names = self.frames.fixed_frame, self.frames.names
         missing = f"Frame [{frame}] does not exist"
-        if frame in names:
+        if frame in names or self.context.transforms.own(frame) is not None:
             row = StatusRow("Fixed Frame", "ok", "OK")
         elif names:
             row = StatusRow("Fixed Frame", "error", missing)
