@@ -30,8 +30,9 @@ class Stand:
     def make(
         self, controller: type[Controller[Any]], name: str = "controller", *, description: str = "", **parameters: Any
     ) -> Any:
-        """A controller that is not configured yet; its parameters may be nested mappings."""
-        node = self.graph.create_node(name, parameters=parameters)
+        """A controller that is not configured yet; its name may have a namespace, its parameters nested mappings."""
+        namespace, _, name = name.rpartition("/")
+        node = self.graph.create_node(name, namespace=namespace or "/", parameters=parameters)
         place = ControllerPlace(name, ControllerNode(node, self.exchange), 100.0, description)
         return controller(place)
 

@@ -56,10 +56,6 @@ def test_braking_may_be_free_of_the_bound_of_the_jerk():
     assert bound.follow(speed, STEP) > speed
 
 
-def test_the_bound_of_the_jerk_has_a_scale():
-    assert SpeedLimiter(jerk=(-1.0, 1.0), jerk_scale=2.0).follow(9.0, STEP) == pytest.approx(2.0 * STEP * STEP)
-
-
 def test_without_bounds_every_velocity_is_reached_at_once():
     limiter = SpeedLimiter()
     assert followed(limiter, [3.0, -7.0]) == [3.0, -7.0]

@@ -19,7 +19,6 @@ class SpeedLimiter:
         jerk: in m/s3 or rad/s3.
         reverse_acceleration: while it is negative: speeding up backward, and braking; as `acceleration` where not
             given. From standstill each direction has the bound of speeding up that way.
-        jerk_scale: what the bounds of the jerk are multiplied by.
         brakes_freely: whether the jerk is bounded only while the velocity is brought further the way it changes, as in
             control_toolbox's RateLimiter.
 
@@ -37,13 +36,12 @@ class SpeedLimiter:
         jerk: Bounds = UNBOUNDED,
         *,
         reverse_acceleration: Bounds | None = None,
-        jerk_scale: float = 1.0,
         brakes_freely: bool = False,
     ) -> None:
         reverse = acceleration if reverse_acceleration is None else reverse_acceleration
         self._velocity = velocity
         self._accelerations = (reverse, (reverse[0], acceleration[1]), acceleration)
-        self._jerk = (jerk[0] * jerk_scale, jerk[1] * jerk_scale)
+        self._jerk = jerk
         self._brakes_freely = brakes_freely
         self.restart()
 

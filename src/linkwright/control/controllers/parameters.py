@@ -11,8 +11,8 @@
         linear: Axes = Axes()  # another table: linear.x.max_velocity
         gains: Mapping[str, Gains] = for_each("joints", Gains)  # gains.JOINT.p
 
-The types are ``str``, ``float``, ``int``, ``bool``, and ``tuple[...]`` of them; ``float | None`` is declared without a
-value. Source: generate_parameter_library, which the controllers of ros2_controllers use.
+The types are ``str``, ``float``, ``int``, ``bool``, and ``tuple[...]`` of them; ``float | None`` and ``bool | None``
+are declared without a value. Source: generate_parameter_library, which the controllers of ros2_controllers use.
 """
 
 from __future__ import annotations
@@ -41,6 +41,7 @@ _TYPES: dict[Any, ParameterType] = {
     tuple[int, ...]: ParameterType.INTEGER_ARRAY,
     tuple[bool, ...]: ParameterType.BOOL_ARRAY,
     float | None: ParameterType.DOUBLE,
+    bool | None: ParameterType.BOOL,
 }
 _NAMES, _TABLE, _BELOW, _ABOUT = "names", "table", "below", "about"
 _OF_EVERY_NODE = ("use_sim_time", "params_file", "type", "qos_overrides", "start_type_description_service")

@@ -14,7 +14,7 @@ from typing import Any
 from linkwright.diagnostics import phrase
 from linkwright.kinematics.drives import steered_apart
 from linkwright.messages import get_message
-from linkwright.simulation.plugins.odometry import OdometryTopics, planar_velocity, transforms_topic
+from linkwright.simulation.plugins.odometry import OdometryTopics, planar_variances, planar_velocity, transforms_topic
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 from linkwright.simulation.simulation import NANOSECONDS
 
@@ -76,8 +76,8 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
         self._servos = [simulation.add_servo(joint) for joint in steering]
         odometry = node.publisher("nav_msgs/msg/Odometry", "odom", 1) if said.publish_odom else None
         transforms = transforms_topic(node) if said.publish_odom_tf else None
-        covariance = (said.covariance_x, said.covariance_y, said.covariance_yaw)
-        self._topics = OdometryTopics(said.odometry_frame, said.robot_base_frame, odometry, transforms, covariance)
+        variances = planar_variances(said.covariance_x, said.covariance_y, said.covariance_yaw)
+        self._topics = OdometryTopics(said.odometry_frame, said.robot_base_frame, odometry, transforms, variances)
         self._way = node.publisher("std_msgs/msg/Float32", "distance", 1) if said.publish_distance else None
         node.subscribe("geometry_msgs/msg/Twist", "cmd_vel", self._commanded, 1)
         self._begin()

@@ -28,6 +28,7 @@ from linkwright.simulation.plugins.gz_drive import (
 from linkwright.simulation.plugins.node import Output
 from linkwright.simulation.plugins.odometry import (
     OdometryTopics,
+    planar_variances,
     planar_velocity,
     transform_message,
     transforms_topic,
@@ -167,8 +168,8 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
         self._wheel_speeds = [(0.0, 0.0)] * len(self._pairs)
         odometry = node.publisher("nav_msgs/msg/Odometry", said.odometry_topic, 1) if said.publish_odom else None
         transforms = transforms_topic(node) if said.publish_odom_tf else None
-        covariance = (said.covariance_x, said.covariance_y, said.covariance_yaw)
-        self._topics = OdometryTopics(said.odometry_frame, said.robot_base_frame, odometry, transforms, covariance)
+        variances = planar_variances(said.covariance_x, said.covariance_y, said.covariance_yaw)
+        self._topics = OdometryTopics(said.odometry_frame, said.robot_base_frame, odometry, transforms, variances)
         self._sees_world = said.odometry_source.strip().lower() in (str(_WORLD), "world")
         node.subscribe("geometry_msgs/msg/Twist", said.command_topic, self._commanded, 1)
         self.every(said.update_rate, self._update)

@@ -15,11 +15,17 @@ from linkwright.messages import Header, Quaternion, Time, TransformStamped, Vect
 from linkwright.messages import Transform as TransformMessage
 from linkwright.simulation.plugins.node import Output, PluginNode
 
-Covariance = tuple[float, float, float]
-"""Of x, y and yaw."""
+Variances = tuple[float, ...]
+"""Of x, y, z, roll, pitch and yaw."""
 
+_NONE = (0.0,) * 6
 _UNKNOWN = 1e12
 """The variance of what a robot on wheels does not measure: z, roll and pitch."""
+
+
+def planar_variances(x: float, y: float, yaw: float) -> Variances:
+    """The variances of what moves in a plane; what it does not measure has a great one, unless all are 0."""
+    return (x, y, _UNKNOWN, _UNKNOWN, _UNKNOWN, yaw) if x or y or yaw else _NONE
 
 
 def yaw_of(pose: Transform) -> float:
@@ -70,22 +76,23 @@ class OdometryTopics:
         child: the robot's frame.
         odometry: the topic of odometry; None for none.
         transforms: that of transforms; None for none.
-        covariance: of the pose, and of the velocities.
+        variances: of the pose.
+        velocity_variances: of the velocities; None for the same.
     """
 
     frame: str
     child: str
     odometry: Output | None
     transforms: Output | None
-    covariance: Covariance = (0.0, 0.0, 0.0)
-    _matrix: Array = field(init=False)
+    variances: Variances = _NONE
+    velocity_variances: Variances | None = None
+    _covariances: tuple[Array, Array] = field(init=False)
     _outputs: tuple[Output, ...] = field(init=False)
 
     def __post_init__(self) -> None:
         self._outputs = tuple(each for each in (self.odometry, self.transforms) if each is not None)
-        x, y, yaw = self.covariance
-        diagonal = (x, y, _UNKNOWN, _UNKNOWN, _UNKNOWN, yaw) if any(self.covariance) else (0.0,) * 6
-        self._matrix = np.diag(diagonal).astype(np.float64).ravel()
+        velocity = self.variances if self.velocity_variances is None else self.velocity_variances
+        self._covariances = (_diagonal(self.variances), _diagonal(velocity))
 
     @property
     def is_wanted(self) -> bool:
@@ -102,10 +109,15 @@ class OdometryTopics:
             x, y, z, qx, qy, qz, qw = pose
             place = make.pose(make.point(x, y, z), Quaternion(qx, qy, qz, qw))
             speed = make.twist(Vector3(forward, sideways, 0.0), Vector3(0.0, 0.0, turning))
-            places, speeds = make.pose_covariance(place, self._matrix), make.twist_covariance(speed, self._matrix)
+            of_pose, of_velocity = self._covariances
+            places, speeds = make.pose_covariance(place, of_pose), make.twist_covariance(speed, of_velocity)
             self.odometry.publish(make.odometry(Header(stamp, self.frame), self.child, places, speeds))
         if self.transforms is not None and self.transforms.is_wanted:
             self.transforms.publish(transform_message(Header(stamp, self.frame), self.child, pose))
+
+
+def _diagonal(variances: Variances) -> Array:
+    return np.diag(np.asarray(variances, np.float64)).ravel()
 
 
 def transform_message(header: Header, child: str, pose: Transform) -> Any:

@@ -11,7 +11,13 @@ from math import cos, sin
 from typing import Any, Generic, TypeVar
 
 from linkwright.diagnostics import phrase
-from linkwright.simulation.plugins.odometry import OdometryTopics, planar_velocity, transforms_topic, yaw_of
+from linkwright.simulation.plugins.odometry import (
+    OdometryTopics,
+    planar_variances,
+    planar_velocity,
+    transforms_topic,
+    yaw_of,
+)
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
@@ -74,8 +80,8 @@ class PlanarMove(PlanarDrive[PlanarMoveParameters]):
         self._wanted = (0.0, 0.0, 0.0)
         odometry = node.publisher("nav_msgs/msg/Odometry", said.odometry_topic, 1) if said.publish_odom else None
         transforms = transforms_topic(node) if said.publish_odom_tf else None
-        covariance = (said.covariance_x, said.covariance_y, said.covariance_yaw)
-        self._topics = OdometryTopics(said.odometry_frame, said.robot_base_frame, odometry, transforms, covariance)
+        variances = planar_variances(said.covariance_x, said.covariance_y, said.covariance_yaw)
+        self._topics = OdometryTopics(said.odometry_frame, said.robot_base_frame, odometry, transforms, variances)
         node.subscribe("geometry_msgs/msg/Twist", said.command_topic, self._commanded, 1)
         self.every(0.0, self._move)
         if odometry is not None or transforms is not None:

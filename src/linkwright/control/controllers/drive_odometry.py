@@ -1,0 +1,121 @@
+"""What controllers of drives tell of where the robot is."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from linkwright.control.controllers.controller import ControllerError
+from linkwright.control.controllers.node import ControllerNode
+from linkwright.control.motion.odometer import Odometer
+from linkwright.diagnostics import phrase
+from linkwright.messages import Time
+from linkwright.simulation.plugins.odometry import OdometryTopics, Variances, transforms_topic
+
+_NANOSECONDS = 1_000_000_000
+_AXES = 6
+
+
+def variances(name: str, values: tuple[float, ...]) -> Variances:
+    """A parameter as variances of x, y, z, roll, pitch and yaw.
+
+    Raises:
+        ControllerError: there are not six.
+    """
+    if len(values) != _AXES:
+        raise ControllerError(
+            phrase("'{name}' needs {needed} numbers, and has {count}", name=name, needed=_AXES, count=len(values))
+        )
+    return values
+
+
+def frame_prefix(node: ControllerNode, prefix: str, *, enabled: bool = True) -> str:
+    """What stands before the names of frames: empty, or a name that ends with a slash and begins with none.
+
+    Args:
+        node: the controller's.
+        prefix: as asked for; ``~`` stands for the namespace of the node, and nothing for that as well.
+        enabled: whether anything is to stand there.
+
+    Source: diff_drive_controller (``tf_frame_prefix``, ``tf_frame_prefix_enable``).
+    """
+    if not enabled:
+        return ""
+    namespace = node.name.rpartition("/")[0]
+    found = (prefix or "~").replace("~", namespace).strip("/")
+    return f"{found}/" if found else ""
+
+
+class DriveOdometry:
+    """Odometry of a drive: an odometer and its topics.
+
+    Args:
+        node: the controller's.
+        odometry: the topic of odometry.
+        transforms: the topic of transforms.
+        frame: the frame that the robot moves in.
+        child: the robot's frame.
+        of_pose, of_velocity: variances.
+        tells_transforms: whether transforms are published; their topic is there in any case.
+        tells_pose: whether odometry has the pose; else it has velocities only.
+        window: that of the odometer.
+        rate: how often it is told, in Hz; 0 for at each update.
+
+    Attributes:
+        odometer: where the robot is.
+    """
+
+    def __init__(
+        self,
+        node: ControllerNode,
+        odometry: str,
+        transforms: str,
+        *,
+        frame: str,
+        child: str,
+        of_pose: Variances,
+        of_velocity: Variances,
+        tells_transforms: bool,
+        tells_pose: bool = True,
+        window: int = 1,
+        rate: float = 0.0,
+    ) -> None:
+        self.odometer = Odometer(max(window, 1))
+        output = node.publisher("nav_msgs/msg/Odometry", odometry)
+        tf_output = transforms_topic(node, transforms)
+        self._topics = OdometryTopics(frame, child, output, None, of_pose, of_velocity)
+        self._transforms = OdometryTopics(frame, child, None, tf_output if tells_transforms else None)
+        self._nowhere = None if tells_pose else Odometer().place.transform
+        self._period = round(_NANOSECONDS / rate) if rate > 0.0 else 0
+        self._told: int | None = None
+
+    def tell(self, time_ns: int) -> None:
+        """Publish, where that is due at a time in nanoseconds and anybody listens."""
+        if not self._is_due(time_ns):
+            return
+        wanted = self._topics.is_wanted
+        if not wanted and not self._transforms.is_wanted:
+            return
+        stamp, pose = Time(*divmod(time_ns, _NANOSECONDS)), self.odometer.place.transform
+        if wanted:
+            self._topics.publish(stamp, self._nowhere or pose, *self.odometer.velocity)
+        self._transforms.publish(stamp, pose, 0.0, 0.0, 0.0)
+
+    def _is_due(self, time_ns: int) -> bool:
+        told, period = self._told, self._period
+        if told is None or not 0 <= time_ns - told < 2 * period:
+            self._told = time_ns
+            return True
+        if time_ns - told < period:
+            return False
+        self._told = told + period
+        return True
+
+    def serve(self, node: ControllerNode, name: str = "~/set_odometry") -> None:
+        """Let others say where the robot is, by ``control_msgs/srv/SetOdometry``."""
+
+        def asked(request: Any, response: Any) -> Any:
+            self.odometer.reset(request.x, request.y, request.yaw)
+            response.success = True
+            return response
+
+        node.service("control_msgs/srv/SetOdometry", name, asked)

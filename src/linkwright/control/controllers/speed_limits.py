@@ -1,0 +1,92 @@
+"""How fast a drive may go, speed up, brake and change that, as parameters.
+
+Source: diff_drive_controller of Humble (``has_..._limits``, ``min_acceleration``) and of Jazzy (NaN for none,
+``max_deceleration``, ``..._reverse``), and control_toolbox's RateLimiter. A limit for which ``has_..._limits`` says
+nothing holds where it is positive.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import isnan, nan
+
+from linkwright.control.controllers.controller import ControllerError
+from linkwright.diagnostics import phrase
+from linkwright.kinematics.limits import UNBOUNDED, Bounds, SpeedLimiter
+
+
+@dataclass(frozen=True, kw_only=True)
+class SpeedLimits:
+    """Of one axis, in m/s or rad/s, their change a second, and the change of that."""
+
+    has_velocity_limits: bool | None = None
+    has_acceleration_limits: bool | None = None
+    has_jerk_limits: bool | None = None
+    max_velocity: float = nan
+    min_velocity: float = nan
+    max_acceleration: float = nan
+    min_acceleration: float = nan
+    max_deceleration: float = nan
+    max_acceleration_reverse: float = nan
+    max_deceleration_reverse: float = nan
+    max_jerk: float = nan
+    min_jerk: float = nan
+
+    def limiter(self, axis: str) -> SpeedLimiter:
+        """What keeps to the limits.
+
+        Args:
+            axis: the name of the axis, for errors: ``linear.x``.
+
+        Raises:
+            ControllerError: a limit that holds has no number, or a least one is above the greatest one.
+        """
+        velocity = acceleration = reverse = jerk = UNBOUNDED
+        if self._holds(axis, "velocity", self.has_velocity_limits, self.max_velocity):
+            velocity = _bounds(axis, "velocity", self.min_velocity, self.max_velocity)
+        if self._holds(axis, "acceleration", self.has_acceleration_limits, self.max_acceleration):
+            fastest = self.max_acceleration
+            backward = _given(self.max_acceleration_reverse, self.min_acceleration, -fastest)
+            braking = _given(self.max_deceleration, backward)
+            acceleration = _bounds(axis, "acceleration", braking, fastest)
+            reverse = _bounds(axis, "acceleration", backward, _given(self.max_deceleration_reverse, fastest))
+        if self._holds(axis, "jerk", self.has_jerk_limits, self.max_jerk):
+            jerk = _bounds(axis, "jerk", self.min_jerk, self.max_jerk)
+        return SpeedLimiter(velocity, acceleration, jerk, reverse_acceleration=reverse, brakes_freely=True)
+
+    @staticmethod
+    def _holds(axis: str, kind: str, said: bool | None, greatest: float) -> bool:
+        if said is None:
+            return greatest > 0.0
+        if said and isnan(greatest):
+            raise ControllerError(
+                phrase(
+                    "Error configuring {axis} speed limiter: Cannot apply {kind} limits if max_{kind} is not specified",
+                    axis=axis,
+                    kind=kind,
+                )
+            )
+        return said
+
+
+NO_LIMITS = SpeedLimits()
+
+
+def _given(*values: float) -> float:
+    """The first value that is given."""
+    return next(each for each in values if not isnan(each))
+
+
+def _bounds(axis: str, kind: str, least: float, greatest: float) -> Bounds:
+    least = _given(least, -greatest)
+    if least > greatest:
+        raise ControllerError(
+            phrase(
+                "the least {kind} of '{axis}', {least:g}, is above the greatest one, {greatest:g}",
+                kind=kind,
+                axis=axis,
+                least=least,
+                greatest=greatest,
+            )
+        )
+    return least, greatest

@@ -1,0 +1,107 @@
+"""The velocity that a drive is told by a topic."""
+
+from __future__ import annotations
+
+from math import isfinite
+from typing import Any
+
+from linkwright.control.controllers.node import ControllerNode
+from linkwright.control.motion.odometer import Velocity
+from linkwright.diagnostics import phrase
+from linkwright.graph import QoSProfile
+
+_NANOSECONDS = 1_000_000_000
+
+
+class VelocityInput:
+    """Commands of a topic, ``geometry_msgs/msg/TwistStamped`` or ``Twist``, as long as they are fresh.
+
+    A command counts from the time in its header; from the update that takes it where it has none, or one that is still
+    to come, so that it grows old in any case. One that is not finite makes the drive stand.
+
+    Args:
+        node: the controller's.
+        topic: its name.
+        stamped: whether commands have headers.
+        timeout_s: how long a command holds, in seconds; with 0 each holds for one update.
+        qos: the quality of service of the subscription.
+
+    Source: diff_drive_controller of ros2_controllers; other than there a header of the future does not hold for ever.
+    """
+
+    def __init__(
+        self, node: ControllerNode, topic: str, *, stamped: bool, timeout_s: float, qos: QoSProfile | int = 10
+    ) -> None:
+        self._logger = node.logger
+        self._timeout = round(timeout_s * _NANOSECONDS)
+        self._is_open = False
+        self.forget()
+        if stamped:
+            node.subscribe("geometry_msgs/msg/TwistStamped", topic, self._take_stamped, qos)
+        else:
+            node.subscribe("geometry_msgs/msg/Twist", topic, self._take, qos)
+
+    def open(self) -> None:
+        """Take commands from now on."""
+        self.forget()
+        self._is_open = True
+
+    def close(self) -> None:
+        """Take no more commands, and forget those that came."""
+        self.forget()
+        self._is_open = False
+
+    def forget(self) -> None:
+        """Be as if no command had come."""
+        self._come: tuple[Velocity, int] | None = None
+        self._command: tuple[Velocity, int] | None = None
+
+    def velocity(self, time_ns: int) -> Velocity | None:
+        """The command that holds at a time in nanoseconds; None if there is none, or the last one is too old."""
+        if self._come is not None:
+            self._receive(*self._come, time_ns)
+            self._come = None
+        if self._command is None:
+            return None
+        velocity, since = self._command
+        if 0 <= time_ns - since <= self._timeout:
+            return velocity
+        self._command = None
+        return None
+
+    def _take_stamped(self, message: Any) -> None:
+        stamp = message.header.stamp
+        nanoseconds = stamp.sec * _NANOSECONDS + stamp.nanosec
+        if not nanoseconds and self._is_open:
+            self._logger.warning(
+                phrase(
+                    "Received TwistStamped with zero timestamp, setting it to current time, "
+                    "this message will only be shown once"
+                ),
+                once=True,
+            )
+        self._take(message.twist, nanoseconds)
+
+    def _take(self, twist: Any, stamp: int = 0) -> None:
+        if not self._is_open:
+            self._logger.warning(phrase("Can't accept new commands. subscriber is inactive"))
+            return
+        self._come = (float(twist.linear.x), float(twist.linear.y), float(twist.angular.z)), stamp
+
+    def _receive(self, velocity: Velocity, stamp: int, now: int) -> None:
+        since = stamp if 0 < stamp <= now else now
+        if not all(map(isfinite, velocity)):
+            self._command = None
+            self._logger.warning(phrase("a command that is not a finite number is refused: the drive stops"))
+        elif now - since <= self._timeout or self._timeout == 0:
+            self._command = velocity, (now if self._timeout == 0 else since)
+        else:
+            self._logger.warning(
+                phrase(
+                    "Ignoring the received message (timestamp {stamp:.3f}) because it is older than the current time "
+                    "by {age:.3f} seconds, which exceeds the allowed timeout ({timeout:.3f})",
+                    stamp=stamp / _NANOSECONDS,
+                    age=(now - since) / _NANOSECONDS,
+                    timeout=self._timeout / _NANOSECONDS,
+                )
+            )

@@ -1,0 +1,58 @@
+"""Where a robot is by how its wheels turned."""
+
+from __future__ import annotations
+
+from collections import deque
+
+from linkwright.kinematics.planar import PlanarPose
+
+Velocity = tuple[float, float, float]
+"""Forward and to the left in m/s, around z in rad/s."""
+
+_STANDING: Velocity = (0.0, 0.0, 0.0)
+
+
+class Odometer:
+    """Adds up velocities to a place, and smooths them.
+
+    Args:
+        window: the mean of so many of the last velocities is told; at least 1.
+
+    Attributes:
+        place: where the robot is, from where it began.
+        velocity: how fast it goes.
+
+    Source: the odometry of ros2_controllers (exact arcs, rolling means).
+    """
+
+    def __init__(self, window: int = 1) -> None:
+        self._last: deque[Velocity] = deque(maxlen=window)
+        self.reset()
+
+    def reset(self, x: float = 0.0, y: float = 0.0, yaw: float = 0.0) -> None:
+        """Stand somewhere, in m and rad."""
+        self.place = PlanarPose(x, y, yaw)
+        self.stand()
+
+    def stand(self) -> None:
+        """Forget velocities, and stay at the place."""
+        self._last.clear()
+        self.velocity = _STANDING
+
+    def measure(self, velocity: Velocity, seconds: float) -> None:
+        """Go on with a velocity that was measured, for so long."""
+        self._go(velocity, seconds)
+        last = self._last
+        last.append(velocity)
+        count = len(last)
+        forward, sideways, turning = map(sum, zip(*last, strict=True))
+        self.velocity = forward / count, sideways / count, turning / count
+
+    def assume(self, velocity: Velocity, seconds: float) -> None:
+        """Go on with a velocity that was told and not measured: it is told again as it is."""
+        self._go(velocity, seconds)
+        self.velocity = velocity
+
+    def _go(self, velocity: Velocity, seconds: float) -> None:
+        forward, sideways, turning = velocity
+        self.place.follow_arc(forward * seconds, sideways * seconds, turning * seconds)

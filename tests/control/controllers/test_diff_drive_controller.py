@@ -1,0 +1,328 @@
+from __future__ import annotations
+
+from itertools import pairwise
+from math import cos, inf, nan, sin
+
+import pytest
+
+from linkwright.control.controllers.controller import ControllerError
+from linkwright.control.controllers.diff_drive_controller import DiffDriveController
+from linkwright.control.controllers.registry import controller_class
+from linkwright.diagnostics import LinkwrightError
+from tests.control.controllers.driving import STEP, roll, stamped, twist, warnings
+
+NAME = "base"
+ROBOT = {
+    "left_wheel_names": ["left"],
+    "right_wheel_names": ["right"],
+    "wheel_separation": 0.4,
+    "wheel_radius": 0.1,
+}
+
+
+@pytest.fixture
+def wheels(stand):
+    """A stand with two wheels."""
+    for joint in ("left", "right"):
+        stand.joint(joint, commands=("velocity",), position=0.0, velocity=0.0)
+    return stand
+
+
+def speeds(stand) -> list[float]:
+    return [stand.commands[f"{joint}/velocity"].value for joint in ("left", "right")]
+
+
+def told(stand, *velocity: float, at: int = 0) -> None:
+    stand.say("geometry_msgs/msg/TwistStamped", f"/{NAME}/cmd_vel", stamped(at, *velocity))
+
+
+def test_it_is_found_by_its_type():
+    assert controller_class("diff_drive_controller/DiffDriveController") is DiffDriveController
+
+
+async def test_a_command_turns_the_wheels(wheels):
+    controller = wheels.start(DiffDriveController, NAME, **ROBOT)
+    await wheels.step(controller)
+    assert speeds(wheels) == [0.0, 0.0]
+    told(wheels, 1.0, 0.5)
+    await wheels.step(controller)
+    assert speeds(wheels) == pytest.approx([9.0, 11.0])
+
+
+async def test_multipliers_correct_the_sizes_of_wheels(wheels):
+    more = {
+        "wheel_separation_multiplier": 2.0,
+        "left_wheel_radius_multiplier": 0.5,
+        "right_wheel_radius_multiplier": 2.0,
+    }
+    controller = wheels.start(DiffDriveController, NAME, **ROBOT, **more)
+    told(wheels, 1.0, 0.5)
+    await wheels.step(controller)
+    assert speeds(wheels) == pytest.approx([0.8 / 0.05, 1.2 / 0.2])
+
+
+async def test_all_wheels_of_a_side_turn_alike_and_their_mean_is_measured(stand):
+    for joint in ("fl", "rl", "fr", "rr"):
+        stand.joint(joint, commands=("velocity",), position=0.0, velocity=0.0)
+    four = ROBOT | {"left_wheel_names": ["fl", "rl"], "right_wheel_names": ["fr", "rr"], "publish_rate": 100.0}
+    controller = stand.start(DiffDriveController, NAME, **four)
+    heard = stand.heard("nav_msgs/msg/Odometry", f"/{NAME}/odom")
+    await stand.step(controller)
+    for joint, angle in (("fl", 1.0), ("rl", 3.0), ("fr", 2.0), ("rr", 2.0)):
+        stand.states[f"{joint}/position"].value = angle
+    await stand.step(controller)
+    assert heard[-1].pose.pose.position.x == pytest.approx(0.2)
+    told(stand, 1.0)
+    await stand.step(controller)
+    assert [each.value for each in stand.commands.values()] == pytest.approx([10.0] * 4)
+
+
+@pytest.mark.parametrize("feedback", [True, False], ids=["positions", "velocities"])
+async def test_odometry_is_the_arc_that_was_driven(wheels, feedback):
+    controller = wheels.start(DiffDriveController, NAME, **ROBOT, position_feedback=feedback, cmd_vel_timeout=60.0)
+    heard = wheels.heard("nav_msgs/msg/Odometry", f"/{NAME}/odom")
+    transforms = wheels.heard("tf2_msgs/msg/TFMessage", "/tf")
+    told(wheels, 0.5, 0.4)
+    await roll(wheels, controller, 501)
+    place, velocity = heard[-1].pose.pose, heard[-1].twist.twist
+    turn = 0.4 * 5.0
+    assert (place.position.x, place.position.y) == pytest.approx((1.25 * sin(turn), 1.25 * (1 - cos(turn))), abs=1e-9)
+    assert (place.orientation.z, place.orientation.w) == pytest.approx((sin(turn / 2), cos(turn / 2)))
+    assert (velocity.linear.x, velocity.angular.z) == pytest.approx((0.5, 0.4))
+    assert (heard[-1].header.frame_id, heard[-1].child_frame_id) == ("odom", "base_link")
+    last = transforms[-1].transforms[0]
+    assert (last.header.frame_id, last.child_frame_id) == ("odom", "base_link")
+    assert last.transform.translation.x == place.position.x
+
+
+async def test_wheels_may_stand_at_any_angle_when_it_begins(wheels):
+    wheels.states["left/position"].value = 100.0
+    controller = wheels.start(DiffDriveController, NAME, **ROBOT, publish_rate=100.0)
+    heard = wheels.heard("nav_msgs/msg/Odometry", f"/{NAME}/odom")
+    await wheels.step(controller, count=3)
+    assert heard[-1].pose.pose.position.x == 0.0
+
+
+async def test_odometry_in_open_loop_is_that_of_the_command_within_its_limits(wheels):
+    limits = {"linear": {"x": {"max_acceleration": 1.0}}}
+    controller = wheels.start(DiffDriveController, NAME, **ROBOT, open_loop=True, cmd_vel_timeout=60.0, **limits)
+    assert controller.states == []
+    heard = wheels.heard("nav_msgs/msg/Odometry", f"/{NAME}/odom")
+    told(wheels, 1.0)
+    await wheels.step(controller, count=201)
+    assert heard[-1].pose.pose.position.x == pytest.approx(0.505 + 1.01, abs=1e-9)
+    assert heard[-1].twist.twist.linear.x == 1.0
+
+
+@pytest.mark.parametrize("zero", [True, False], ids=["no time in the header", "time in the header"])
+async def test_a_command_holds_for_its_time_and_no_update_longer(wheels, zero):
+    controller = wheels.start(DiffDriveController, NAME, **ROBOT, cmd_vel_timeout=0.25)
+    await wheels.step(controller, 0.001)
+    told(wheels, 1.0, at=0 if zero else wheels.time_ns + 1_000_000)
+    await wheels.step(controller, 0.001, count=251)
+    assert speeds(wheels) == pytest.approx([10.0, 10.0])
+    await wheels.step(controller, 0.001)
+    assert speeds(wheels) == [0.0, 0.0]
+
+
+async def test_a_command_of_another_clock_does_not_hold_for_ever(wheels):
+    controller = wheels.start(DiffDriveController, NAME, **ROBOT)
+    told(wheels, 1.0, at=1_700_000_000_000_000_000)
+    await wheels.step(controller)
+    assert speeds(wheels) == pytest.approx([10.0, 10.0])
+    await wheels.step(controller, count=51)
+    assert speeds(wheels) == [0.0, 0.0]
+
+
+async def test_a_command_that_is_too_old_when_it_comes_is_ignored_and_told(wheels):
+    controller = wheels.start(DiffDriveController, NAME, **ROBOT)
+    await wheels.step(controller, count=100)
+    told(wheels, 1.0, at=100_000_000)
+    await wheels.step(controller)
+    assert speeds(wheels) == [0.0, 0.0]
+    (text,) = warnings(wheels)
+    assert text == (
+        "Ignoring the received message (timestamp 0.100) because it is older than the current time by 0.910 seconds, "
+        "which exceeds the allowed timeout (0.500)"
+    )
+
+
+async def test_a_command_from_before_time_began_anew_is_forgotten(wheels):
+    controller = wheels.start(DiffDriveController, NAME, **ROBOT)
+    await wheels.step(controller, count=100)
+    told(wheels, 1.0)
+    await wheels.step(controller)
+    wheels.time_ns = 0
+    await wheels.step(controller)
+    assert speeds(wheels) == [0.0, 0.0]
+
+
+@pytest.mark.parametrize("value", [nan, inf])
+async def test_a_command_that_is_no_number_stops_the_robot(wheels, value):
+    controller = wheels.start(DiffDriveController, NAME, **ROBOT)
+    told(wheels, 1.0, at=1)
+    await wheels.step(controller)
+    told(wheels, 1.0, value, at=2)
+    await wheels.step(controller)
+    assert speeds(wheels) == [0.0, 0.0]
+    assert warnings(wheels) == ["a command that is not a finite number is refused: the drive stops"]
+
+
+async def test_commands_of_humble_may_have_no_header(wheels):
+    controller = wheels.start(DiffDriveController, NAME, **ROBOT, use_stamped_vel=False)
+    wheels.say("geometry_msgs/msg/Twist", f"/{NAME}/cmd_vel_unstamped", twist(1.0))
+    await wheels.step(controller)
+    assert speeds(wheels) == pytest.approx([10.0, 10.0])
+    assert not warnings(wheels)
+
+
+LIMITS = {
+    "linear": {"x": {"max_velocity": 1.0, "min_velocity": -0.5, "max_acceleration": 2.0, "min_acceleration": -4.0}},
+    "angular": {"z": {"max_velocity": 1.5, "max_acceleration": 3.0, "max_jerk": 50.0}},
+}
+
+
+async def test_limits_are_never_exceeded_and_published(wheels):
+    controller = wheels.start(DiffDriveController, NAME, **ROBOT, **LIMITS, publish_limited_velocity=True)
+    heard = wheels.heard("geometry_msgs/msg/TwistStamped", f"/{NAME}/cmd_vel_out")
+    for number in range(200):
+        told(wheels, *((9.0, -9.0), (-9.0, 9.0), (0.3, 0.1))[number // 15 % 3])
+        await wheels.step(controller, STEP)
+    forward = [0.0, *(each.twist.linear.x for each in heard)]
+    turning = [0.0, *(each.twist.angular.z for each in heard)]
+    assert len(forward) == 201
+    assert all(-0.5 <= each <= 1.0 for each in forward)
+    assert all(-4.0 - 1e-9 <= (b - a) / STEP <= 2.0 + 1e-9 for a, b in pairwise(forward))
+    assert all(abs(each) <= 1.5 for each in turning)
+    assert all(abs(b - a) / STEP <= 3.0 + 1e-9 for a, b in pairwise(turning))
+    assert controller.commands[0].value == pytest.approx((forward[-1] - turning[-1] * 0.2) / 0.1)
+
+
+async def test_limits_of_humble_that_are_off_are_off(wheels):
+    off = {"has_velocity_limits": False, "max_velocity": 0.1, "has_jerk_limits": False, "max_jerk": 0.0}
+    controller = wheels.start(DiffDriveController, NAME, **ROBOT, linear={"x": off | {"max_acceleration": 0.0}})
+    told(wheels, 1.0)
+    await wheels.step(controller)
+    assert speeds(wheels) == pytest.approx([10.0, 10.0])
+
+
+async def test_the_limits_of_jazzy_have_two_directions(wheels):
+    limits = {
+        "max_acceleration": 2.0,
+        "max_deceleration": -4.0,
+        "max_acceleration_reverse": -8.0,
+        "max_deceleration_reverse": 10.0,
+    }
+    controller = wheels.start(DiffDriveController, NAME, **ROBOT, linear={"x": limits}, cmd_vel_timeout=9.0)
+    for wanted, reached in ((9.0, 0.2), (-9.0, -0.2), (-9.0, -1.0), (9.0, 0.0), (9.0, 0.2)):
+        told(wheels, wanted)
+        await wheels.step(controller, 0.1)
+        assert speeds(wheels)[0] * 0.1 == pytest.approx(reached, abs=1e-9)
+
+
+async def test_another_controller_may_command_it(wheels):
+    controller = wheels.start(DiffDriveController, NAME, **ROBOT)
+    assert [each.name for each in controller.references] == ["base/linear/velocity", "base/angular/velocity"]
+    controller.chained = True
+    await wheels.step(controller)
+    assert speeds(wheels) == [0.0, 0.0]
+    controller.references[0].value, controller.references[1].value = 1.0, 0.5
+    await wheels.step(controller, count=100)
+    assert speeds(wheels) == pytest.approx([9.0, 11.0])
+
+
+async def test_it_stops_when_it_is_deactivated(wheels):
+    controller = wheels.start(DiffDriveController, NAME, **ROBOT)
+    told(wheels, 1.0, at=1)
+    await wheels.step(controller)
+    controller.on_deactivate()
+    assert speeds(wheels) == [0.0, 0.0]
+    told(wheels, 1.0)
+    await wheels.graph.settle()
+    wheels.exchange.work()
+    assert warnings(wheels) == ["Can't accept new commands. subscriber is inactive"]
+    controller.on_activate()
+    await wheels.step(controller)
+    assert speeds(wheels) == [0.0, 0.0]
+
+
+async def test_odometry_comes_at_its_rate_with_its_covariances(wheels):
+    diagonal = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]
+    more = {"publish_rate": 20.0, "pose_covariance_diagonal": diagonal, "enable_odom_tf": False}
+    controller = wheels.start(DiffDriveController, NAME, **ROBOT, **more)
+    heard = wheels.heard("nav_msgs/msg/Odometry", f"/{NAME}/odom")
+    transforms = wheels.heard("tf2_msgs/msg/TFMessage", "/tf")
+    await wheels.step(controller, count=100)
+    times = [each.header.stamp.nanoseconds for each in heard]
+    assert times == list(range(10_000_000, 1_000_000_001, 50_000_000))
+    assert list(heard[0].pose.covariance[::7]) == diagonal
+    assert not any(heard[0].twist.covariance)
+    assert not transforms
+
+
+@pytest.mark.parametrize(
+    ("name", "parameters", "frame"),
+    [
+        ("base", {}, "odom"),
+        ("/robot/base", {}, "robot/odom"),
+        ("/robot/base", {"tf_frame_prefix_enable": False}, "odom"),
+        ("/robot/base", {"tf_frame_prefix": "/left/"}, "left/odom"),
+        ("/a/b/base", {"tf_frame_prefix": "~/c"}, "a/b/c/odom"),
+    ],
+)
+async def test_frames_have_the_prefix_that_is_asked_for(wheels, name, parameters, frame):
+    controller = wheels.start(DiffDriveController, name, **ROBOT, **parameters)
+    heard = wheels.heard("nav_msgs/msg/Odometry", f"{name if name[0] == '/' else '/' + name}/odom")
+    await wheels.step(controller)
+    assert heard[0].header.frame_id == frame
+
+
+async def test_others_may_say_where_the_robot_is(wheels):
+    controller = wheels.start(DiffDriveController, NAME, **ROBOT, publish_rate=100.0)
+    heard = wheels.heard("nav_msgs/msg/Odometry", f"/{NAME}/odom")
+    client = wheels.node.create_client("control_msgs/srv/SetOdometry", f"/{NAME}/set_odometry")
+    request = client.srv_type.Request(x=1.0, y=2.0, yaw=0.0)
+    answer = client.call_async(request)
+    await wheels.step(controller)
+    await wheels.graph.settle()
+    assert answer.result().success
+    assert (heard[-1].pose.pose.position.x, heard[-1].pose.pose.position.y) == (1.0, 2.0)
+
+
+@pytest.mark.parametrize(
+    ("parameters", "words"),
+    [
+        ({"left_wheel_names": [], "right_wheel_names": []}, "Wheel names parameters are empty!"),
+        (
+            {"left_wheel_names": ["left", "other"]},
+            "The number of left wheels [2] and the number of right wheels [1] are different",
+        ),
+        ({"wheel_radius": 0.0}, "Parameter 'wheel_radius' with the value 0 must be above 0"),
+        ({"wheel_separation": -1.0}, "Parameter 'wheel_separation' with the value -1 must be above 0"),
+        ({"pose_covariance_diagonal": [1.0]}, "'pose_covariance_diagonal' needs 6 numbers, and has 1"),
+        (
+            {"linear": {"x": {"has_velocity_limits": True}}},
+            "Error configuring linear.x speed limiter: Cannot apply velocity limits if max_velocity is not specified",
+        ),
+        (
+            {"angular": {"z": {"max_velocity": 1.0, "min_velocity": 2.0}}},
+            "the least velocity of 'angular.z', 2, is above the greatest one, 1",
+        ),
+    ],
+)
+def test_what_cannot_drive_is_not_configured(wheels, parameters, words):
+    with pytest.raises(ControllerError) as error:
+        wheels.start(DiffDriveController, NAME, **ROBOT | parameters)
+    assert words in str(error.value)
+
+
+async def test_a_wheel_that_tells_no_number_is_named(wheels):
+    controller = wheels.start(DiffDriveController, NAME, **ROBOT)
+    wheels.states["right/position"].value = nan
+    with pytest.raises(LinkwrightError, match="Either the left or right wheel position is invalid for index"):
+        await wheels.step(controller)
+
+
+def test_what_is_no_parameter_is_named(wheels):
+    wheels.start(DiffDriveController, NAME, **ROBOT, open_lop=True)
+    assert warnings(wheels) == ["'open_lop' is no parameter of this controller; did you mean 'open_loop'?"]

@@ -1,0 +1,45 @@
+"""Adding up velocities, against closed formulas."""
+
+from __future__ import annotations
+
+from math import cos, sin
+
+import pytest
+
+from linkwright.control.motion.odometer import Odometer
+
+
+def test_an_arc_is_exact_however_many_steps_it_takes():
+    odometer = Odometer(10)
+    for _ in range(1000):
+        odometer.measure((0.5, 0.0, 0.4), 0.01)
+    assert (odometer.place.x, odometer.place.y, odometer.place.yaw) == pytest.approx(
+        (1.25 * sin(4.0), 1.25 * (1.0 - cos(4.0)), 4.0), abs=1e-9
+    )
+    assert odometer.velocity == pytest.approx((0.5, 0.0, 0.4))
+
+
+def test_velocities_are_the_mean_of_the_last_ones():
+    odometer = Odometer(4)
+    told = []
+    for speed in (1.0, 1.0, 3.0, 3.0, 3.0):
+        odometer.measure((speed, -speed, 0.0), 0.1)
+        told.append(odometer.velocity[0])
+    assert told == pytest.approx([1.0, 1.0, 5 / 3, 2.0, 2.5])
+    assert odometer.velocity[1] == pytest.approx(-2.5)
+
+
+def test_what_is_told_is_not_smoothed():
+    odometer = Odometer(4)
+    odometer.assume((1.0, 0.0, 0.0), 0.5)
+    odometer.assume((0.0, 0.0, 0.0), 0.5)
+    assert (odometer.place.x, odometer.velocity) == (0.5, (0.0, 0.0, 0.0))
+
+
+def test_it_may_begin_anywhere():
+    odometer = Odometer()
+    odometer.measure((1.0, 0.0, 0.0), 1.0)
+    odometer.reset(2.0, 3.0, 0.0)
+    assert odometer.velocity == (0.0, 0.0, 0.0)
+    odometer.measure((1.0, 0.0, 0.0), 1.0)
+    assert (odometer.place.x, odometer.place.y) == (3.0, 3.0)
