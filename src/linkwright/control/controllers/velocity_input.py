@@ -8,9 +8,12 @@ from typing import Any
 from linkwright.control.controllers.node import ControllerNode
 from linkwright.control.motion.odometer import Velocity
 from linkwright.diagnostics import phrase
-from linkwright.graph import QoSProfile
+from linkwright.graph import QoSProfile, ReliabilityPolicy
 
 _NANOSECONDS = 1_000_000_000
+
+REFERENCE_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+"""What controllers ask of ``~/reference``."""
 
 
 class VelocityInput:

@@ -1,0 +1,38 @@
+"""``ackermann_steering_controller/AckermannSteeringController``: two wheels that drive, two that are steered."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from linkwright.control.controllers.parameters import parameter
+from linkwright.control.controllers.steering import SteeringController, SteeringParameters
+from linkwright.kinematics.drives import CarDrive
+
+
+@dataclass(frozen=True, kw_only=True)
+class Parameters(SteeringParameters):
+    """Of the controller."""
+
+    traction_wheels_radius: float = parameter(0.0, description="of the wheels that drive, in m")
+    traction_track_width: float = parameter(0.0, description="between the wheels that drive, in m")
+    steering_track_width: float = parameter(0.0, description="between those that are steered; 0 for the same")
+    front_wheels_radius: float = parameter(0.0, description="deprecated: of the wheels in front, in m")
+    rear_wheels_radius: float = parameter(0.0, description="deprecated: of the wheels behind, in m")
+    front_wheel_track: float = parameter(0.0, description="deprecated: between the wheels in front, in m")
+    rear_wheel_track: float = parameter(0.0, description="deprecated: between the wheels behind, in m")
+
+
+class AckermannSteeringController(SteeringController[Parameters]):
+    """A car."""
+
+    PARAMETERS = Parameters
+    KIND = "Ackermann"
+    JOINTS = (2, 2)
+
+    def drive(self) -> CarDrive:
+        """Its sizes, by their names or the older ones."""
+        said = self.parameters
+        traction = said.traction_track_width or said.of_traction(said.front_wheel_track, said.rear_wheel_track)
+        steering = said.steering_track_width or said.of_traction(said.rear_wheel_track, said.front_wheel_track)
+        radius = said.traction_wheels_radius or said.of_traction(said.front_wheels_radius, said.rear_wheels_radius)
+        return CarDrive(said.wheelbase, traction, steering or traction, radius)

@@ -1,0 +1,32 @@
+"""``bicycle_steering_controller/BicycleSteeringController``: one wheel that drives, one that is steered."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from linkwright.control.controllers.parameters import parameter
+from linkwright.control.controllers.steering import SteeringController, SteeringParameters
+from linkwright.kinematics.drives import CarDrive
+
+
+@dataclass(frozen=True, kw_only=True)
+class Parameters(SteeringParameters):
+    """Of the controller."""
+
+    traction_wheel_radius: float = parameter(0.0, description="of the wheel that drives, in m")
+    front_wheel_radius: float = parameter(0.0, description="deprecated: of the wheel in front, in m")
+    rear_wheel_radius: float = parameter(0.0, description="deprecated: of the wheel behind, in m")
+
+
+class BicycleSteeringController(SteeringController[Parameters]):
+    """A bicycle."""
+
+    PARAMETERS = Parameters
+    KIND = "Bicycle"
+    JOINTS = (1, 1)
+
+    def drive(self) -> CarDrive:
+        """Its sizes, by their names or the older ones."""
+        said = self.parameters
+        radius = said.traction_wheel_radius or said.of_traction(said.front_wheel_radius, said.rear_wheel_radius)
+        return CarDrive(said.wheelbase, 0.0, 0.0, radius)

@@ -1,0 +1,198 @@
+"""``mecanum_drive_controller/MecanumDriveController``: four wheels with rollers at 45 degrees.
+
+Source: ros2_controllers for Jazzy (parameters, defaults, topics, the order of wheels). Other than there odometry
+follows arcs, and a command that is no number stops the robot.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import cos, isfinite, nan, sin
+
+from linkwright.control.controllers.controller import Controller, ControllerError, InterfaceNames
+from linkwright.control.controllers.drive_odometry import DriveOdometry, frame_prefix, variances
+from linkwright.control.controllers.parameters import above, not_empty, parameter
+from linkwright.control.controllers.velocity_input import REFERENCE_QOS, VelocityInput
+from linkwright.control.hardware.interfaces import VELOCITY
+from linkwright.kinematics.drives import MecanumDrive
+from linkwright.messages import Header, Time, Vector3, get_message
+
+_NANOSECONDS = 1_000_000_000
+_DIAGONAL = (0.0, 7.0, 14.0, 21.0, 28.0, 35.0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class BaseFrameOffset:
+    """Of the frame of the robot from the middle of its wheels, in m and rad."""
+
+    x: float = 0.0
+    y: float = 0.0
+    theta: float = 0.0
+
+
+_NO_OFFSET = BaseFrameOffset()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Kinematics:
+    """Sizes."""
+
+    base_frame_offset: BaseFrameOffset = _NO_OFFSET
+    wheels_radius: float = parameter(0.0, description="in m")
+    sum_of_robot_center_projection_on_X_Y_axis: float = parameter(  # noqa: N815 - as ros2_controllers have it
+        0.0, description="half the wheelbase and half the track together, in m"
+    )
+
+
+_NO_SIZES = Kinematics()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Parameters:
+    """Of the controller."""
+
+    reference_timeout: float = parameter(0.0, description="how long a command holds, in seconds; 0 for one update")
+    front_left_wheel_command_joint_name: str = ""
+    front_right_wheel_command_joint_name: str = ""
+    rear_right_wheel_command_joint_name: str = ""
+    rear_left_wheel_command_joint_name: str = ""
+    front_left_wheel_state_joint_name: str = parameter("", description="what is measured, where it is another joint")
+    front_right_wheel_state_joint_name: str = parameter("", description="what is measured, where it is another joint")
+    rear_right_wheel_state_joint_name: str = parameter("", description="what is measured, where it is another joint")
+    rear_left_wheel_state_joint_name: str = parameter("", description="what is measured, where it is another joint")
+    kinematics: Kinematics = _NO_SIZES
+    tf_frame_prefix_enable: bool = parameter(True, description="whether frames have a prefix")
+    tf_frame_prefix: str = parameter("", description="the prefix of frames; the namespace where it is empty")
+    base_frame_id: str = parameter("base_link", description="the frame of the robot")
+    odom_frame_id: str = parameter("odom", description="the frame that the robot moves in")
+    enable_odom_tf: bool = parameter(True, description="whether the transform of odometry is published")
+    twist_covariance_diagonal: tuple[float, ...] = parameter(_DIAGONAL, description="variances of the velocity")
+    pose_covariance_diagonal: tuple[float, ...] = parameter(_DIAGONAL, description="variances of the pose")
+
+
+_CORNERS = ("front_left", "front_right", "rear_right", "rear_left")
+
+
+class MecanumDriveController(Controller[Parameters]):
+    """Turns a velocity of the robot, sideways too, into those of its wheels, and their turns into odometry."""
+
+    PARAMETERS = Parameters
+
+    def command_interfaces(self) -> InterfaceNames:
+        """The velocities of the wheels: front left, front right, rear right, rear left."""
+        return [f"{name}/{VELOCITY}" for name in self._joints("command")]
+
+    def state_interfaces(self) -> InterfaceNames:
+        """The same of what is measured."""
+        pairs = zip(self._joints("state"), self._joints("command"), strict=True)
+        return [f"{measured or commanded}/{VELOCITY}" for measured, commanded in pairs]
+
+    def _joints(self, kind: str) -> list[str]:
+        return [getattr(self.parameters, f"{corner}_wheel_{kind}_joint_name") for corner in _CORNERS]
+
+    def reference_interfaces(self) -> Sequence[str]:
+        """The velocities forward and to the left in m/s, and around z in rad/s."""
+        return ("linear/x/velocity", "linear/y/velocity", "angular/z/velocity")
+
+    def on_configure(self) -> None:
+        """Check the parameters, make topics.
+
+        Raises:
+            ControllerError: wheels or their sizes are missing.
+        """
+        said, node, sizes = self.parameters, self.node, self.parameters.kinematics
+        wrong = [
+            not_empty(f"{corner}_wheel_command_joint_name", name)
+            for corner, name in zip(_CORNERS, self._joints("command"), strict=True)
+        ]
+        wrong += [
+            above(0.0)(f"kinematics.{name}", getattr(sizes, name))
+            for name in ("wheels_radius", "sum_of_robot_center_projection_on_X_Y_axis")
+        ]
+        for each in wrong:
+            if each is not None:
+                raise ControllerError(each)
+        self._drive = MecanumDrive(sizes.sum_of_robot_center_projection_on_X_Y_axis, sizes.wheels_radius)
+        timeout = said.reference_timeout
+        self._input = VelocityInput(node, "~/reference", stamped=True, timeout_s=timeout, qos=REFERENCE_QOS)
+        prefix = frame_prefix(node, said.tf_frame_prefix, enabled=said.tf_frame_prefix_enable)
+        self._frame = prefix + said.odom_frame_id
+        self._odometry = DriveOdometry(
+            node,
+            "~/odometry",
+            "~/tf_odometry",
+            frame=self._frame,
+            child=prefix + said.base_frame_id,
+            of_pose=variances("pose_covariance_diagonal", said.pose_covariance_diagonal),
+            of_velocity=variances("twist_covariance_diagonal", said.twist_covariance_diagonal),
+            tells_transforms=said.enable_odom_tf,
+        )
+        self._odometry.serve(node)
+        self._state = node.publisher("control_msgs/msg/MecanumDriveControllerState", "~/controller_state")
+
+    def on_activate(self) -> None:
+        """Stand, and listen."""
+        for reference in self.references:
+            reference.value = nan
+        self._odometry.odometer.stand()
+        self._input.open()
+
+    def on_deactivate(self) -> None:
+        """Stop the wheels."""
+        self._input.close()
+        for command in self.commands:
+            command.value = 0.0
+
+    def update_references(self, time_ns: int, period_s: float) -> None:  # noqa: ARG002
+        """Take the command, if there is one."""
+        velocity = self._input.velocity(time_ns) or (nan, nan, nan)
+        for reference, value in zip(self.references, velocity, strict=True):
+            reference.value = value
+
+    def update(self, time_ns: int, period_s: float) -> None:
+        """Turn the wheels, and tell where the robot is."""
+        front_left, front_right, rear_right, rear_left = measured = [state.value for state in self.states]
+        if all(map(isfinite, measured)):
+            motion = self._drive.motion(front_left, front_right, rear_left, rear_right)
+            self._odometry.odometer.measure(self._of_base(*motion), period_s)
+        wanted = [reference.value for reference in self.references]
+        self._turn(wanted if all(map(isfinite, wanted)) else [0.0, 0.0, 0.0])
+        self._odometry.tell(time_ns)
+        if self._state.is_wanted:
+            self._tell_state(time_ns, measured, wanted)
+        for reference in self.references:
+            reference.value = nan
+
+    def _turn(self, wanted: list[float]) -> None:
+        forward, sideways, turning = wanted
+        offset = self.parameters.kinematics.base_frame_offset
+        along, across = _turned(forward, sideways, offset.theta)
+        speeds = self._drive.wheel_speeds(along + offset.y * turning, across - offset.x * turning, turning)
+        front_left, front_right, rear_left, rear_right = speeds
+        for command, value in zip(self.commands, (front_left, front_right, rear_right, rear_left), strict=True):
+            command.value = value
+
+    def _of_base(self, forward: float, sideways: float, turning: float) -> tuple[float, float, float]:
+        """The velocity of the frame of the robot, of that of the middle of its wheels."""
+        offset = self.parameters.kinematics.base_frame_offset
+        along, across = _turned(forward - offset.y * turning, sideways + offset.x * turning, -offset.theta)
+        return along, across, turning
+
+    def _tell_state(self, time_ns: int, measured: list[float], wanted: list[float]) -> None:
+        front_left, front_right, rear_right, rear_left = measured
+        told = get_message("control_msgs/msg/MecanumDriveControllerState")(
+            header=Header(Time(*divmod(time_ns, _NANOSECONDS)), self._frame),
+            front_left_wheel_velocity=front_left,
+            front_right_wheel_velocity=front_right,
+            back_right_wheel_velocity=rear_right,
+            back_left_wheel_velocity=rear_left,
+        )
+        told.reference_velocity.linear = Vector3(wanted[0], wanted[1], 0.0)
+        told.reference_velocity.angular = Vector3(0.0, 0.0, wanted[2])
+        self._state.publish(told)
+
+
+def _turned(x: float, y: float, angle: float) -> tuple[float, float]:
+    """A vector, turned by an angle in rad."""
+    return x * cos(angle) - y * sin(angle), x * sin(angle) + y * cos(angle)

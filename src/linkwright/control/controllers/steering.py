@@ -1,0 +1,261 @@
+"""What the controllers of steered vehicles have in common: one axle that drives, another one that steers.
+
+Source: steering_controllers_library of ros2_controllers, for Humble and Jazzy (parameters with their older names,
+defaults, topics, the order of joints: right, left). Other than there odometry and wheels go by the tangent of the
+steering angle throughout, odometry in open loop stands while there is no command, and a command that is no number
+stops the vehicle.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import cos, isfinite, nan, pi
+from typing import ClassVar, Generic, TypeVar
+
+from linkwright.control.controllers.controller import Controller, ControllerError, InterfaceNames
+from linkwright.control.controllers.drive_odometry import DriveOdometry, variances
+from linkwright.control.controllers.parameters import above, parameter
+from linkwright.control.controllers.velocity_input import REFERENCE_QOS, VelocityInput
+from linkwright.control.hardware.interfaces import POSITION, VELOCITY
+from linkwright.diagnostics import phrase
+from linkwright.kinematics.drives import CarDrive
+from linkwright.messages import Header, Time, get_message
+
+_NANOSECONDS = 1_000_000_000
+_DIAGONAL = (0.0, 7.0, 14.0, 21.0, 28.0, 35.0)
+_NEAR, _FAR = pi / 6.0, 1.5608
+"""The steering errors in rad from which on wheels are slower, and beyond which they are not slower still."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class SteeringParameters:
+    """Of all of them."""
+
+    reference_timeout: float = parameter(1.0, description="how long a command holds, in seconds; 0 for one update")
+    traction_joints_names: tuple[str, ...] = parameter((), description="joints that drive: right, left")
+    steering_joints_names: tuple[str, ...] = parameter((), description="joints that steer: right, left")
+    traction_joints_state_names: tuple[str, ...] = parameter((), description="what is measured, if other joints")
+    steering_joints_state_names: tuple[str, ...] = parameter((), description="what is measured, if other joints")
+    front_steering: bool = parameter(True, description="which of front_wheels_names and rear_wheels_names steer")
+    front_wheels_names: tuple[str, ...] = parameter((), description="deprecated: joints that steer or drive")
+    rear_wheels_names: tuple[str, ...] = parameter((), description="deprecated: joints that drive or steer")
+    front_wheels_state_names: tuple[str, ...] = parameter((), description="deprecated: what is measured")
+    rear_wheels_state_names: tuple[str, ...] = parameter((), description="deprecated: what is measured")
+    open_loop: bool = parameter(False, description="odometry by what wheels are told, not by what they do")
+    reduce_wheel_speed_until_steering_reached: bool = parameter(
+        False, description="whether wheels are slow while the steering is far from its angle"
+    )
+    velocity_rolling_window_size: int = parameter(10, description="odometry tells the mean of so many velocities")
+    base_frame_id: str = parameter("base_link", description="the frame of the robot")
+    odom_frame_id: str = parameter("odom", description="the frame that the robot moves in")
+    enable_odom_tf: bool = parameter(True, description="whether the transform of odometry is published")
+    twist_covariance_diagonal: tuple[float, ...] = parameter(_DIAGONAL, description="variances of the velocity")
+    pose_covariance_diagonal: tuple[float, ...] = parameter(_DIAGONAL, description="variances of the pose")
+    position_feedback: bool = parameter(False, description="odometry by positions of wheels, not by velocities")
+    use_stamped_vel: bool = parameter(
+        True, description="commands are ~/reference with headers, else ~/reference_unstamped"
+    )
+    wheelbase: float = parameter(0.0, description="between the axles, in m")
+
+    def of_traction(self, front: float, rear: float) -> float:
+        """What is given of the axle that drives, by the older names."""
+        return rear if self.front_steering else front
+
+    @property
+    def traction(self) -> tuple[str, ...]:
+        """The joints that drive."""
+        return self.traction_joints_names or (
+            self.rear_wheels_names if self.front_steering else self.front_wheels_names
+        )
+
+    @property
+    def steering(self) -> tuple[str, ...]:
+        """The joints that steer."""
+        return self.steering_joints_names or (
+            self.front_wheels_names if self.front_steering else self.rear_wheels_names
+        )
+
+    @property
+    def traction_states(self) -> tuple[str, ...]:
+        """What is measured of those that drive."""
+        older = self.rear_wheels_state_names if self.front_steering else self.front_wheels_state_names
+        return self.traction_joints_state_names or older or self.traction
+
+    @property
+    def steering_states(self) -> tuple[str, ...]:
+        """What is measured of those that steer."""
+        older = self.front_wheels_state_names if self.front_steering else self.rear_wheels_state_names
+        return self.steering_joints_state_names or older or self.steering
+
+
+P = TypeVar("P", bound=SteeringParameters)
+
+
+class SteeringController(Controller[P], Generic[P]):
+    """Turns a velocity of the vehicle into speeds and angles of its wheels, and those into odometry.
+
+    Attributes:
+        KIND: its name in errors.
+        JOINTS: how many joints drive, and how many steer.
+    """
+
+    KIND: ClassVar[str]
+    JOINTS: ClassVar[tuple[int, int]]
+
+    def drive(self) -> CarDrive:
+        """The sizes of the vehicle; what is not positive is refused."""
+        raise NotImplementedError
+
+    def command_interfaces(self) -> InterfaceNames:
+        """Velocities of the joints that drive, then angles of those that steer."""
+        said = self.parameters
+        return [f"{each}/{VELOCITY}" for each in said.traction] + [f"{each}/{POSITION}" for each in said.steering]
+
+    def state_interfaces(self) -> InterfaceNames:
+        """The same of what is measured; positions of the joints that drive where they are asked for."""
+        said = self.parameters
+        kind = POSITION if said.position_feedback else VELOCITY
+        return [f"{each}/{kind}" for each in said.traction_states] + [
+            f"{each}/{POSITION}" for each in said.steering_states
+        ]
+
+    def reference_interfaces(self) -> Sequence[str]:
+        """The velocity forward in m/s, and around z in rad/s."""
+        return ("linear/velocity", "angular/velocity")
+
+    def on_configure(self) -> None:
+        """Check the parameters, make topics.
+
+        Raises:
+            ControllerError: joints or sizes are missing.
+        """
+        said, node = self.parameters, self.node
+        self._check_joints()
+        self._drive = self.drive()
+        for name, value in (("wheelbase", self._drive.wheelbase), ("traction_wheels_radius", self._drive.radius)):
+            wrong = above(0.0)(name, value)
+            if wrong is not None:
+                raise ControllerError(wrong)
+        stamped = said.use_stamped_vel
+        self._input = VelocityInput(
+            node,
+            "~/reference" if stamped else "~/reference_unstamped",
+            stamped=stamped,
+            timeout_s=said.reference_timeout,
+            qos=REFERENCE_QOS,
+        )
+        self._odometry = DriveOdometry(
+            node,
+            "~/odometry",
+            "~/tf_odometry",
+            frame=said.odom_frame_id,
+            child=said.base_frame_id,
+            of_pose=variances("pose_covariance_diagonal", said.pose_covariance_diagonal),
+            of_velocity=variances("twist_covariance_diagonal", said.twist_covariance_diagonal),
+            tells_transforms=said.enable_odom_tf,
+            window=said.velocity_rolling_window_size,
+        )
+        self._odometry.serve(node)
+        self._state = node.publisher("control_msgs/msg/SteeringControllerStatus", "~/controller_state")
+
+    def _check_joints(self) -> None:
+        said, (driving, steering) = self.parameters, self.JOINTS
+        for what, needed, names in (
+            ("traction", driving, said.traction),
+            ("steering", steering, said.steering),
+            ("traction state", driving, said.traction_states),
+            ("steering state", steering, said.steering_states),
+        ):
+            if len(names) != needed:
+                raise ControllerError(
+                    phrase(
+                        "{kind} configuration requires exactly {needed} {what} joint(s), but {count} were provided",
+                        kind=self.KIND,
+                        needed=needed,
+                        what=what,
+                        count=len(names),
+                    )
+                )
+
+    def on_activate(self) -> None:
+        """Stand, and listen."""
+        for reference in self.references:
+            reference.value = nan
+        self._odometry.odometer.stand()
+        self._angles: list[float] | None = None
+        self._steered = 0.0
+        self._input.open()
+
+    def on_deactivate(self) -> None:
+        """Stop the wheels; the steering stays."""
+        self._input.close()
+        for command in self.commands[: self.JOINTS[0]]:
+            command.value = 0.0
+
+    def update_references(self, time_ns: int, period_s: float) -> None:  # noqa: ARG002
+        """Take the command, if there is one."""
+        velocity = self._input.velocity(time_ns) or (nan, nan, nan)
+        forward, turning = self.references
+        forward.value, turning.value = velocity[0], velocity[2]
+
+    def update(self, time_ns: int, period_s: float) -> None:
+        """Turn and steer the wheels, and tell where the vehicle is."""
+        forward, turning = (reference.value for reference in self.references)
+        told = isfinite(forward) and isfinite(turning)
+        if self.parameters.open_loop:
+            self._odometry.odometer.assume((forward, 0.0, turning) if told else (0.0, 0.0, 0.0), period_s)
+        else:
+            self._measure(period_s)
+        if told:
+            self._move(forward, turning)
+        else:
+            for command in self.commands[: self.JOINTS[0]]:
+                command.value = 0.0
+        self._odometry.tell(time_ns)
+        if self._state.is_wanted:
+            self._tell_state(time_ns)
+        for reference in self.references:
+            reference.value = nan
+
+    def _measure(self, period_s: float) -> None:
+        """Go on by what wheels and steering do; what is no number counts for nothing."""
+        driving, steering = self.JOINTS
+        values = [state.value for state in self.states]
+        if not all(map(isfinite, values)) or period_s <= 0.0:
+            return
+        wheels, angles = values[:driving], values[driving:]
+        if self.parameters.position_feedback:
+            before, self._angles = self._angles or wheels, wheels
+            wheels = [(now - then) / period_s for now, then in zip(wheels, before, strict=True)]
+        self._steered = self._drive.middle_angle(angles[-1], angles[0]) if steering > 1 else angles[0]
+        forward, turning = self._drive.motion(wheels[-1], wheels[0], self._steered)
+        self._odometry.odometer.measure((forward, 0.0, turning), period_s)
+
+    def _move(self, forward: float, turning: float) -> None:
+        """Tell the wheels: their speeds go with the angle that the steering has, not the one that it is to have."""
+        said, (driving, steering) = self.parameters, self.JOINTS
+        angle = self._drive.steering_angle(forward, turning)
+        steered = angle if said.open_loop else self._steered
+        if said.reduce_wheel_speed_until_steering_reached:
+            error = abs(steered - angle)
+            forward *= cos(min(error, _FAR)) / cos(_NEAR) if error >= _NEAR else 1.0
+        left, right = self._drive.wheel_speeds(forward, steered)
+        angles = self._drive.steering_angles(angle) if steering > 1 else (angle,)
+        for command, value in zip(self.commands, ((right, left)[:driving] + angles[::-1]), strict=True):
+            command.value = value
+
+    def _tell_state(self, time_ns: int) -> None:
+        driving = self.JOINTS[0]
+        states, commands = [each.value for each in self.states], [each.value for each in self.commands]
+        wheels: list[float] = states[:driving]
+        by_position = self.parameters.position_feedback
+        told = get_message("control_msgs/msg/SteeringControllerStatus")(
+            header=Header(Time(*divmod(time_ns, _NANOSECONDS)), self.parameters.odom_frame_id),
+            traction_wheels_position=wheels if by_position else [],
+            traction_wheels_velocity=[] if by_position else wheels,
+            steer_positions=states[driving:],
+            linear_velocity_command=commands[:driving],
+            steering_angle_command=commands[driving:],
+        )
+        self._state.publish(told)

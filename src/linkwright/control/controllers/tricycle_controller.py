@@ -1,0 +1,226 @@
+"""``tricycle_controller/TricycleController``: one wheel in front that drives and is steered.
+
+Source: ros2_controllers for Humble and Jazzy (parameters, defaults, topics; the wheel is slow while it is far from its
+angle). Other than there odometry in open loop is that of the wheel within its limits.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import cos, inf, isnan, nan, pi
+from typing import Any
+
+from linkwright.control.controllers.controller import Controller, ControllerError, InterfaceNames
+from linkwright.control.controllers.drive_odometry import DriveOdometry, variances
+from linkwright.control.controllers.parameters import above, not_empty, parameter
+from linkwright.control.controllers.velocity_input import VelocityInput
+from linkwright.control.hardware.interfaces import POSITION, VELOCITY
+from linkwright.control.motion.axle_limits import ANY, SteeringLimiter, TractionLimiter
+from linkwright.diagnostics import phrase
+from linkwright.kinematics.drives import TricycleDrive
+from linkwright.kinematics.limits import UNBOUNDED, Bounds
+from linkwright.messages import get_message
+
+_NONE = (0.0,) * 6
+_NEAR, _FAR = pi / 6.0, pi / 2.0
+"""The angles in rad from what is wanted within which the wheel is as fast as told, and beyond which it hardly moves."""
+_CREEPING = 0.01
+
+
+@dataclass(frozen=True, kw_only=True)
+class TractionLimits:
+    """Of the wheel's turning, in rad/s, its change a second, and the change of that; the same in both directions."""
+
+    max_velocity: float = nan
+    min_velocity: float = nan
+    max_acceleration: float = nan
+    min_acceleration: float = nan
+    max_deceleration: float = nan
+    min_deceleration: float = nan
+    max_jerk: float = nan
+    min_jerk: float = nan
+
+
+@dataclass(frozen=True, kw_only=True)
+class SteeringLimits:
+    """Of the wheel's angle in rad, its change a second, and the change of that; the latter the same both ways."""
+
+    max_position: float = nan
+    min_position: float = nan
+    max_velocity: float = nan
+    min_velocity: float = nan
+    max_acceleration: float = nan
+    min_acceleration: float = nan
+
+
+_ANY_TRACTION, _ANY_STEERING = TractionLimits(), SteeringLimits()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Parameters:
+    """Of the controller."""
+
+    traction_joint_name: str = parameter("", description="the joint that the wheel turns on")
+    steering_joint_name: str = parameter("", description="the joint that the wheel is steered by")
+    wheelbase: float = parameter(0.0, description="from the wheel to the axle behind, in m")
+    wheel_radius: float = parameter(0.0, description="in m")
+    odom_frame_id: str = parameter("odom", description="the frame that the robot moves in")
+    base_frame_id: str = parameter("base_link", description="the frame of the robot")
+    pose_covariance_diagonal: tuple[float, ...] = parameter(_NONE, description="variances of the pose")
+    twist_covariance_diagonal: tuple[float, ...] = parameter(_NONE, description="variances of the velocity")
+    open_loop: bool = parameter(False, description="odometry by what the wheel is told, not by what it does")
+    enable_odom_tf: bool = parameter(False, description="whether the transform of odometry is published")
+    odom_only_twist: bool = parameter(False, description="odometry without the pose")
+    cmd_vel_timeout: int = parameter(500, description="how long a command holds, in milliseconds")
+    publish_ackermann_command: bool = parameter(False, description="whether ~/cmd_ackermann is published")
+    velocity_rolling_window_size: int = parameter(10, description="odometry tells the mean of so many velocities")
+    use_stamped_vel: bool = parameter(True, description="whether commands have headers")
+    traction: TractionLimits = _ANY_TRACTION
+    steering: SteeringLimits = _ANY_STEERING
+
+
+class TricycleController(Controller[Parameters]):
+    """Turns a velocity of the robot into speed and angle of its wheel, and those into odometry."""
+
+    PARAMETERS = Parameters
+
+    def command_interfaces(self) -> InterfaceNames:
+        """The velocity of the wheel, and its angle."""
+        said = self.parameters
+        return [f"{said.traction_joint_name}/{VELOCITY}", f"{said.steering_joint_name}/{POSITION}"]
+
+    def state_interfaces(self) -> InterfaceNames:
+        """The same."""
+        return self.command_interfaces()
+
+    def on_configure(self) -> None:
+        """Check the parameters, make topics.
+
+        Raises:
+            ControllerError: joints or sizes are missing, or limits are none.
+        """
+        said, node = self.parameters, self.node
+        for name, check in (
+            ("traction_joint_name", not_empty),
+            ("steering_joint_name", not_empty),
+            ("wheelbase", above(0.0)),
+            ("wheel_radius", above(0.0)),
+        ):
+            wrong = check(name, getattr(said, name))
+            if wrong is not None:
+                raise ControllerError(wrong)
+        self._drive = TricycleDrive(said.wheelbase, said.wheel_radius)
+        self._traction, self._steering = _traction_limiter(said.traction), _steering_limiter(said.steering)
+        timeout = said.cmd_vel_timeout / 1000.0
+        self._input = VelocityInput(node, "~/cmd_vel", stamped=said.use_stamped_vel, timeout_s=timeout)
+        self._odometry = DriveOdometry(
+            node,
+            "~/odom",
+            "/tf",
+            frame=said.odom_frame_id,
+            child=said.base_frame_id,
+            of_pose=variances("pose_covariance_diagonal", said.pose_covariance_diagonal),
+            of_velocity=variances("twist_covariance_diagonal", said.twist_covariance_diagonal),
+            tells_transforms=said.enable_odom_tf,
+            tells_pose=not said.odom_only_twist,
+            window=said.velocity_rolling_window_size,
+        )
+        node.service("std_srvs/srv/Empty", "~/reset_odometry", self._reset)
+        asked = said.publish_ackermann_command
+        self._output = node.publisher("ackermann_msgs/msg/AckermannDrive", "~/cmd_ackermann") if asked else None
+
+    def on_activate(self) -> None:
+        """Stand, and listen."""
+        self._traction.restart()
+        angle = self.states[1].value
+        self._steering.restart(0.0 if isnan(angle) else angle)
+        self._odometry.odometer.stand()
+        self._input.open()
+
+    def on_deactivate(self) -> None:
+        """Stop the wheel, straight ahead."""
+        self._input.close()
+        for command in self.commands:
+            command.value = 0.0
+
+    def update(self, time_ns: int, period_s: float) -> None:
+        """Turn and steer the wheel, and tell where the robot is.
+
+        Raises:
+            ControllerError: the wheel tells no number.
+        """
+        measured, angle_now = (state.value for state in self.states)
+        if isnan(measured) or isnan(angle_now):
+            raise ControllerError(phrase("Could not read feedback value"))
+        forward, _, turning = self._input.velocity(time_ns) or (0.0, 0.0, 0.0)
+        speed, angle = self._drive.wheel(forward, turning)
+        speed = self._traction.follow(speed * _share(abs(angle - angle_now)), period_s)
+        angle = self._steering.follow(angle, period_s)
+        self.commands[0].value, self.commands[1].value = speed, angle
+        if self.parameters.open_loop:
+            forward, turning = self._drive.motion(speed, angle)
+            self._odometry.odometer.assume((forward, 0.0, turning), period_s)
+        else:
+            forward, turning = self._drive.motion(measured, angle_now)
+            self._odometry.odometer.measure((forward, 0.0, turning), period_s)
+        self._odometry.tell(time_ns)
+        if self._output is not None and self._output.is_wanted:
+            told = get_message("ackermann_msgs/msg/AckermannDrive")(steering_angle=angle, speed=speed)
+            self._output.publish(told)
+
+    def _reset(self, request: Any, response: Any) -> Any:  # noqa: ARG002
+        self._odometry.odometer.reset()
+        return response
+
+
+def _share(error: float) -> float:
+    """How much of its speed a wheel has that is so far from its angle, in rad."""
+    if error < _NEAR:
+        return 1.0
+    return _CREEPING if error > _FAR else cos(error)
+
+
+def _traction_limiter(said: TractionLimits) -> TractionLimiter:
+    part = "traction"
+    return TractionLimiter(
+        _magnitudes(part, "velocity", said.min_velocity, said.max_velocity),
+        _magnitudes(part, "acceleration", said.min_acceleration, said.max_acceleration),
+        _magnitudes(part, "deceleration", said.min_deceleration, said.max_deceleration),
+        _magnitudes(part, "jerk", said.min_jerk, said.max_jerk),
+    )
+
+
+def _steering_limiter(said: SteeringLimits) -> SteeringLimiter:
+    part, least, greatest = "steering", said.min_position, said.max_position
+    position = UNBOUNDED
+    if not (isnan(least) and isnan(greatest)):
+        position = (-greatest if isnan(least) else least, -least if isnan(greatest) else greatest)
+    if position[0] > position[1]:
+        raise _wrong_order(part, "position")
+    return SteeringLimiter(
+        position,
+        _magnitudes(part, "velocity", said.min_velocity, said.max_velocity),
+        _magnitudes(part, "acceleration", said.min_acceleration, said.max_acceleration),
+    )
+
+
+def _magnitudes(part: str, kind: str, least: float, greatest: float) -> Bounds:
+    """Bounds of a magnitude, of which either may not be given."""
+    if least < 0.0 or greatest < 0.0:
+        raise ControllerError(
+            phrase(
+                "Error configuring {part} limiter: {kind} limits cannot be negative, they are for both directions",
+                part=part,
+                kind=kind,
+            )
+        )
+    bounds = (ANY[0] if isnan(least) else least, inf if isnan(greatest) else greatest)
+    if bounds[0] > bounds[1]:
+        raise _wrong_order(part, kind)
+    return bounds
+
+
+def _wrong_order(part: str, kind: str) -> ControllerError:
+    return ControllerError(
+        phrase("Error configuring {part} limiter: Min {kind} cannot be greater than max {kind}", part=part, kind=kind)
+    )

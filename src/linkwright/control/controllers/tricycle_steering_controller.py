@@ -1,0 +1,34 @@
+"""``tricycle_steering_controller/TricycleSteeringController``: two wheels that drive, one that is steered."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from linkwright.control.controllers.parameters import parameter
+from linkwright.control.controllers.steering import SteeringController, SteeringParameters
+from linkwright.kinematics.drives import CarDrive
+
+
+@dataclass(frozen=True, kw_only=True)
+class Parameters(SteeringParameters):
+    """Of the controller."""
+
+    traction_wheels_radius: float = parameter(0.0, description="of the wheels that drive, in m")
+    traction_track_width: float = parameter(0.0, description="between the wheels that drive, in m")
+    front_wheels_radius: float = parameter(0.0, description="deprecated: of the wheels in front, in m")
+    rear_wheels_radius: float = parameter(0.0, description="deprecated: of the wheels behind, in m")
+    wheel_track: float = parameter(0.0, description="deprecated: between the wheels that drive, in m")
+
+
+class TricycleSteeringController(SteeringController[Parameters]):
+    """A tricycle whose single wheel is steered and drives not."""
+
+    PARAMETERS = Parameters
+    KIND = "Tricycle"
+    JOINTS = (2, 1)
+
+    def drive(self) -> CarDrive:
+        """Its sizes, by their names or the older ones."""
+        said = self.parameters
+        radius = said.traction_wheels_radius or said.of_traction(said.front_wheels_radius, said.rear_wheels_radius)
+        return CarDrive(said.wheelbase, said.traction_track_width or said.wheel_track, 0.0, radius)

@@ -1,0 +1,94 @@
+"""Following what a wheel is told, by no more than its motor can, which is the same in both directions.
+
+Source: the limiters of tricycle_controller. Other than there nothing is brought to move by a least value, and the bound
+of a second difference is not doubled.
+"""
+
+from __future__ import annotations
+
+from math import copysign, inf
+
+from linkwright.kinematics.limits import UNBOUNDED, Bounds
+
+ANY: Bounds = (0.0, inf)
+"""No bound of a magnitude."""
+
+
+class TractionLimiter:
+    """Follows a speed.
+
+    Args:
+        velocity: its magnitude, in rad/s.
+        acceleration: how fast it grows, in rad/s2.
+        deceleration: how fast it shrinks.
+        jerk: how fast that changes, in rad/s3.
+
+    Attributes:
+        speed: the speed now.
+    """
+
+    def __init__(
+        self, velocity: Bounds = ANY, acceleration: Bounds = ANY, deceleration: Bounds = ANY, jerk: Bounds = ANY
+    ) -> None:
+        self._velocity = velocity
+        self._acceleration = acceleration
+        self._deceleration = deceleration
+        self._jerk = jerk
+        self.restart()
+
+    def restart(self) -> None:
+        """Stand still."""
+        self.speed = self._before = 0.0
+
+    def follow(self, wanted: float, seconds: float) -> float:
+        """The speed so many seconds after the last one."""
+        speed = self.speed
+        wanted = _bent(speed, self._before, wanted, self._jerk, seconds)
+        bounds = self._acceleration if abs(wanted) >= abs(speed) else self._deceleration
+        reached = speed + _within(bounds, wanted - speed, seconds)
+        self.speed, self._before = _within(self._velocity, reached), speed
+        return self.speed
+
+
+class SteeringLimiter:
+    """Follows an angle.
+
+    Args:
+        position: the least and the greatest angle, in rad.
+        velocity: how fast it changes, in rad/s.
+        acceleration: how fast that changes, in rad/s2.
+
+    Attributes:
+        angle: the angle now.
+    """
+
+    def __init__(self, position: Bounds = UNBOUNDED, velocity: Bounds = ANY, acceleration: Bounds = ANY) -> None:
+        self._position = position
+        self._velocity = velocity
+        self._acceleration = acceleration
+        self.restart()
+
+    def restart(self, angle: float = 0.0) -> None:
+        """Stand at an angle."""
+        self.angle = self._before = angle
+
+    def follow(self, wanted: float, seconds: float) -> float:
+        """The angle so many seconds after the last one."""
+        angle = self.angle
+        wanted = _bent(angle, self._before, wanted, self._acceleration, seconds)
+        reached = angle + _within(self._velocity, wanted - angle, seconds)
+        self.angle, self._before = min(max(reached, self._position[0]), self._position[1]), angle
+        return self.angle
+
+
+def _bent(now: float, before: float, wanted: float, bounds: Bounds, seconds: float) -> float:
+    """What is wanted, with a second difference within bounds."""
+    straight = now + now - before
+    return straight + _within(bounds, wanted - straight, seconds * seconds)
+
+
+def _within(bounds: Bounds, value: float, factor: float = 1.0) -> float:
+    """A value with a magnitude within bounds; 0 stays 0."""
+    if value == 0.0:
+        return value
+    return copysign(min(max(abs(value), bounds[0] * factor), bounds[1] * factor), value)

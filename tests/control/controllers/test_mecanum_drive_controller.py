@@ -1,0 +1,126 @@
+from __future__ import annotations
+
+from math import cos, isnan, nan, pi, sin
+
+import pytest
+
+from linkwright.control.controllers.controller import ControllerError
+from linkwright.control.controllers.mecanum_drive_controller import MecanumDriveController
+from linkwright.control.controllers.registry import controller_class
+from tests.control.controllers.driving import roll, stamped
+
+NAME = "base"
+CORNERS = ("front_left", "front_right", "rear_right", "rear_left")
+ARM, RADIUS = 0.5, 0.1
+SIZES = {"wheels_radius": RADIUS, "sum_of_robot_center_projection_on_X_Y_axis": ARM}
+ROBOT = {f"{corner}_wheel_command_joint_name": corner for corner in CORNERS} | {"kinematics": SIZES}
+
+
+@pytest.fixture
+def wheels(stand):
+    """A stand with four wheels."""
+    for joint in CORNERS:
+        stand.joint(joint, commands=("velocity",), position=0.0, velocity=0.0)
+    return stand
+
+
+def told(stand, forward: float, sideways: float, turning: float) -> None:
+    stand.say("geometry_msgs/msg/TwistStamped", f"/{NAME}/reference", stamped(0, forward, turning, sideways))
+
+
+def commanded(stand) -> list[float]:
+    return [stand.commands[f"{corner}/velocity"].value for corner in CORNERS]
+
+
+def test_it_is_found_by_its_type():
+    assert controller_class("mecanum_drive_controller/MecanumDriveController") is MecanumDriveController
+
+
+@pytest.mark.parametrize(
+    ("velocity", "wheels_turn"),
+    [
+        ((1.0, 0.0, 0.0), [10.0, 10.0, 10.0, 10.0]),
+        ((0.0, 1.0, 0.0), [-10.0, 10.0, -10.0, 10.0]),
+        ((0.0, 0.0, 1.0), [-5.0, 5.0, 5.0, -5.0]),
+    ],
+)
+async def test_each_wheel_turns_as_the_motion_needs(wheels, velocity, wheels_turn):
+    controller = wheels.start(MecanumDriveController, NAME, **ROBOT, reference_timeout=1.0)
+    told(wheels, *velocity)
+    await wheels.step(controller)
+    assert commanded(wheels) == pytest.approx(wheels_turn)
+
+
+async def test_odometry_is_the_arc_that_was_driven(wheels):
+    controller = wheels.start(MecanumDriveController, NAME, **ROBOT, reference_timeout=60.0)
+    heard = wheels.heard("nav_msgs/msg/Odometry", f"/{NAME}/odometry")
+    transforms = wheels.heard("tf2_msgs/msg/TFMessage", f"/{NAME}/tf_odometry")
+    told(wheels, 0.3, 0.4, 0.5)
+    await roll(wheels, controller, 501)
+    place, velocity, turn = heard[-1].pose.pose, heard[-1].twist.twist, 2.5
+    x = (0.3 * sin(turn) + 0.4 * (cos(turn) - 1.0)) / 0.5
+    y = (0.3 * (1.0 - cos(turn)) + 0.4 * sin(turn)) / 0.5
+    assert (place.position.x, place.position.y) == pytest.approx((x, y), abs=1e-9)
+    assert (velocity.linear.x, velocity.linear.y, velocity.angular.z) == pytest.approx((0.3, 0.4, 0.5))
+    assert transforms[-1].transforms[0].transform.translation.x == place.position.x
+
+
+async def test_the_base_may_be_elsewhere_than_the_middle_of_the_wheels(wheels):
+    offset = {"x": 0.2, "y": -0.1, "theta": pi / 2.0}
+    sizes = {"kinematics": SIZES | {"base_frame_offset": offset}}
+    controller = wheels.start(MecanumDriveController, NAME, **ROBOT | sizes, reference_timeout=60.0)
+    heard = wheels.heard("nav_msgs/msg/Odometry", f"/{NAME}/odometry")
+    told(wheels, 1.0, 0.0, 0.0)
+    await wheels.step(controller)
+    assert commanded(wheels) == pytest.approx([-10.0, 10.0, -10.0, 10.0])
+    told(wheels, 0.3, 0.4, 0.5)
+    await roll(wheels, controller, 3)
+    velocity = heard[-1].twist.twist
+    assert (velocity.linear.x, velocity.linear.y, velocity.angular.z) == pytest.approx((0.3, 0.4, 0.5))
+
+
+async def test_a_command_holds_for_its_time_or_for_one_update(wheels):
+    controller = wheels.start(MecanumDriveController, NAME, **ROBOT)
+    told(wheels, 1.0, 0.0, 0.0)
+    await wheels.step(controller, 0.001)
+    assert commanded(wheels) == pytest.approx([10.0] * 4)
+    await wheels.step(controller, 0.001)
+    assert commanded(wheels) == [0.0] * 4
+    told(wheels, nan, 0.0, 0.0)
+    await wheels.step(controller, 0.001)
+    assert commanded(wheels) == [0.0] * 4
+
+
+async def test_another_controller_may_command_it_and_its_state_is_published(wheels):
+    controller = wheels.start(MecanumDriveController, NAME, **ROBOT)
+    assert [each.name for each in controller.references] == [
+        "base/linear/x/velocity",
+        "base/linear/y/velocity",
+        "base/angular/z/velocity",
+    ]
+    heard = wheels.heard("control_msgs/msg/MecanumDriveControllerState", f"/{NAME}/controller_state")
+    controller.chained = True
+    for reference, value in zip(controller.references, (0.0, 1.0, 0.0), strict=True):
+        reference.value = value
+    await roll(wheels, controller)
+    assert heard[-1].reference_velocity.linear.y == 1.0
+    await roll(wheels, controller)
+    assert commanded(wheels) == [0.0] * 4
+    assert (heard[-1].front_left_wheel_velocity, heard[-1].back_left_wheel_velocity) == pytest.approx((-10.0, 10.0))
+    assert isnan(heard[-1].reference_velocity.linear.y)
+
+
+@pytest.mark.parametrize(
+    ("parameters", "words"),
+    [
+        ({"rear_left_wheel_command_joint_name": ""}, "'rear_left_wheel_command_joint_name' cannot be empty"),
+        (
+            {"kinematics": {"wheels_radius": 0.1}},
+            "'kinematics.sum_of_robot_center_projection_on_X_Y_axis' with the value 0",
+        ),
+    ],
+)
+def test_what_cannot_drive_is_not_configured(wheels, parameters, words):
+    with pytest.raises(ControllerError) as error:
+        wheels.start(MecanumDriveController, NAME, **ROBOT | parameters)
+    assert words in str(error.value)

@@ -1,0 +1,225 @@
+"""Controllers of steered vehicles, against the geometry of wheels that roll about one point."""
+
+from __future__ import annotations
+
+from math import atan, cos, isnan, nan, sin, tan
+from typing import Any
+
+import pytest
+
+from linkwright.control.controllers.ackermann_steering_controller import AckermannSteeringController
+from linkwright.control.controllers.bicycle_steering_controller import BicycleSteeringController
+from linkwright.control.controllers.controller import ControllerError
+from linkwright.control.controllers.registry import controller_class
+from linkwright.control.controllers.tricycle_steering_controller import TricycleSteeringController
+from tests.control.controllers.driving import roll, stamped, twist, warnings
+
+NAME = "car"
+BASE, TRACK, RADIUS = 1.2, 0.8, 0.1
+
+TWO = {"traction_joints_names": ["right", "left"], "steering_joints_names": ["steer_right", "steer_left"]}
+ACKERMANN = TWO | {"wheelbase": BASE, "traction_track_width": TRACK, "traction_wheels_radius": RADIUS}
+TRICYCLE = ACKERMANN | {"steering_joints_names": ["steer"]}
+BICYCLE = {
+    "traction_joints_names": ["wheel"],
+    "steering_joints_names": ["steer"],
+    "wheelbase": BASE,
+    "traction_wheel_radius": RADIUS,
+}
+ALL = [
+    (AckermannSteeringController, ACKERMANN),
+    (TricycleSteeringController, TRICYCLE),
+    (BicycleSteeringController, BICYCLE),
+]
+EACH = pytest.mark.parametrize(("kind", "sizes"), ALL, ids=["ackermann", "tricycle", "bicycle"])
+
+
+def vehicle(stand, kind, sizes, **more) -> Any:
+    """A controller, with joints that are where they are told to be."""
+    for joint in sizes["traction_joints_names"]:
+        stand.joint(joint, commands=("velocity",), position=0.0, velocity=0.0)
+    for joint in sizes["steering_joints_names"]:
+        stand.joint(joint, commands=("position",), position=0.0)
+    return stand.start(kind, NAME, **sizes | more)
+
+
+def told(stand, *velocity: float, at: int = 0) -> None:
+    stand.say("geometry_msgs/msg/TwistStamped", f"/{NAME}/reference", stamped(at, *velocity))
+
+
+def commanded(stand, *joints: str) -> list[float]:
+    return [
+        next(each.value for name, each in stand.commands.items() if name.startswith(f"{joint}/")) for joint in joints
+    ]
+
+
+def test_they_are_found_by_their_types():
+    for kind, _ in ALL:
+        package = kind.__module__.rpartition(".")[2]
+        assert controller_class(f"{package}/{kind.__name__}") is kind
+
+
+async def test_the_wheels_of_a_car_roll_about_one_point(stand):
+    controller = vehicle(stand, AckermannSteeringController, ACKERMANN)
+    for _ in range(3):
+        told(stand, 1.0, 0.5)
+        await roll(stand, controller)
+    circle = 1.0 / 0.5
+    left, right = commanded(stand, "steer_left", "steer_right")
+    assert (left, right) == pytest.approx((atan(BASE / (circle - TRACK / 2)), atan(BASE / (circle + TRACK / 2))))
+    left, right = commanded(stand, "left", "right")
+    assert (left, right) == pytest.approx((0.5 * (circle - TRACK / 2) / RADIUS, 0.5 * (circle + TRACK / 2) / RADIUS))
+
+
+async def test_steered_wheels_may_have_another_track(stand):
+    controller = vehicle(stand, AckermannSteeringController, ACKERMANN, steering_track_width=0.4)
+    told(stand, 1.0, 0.5)
+    await stand.step(controller)
+    assert commanded(stand, "steer_left") == pytest.approx([atan(BASE / (2.0 - 0.2))])
+
+
+async def test_the_wheels_of_a_tricycle_and_of_a_bicycle(stand):
+    controller = vehicle(stand, TricycleSteeringController, TRICYCLE, open_loop=True)
+    told(stand, 1.0, 0.5)
+    await stand.step(controller)
+    assert commanded(stand, "right", "left", "steer") == pytest.approx([12.0, 8.0, atan(0.6)])
+
+
+async def test_a_bicycle_has_one_wheel_of_each(stand):
+    controller = vehicle(stand, BicycleSteeringController, BICYCLE)
+    told(stand, 1.0, 0.5)
+    await stand.step(controller)
+    assert commanded(stand, "wheel", "steer") == pytest.approx([10.0, atan(0.6)])
+
+
+@EACH
+@pytest.mark.parametrize(
+    "how", [{}, {"position_feedback": True}, {"open_loop": True}], ids=["velocity", "position", "open"]
+)
+async def test_odometry_is_the_arc_that_was_driven(stand, kind, sizes, how):
+    controller = vehicle(stand, kind, sizes, reference_timeout=60.0, **how)
+    heard = stand.heard("nav_msgs/msg/Odometry", f"/{NAME}/odometry")
+    transforms = stand.heard("tf2_msgs/msg/TFMessage", f"/{NAME}/tf_odometry")
+    told(stand, 0.5, 0.2)
+    await roll(stand, controller, 20)
+    begin = heard[-1].pose.pose
+    await roll(stand, controller, 500)
+    end, velocity = heard[-1].pose.pose, heard[-1].twist.twist
+    yaw = 2.0 * atan(begin.orientation.z / begin.orientation.w)
+    assert end.position.x - begin.position.x == pytest.approx(2.5 * (sin(yaw + 1.0) - sin(yaw)), abs=1e-9)
+    assert end.position.y - begin.position.y == pytest.approx(2.5 * (cos(yaw) - cos(yaw + 1.0)), abs=1e-9)
+    assert (velocity.linear.x, velocity.angular.z) == pytest.approx((0.5, 0.2))
+    assert transforms[-1].transforms[0].transform.translation.x == end.position.x
+    assert list(heard[-1].pose.covariance[::7]) == [0.0, 7.0, 14.0, 21.0, 28.0, 35.0]
+
+
+@EACH
+async def test_a_command_holds_for_its_time_and_no_update_longer(stand, kind, sizes):
+    controller = vehicle(stand, kind, sizes, reference_timeout=0.1)
+    told(stand, 1.0, 0.5)
+    await stand.step(controller, 0.001, count=101)
+    angle = commanded(stand, sizes["steering_joints_names"][0])
+    assert commanded(stand, sizes["traction_joints_names"][0])[0] > 0.0
+    await stand.step(controller, 0.001)
+    assert commanded(stand, *sizes["traction_joints_names"]) == [0.0] * len(sizes["traction_joints_names"])
+    assert commanded(stand, sizes["steering_joints_names"][0]) == angle
+
+
+async def test_without_a_time_out_a_command_holds_for_one_update(stand):
+    controller = vehicle(stand, BicycleSteeringController, BICYCLE, reference_timeout=0.0)
+    told(stand, 1.0)
+    await stand.step(controller)
+    assert commanded(stand, "wheel") == [10.0]
+    await stand.step(controller)
+    assert commanded(stand, "wheel") == [0.0]
+
+
+async def test_commands_of_humble_may_have_no_header(stand):
+    controller = vehicle(stand, BicycleSteeringController, BICYCLE, use_stamped_vel=False)
+    stand.say("geometry_msgs/msg/Twist", f"/{NAME}/reference_unstamped", twist(1.0))
+    await stand.step(controller)
+    assert commanded(stand, "wheel") == [10.0]
+
+
+async def test_the_older_names_of_parameters_are_those_of_humble(stand):
+    older = {
+        "front_steering": True,
+        "rear_wheels_names": ["right", "left"],
+        "front_wheels_names": ["steer_right", "steer_left"],
+        "wheelbase": BASE,
+        "front_wheel_track": 0.4,
+        "rear_wheel_track": TRACK,
+        "front_wheels_radius": 0.3,
+        "rear_wheels_radius": RADIUS,
+    }
+    for joint in ("right", "left"):
+        stand.joint(joint, commands=("velocity",), velocity=0.0)
+        stand.joint(f"steer_{joint}", commands=("position",), position=0.0)
+    controller = stand.start(AckermannSteeringController, NAME, **older)
+    told(stand, 1.0, 0.5)
+    await stand.step(controller)
+    assert commanded(stand, "left", "steer_left") == pytest.approx([10.0, atan(BASE / 1.8)])
+    assert not [each for each in warnings(stand) if "no parameter" in each]
+
+
+async def test_wheels_are_slow_until_they_are_steered_where_that_is_asked_for(stand):
+    controller = vehicle(stand, BicycleSteeringController, BICYCLE, reduce_wheel_speed_until_steering_reached=True)
+    told(stand, 1.0, tan(1.0) / BASE)
+    await stand.step(controller)
+    assert commanded(stand, "wheel") == pytest.approx([10.0 * cos(1.0) / cos(0.5235987755982988)])
+    stand.states["steer/position"].value = 1.0
+    await stand.step(controller)
+    assert commanded(stand, "wheel") == pytest.approx([10.0])
+
+
+async def test_another_controller_may_command_it(stand):
+    controller = vehicle(stand, BicycleSteeringController, BICYCLE)
+    assert [each.name for each in controller.references] == ["car/linear/velocity", "car/angular/velocity"]
+    controller.chained = True
+    controller.references[0].value, controller.references[1].value = 1.0, 0.0
+    await stand.step(controller)
+    assert commanded(stand, "wheel") == [10.0]
+    assert all(isnan(each.value) for each in controller.references)
+    await stand.step(controller)
+    assert commanded(stand, "wheel") == [0.0]
+
+
+async def test_its_state_is_published(stand):
+    controller = vehicle(stand, BicycleSteeringController, BICYCLE)
+    heard = stand.heard("control_msgs/msg/SteeringControllerStatus", f"/{NAME}/controller_state")
+    told(stand, 1.0, 0.5)
+    await roll(stand, controller, 2)
+    last = heard[-1]
+    assert (list(last.traction_wheels_velocity), list(last.linear_velocity_command)) == ([10.0], [10.0])
+    assert list(last.steer_positions) == list(last.steering_angle_command) == [atan(0.6)]
+
+
+async def test_it_stops_when_it_is_deactivated_or_told_no_number(stand):
+    controller = vehicle(stand, BicycleSteeringController, BICYCLE)
+    told(stand, 1.0)
+    await stand.step(controller)
+    told(stand, nan)
+    await stand.step(controller)
+    assert commanded(stand, "wheel") == [0.0]
+    told(stand, 1.0)
+    await stand.step(controller)
+    controller.on_deactivate()
+    assert commanded(stand, "wheel") == [0.0]
+
+
+@pytest.mark.parametrize(
+    ("kind", "sizes", "words"),
+    [
+        (
+            AckermannSteeringController,
+            ACKERMANN | {"traction_joints_names": ["right"]},
+            "Ackermann configuration requires exactly 2 traction joint(s), but 1 were provided",
+        ),
+        (BicycleSteeringController, {"wheelbase": 1.0}, "requires exactly 1 traction joint(s), but 0 were provided"),
+        (BicycleSteeringController, BICYCLE | {"wheelbase": 0.0}, "'wheelbase' with the value 0 must be above 0"),
+    ],
+)
+def test_what_cannot_drive_is_not_configured(stand, kind, sizes, words):
+    with pytest.raises(ControllerError) as error:
+        stand.start(kind, NAME, **sizes)
+    assert words in str(error.value)

@@ -1,0 +1,161 @@
+from __future__ import annotations
+
+from itertools import pairwise
+from math import atan, cos, nan, pi, sin
+
+import pytest
+
+from linkwright.control.controllers.controller import ControllerError
+from linkwright.control.controllers.registry import controller_class
+from linkwright.control.controllers.tricycle_controller import TricycleController
+from tests.control.controllers.driving import STEP, roll, stamped
+
+NAME = "fork"
+ROBOT = {"traction_joint_name": "wheel", "steering_joint_name": "steer", "wheelbase": 1.2, "wheel_radius": 0.1}
+
+
+@pytest.fixture
+def wheel(stand):
+    """A stand with a wheel that drives and is steered."""
+    stand.joint("wheel", commands=("velocity",), position=0.0, velocity=0.0)
+    stand.joint("steer", commands=("position",), position=0.0)
+    return stand
+
+
+def told(stand, *velocity: float) -> None:
+    stand.say("geometry_msgs/msg/TwistStamped", f"/{NAME}/cmd_vel", stamped(0, *velocity))
+
+
+def commanded(stand) -> list[float]:
+    return [each.value for each in stand.commands.values()]
+
+
+def test_it_is_found_by_its_type():
+    assert controller_class("tricycle_controller/TricycleController") is TricycleController
+
+
+async def test_the_wheel_is_as_fast_as_it_has_to_be_once_it_is_steered(wheel):
+    controller = wheel.start(TricycleController, NAME, **ROBOT)
+    told(wheel, 1.0, 0.8)
+    await roll(wheel, controller, 2)
+    angle = atan(0.96)
+    assert commanded(wheel) == pytest.approx([10.0 / cos(angle), angle])
+
+
+async def test_the_wheel_is_slow_while_it_is_far_from_its_angle(wheel):
+    controller = wheel.start(TricycleController, NAME, **ROBOT)
+    wheel.states["steer/position"].value = -0.2
+    told(wheel, 0.0, 1.0)
+    await wheel.step(controller)
+    assert commanded(wheel) == pytest.approx([12.0 * 0.01, pi / 2.0])
+    wheel.states["steer/position"].value = pi / 2.0 - 1.0
+    await wheel.step(controller)
+    assert commanded(wheel)[0] == pytest.approx(12.0 * cos(1.0))
+
+
+@pytest.mark.parametrize("open_loop", [True, False])
+async def test_odometry_is_the_arc_that_was_driven(wheel, open_loop):
+    controller = wheel.start(
+        TricycleController, NAME, **ROBOT, open_loop=open_loop, cmd_vel_timeout=60000, enable_odom_tf=True
+    )
+    heard = wheel.heard("nav_msgs/msg/Odometry", f"/{NAME}/odom")
+    transforms = wheel.heard("tf2_msgs/msg/TFMessage", "/tf")
+    told(wheel, 0.5, 0.2)
+    await roll(wheel, controller, 20)
+    begin = heard[-1].pose.pose
+    yaw = 2.0 * atan(begin.orientation.z / begin.orientation.w)
+    await roll(wheel, controller, 500)
+    end = heard[-1].pose.pose
+    assert end.position.x - begin.position.x == pytest.approx(2.5 * (sin(yaw + 1.0) - sin(yaw)), abs=1e-9)
+    assert end.position.y - begin.position.y == pytest.approx(2.5 * (cos(yaw) - cos(yaw + 1.0)), abs=1e-9)
+    assert transforms[-1].transforms[0].transform.translation.x == end.position.x
+
+
+async def test_odometry_may_have_velocities_only(wheel):
+    controller = wheel.start(TricycleController, NAME, **ROBOT, odom_only_twist=True)
+    heard = wheel.heard("nav_msgs/msg/Odometry", f"/{NAME}/odom")
+    told(wheel, 0.5)
+    await roll(wheel, controller, 30)
+    assert heard[-1].twist.twist.linear.x == pytest.approx(0.5)
+    assert (heard[-1].pose.pose.position.x, heard[-1].pose.pose.orientation.w) == (0.0, 1.0)
+
+
+async def test_odometry_begins_anew_on_request(wheel):
+    controller = wheel.start(TricycleController, NAME, **ROBOT)
+    heard = wheel.heard("nav_msgs/msg/Odometry", f"/{NAME}/odom")
+    told(wheel, 0.5)
+    await roll(wheel, controller, 30)
+    client = wheel.node.create_client("std_srvs/srv/Empty", f"/{NAME}/reset_odometry")
+    client.call_async(client.srv_type.Request())
+    await roll(wheel, controller)
+    assert heard[-2].pose.pose.position.x > 0.1
+    assert heard[-1].pose.pose.position.x == pytest.approx(0.005)
+
+
+async def test_a_command_holds_for_its_time_in_milliseconds(wheel):
+    controller = wheel.start(TricycleController, NAME, **ROBOT, cmd_vel_timeout=100)
+    told(wheel, 1.0)
+    await wheel.step(controller, 0.001, count=101)
+    assert commanded(wheel)[0] == pytest.approx(10.0)
+    await wheel.step(controller, 0.001)
+    assert commanded(wheel) == [0.0, 0.0]
+
+
+async def test_limits_are_never_exceeded_and_commands_published(wheel):
+    limits = {
+        "traction": {"max_velocity": 8.0, "max_acceleration": 20.0, "max_deceleration": 40.0},
+        "steering": {"max_position": 0.5, "max_velocity": 1.0},
+    }
+    controller = wheel.start(TricycleController, NAME, **ROBOT, **limits, publish_ackermann_command=True)
+    heard = wheel.heard("ackermann_msgs/msg/AckermannDrive", f"/{NAME}/cmd_ackermann")
+    speeds, angles = [0.0], [0.0]
+    for number in range(300):
+        told(wheel, *((1.0, 2.0), (-1.0, 1.0), (0.2, 0.0))[number // 50 % 3])
+        await roll(wheel, controller)
+        speed, angle = commanded(wheel)
+        speeds.append(speed)
+        angles.append(angle)
+    assert max(map(abs, speeds)) == 8.0
+    assert max(map(abs, angles)) == 0.5
+    for before, after in pairwise(speeds):
+        bound = 20.0 if abs(after) >= abs(before) else 40.0
+        assert abs(after - before) / STEP <= bound + 1e-9
+    assert all(abs(after - before) / STEP <= 1.0 + 1e-9 for before, after in pairwise(angles))
+    assert (heard[-1].speed, heard[-1].steering_angle) == pytest.approx((speeds[-1], angles[-1]))
+
+
+async def test_it_stops_when_it_is_deactivated(wheel):
+    controller = wheel.start(TricycleController, NAME, **ROBOT)
+    told(wheel, 1.0, 0.2)
+    await roll(wheel, controller)
+    controller.on_deactivate()
+    assert commanded(wheel) == [0.0, 0.0]
+
+
+async def test_a_wheel_that_tells_no_number_ends_it(wheel):
+    controller = wheel.start(TricycleController, NAME, **ROBOT)
+    wheel.states["steer/position"].value = nan
+    with pytest.raises(ControllerError, match="Could not read feedback value"):
+        await wheel.step(controller)
+
+
+@pytest.mark.parametrize(
+    ("parameters", "words"),
+    [
+        ({"traction_joint_name": ""}, "Parameter 'traction_joint_name' cannot be empty"),
+        ({"wheelbase": 0.0}, "Parameter 'wheelbase' with the value 0 must be above 0"),
+        ({"traction": {"max_velocity": -1.0}}, "traction limiter: velocity limits cannot be negative"),
+        (
+            {"traction": {"max_jerk": 1.0, "min_jerk": 2.0}},
+            "traction limiter: Min jerk cannot be greater than max jerk",
+        ),
+        (
+            {"steering": {"max_position": 1.0, "min_position": 2.0}},
+            "steering limiter: Min position cannot be greater than max position",
+        ),
+    ],
+)
+def test_what_cannot_drive_is_not_configured(wheel, parameters, words):
+    with pytest.raises(ControllerError) as error:
+        wheel.start(TricycleController, NAME, **ROBOT | parameters)
+    assert words in str(error.value)
