@@ -173,6 +173,9 @@ async def test_commands_of_humble_may_have_no_header(wheels):
     wheels.say("geometry_msgs/msg/Twist", f"/{NAME}/cmd_vel_unstamped", twist(1.0))
     await wheels.step(controller)
     assert speeds(wheels) == pytest.approx([10.0, 10.0])
+    told(wheels, 0.5, at=wheels.time_ns)
+    await wheels.step(controller)
+    assert speeds(wheels) == pytest.approx([5.0, 5.0])
     assert not warnings(wheels)
 
 

@@ -8,7 +8,7 @@ import pytest
 from linkwright.control.controllers.controller import ControllerError
 from linkwright.control.controllers.registry import controller_class
 from linkwright.control.controllers.tricycle_controller import TricycleController
-from tests.control.controllers.driving import STEP, roll, stamped
+from tests.control.controllers.driving import STEP, roll, stamped, twist
 
 NAME = "fork"
 ROBOT = {"traction_joint_name": "wheel", "steering_joint_name": "steer", "wheelbase": 1.2, "wheel_radius": 0.1}
@@ -99,6 +99,13 @@ async def test_a_command_holds_for_its_time_in_milliseconds(wheel):
     assert commanded(wheel)[0] == pytest.approx(10.0)
     await wheel.step(controller, 0.001)
     assert commanded(wheel) == [0.0, 0.0]
+
+
+async def test_commands_of_humble_may_have_no_header(wheel):
+    controller = wheel.start(TricycleController, NAME, **ROBOT, use_stamped_vel=False)
+    wheel.say("geometry_msgs/msg/Twist", f"/{NAME}/cmd_vel", twist(1.0))
+    await wheel.step(controller)
+    assert commanded(wheel)[0] == pytest.approx(10.0)
 
 
 async def test_limits_are_never_exceeded_and_commands_published(wheel):

@@ -63,7 +63,7 @@ class Parameters:
     cmd_vel_timeout: float = parameter(0.5, description="how long a command holds, in seconds")
     publish_limited_velocity: bool = parameter(False, description="whether ~/cmd_vel_out is published")
     velocity_rolling_window_size: int = parameter(10, description="odometry tells the mean of so many velocities")
-    use_stamped_vel: bool = parameter(True, description="commands are ~/cmd_vel with headers, else ~/cmd_vel_unstamped")
+    use_stamped_vel: bool = parameter(True, description="whether ~/cmd_vel_unstamped is not taken too")
     publish_rate: float = parameter(50.0, description="of odometry, in Hz")
     linear: LinearLimits = LinearLimits()
     angular: AngularLimits = AngularLimits()
@@ -106,8 +106,8 @@ class DiffDriveController(Controller[Parameters]):
             said.right_wheel_radius_multiplier * radius,
         )
         self._limiters = said.linear.x.limiter("linear.x"), said.angular.z.limiter("angular.z")
-        topic = "~/cmd_vel" if said.use_stamped_vel else "~/cmd_vel_unstamped"
-        self._input = VelocityInput(node, topic, stamped=said.use_stamped_vel, timeout_s=said.cmd_vel_timeout)
+        unstamped = "" if said.use_stamped_vel else "~/cmd_vel_unstamped"
+        self._input = VelocityInput(node, "~/cmd_vel", timeout_s=said.cmd_vel_timeout, unstamped=unstamped)
         prefix = frame_prefix(node, said.tf_frame_prefix, enabled=said.tf_frame_prefix_enable)
         self._odometry = DriveOdometry(
             node,

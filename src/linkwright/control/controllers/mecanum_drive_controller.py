@@ -115,7 +115,7 @@ class MecanumDriveController(Controller[Parameters]):
                 raise ControllerError(each)
         self._drive = MecanumDrive(sizes.sum_of_robot_center_projection_on_X_Y_axis, sizes.wheels_radius)
         timeout = said.reference_timeout
-        self._input = VelocityInput(node, "~/reference", stamped=True, timeout_s=timeout, qos=REFERENCE_QOS)
+        self._input = VelocityInput(node, "~/reference", timeout_s=timeout, qos=REFERENCE_QOS)
         prefix = frame_prefix(node, said.tf_frame_prefix, enabled=said.tf_frame_prefix_enable)
         self._frame = prefix + said.odom_frame_id
         self._odometry = DriveOdometry(

@@ -53,9 +53,7 @@ class SteeringParameters:
     twist_covariance_diagonal: tuple[float, ...] = parameter(_DIAGONAL, description="variances of the velocity")
     pose_covariance_diagonal: tuple[float, ...] = parameter(_DIAGONAL, description="variances of the pose")
     position_feedback: bool = parameter(False, description="odometry by positions of wheels, not by velocities")
-    use_stamped_vel: bool = parameter(
-        True, description="commands are ~/reference with headers, else ~/reference_unstamped"
-    )
+    use_stamped_vel: bool = parameter(True, description="whether ~/reference_unstamped is not taken too")
     wheelbase: float = parameter(0.0, description="between the axles, in m")
 
     def of_traction(self, front: float, rear: float) -> float:
@@ -137,14 +135,9 @@ class SteeringController(Controller[P], Generic[P]):
             wrong = above(0.0)(name, value)
             if wrong is not None:
                 raise ControllerError(wrong)
-        stamped = said.use_stamped_vel
-        self._input = VelocityInput(
-            node,
-            "~/reference" if stamped else "~/reference_unstamped",
-            stamped=stamped,
-            timeout_s=said.reference_timeout,
-            qos=REFERENCE_QOS,
-        )
+        unstamped = "" if said.use_stamped_vel else "~/reference_unstamped"
+        timeout = said.reference_timeout
+        self._input = VelocityInput(node, "~/reference", timeout_s=timeout, unstamped=unstamped, qos=REFERENCE_QOS)
         self._odometry = DriveOdometry(
             node,
             "~/odometry",

@@ -112,7 +112,8 @@ class TricycleController(Controller[Parameters]):
         self._drive = TricycleDrive(said.wheelbase, said.wheel_radius)
         self._traction, self._steering = _traction_limiter(said.traction), _steering_limiter(said.steering)
         timeout = said.cmd_vel_timeout / 1000.0
-        self._input = VelocityInput(node, "~/cmd_vel", stamped=said.use_stamped_vel, timeout_s=timeout)
+        unstamped = "" if said.use_stamped_vel else "~/cmd_vel"
+        self._input = VelocityInput(node, "~/cmd_vel", timeout_s=timeout, unstamped=unstamped)
         self._odometry = DriveOdometry(
             node,
             "~/odom",

@@ -17,7 +17,7 @@ REFERENCE_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
 class VelocityInput:
-    """Commands of a topic, ``geometry_msgs/msg/TwistStamped`` or ``Twist``, as long as they are fresh.
+    """Commands of a topic, ``geometry_msgs/msg/TwistStamped``, as long as they are fresh.
 
     A command counts from the time in its header; from the update that takes it where it has none, or one that is still
     to come, so that it grows old in any case. One that is not finite makes the drive stand.
@@ -25,24 +25,26 @@ class VelocityInput:
     Args:
         node: the controller's.
         topic: its name.
-        stamped: whether commands have headers.
         timeout_s: how long a command holds, in seconds; with 0 each holds for one update.
-        qos: the quality of service of the subscription.
+        unstamped: a topic of ``geometry_msgs/msg/Twist`` besides; empty for none. The same name has commands without
+            headers only.
+        qos: the quality of service of the subscriptions.
 
-    Source: diff_drive_controller of ros2_controllers; other than there a header of the future does not hold for ever.
+    Source: diff_drive_controller of ros2_controllers; other than there a header of the future does not hold for ever,
+    and commands with headers are taken even where those without are asked for, as Jazzy takes no others.
     """
 
     def __init__(
-        self, node: ControllerNode, topic: str, *, stamped: bool, timeout_s: float, qos: QoSProfile | int = 10
+        self, node: ControllerNode, topic: str, *, timeout_s: float, unstamped: str = "", qos: QoSProfile | int = 10
     ) -> None:
         self._logger = node.logger
         self._timeout = round(timeout_s * _NANOSECONDS)
         self._is_open = False
         self.forget()
-        if stamped:
+        if topic != unstamped:
             node.subscribe("geometry_msgs/msg/TwistStamped", topic, self._take_stamped, qos)
-        else:
-            node.subscribe("geometry_msgs/msg/Twist", topic, self._take, qos)
+        if unstamped:
+            node.subscribe("geometry_msgs/msg/Twist", unstamped, self._take, qos)
 
     def open(self) -> None:
         """Take commands from now on."""
