@@ -1,0 +1,265 @@
+"""The package of control nodes: each drives mbot through a simulated world and is judged by what came of it."""
+
+from __future__ import annotations
+
+import importlib
+import math
+import sys
+import xml.etree.ElementTree as ET
+from collections.abc import Iterator
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import pytest
+import yaml
+
+from linkwright import standins
+from linkwright.cli.command import main
+from linkwright.messages import get_message
+from linkwright.testing import SteppedSimulation
+from tests.places import CONTROL_PACKAGE, GAZEBO_PACKAGE
+from tests.robots.workspaces import colcon_build
+
+pytest.importorskip("mujoco")
+
+ROBOT = "package://my_robot_description/urdf/mbot_gazebo.xacro"
+NODES = ("drive_square", "follow_wall", "go_to_pose", "follow_line", "avoid_obstacles")
+RADIUS = 0.2
+"""mbot's, in m."""
+
+
+@pytest.fixture
+def load(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
+    """Imports a module of the package, as a workspace that is sourced would."""
+    standins.activate()
+    monkeypatch.syspath_prepend(str(CONTROL_PACKAGE))
+
+    def module(name: str) -> ModuleType:
+        return importlib.import_module(f"my_robot_control.{name}")
+
+    yield module
+    for name in [name for name in sys.modules if name.partition(".")[0] == "my_robot_control"]:
+        del sys.modules[name]
+
+
+def world(name: str) -> Path:
+    return GAZEBO_PACKAGE / "worlds" / f"{name}.world"
+
+
+def place(test: SteppedSimulation) -> tuple[float, float]:
+    """Where the robot really is."""
+    x, y, *_ = test.robot_pose()
+    return x, y
+
+
+def said(test: SteppedSimulation) -> list[str]:
+    return [record.text for record in test.log]
+
+
+@pytest.mark.slow
+def test_a_square_is_closed(load: Any) -> None:
+    with SteppedSimulation(world("empty"), ROBOT) as test:
+        test.init_rclpy()
+        load("drive_square").DriveSquare()
+        odometry = test.record("/odom")
+        corners: list[tuple[float, float]] = []
+        for _ in range(60):
+            test.advance(1.0)
+            reached = sum("corner reached" in text for text in said(test))
+            if reached > len(corners):
+                corners.append(place(test))
+            if "the square is closed" in said(test):
+                break
+        measured = odometry.last.pose.pose.position
+        assert math.hypot(measured.x, measured.y) < 0.05, "as far as odometry can tell"
+        assert math.dist(place(test), (0.0, 0.0)) < 0.25, "in the world, where wheels slip"
+        for corner, expected in zip(corners, [(1, 0), (1, 1), (0, 1)], strict=True):
+            assert math.dist(corner, expected) < 0.25
+        test.advance(1.0)
+        speed = odometry.last.twist.twist
+        assert abs(speed.linear.x) < 1e-3
+        assert abs(speed.angular.z) < 1e-3
+
+
+@pytest.mark.slow
+def test_a_wall_is_followed_through_the_maze(load: Any) -> None:
+    with SteppedSimulation(world("maze"), ROBOT, arguments={"laser": True}) as test:
+        test.init_rclpy()
+        load("follow_wall").FollowWall()
+        scans = test.record("/scan")
+        test.advance(2.0)
+        way, before, beside, nearest = 0.0, place(test), [], []
+        for _ in range(60):
+            test.advance(1.0)
+            way, before = way + math.dist(before, place(test)), place(test)
+            nearest.append(min(scans.last.ranges))
+            beside.append(scans.last.ranges[90])  # 90 degrees to the right
+        assert way > 8.0
+        assert min(nearest) > RADIUS + 0.1, "it touches nothing"
+        near = [distance for distance in beside if distance < 0.9]
+        assert len(near) > 40, "there is nearly always a wall on its right"
+        assert sorted(near)[len(near) // 2] == pytest.approx(0.5, abs=0.1)
+        assert math.dist(place(test), (0.0, 0.0)) > 4.0, "it gets through the maze"
+
+
+def test_a_wall_on_the_left_can_be_followed(load: Any) -> None:
+    with SteppedSimulation(world("maze"), ROBOT, arguments={"laser": True}) as test:
+        test.init_rclpy(["--ros-args", "-p", "side:=left"])
+        load("follow_wall").FollowWall()
+        scans = test.record("/scan")
+        test.advance(5.0)
+        assert place(test)[0] > 0.7
+        assert scans.last.ranges[270] == pytest.approx(0.5, abs=0.1)
+
+
+@pytest.mark.parametrize(("x", "y", "yaw"), [(1.0, 0.5, 1.57), (-0.8, -0.4, 0.0)])
+def test_a_pose_is_reached(load: Any, x: float, y: float, yaw: float) -> None:
+    with SteppedSimulation(world("empty"), ROBOT) as test:
+        test.init_rclpy()
+        load("go_to_pose").GoToPose()
+        odometry = test.record("/odom")
+        test.advance(0.2)
+        goal = get_message("geometry_msgs/msg/PoseStamped")()
+        goal.pose.position.x, goal.pose.position.y = x, y
+        goal.pose.orientation.z, goal.pose.orientation.w = math.sin(yaw / 2), math.cos(yaw / 2)
+        goal.header.frame_id = "map"
+        test.publish("/goal_pose", goal)
+        test.advance(0.2)
+        assert any("set the Fixed Frame to 'odom'" in text for text in said(test))
+        goal.header.frame_id = "odom"
+        test.publish("/goal_pose", goal)
+        for _ in range(40):
+            test.advance(1.0)
+            if "goal reached" in said(test):
+                break
+        pose = odometry.last.pose.pose
+        assert math.dist((pose.position.x, pose.position.y), (x, y)) < 0.1
+        heading = 2.0 * math.atan2(pose.orientation.z, pose.orientation.w)
+        assert math.cos(heading - yaw) > math.cos(0.1)
+        assert "goal reached" in said(test)
+
+
+@pytest.mark.slow
+def test_a_line_is_followed(load: Any) -> None:
+    line = _pieces()
+    with SteppedSimulation(world("line_track"), ROBOT, arguments={"camera": True}) as test:
+        test.init_rclpy()
+        load("follow_line").FollowLine()
+        way, before = 0.0, place(test)
+        for _ in range(18):
+            test.advance(1.0)
+            way, before = way + math.dist(before, place(test)), place(test)
+            assert min(math.dist(place(test), piece) for piece in line) < 0.15, "mbot stands on the line"
+        assert way > 2.5
+
+
+@pytest.mark.slow
+def test_obstacles_are_not_touched(load: Any) -> None:
+    with SteppedSimulation(world("obstacles"), ROBOT, arguments={"laser": True}) as test:
+        test.init_rclpy()
+        load("avoid_obstacles").AvoidObstacles()
+        scans = test.record("/scan")
+        way, before = 0.0, place(test)
+        for _ in range(60):
+            test.advance(1.0)
+            way, before = way + math.dist(before, place(test)), place(test)
+            assert min(scans.last.ranges) > RADIUS + 0.05
+        assert way > 6.0
+        assert any("m ahead" in text for text in said(test))
+
+
+def test_it_stops_before_a_box(load: Any) -> None:
+    with SteppedSimulation(world("obstacles"), ROBOT, arguments={"laser": True}) as test:
+        test.init_rclpy(["--ros-args", "-p", "wander:=false"])
+        load("avoid_obstacles").AvoidObstacles()
+        scans, odometry = test.record("/scan"), test.record("/odom")
+        test.advance(20.0)
+        assert place(test)[0] > 2.0, "the wall of boxes is 3.6 m away"
+        ahead = min(distance for number, distance in enumerate(scans.last.ranges) if abs(number - 180) <= 40)
+        assert 0.35 < ahead < 0.6
+        assert abs(odometry.last.twist.twist.linear.x) < 1e-3
+
+
+def test_a_sensor_that_falls_silent_stops_the_robot(load: Any) -> None:
+    with SteppedSimulation(world("empty"), ROBOT) as test:
+        test.init_rclpy()
+        load("avoid_obstacles").AvoidObstacles()
+        velocities = test.record("/cmd_vel")
+        scan = get_message("sensor_msgs/msg/LaserScan")(angle_min=-math.pi, angle_increment=math.pi / 180)
+        scan.range_max, scan.ranges = 6.0, [6.0] * 360
+        for _ in range(5):
+            test.publish("/scan", scan)
+            test.advance(0.1)
+        assert velocities.last.linear.x > 0.1
+        test.advance(1.0)
+        assert velocities.last.linear.x == 0.0
+
+
+def test_the_tests_of_the_package_pass(load: Any) -> None:
+    path = CONTROL_PACKAGE / "test" / "test_decisions.py"
+    load("driving_node")
+    names: dict[str, Any] = {"__name__": "test_decisions"}
+    exec(compile(path.read_text(encoding="utf-8"), str(path), "exec"), names)
+    tests = [value for name, value in names.items() if name.startswith("test_")]
+    assert len(tests) == 5
+    for each in tests:
+        each()
+
+
+def test_nothing_is_found_in_the_package(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", "--strict", str(CONTROL_PACKAGE)]) == 0, capsys.readouterr().out
+
+
+def test_each_node_has_parameters_a_launch_file_and_an_entry_point() -> None:
+    parameters = yaml.safe_load((CONTROL_PACKAGE / "config" / "control.yaml").read_text(encoding="utf-8"))
+    assert set(parameters) == set(NODES)
+    setup = (CONTROL_PACKAGE / "setup.py").read_text(encoding="utf-8")
+    for name in NODES:
+        assert f"'{name} = my_robot_control.{name}:main'" in setup
+        assert (CONTROL_PACKAGE / "launch" / f"{name}.launch.py").is_file()
+
+
+@pytest.mark.parametrize("name", NODES)
+def test_parameter_files_say_what_nodes_have(load: Any, name: str) -> None:
+    said = yaml.safe_load((CONTROL_PACKAGE / "config" / "control.yaml").read_text(encoding="utf-8"))
+    with SteppedSimulation(world("empty")) as test:
+        test.init_rclpy()
+        module = load(name)
+        (kind,) = [
+            each
+            for each in vars(module).values()
+            if isinstance(each, type) and each.__module__ == module.__name__ and hasattr(each, "drive")
+        ]
+        node = kind()
+        expected = said[name]["ros__parameters"]
+        assert {key: node.get_parameter(key).value for key in expected} == expected
+
+
+@pytest.mark.parametrize("name", NODES)
+def test_launch_files_bring_the_simulation_and_the_node(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["launch", str(CONTROL_PACKAGE / "launch" / f"{name}.launch.py"), "--print"]) == 0
+    printed = capsys.readouterr().out
+    assert name in printed
+    assert "gazebo" in printed
+
+
+@pytest.mark.slow
+def test_colcon_installs_everything(tmp_path: Path) -> None:
+    (tmp_path / "src").mkdir()
+    (tmp_path / "src" / CONTROL_PACKAGE.name).symlink_to(CONTROL_PACKAGE)
+    colcon_build(tmp_path, CONTROL_PACKAGE.name)
+    installed = tmp_path / "install" / CONTROL_PACKAGE.name
+    share = installed / "share" / CONTROL_PACKAGE.name
+    for name in NODES:
+        assert (installed / "lib" / CONTROL_PACKAGE.name / name).is_file()
+        assert (share / "launch" / f"{name}.launch.py").is_file()
+    assert (share / "config" / "control.yaml").is_file()
+
+
+def _pieces() -> list[tuple[float, float]]:
+    """The middles of the pieces of the line, x and y in m."""
+    model = ET.parse(world("line_track")).find(".//model[@name='line']")
+    assert model is not None
+    poses = [pose.text.split() for pose in model.iterfind(".//visual/pose") if pose.text]
+    return [(float(x), float(y)) for x, y, *_ in poses]
