@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from linkwright.diagnostics import Phrase, foreign, phrase
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.mesh_faults import fault_in
+from linkwright.geometry.stl import read_stl
 
 MESH_ENDINGS = (".stl", ".dae", ".obj", ".glb", ".gltf")
 """The formats that are read, as RViz and Gazebo read them."""
@@ -23,7 +24,7 @@ class PlacedMesh(NamedTuple):
     """One mesh of a file at one of its places.
 
     Attributes:
-        mesh: the `trimesh.Trimesh`; it has triangles.
+        mesh: the `trimesh.Trimesh`, or the `StlMesh` that stands for one; it has triangles.
         matrix: its frame in that of the file, homogeneous, in the file's unit; shape (4, 4).
         unit: metres for each unit of the file.
         names: what the file calls the mesh and the place.
@@ -91,6 +92,10 @@ def placed_meshes(data: bytes, kind: str, **options: Any) -> list[PlacedMesh]:
 
 
 def _parsed(data: bytes, kind: str, **options: Any) -> Iterator[PlacedMesh]:
+    stl = read_stl(data) if kind == "stl" else None
+    if stl is not None:
+        yield PlacedMesh(stl, np.eye(4), 1.0, frozenset((stl.name,)))
+        return
     import trimesh  # not above: it costs 0.1 s, and most robots are checked without a look into their meshes
 
     logger = logging.getLogger("trimesh")
@@ -115,7 +120,9 @@ def said_by_parser(error: Exception) -> Phrase:
 
 
 def beside(path: str) -> Any:
-    """What gives the parser the files beside a mesh file."""
+    """What gives the parser the files beside a mesh file; None for STL, which names none."""
+    if path.lower().endswith(".stl"):
+        return None
     from trimesh.resolvers import FilePathResolver
 
     return FilePathResolver(path)

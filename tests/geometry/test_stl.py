@@ -1,0 +1,63 @@
+"""STL, as trimesh reads it."""
+
+import numpy as np
+import pytest
+import trimesh
+
+from linkwright.geometry.mesh_files import placed_meshes
+from linkwright.geometry.stl import StlMesh, read_stl
+
+
+def _bytes(kind: str = "stl") -> bytes:
+    data = trimesh.creation.icosphere(subdivisions=2, radius=0.3).export(file_type=kind)
+    return data if isinstance(data, bytes) else data.encode()
+
+
+TEXT = _bytes("stl_ascii")
+
+
+@pytest.mark.parametrize(
+    "data",
+    [_bytes(), TEXT, TEXT.replace(b"\n", b"\r\n"), b"solid a ball\n" + TEXT.partition(b"\n")[2]],
+    ids=["binary", "text", "text of Windows", "text with a name"],
+)
+def test_a_file_has_the_triangles_that_trimesh_reads(data):
+    (ours,) = placed_meshes(data, "stl")
+    assert isinstance(ours.mesh, StlMesh)
+    scene = trimesh.load_scene(trimesh.util.wrap_as_stream(data), file_type="stl", process=False)
+    ((name, theirs),) = scene.geometry.items()
+    assert np.array_equal(ours.mesh.vertices[ours.faces], theirs.vertices[theirs.faces])
+    assert not ours.mesh.name or ours.names == {name}
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        _bytes()[:-1],
+        _bytes() + b"x",
+        b"COLOR=" + _bytes()[6:],
+        _bytes()[:-2] + b"\1\0",
+        bytes(84),
+        TEXT + TEXT,
+        TEXT.replace(b"endloop", b"endlop", 1),
+        TEXT.replace(b"vertex 0", b"vertex O", 1).replace(b"vertex -0", b"vertex -O", 1),
+        b"solid\xff" + TEXT[5:],
+        b"solid nothing\nendsolid nothing\n",
+        b"",
+    ],
+    ids=[
+        "short",
+        "long",
+        "coloured",
+        "coloured triangles",
+        "empty",
+        "two solids",
+        "a wrong word",
+        "no number",
+        "no UTF-8",
+        "nothing in it",
+        "nothing",
+    ],
+)
+def test_all_else_is_left_to_trimesh(data):
+    assert read_stl(data) is None
