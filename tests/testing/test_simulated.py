@@ -9,6 +9,7 @@ import pytest
 
 import linkwright.testing.simulated
 from linkwright.diagnostics import LinkwrightError
+from linkwright.geometry.single import rpy_from_quaternion
 from linkwright.graph import Parameter
 from linkwright.messages import get_message
 from linkwright.testing import AsyncSteppedSimulation, SteppedSimulation
@@ -42,6 +43,22 @@ def test_mbot_drives_a_metre_and_its_odometry_says_so():
         assert odometry.times[-1] == pytest.approx(test.now)
         assert odometry.last.header.stamp.sec == 3
         assert test.simulation.time == 3_000_000_000
+
+
+@pytest.mark.parametrize(("linear", "angular"), [(0.5, 0.0), (-0.5, 0.0), (0.0, 1.0), (0.3, 0.6), (0.3, -0.6)])
+def test_wheels_that_begin_to_turn_do_not_slip_away_from_their_odometry(linear, angular):
+    """The plugin steps the speeds that it asks of the motors."""
+    with SteppedSimulation("empty", MBOT) as test:
+        odometry = test.record("/odom")
+        test.drive(linear, angular)
+        test.advance(2.0)
+        test.drive(0.0)
+        test.advance(1.0)
+        x, y, _, *rotation = test.robot_pose()
+        pose = odometry.last.pose.pose
+        told = [getattr(pose.orientation, name) for name in "xyzw"]
+        assert [x, y] == pytest.approx([pose.position.x, pose.position.y], abs=1e-3)
+        assert rpy_from_quaternion(rotation)[2] == pytest.approx(rpy_from_quaternion(told)[2], abs=1e-3)
 
 
 def _driven(seed: int) -> tuple[list[bytes], list[float]]:
