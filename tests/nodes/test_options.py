@@ -14,6 +14,11 @@ ARGUMENTS = {
     "tf2_echo": ["a", "b"],
     "spawn_entity.py": ["-entity", "a", "-topic", "b"],
     "create": ["-topic", "a"],
+    "spawner": ["a"],
+    "spawner.py": ["a"],
+    "unspawner": ["a"],
+    "unspawner.py": ["a"],
+    "hardware_spawner": ["a", "--activate"],
     "relay": ["a"],
     "throttle": ["messages", "a", "1"],
     "drop": ["a", "1", "2"],
@@ -23,7 +28,12 @@ ARGUMENTS = {
     "transform": ["a", "b", "std_msgs/String"],
     "relay_field": ["a", "b", "std_msgs/String", "{data: m.data}"],
 }
-NAMED_BY_THEMSELVES = ("static_transform_publisher", "transform", "relay_field")
+NAMED_BY_THEMSELVES = (
+    *(f"{un}spawner{end}" for un in ("", "un") for end in ("", ".py")),
+    "static_transform_publisher",
+    "transform",
+    "relay_field",
+)
 """Those whose names have a number that differs each time."""
 
 NEED_A_TERMINAL = ("teleop_twist_keyboard",)

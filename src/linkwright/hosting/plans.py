@@ -7,6 +7,7 @@ from collections.abc import Callable, Coroutine, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Protocol
 
+from linkwright.graph.parameters.rules import ParameterRules
 from linkwright.hosting.launch_log import LaunchLog, output_destinations
 
 if TYPE_CHECKING:
@@ -39,6 +40,7 @@ class HostedPlan:
         destinations: where its lines on stdout (1) and stderr (2) go, see `linkwright.hosting.launch_log`.
         respawns: how often it is started again when it has done its work; without end if negative.
         respawn_delay: seconds to wait before that.
+        for_others: parameters for further nodes that it makes, by their names.
         waits: whether, if it cannot start with its model, it starts as soon as the model file is repaired.
     """
 
@@ -56,6 +58,7 @@ class HostedPlan:
     respawns: int = 0
     respawn_delay: float = 0.0
     waits: bool = True
+    for_others: ParameterRules = field(default_factory=ParameterRules)
 
     @property
     def is_viewer(self) -> bool:
@@ -73,6 +76,7 @@ class HostedPlan:
             remappings=self.remappings,
             arguments=self.arguments,
             library=library,
+            for_others=self.for_others,
         )
 
     @property

@@ -13,6 +13,7 @@ from linkwright.graph import Graph, Node
 from linkwright.graph.command_line.ros_arguments import RosArguments, parse
 from linkwright.graph.names.remapping import Remappings
 from linkwright.graph.names.rules import absolute_namespace, join
+from linkwright.graph.parameters.rules import ParameterRules
 
 if TYPE_CHECKING:
     from linkwright.descriptions import DescriptionLibrary
@@ -40,6 +41,7 @@ class NodeOptions:
         remappings: rules ``(from, to)``.
         arguments: its command line without the program's name; ``--ros-args`` sections count.
         library: the readings of robot descriptions that the process shares.
+        for_others: parameters for further nodes that it makes, by their names, as files of its process have them.
         output: takes the lines that a node prints as its result; standard output unless it is said.
         terminal: file descriptor of the terminal that is the node's alone; None where it shares its process.
     """
@@ -50,6 +52,7 @@ class NodeOptions:
     remappings: list[tuple[str, str]] = field(default_factory=list)
     arguments: list[str] = field(default_factory=list)
     library: DescriptionLibrary = field(default_factory=_library)
+    for_others: ParameterRules = field(default_factory=ParameterRules)
     output: Callable[[str], None] = _print
     terminal: int | None = None
 
@@ -107,8 +110,16 @@ Factory = Callable[[Graph, NodeOptions], RunningNode]
 """Starts a node; raises LinkwrightError when it cannot start."""
 
 
-def create_node(graph: Graph, options: NodeOptions, default_name: str) -> tuple[Node, list[str]]:
+def create_node(
+    graph: Graph, options: NodeOptions, default_name: str, *, any_parameters: bool = False
+) -> tuple[Node, list[str]]:
     """The graph node for the options, and the arguments that are not ROS arguments.
+
+    Args:
+        graph: where it is to live.
+        options: how it is started.
+        default_name: its name if it is given none.
+        any_parameters: whether it has all parameters that it is given, and takes others.
 
     Raises:
         LinkwrightError: a name, a remapping or a ROS argument is not valid.
@@ -123,6 +134,8 @@ def create_node(graph: Graph, options: NodeOptions, default_name: str) -> tuple[
         remappings=remappings,
         enclave=ros.enclave or "/",
         enable_rosout=ros.rosout_logs is not False,
+        allow_undeclared_parameters=any_parameters,
+        automatically_declare_parameters_from_overrides=any_parameters,
     )
     _set_levels(graph, node, ros)
     return node, ros.others

@@ -35,6 +35,12 @@ class ControllerNode(PluginNode):
         """Have something done on the event loop, after what was published before it."""
         self._exchange.send(_Call(call), None)
 
+    def clear(self) -> None:
+        """Take its topics and services out of the graph; the node stays."""
+        for endpoint in self._endpoints:
+            endpoint.destroy()
+        self._endpoints.clear()
+
 
 class _Call:
     """What is done where messages are published."""

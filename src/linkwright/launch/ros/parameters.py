@@ -18,6 +18,7 @@ from linkwright.diagnostics import (
     missing_file_hint,
     phrase,
 )
+from linkwright.graph.parameters.rules import ParameterRules
 from linkwright.launch.errors.places import Place
 from linkwright.launch.model.context import LaunchContext
 from linkwright.launch.ros.parameter_files import ParameterFile
@@ -102,6 +103,21 @@ class NodeParameters:
             else:
                 found.update(source)
         return {name: list(value) if isinstance(value, tuple) else value for name, value in found.items()}
+
+    def rules(self, context: LaunchContext) -> ParameterRules:
+        """What the files say, of other nodes of the process too.
+
+        Args:
+            context: where the files were evaluated.
+
+        Raises:
+            LinkwrightError: LAUNCH133 and GRAPH212, what is wrong with a file.
+        """
+        found = ParameterRules()
+        for source in self.sources:
+            if isinstance(source, FileSource):
+                found.add(source.file.rules(context))
+        return found
 
     def arguments(self, node: str | None, folder: Path | None) -> list[tuple[str, bool]]:
         """What a node of another process is told, each a file's path (True) or a rule ``name:=value`` (False).

@@ -1,0 +1,153 @@
+"""Controllers that pass on what they are told: ``forward_command_controller`` and the groups made of it.
+
+Source: forward_command_controller, position_controllers, velocity_controllers and effort_controllers of
+ros2_controllers (parameters, topics, texts; velocities and efforts are 0 after the end).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Generic, TypeVar
+
+from linkwright.control.controllers.controller import Controller, ControllerError, InterfaceNames
+from linkwright.control.controllers.parameters import parameter
+from linkwright.control.hardware.interfaces import EFFORT, POSITION, VELOCITY
+
+P = TypeVar("P")
+
+
+@dataclass(frozen=True, kw_only=True)
+class ForwardParameters:
+    """Of ``ForwardCommandController``."""
+
+    joints: tuple[str, ...] = parameter((), description="joints whose interface is commanded")
+    interface_name: str = parameter("", description="the interface of the joints")
+
+
+@dataclass(frozen=True, kw_only=True)
+class MultiInterfaceParameters:
+    """Of ``MultiInterfaceForwardCommandController``."""
+
+    joint: str = parameter("", description="the joint whose interfaces are commanded")
+    interface_names: tuple[str, ...] = parameter((), description="its interfaces")
+
+
+@dataclass(frozen=True, kw_only=True)
+class GroupParameters:
+    """Of the groups."""
+
+    joints: tuple[str, ...] = parameter((), description="joints whose interface is commanded")
+
+
+class _Forwarding(Controller[P], Generic[P]):
+    """Writes the last message of ``~/commands`` to its interfaces."""
+
+    def _names(self) -> Sequence[str]:
+        raise NotImplementedError
+
+    def command_interfaces(self) -> InterfaceNames:
+        """Those that are commanded."""
+        return self._names()
+
+    def on_configure(self) -> None:
+        """Listen for commands."""
+        self._names()
+        self._wanted: Sequence[float] | None = None
+        self.node.subscribe("std_msgs/msg/Float64MultiArray", "~/commands", self._on_command)
+
+    def on_activate(self) -> None:
+        """Forget commands that came before."""
+        self._wanted = None
+
+    def on_deactivate(self) -> None:
+        """Forget the last command."""
+        self._wanted = None
+
+    def update(self, time_ns: int, period_s: float) -> None:  # noqa: ARG002
+        """Pass the last command on."""
+        wanted = self._wanted
+        if wanted is None:
+            return
+        for command, value in zip(self.commands, wanted, strict=True):
+            command.value = value
+
+    def _on_command(self, message: Any) -> None:
+        wanted, count = list(message.data), len(self.commands)
+        if not count:
+            return  # it is not active
+        if len(wanted) != count:
+            self.node.logger.error(
+                f"command size ({len(wanted)}) does not match number of interfaces ({count})",
+                throttle_duration_sec=1.0,
+            )
+            return
+        if any(value != value for value in wanted):
+            self.node.logger.error("a command with NaN is not passed on", throttle_duration_sec=1.0)
+            return
+        self._wanted = wanted
+
+
+class ForwardCommandController(_Forwarding[ForwardParameters]):
+    """``forward_command_controller/ForwardCommandController``."""
+
+    PARAMETERS = ForwardParameters
+
+    def _names(self) -> Sequence[str]:
+        if not self.parameters.joints:
+            raise ControllerError("'joints' parameter was empty")
+        if not self.parameters.interface_name:
+            raise ControllerError("'interface_name' parameter was empty")
+        return [f"{joint}/{self.parameters.interface_name}" for joint in self.parameters.joints]
+
+
+class MultiInterfaceForwardCommandController(_Forwarding[MultiInterfaceParameters]):
+    """``forward_command_controller/MultiInterfaceForwardCommandController``."""
+
+    PARAMETERS = MultiInterfaceParameters
+
+    def _names(self) -> Sequence[str]:
+        if not self.parameters.joint:
+            raise ControllerError("'joint' parameter is empty")
+        if not self.parameters.interface_names:
+            raise ControllerError("'interfaces' parameter is empty")
+        return [f"{self.parameters.joint}/{name}" for name in self.parameters.interface_names]
+
+
+class _Group(_Forwarding[GroupParameters]):
+    PARAMETERS = GroupParameters
+    INTERFACE: str
+    """The interface of its joints."""
+    STOPS = True
+    """Whether 0 stands still."""
+
+    def _names(self) -> Sequence[str]:
+        if not self.parameters.joints:
+            raise ControllerError("'joints' parameter was empty")
+        return [f"{joint}/{self.INTERFACE}" for joint in self.parameters.joints]
+
+    def on_deactivate(self) -> None:
+        """Stop what moves."""
+        super().on_deactivate()
+        if self.STOPS:
+            for command in self.commands:
+                command.value = 0.0
+
+
+class JointGroupPositionController(_Group):
+    """``position_controllers/JointGroupPositionController``."""
+
+    INTERFACE = POSITION
+    STOPS = False  # joints stay where they are
+
+
+class JointGroupVelocityController(_Group):
+    """``velocity_controllers/JointGroupVelocityController``."""
+
+    INTERFACE = VELOCITY
+
+
+class JointGroupEffortController(_Group):
+    """``effort_controllers/JointGroupEffortController``."""
+
+    INTERFACE = EFFORT

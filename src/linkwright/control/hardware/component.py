@@ -1,0 +1,129 @@
+"""What hardware derives from, and which there is.
+
+Hardware is found through the entry points ``linkwright.hardware`` by its type name, ``mock_components/GenericSystem``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from math import nan
+
+from linkwright.control.hardware.description import ComponentDescription, HardwareDescription, InterfaceDescription
+from linkwright.control.hardware.interfaces import CommandInterface, StateInterface
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
+from linkwright.extensions import extensions
+from linkwright.graph.lifecycle.states import UNCONFIGURED, LifecycleState
+from linkwright.graph.log.logger import Logger
+
+GROUP = "linkwright.hardware"
+
+
+class HardwareError(LinkwrightError):
+    """Why hardware refuses something, or does not work any more; its text is logged.
+
+    Args:
+        message: what is wrong.
+    """
+
+    def __init__(self, message: str) -> None:
+        super().__init__(Diagnostic("CTL120", foreign(message)))
+
+
+class Hardware:
+    """A hardware component.
+
+    Args:
+        description: what is written about it.
+        logger: where it tells what it does.
+
+    Attributes:
+        description, logger: see above.
+        states, commands: its interfaces; a state begins with its initial value, or NaN.
+        state: where in its life it is.
+    """
+
+    def __init__(self, description: HardwareDescription, logger: Logger) -> None:
+        self.description = description
+        self.logger = logger
+        self.state: LifecycleState = UNCONFIGURED
+        self.states: list[StateInterface] = []
+        self.commands: list[CommandInterface] = []
+        for component in description.components:
+            self.states += [self._state_interface(component, each) for each in component.states]
+            self.commands += [CommandInterface(component.name, each.name) for each in component.commands]
+
+    def _state_interface(self, component: ComponentDescription, interface: InterfaceDescription) -> StateInterface:
+        value = interface.initial_value
+        if value != value:  # not a number; as it was written before there was initial_value
+            text = component.parameters.get(f"initial_{interface.name}", "")
+            value = float(text) if text.replace(".", "", 1).lstrip("-").isdigit() else nan
+        return StateInterface(component.name, interface.name, value)
+
+    def on_configure(self) -> None:
+        """Connect to it.
+
+        Raises:
+            HardwareError: it cannot be reached.
+        """
+
+    def on_activate(self) -> None:
+        """Power it.
+
+        Raises:
+            HardwareError: it refuses.
+        """
+
+    def on_deactivate(self) -> None:
+        """Take the power away."""
+
+    def on_cleanup(self) -> None:
+        """Disconnect from it."""
+
+    def on_error(self) -> None:
+        """Reading or writing failed."""
+
+    def prepare_switch(self, start: Collection[str], stop: Collection[str]) -> None:
+        """Commands of other interfaces are to come.
+
+        Args:
+            start: names of command interfaces that controllers are to have, also those of other hardware.
+            stop: names of those that they will not have any more.
+
+        Raises:
+            HardwareError: that cannot be; nothing is switched.
+        """
+
+    def perform_switch(self, start: Collection[str], stop: Collection[str]) -> None:
+        """Commands of other interfaces come from now on; see `prepare_switch`."""
+
+    def read(self, time_ns: int, period_s: float) -> None:
+        """Bring `states` up to date.
+
+        Raises:
+            HardwareError: it does not answer; its controllers are stopped.
+        """
+
+    def write(self, time_ns: int, period_s: float) -> None:
+        """Send `commands`; NaN is none.
+
+        Raises:
+            HardwareError: it does not take them; its controllers are stopped.
+        """
+
+
+def hardware_class(plugin: str) -> type[Hardware] | None:
+    """The class of a hardware; None where there is none of that type.
+
+    Raises:
+        LinkwrightError: CTL121 the package that brings it cannot be imported.
+    """
+    entry = extensions(GROUP).get(plugin)
+    if entry is None:
+        return None
+    try:
+        found: type[Hardware] = entry.load()
+    except Exception as error:
+        message = phrase("the hardware '{name}' cannot be imported", name=plugin)
+        hint = phrase("'{place}' brings it: {problem}", place=entry.distribution, problem=foreign(error))
+        raise LinkwrightError(Diagnostic("CTL121", message, hint=hint)) from error
+    return found

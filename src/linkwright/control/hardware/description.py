@@ -1,0 +1,208 @@
+"""What ``<ros2_control>`` of a description says, as data.
+
+Source: hardware_interface's component parser (elements, types, defaults). A joint mimics another as ``<mimic>`` of the
+joint says (Jazzy), or its parameters ``mimic``, ``multiplier`` and ``offset`` (Humble); ``mimic="false"`` forbids it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from math import nan
+
+from linkwright.diagnostics import Diagnostic, Phrase, Severity, did_you_mean, phrase
+from linkwright.urdf import Robot
+from linkwright.xmltree import Element
+
+SYSTEM, ACTUATOR, SENSOR = "system", "actuator", "sensor"
+_TYPES = (SYSTEM, ACTUATOR, SENSOR)
+_TRUE = ("true", "True", "TRUE", "1")
+
+
+@dataclass(frozen=True, slots=True)
+class InterfaceDescription:
+    """An interface of a component.
+
+    Attributes:
+        name: ``position``, ...
+        minimum, maximum: what commands are to be between; NaN where nothing is said.
+        initial_value: of states; NaN where nothing is said.
+        parameters: all of its parameters as written.
+    """
+
+    name: str
+    minimum: float = nan
+    maximum: float = nan
+    initial_value: float = nan
+    parameters: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class MimicDescription:
+    """Position = multiplier * position of `joint` + offset."""
+
+    joint: str
+    multiplier: float = 1.0
+    offset: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class ComponentDescription:
+    """A joint, sensor or GPIO of a hardware.
+
+    Attributes:
+        name: its name.
+        kind: ``joint``, ``sensor`` or ``gpio``.
+        commands, states: its interfaces.
+        parameters: as written.
+        mimic: what it follows.
+    """
+
+    name: str
+    kind: str
+    commands: tuple[InterfaceDescription, ...] = ()
+    states: tuple[InterfaceDescription, ...] = ()
+    parameters: Mapping[str, str] = field(default_factory=dict)
+    mimic: MimicDescription | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class HardwareDescription:
+    """A ``<ros2_control>``.
+
+    Attributes:
+        name: its name.
+        type: ``system``, ``actuator`` or ``sensor``.
+        plugin: the type name of what drives it.
+        parameters: what the hardware is given.
+        joints, sensors, gpios: its components, in file order.
+    """
+
+    name: str
+    type: str
+    plugin: str
+    parameters: Mapping[str, str] = field(default_factory=dict)
+    joints: tuple[ComponentDescription, ...] = ()
+    sensors: tuple[ComponentDescription, ...] = ()
+    gpios: tuple[ComponentDescription, ...] = ()
+
+    @property
+    def components(self) -> tuple[ComponentDescription, ...]:
+        """Joints, sensors and GPIOs."""
+        return (*self.joints, *self.sensors, *self.gpios)
+
+    def is_set(self, name: str) -> bool:
+        """Whether a parameter of the hardware is true."""
+        return self.parameters.get(name, "").strip() in _TRUE
+
+
+def hardware_of(robot: Robot) -> tuple[list[HardwareDescription], list[Diagnostic]]:
+    """The hardware of a robot, and what is wrong with what is written of it.
+
+    What cannot be used is left out: a hardware without a name or with a type that is none, a joint that the robot does
+    not have, a value that is no number.
+    """
+    reader = _Reader(robot)
+    found = [reader.hardware(each) for each in robot.extensions if each.tag == "ros2_control"]
+    named: dict[str, HardwareDescription] = {}
+    for each in found:
+        if each is not None:
+            named.setdefault(each.name, each)
+    if not any(each.tag == "ros2_control" for each in robot.extensions):
+        message = phrase("the description has no <ros2_control>")
+        hint = phrase("it names the hardware, its joints and their interfaces")
+        reader.findings.append(Diagnostic("CTL110", message, severity=Severity.WARNING, hint=hint))
+    return list(named.values()), reader.findings
+
+
+class _Reader:
+    def __init__(self, robot: Robot) -> None:
+        self._robot = robot
+        self.findings: list[Diagnostic] = []
+
+    def hardware(self, element: Element) -> HardwareDescription | None:
+        name, kind = element.attributes.get("name", ""), element.attributes.get("type", "")
+        if not name or kind not in _TYPES:
+            message = phrase("<ros2_control> lacks a name, or its type '{kind}' is none", kind=kind)
+            self._tell("CTL111", message, element, phrase("its type is system, actuator or sensor"))
+            return None
+        hardware = element.first("hardware")
+        plugin = hardware.first("plugin") if hardware is not None else None
+        if plugin is None or not plugin.text().strip():
+            message = phrase("<ros2_control> '{name}' names no plugin that drives it", name=name)
+            self._tell("CTL112", message, element, phrase("write <hardware><plugin>mock_components/GenericSystem"))
+            return None
+        joints = [self._component(each, "joint") for each in element.elements("joint")]
+        names = [each.name for each in joints]
+        for each, written in zip(joints, element.elements("joint"), strict=True):
+            if each.name not in self._robot.joints:
+                message = phrase("<ros2_control> has joint '{name}', which the robot does not have", name=each.name)
+                self._tell("CTL113", message, written, did_you_mean(each.name, self._robot.joints))
+            elif each.mimic is not None and each.mimic.joint not in names:
+                message = phrase("Mimicked joint '{name}' not found", name=each.mimic.joint)
+                self._tell("CTL114", message, written, did_you_mean(each.mimic.joint, names))
+        return HardwareDescription(
+            name,
+            kind,
+            plugin.text().strip(),
+            _parameters(hardware),
+            tuple(each for each in joints if each.name in self._robot.joints),
+            tuple(self._component(each, "sensor") for each in element.elements("sensor")),
+            tuple(self._component(each, "gpio") for each in element.elements("gpio")),
+        )
+
+    def _component(self, element: Element, kind: str) -> ComponentDescription:
+        name, parameters = element.attributes.get("name", ""), _parameters(element)
+        return ComponentDescription(
+            name,
+            kind,
+            self._interfaces(element, "command_interface"),
+            self._interfaces(element, "state_interface"),
+            parameters,
+            self._mimic(name, element, parameters) if kind == "joint" else None,
+        )
+
+    def _mimic(self, name: str, element: Element, parameters: Mapping[str, str]) -> MimicDescription | None:
+        if "mimic" in parameters:
+            multiplier, offset = (parameters.get(each, "") for each in ("multiplier", "offset"))
+            return MimicDescription(
+                parameters["mimic"],
+                1.0 if not multiplier else self._number(multiplier, element),
+                0.0 if not offset else self._number(offset, element),
+            )
+        joint = self._robot.joints.get(name)
+        if joint is None or joint.mimic is None or element.attributes.get("mimic") in ("false", "False"):
+            return None
+        return MimicDescription(joint.mimic.joint, joint.mimic.multiplier, joint.mimic.offset)
+
+    def _interfaces(self, element: Element, tag: str) -> tuple[InterfaceDescription, ...]:
+        found = {}
+        for each in element.elements(tag):
+            parameters = _parameters(each)
+            low, high, initial = (
+                self._number(parameters[name], each) if parameters.get(name, "").strip() else nan
+                for name in ("min", "max", "initial_value")
+            )
+            name = each.attributes.get("name", "")
+            found[name] = InterfaceDescription(name, low, high, initial, parameters)
+        return tuple(found.values())
+
+    def _number(self, text: str, element: Element) -> float:
+        try:
+            return float(text)
+        except ValueError:
+            if text.strip() in (*_TRUE, "false", "False"):
+                return float(text.strip() in _TRUE)
+            self._tell("CTL115", phrase("'{text}' is no number", text=text), element, None)
+            return nan
+
+    def _tell(self, code: str, message: Phrase, element: Element, hint: Phrase | None) -> None:
+        self.findings.append(
+            Diagnostic(code, message, element.span(), Severity.WARNING, hint=hint, source=element.source)
+        )
+
+
+def _parameters(element: Element | None) -> dict[str, str]:
+    if element is None:
+        return {}
+    return {each.attributes.get("name", ""): each.text().strip() for each in element.elements("param")}

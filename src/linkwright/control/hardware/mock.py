@@ -1,0 +1,179 @@
+"""``mock_components/GenericSystem``: states follow commands.
+
+Source: mock_components of ros2_control (parameters, order of what is done, texts). With ``calculate_dynamics`` a joint
+is integrated by the interface that it was switched to, else each state is the command of its name.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection
+from math import isnan
+
+from linkwright.control.hardware.component import Hardware, HardwareError
+from linkwright.control.hardware.description import ComponentDescription, HardwareDescription
+from linkwright.control.hardware.interfaces import (
+    ACCELERATION,
+    EFFORT,
+    POSITION,
+    VELOCITY,
+    CommandInterface,
+    Interface,
+    StateInterface,
+)
+from linkwright.graph.log.logger import Logger
+
+_STANDARD = (POSITION, VELOCITY, ACCELERATION, EFFORT)
+_MODES = (POSITION, VELOCITY, ACCELERATION)
+
+
+class _Joint:
+    """A joint: its own state of motion, of which the interfaces show what the description asks for."""
+
+    def __init__(self, described: ComponentDescription, states: dict[str, StateInterface]) -> None:
+        self.described = described
+        self.mode = POSITION
+        self.shown = [states[each.name] for each in described.states if each.name in _STANDARD]
+        self.values = dict.fromkeys(_STANDARD, 0.0)
+        for each in self.shown:
+            if isnan(each.value):
+                each.value = 0.0
+            self.values[each.kind] = each.value
+        self.commands: dict[str, CommandInterface] = {}
+
+    def show(self) -> None:
+        values = self.values
+        for each in self.shown:
+            each.value = values[each.kind]
+
+
+class GenericSystem(Hardware):
+    """Hardware that does at once what it is told."""
+
+    def __init__(self, description: HardwareDescription, logger: Logger) -> None:
+        super().__init__(description, logger)
+        given = description.is_set
+        self._disabled = given("disable_commands")
+        self._dynamic = given("calculate_dynamics")
+        self._offset = float(description.parameters.get("position_state_following_offset") or 0.0)
+        self._offset_interface = description.parameters.get("custom_interface_with_following_offset", "")
+        states = {each.name: each for each in self.states}
+        self._add_mock_commands("sensor", given("mock_sensor_commands") or given("fake_sensor_commands"))
+        self._add_mock_commands("gpio", given("mock_gpio_commands") or given("fake_gpio_commands"))
+        self._joints = {
+            each.name: _Joint(each, {state.kind: state for state in self.states if state.component == each.name})
+            for each in description.joints
+        }
+        self._mirrored: list[tuple[CommandInterface, StateInterface]] = []
+        for command in self.commands:
+            joint = self._joints.get(command.component)
+            if joint is not None and command.kind in _STANDARD:
+                joint.commands[command.kind] = command
+            elif command.name in states:
+                self._mirrored.append((command, states[command.name]))
+        self._followers = [
+            (joint, self._joints[joint.described.mimic.joint], joint.described.mimic)
+            for joint in self._joints.values()
+            if joint.described.mimic is not None and joint.described.mimic.joint in self._joints
+        ]
+        self._following = [
+            (self._joints[state.component], state)
+            for state in self.states
+            if self._offset_interface and state.kind == self._offset_interface and state.component in self._joints
+        ]
+        self._read: Callable[[float], None] = self._integrate if self._dynamic else self._repeat
+
+    def _add_mock_commands(self, kind: str, wanted: bool) -> None:
+        names = {each.name for each in self.commands}
+        for component in self.description.components:
+            if wanted and component.kind == kind:
+                for each in component.states:
+                    command = CommandInterface(component.name, each.name)
+                    if command.name not in names:
+                        self.commands.append(command)
+
+    def prepare_switch(self, start: Collection[str], stop: Collection[str]) -> None:  # noqa: ARG002
+        """With dynamics, exactly one of position, velocity and acceleration of a joint."""
+        if not self._dynamic:
+            return
+        for name in self._joints:
+            begin = f"{name}/"
+            asked = [each.removeprefix(begin) for each in start if each.startswith(begin)]
+            modes = [each for each in asked if each in _MODES]
+            if asked and not modes:
+                raise HardwareError(
+                    f"Joint '{name}' has to have '{POSITION}', '{VELOCITY}', or '{ACCELERATION}' interface!"
+                )
+            if len(modes) > 1:
+                raise HardwareError(
+                    f"Got multiple ({len(modes)}) starting interfaces for joint '{name}' - this is not supported!"
+                )
+
+    def perform_switch(self, start: Collection[str], stop: Collection[str]) -> None:  # noqa: ARG002
+        """With dynamics, the joints are moved by those interfaces from now on."""
+        for name, joint in self._joints.items():
+            for mode in _MODES:
+                if self._dynamic and f"{name}/{mode}" in start:
+                    joint.mode = mode
+
+    def read(self, time_ns: int, period_s: float) -> None:  # noqa: ARG002
+        """Let the states follow."""
+        if self._disabled:
+            return
+        self._read(period_s)
+        for joint, followed, mimic in self._followers:
+            joint.values[POSITION] = mimic.multiplier * followed.values[POSITION] + mimic.offset
+            for kind in (VELOCITY, ACCELERATION, EFFORT):
+                joint.values[kind] = mimic.multiplier * followed.values[kind]
+        for joint in self._joints.values():
+            joint.show()
+        for command, state in self._mirrored:
+            if command.value == command.value:
+                state.value = command.value
+        for joint, state in self._following:
+            wanted = _given(joint.commands.get(POSITION))
+            if wanted is not None:
+                state.value = wanted + self._offset
+
+    @property
+    def _own_offset(self) -> float:
+        return 0.0 if self._offset_interface else self._offset
+
+    def _repeat(self, _: float) -> None:
+        offset = self._own_offset
+        for joint in self._joints.values():
+            for kind, command in joint.commands.items():
+                value = command.value
+                if value == value:
+                    joint.values[kind] = value + offset if kind == POSITION else value
+
+    def _integrate(self, period_s: float) -> None:
+        for joint in self._joints.values():
+            self._move(joint, period_s)
+            effort = _given(joint.commands.get(EFFORT))
+            if effort is not None:
+                joint.values[EFFORT] = effort
+
+    def _move(self, joint: _Joint, period_s: float) -> None:
+        """One step, which integrates what was before it, as ros2_control does."""
+        values = joint.values
+        wanted = _given(joint.commands.get(joint.mode))
+        velocity = values[VELOCITY]
+        if joint.mode == POSITION:
+            if wanted is not None:
+                before, values[POSITION] = values[POSITION], wanted + self._own_offset
+                values[VELOCITY] = (values[POSITION] - before) / period_s if period_s else 0.0
+                values[ACCELERATION] = (values[VELOCITY] - velocity) / period_s if period_s else 0.0
+            return
+        values[POSITION] += velocity * period_s + self._own_offset
+        if joint.mode == ACCELERATION:
+            values[VELOCITY] += values[ACCELERATION] * period_s
+            if wanted is not None:
+                values[ACCELERATION] = wanted
+        elif wanted is not None:
+            values[VELOCITY] = wanted
+            values[ACCELERATION] = (wanted - velocity) / period_s if period_s else 0.0
+
+
+def _given(command: Interface | None) -> float | None:
+    """A command that has come."""
+    return None if command is None or isnan(command.value) else command.value

@@ -1,0 +1,254 @@
+"""The hardware of a robot together: its interfaces, who has claimed them, and its life.
+
+Source: the resource manager of ros2_control (rules and texts).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterator, Sequence
+from typing import TypeVar
+
+from linkwright.control.hardware.component import Hardware, hardware_class
+from linkwright.control.hardware.description import HardwareDescription
+from linkwright.control.hardware.interfaces import CommandInterface, Interface, Interfaces, StateInterface
+from linkwright.control.hardware.mock import GenericSystem
+from linkwright.diagnostics import LinkwrightError, phrase
+from linkwright.graph.lifecycle.states import ACTIVE, FINALIZED, INACTIVE, UNCONFIGURED, LifecycleState
+from linkwright.graph.log.logger import Logger
+
+Maker = Callable[[HardwareDescription, Logger], "Hardware | None"]
+"""Makes the hardware of a description; None where it does not know that type."""
+
+N = TypeVar("N", bound=Interface)
+
+_ORDER = (UNCONFIGURED, INACTIVE, ACTIVE)
+_UP = ("configure", "activate")
+_DOWN = ("cleanup", "deactivate")
+
+
+def hardware_by_entry_points(description: HardwareDescription, logger: Logger) -> Hardware | None:
+    """Hardware of the type that the description names, of those that are installed."""
+    found = hardware_class(description.plugin)
+    return None if found is None else found(description, logger)
+
+
+class Resources:
+    """The hardware of a robot.
+
+    Args:
+        logger: where it tells what it does.
+
+    Attributes:
+        components: the hardware by name.
+        claims: which controller has a command interface, by the interface's name.
+    """
+
+    def __init__(self, logger: Logger) -> None:
+        self.components: dict[str, Hardware] = {}
+        self.claims: dict[str, str] = {}
+        self._logger = logger
+        self._states: dict[str, StateInterface] = {}
+        self._commands: dict[str, CommandInterface] = {}
+        self._owners: dict[str, Hardware] = {}
+        self._references: dict[str, list[CommandInterface]] = {}
+        self._exported: dict[str, list[StateInterface]] = {}
+        self._available: set[str] = set()
+
+    # --- loading ------------------------------------------------------------------------------------------------------
+
+    def load(self, descriptions: Sequence[HardwareDescription], make: Maker) -> None:
+        """Make the hardware; what nothing here drives is stood in for by a mock, which is told."""
+        for each in descriptions:
+            self._logger.info(f"Loading hardware '{each.name}' ")
+            try:
+                hardware = make(each, self._logger)
+            except LinkwrightError as error:
+                self._logger.error(error.diagnostics[0].message)  # noqa: TRY400
+                continue
+            if hardware is None:
+                self._logger.warning(
+                    phrase(
+                        "hardware '{name}': '{plugin}' is not for Linkwright; mock_components/GenericSystem stands in "
+                        "for it, whose states follow the commands",
+                        name=each.name,
+                        plugin=each.plugin,
+                    )
+                )
+                hardware = GenericSystem(each, self._logger)
+            self._logger.info(f"Initialize hardware '{each.name}' ")
+            self.components[each.name] = hardware
+            for state in hardware.states:
+                self._states.setdefault(state.name, state)
+            for command in hardware.commands:
+                self._commands.setdefault(command.name, command)
+            self._owners.update((state.name, hardware) for state in (*hardware.states, *hardware.commands))
+            self._logger.info(f"Successful initialization of hardware '{each.name}'")
+
+    # --- interfaces ---------------------------------------------------------------------------------------------------
+
+    @property
+    def state_names(self) -> list[str]:
+        """The names of all state interfaces."""
+        return [*self._states, *(each.name for exported in self._exported.values() for each in exported)]
+
+    @property
+    def command_names(self) -> list[str]:
+        """The names of all command interfaces, and of the references of chained controllers."""
+        return [*self._commands, *(each.name for given in self._references.values() for each in given)]
+
+    def is_available(self, name: str) -> bool:
+        """Whether an interface can be used: its hardware is configured, or its controller active."""
+        owner = self._owners.get(name)
+        return name in self._available if owner is None else owner.state in (INACTIVE, ACTIVE)
+
+    def states(self, names: Sequence[str] | Interfaces) -> list[StateInterface]:
+        """State interfaces.
+
+        Raises:
+            KeyError: there is none of a name, or it is not available.
+        """
+        if names is Interfaces.ALL:
+            return [each for each in self._all_states() if self.is_available(each.name)]
+        return [self._one(name, self._all_states(), "State") for name in names]
+
+    def commands(self, names: Sequence[str] | Interfaces) -> list[CommandInterface]:
+        """Command interfaces.
+
+        Raises:
+            KeyError: there is none of a name, or it is not available.
+        """
+        if names is Interfaces.ALL:
+            return [each for each in self._all_commands() if self.is_available(each.name)]
+        return [self._one(name, self._all_commands(), "Command") for name in names]
+
+    def _all_states(self) -> Iterator[StateInterface]:
+        yield from self._states.values()
+        for exported in self._exported.values():
+            yield from exported
+
+    def _all_commands(self) -> Iterator[CommandInterface]:
+        yield from self._commands.values()
+        for given in self._references.values():
+            yield from given
+
+    def _one(self, name: str, known: Iterator[N], kind: str) -> N:
+        found = next((each for each in known if each.name == name), None)
+        if found is None:
+            raise KeyError(f"{kind} interface with key '{name}' does not exist")
+        if not self.is_available(name):
+            raise KeyError(f"{kind} interface with '{name}' does not exist")
+        return found
+
+    def offer(self, controller: str, references: list[CommandInterface], exported: list[StateInterface]) -> None:
+        """A controller has been configured that others may command and read."""
+        self._references[controller], self._exported[controller] = references, exported
+
+    def withdraw(self, controller: str) -> None:
+        """A controller's references are not there any more."""
+        self.set_available(controller, available=False)
+        self._references.pop(controller, None)
+        self._exported.pop(controller, None)
+
+    def references_of(self, controller: str) -> list[str]:
+        """The names of a controller's references."""
+        return [each.name for each in self._references.get(controller, ())]
+
+    def set_available(self, controller: str, *, available: bool) -> None:
+        """Whether a controller's references and states can be used."""
+        names = {each.name for each in (*self._references.get(controller, ()), *self._exported.get(controller, ()))}
+        self._available = self._available | names if available else self._available - names
+
+    # --- its life -----------------------------------------------------------------------------------------------------
+
+    def set_state(self, name: str, target: LifecycleState) -> bool:
+        """Lead a hardware to a state; whether it came there."""
+        hardware = self.components[name]
+        if hardware.state == FINALIZED:
+            return target == FINALIZED
+        if target == FINALIZED:
+            reached = self.set_state(name, UNCONFIGURED)
+            hardware.state = FINALIZED
+            return reached
+        while hardware.state != target:
+            place = _ORDER.index(hardware.state)
+            up = _ORDER.index(target) > place
+            done = self._pass(hardware, _UP[place] if up else _DOWN[place - 1], _ORDER[place + (1 if up else -1)])
+            if not done:
+                return False
+        return True
+
+    def _pass(self, hardware: Hardware, transition: str, goal: LifecycleState) -> bool:
+        name = hardware.description.name
+        self._logger.info(f"'{transition}' hardware '{name}' ")
+        try:
+            getattr(hardware, f"on_{transition}")()
+        except Exception as error:  # noqa: BLE001  # a fault of hardware must not end the others
+            self._logger.error(f"Failed to '{transition}' hardware '{name}': {_told(error)}")  # noqa: TRY400
+            return False
+        hardware.state = goal
+        self._logger.info(f"Successful '{transition}' of hardware '{name}'")
+        return True
+
+    # --- its work -----------------------------------------------------------------------------------------------------
+
+    def prepare_switch(self, start: Collection[str], stop: Collection[str]) -> str:
+        """Ask the hardware whether command interfaces may be switched; why not, or nothing."""
+        for hardware in self.components.values():
+            try:
+                hardware.prepare_switch(start, stop)
+            except Exception as error:  # noqa: BLE001, PERF203
+                return f"Component '{hardware.description.name}' did not accept command interfaces combination: " + (
+                    _told(error)
+                )
+        return ""
+
+    def perform_switch(self, start: Collection[str], stop: Collection[str]) -> None:
+        """Switch the command interfaces."""
+        for hardware in self.components.values():
+            try:
+                hardware.perform_switch(start, stop)
+            except Exception as error:  # noqa: BLE001, PERF203
+                self._logger.error(f"Component '{hardware.description.name}' could not perform switch: {_told(error)}")  # noqa: TRY400
+
+    def read(self, time_ns: int, period_s: float) -> list[Hardware]:
+        """Read all hardware that is configured; what failed, which has been told and is unconfigured now."""
+        failed = []
+        for hardware in self.components.values():
+            if hardware.state is INACTIVE or hardware.state is ACTIVE:
+                try:
+                    hardware.read(time_ns, period_s)
+                except Exception as error:  # noqa: BLE001
+                    failed.append(self._fail(hardware, "reading", error))
+        return failed
+
+    def write(self, time_ns: int, period_s: float) -> list[Hardware]:
+        """Write to all hardware that is active; what failed, see `read`."""
+        failed = []
+        for hardware in self.components.values():
+            if hardware.state is ACTIVE:
+                try:
+                    hardware.write(time_ns, period_s)
+                except Exception as error:  # noqa: BLE001
+                    failed.append(self._fail(hardware, "writing", error))
+        return failed
+
+    def _fail(self, hardware: Hardware, work: str, error: Exception) -> Hardware:
+        self._logger.error(f"Error while {work} hardware '{hardware.description.name}': {_told(error)}")
+        try:
+            hardware.on_error()
+        except Exception as second:  # noqa: BLE001
+            self._logger.error(f"'on_error' of hardware '{hardware.description.name}' failed: {_told(second)}")  # noqa: TRY400
+            hardware.state = FINALIZED
+        else:
+            hardware.state = UNCONFIGURED
+        return hardware
+
+    def names_of(self, hardware: Hardware) -> set[str]:
+        """The names of a hardware's interfaces."""
+        return {each.name for each in (*hardware.states, *hardware.commands)}
+
+
+def _told(error: Exception) -> str:
+    if isinstance(error, LinkwrightError):
+        return str(error.diagnostics[0].message)
+    return f"{type(error).__name__}: {error}"

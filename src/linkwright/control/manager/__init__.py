@@ -1,0 +1,1 @@
+"""The controller manager: loading, switching and updating controllers."""

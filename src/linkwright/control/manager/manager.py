@@ -1,0 +1,473 @@
+"""Loads, configures, switches and updates controllers.
+
+Source: the controller manager of ros2_control (order of what is done, rules, texts).
+"""
+
+from __future__ import annotations
+
+import traceback
+from collections.abc import Callable, Sequence
+from math import nan
+from typing import Any
+
+from linkwright.control.controllers.controller import Controller, ControllerError, ControllerPlace
+from linkwright.control.controllers.node import ControllerNode
+from linkwright.control.controllers.registry import controller_class, controller_types
+from linkwright.control.hardware.component import Hardware
+from linkwright.control.hardware.interfaces import CommandInterface, StateInterface
+from linkwright.control.hardware.resources import Resources
+from linkwright.control.manager.loaded import Loaded
+from linkwright.control.manager.nodes import ProcessArguments, controller_node, words_of
+from linkwright.control.manager.switching import BEST_EFFORT, Switch, SwitchPlanner, SwitchRefusedError
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph import Node
+from linkwright.graph.lifecycle.states import ACTIVE, FINALIZED, INACTIVE, UNCONFIGURED, LifecycleState
+from linkwright.simulation.exchange import Exchange
+
+_NANOSECONDS = 1_000_000_000
+
+
+class ControllerManager:
+    """The controllers of a robot. Everything is called in one thread, that of the updates.
+
+    Args:
+        node: the manager's node, which takes parameters that are not declared.
+        exchange: between the thread of the updates and the graph.
+        resources: the hardware.
+        process: what the nodes of the controllers are given.
+        update_rate: in Hz.
+
+    Attributes:
+        node, resources, update_rate: see above.
+        robot_description: the URDF of the robot.
+        controllers: those that are loaded, by name, in the order in which they are updated.
+        on_change: called when a controller or hardware has another state.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        exchange: Exchange,
+        resources: Resources,
+        process: ProcessArguments | None = None,
+        *,
+        update_rate: float = 100.0,
+    ) -> None:
+        self.node = node
+        self.resources = resources
+        self.update_rate = update_rate
+        self.robot_description = ""
+        self.controllers: dict[str, Loaded] = {}
+        self.on_change: Callable[[], object] = lambda: None
+        self._exchange = exchange
+        self._process = process or ProcessArguments()
+        self._logger = node.get_logger()
+        self._active: list[Loaded] = []
+
+    # --- loading ------------------------------------------------------------------------------------------------------
+
+    def load(self, name: str) -> bool:
+        """Load a controller, whose type is the parameter ``NAME.type``; whether it was."""
+        logger = self._logger
+        if name in self.controllers:
+            logger.error(f"A controller named '{name}' was already loaded inside the controller manager")
+            return False
+        kind = next(iter(words_of(self.node, f"{name}.type")), "")
+        if not kind:
+            logger.error(f"The 'type' param was not defined for '{name}'.")
+            return False
+        logger.info(f"Loading controller '{name}'")
+        try:
+            made = controller_class(str(kind))
+        except LinkwrightError as error:
+            logger.error(f"Loader for controller '{name}' (type '{kind}') not found.")  # noqa: TRY400
+            self._tell(error)
+            logger.info("Available classes:")
+            for each in controller_types():
+                logger.info(f"  {each}")
+            return False
+        controller = self._made(made, name)
+        if controller is None:
+            logger.error(f"Could not initialize the controller named '{name}'")
+            return False
+        fallbacks = tuple(words_of(self.node, f"{name}.fallback_controllers"))
+        self.controllers[name] = Loaded(name, str(kind), controller, fallbacks)
+        self.on_change()
+        return True
+
+    def _made(self, made: type[Controller[Any]], name: str) -> Controller[Any] | None:
+        node = None
+        try:
+            node = controller_node(self.node, name, self._process)
+            rate = node.declare_parameter("update_rate", int(self.update_rate)).value
+            return made(
+                ControllerPlace(name, ControllerNode(node, self._exchange), float(rate), self.robot_description)
+            )
+        except LinkwrightError as error:
+            self._tell(error)
+        except Exception as error:  # noqa: BLE001  # a fault of a controller must not end the others
+            self._logger.error(_traced("Exception thrown during init stage with message", error))  # noqa: TRY400
+        if node is not None:
+            node.destroy_node()
+        return None
+
+    def unload(self, name: str) -> bool:
+        """Forget a controller that is not active; whether it was."""
+        loaded = self.controllers.get(name)
+        if loaded is None or loaded.is_active:
+            why = "it is still active" if loaded is not None else "no controller with this name exists"
+            self._logger.error(f"Could not unload controller with name '{name}' because {why}")
+            return False
+        if loaded.is_inactive:
+            self._clean(loaded)
+        loaded.controller.node.close()
+        del self.controllers[name]
+        self.on_change()
+        return True
+
+    def reload(self, *, force: bool) -> bool:
+        """Unload all controllers; whether that was done, which active ones prevent unless it is forced."""
+        active = [each.name for each in self._active]
+        if active and not force:
+            self._logger.error(
+                "Controller manager: Cannot reload controller libraries because there are still "
+                f"{len(active)} active controllers"
+            )
+            return False
+        if self.controllers:
+            self._logger.info("Controller manager: Stopping all active controllers")
+            self.switch((), active, BEST_EFFORT)
+        for name in tuple(self.controllers):
+            self.unload(name)
+        self._logger.info("Controller manager: reloaded controller libraries for 'controller_interface'")
+        return True
+
+    def close(self) -> None:
+        """Deactivate what is active, and end."""
+        for loaded in reversed(tuple(self._active)):
+            self._deactivate(loaded)
+        for name in tuple(self.controllers):
+            self.controllers.pop(name).controller.node.close()
+
+    # --- configuring --------------------------------------------------------------------------------------------------
+
+    def configure(self, name: str) -> bool:
+        """Configure a controller; whether it is inactive then."""
+        self._logger.info(f"Configuring controller '{name}'")
+        loaded = self.controllers.get(name)
+        if loaded is None:
+            self._logger.error(
+                f"Could not configure controller with name '{name}' because no controller with this name exists"
+            )
+            return False
+        controller = loaded.controller
+        if controller.state in (ACTIVE, FINALIZED):
+            self._logger.error(f"Controller '{name}' can not be configured from '{controller.state.label}' state.")
+            return False
+        if loaded.is_inactive and not self._clean(loaded):
+            return False
+        if not self._call(loaded, "on_configure", controller.on_configure):
+            label = controller.state.label
+            self._logger.error(f"After configuring, controller '{name}' is in state '{label}' , expected inactive.")
+            return False
+        controller.state = INACTIVE
+        self._set_rate(loaded)
+        references = [CommandInterface(name, each) for each in controller.reference_interfaces()]
+        exported = [StateInterface(name, each) for each in controller.exported_states()]
+        controller.references, controller.exported = references, exported
+        self.resources.offer(name, references, exported)
+        self._sort()
+        self.on_change()
+        return True
+
+    def cleanup(self, name: str) -> bool:
+        """Lead an inactive controller back to the beginning; whether it is unconfigured then."""
+        loaded = self.controllers.get(name)
+        if loaded is None or not loaded.is_inactive:
+            why = "it is not inactive" if loaded is not None else "no controller with this name exists"
+            self._logger.error(f"Could not cleanup controller with name '{name}' because {why}")
+            return False
+        done = self._clean(loaded)
+        self.on_change()
+        return done
+
+    def _set_rate(self, loaded: Loaded) -> None:
+        rate, mine = loaded.controller.update_rate, self.update_rate
+        loaded.period_ns = 0 if rate >= mine or rate <= 0 else round(_NANOSECONDS / rate)
+        if rate > mine:
+            self._logger.warning(
+                f"The controller : {loaded.name} update rate : {rate:g} Hz should be less than or equal to controller "
+                f"manager's update rate : {mine:g} Hz!. The controller will be updated at controller_manager's update "
+                "rate."
+            )
+
+    def _clean(self, loaded: Loaded) -> bool:
+        self.resources.withdraw(loaded.name)
+        done = self._call(loaded, "on_cleanup", loaded.controller.on_cleanup)
+        loaded.controller.node.clear()
+        loaded.controller.references, loaded.controller.exported = [], []
+        loaded.controller.state = UNCONFIGURED if done else loaded.controller.state
+        return done
+
+    def _sort(self) -> None:
+        """Order the controllers: who commands another's references, or exports what another reads, comes before it."""
+        order: dict[str, Loaded] = {}
+        names = self.resources.command_names
+
+        def add(loaded: Loaded, path: tuple[str, ...]) -> None:
+            if loaded.name in order or loaded.name in path:
+                return
+            references = set(self.resources.references_of(loaded.name))
+            reads = {each.partition("/")[0] for each in loaded.wanted_states([])} if loaded.is_configured else set()
+            for other in self.controllers.values():
+                if other.name in reads or (
+                    references and other.is_configured and references.intersection(other.wanted_commands(names))
+                ):
+                    add(other, (*path, loaded.name))
+            order[loaded.name] = loaded
+
+        for loaded in self.controllers.values():
+            add(loaded, ())
+        self.controllers = order
+        self._active = [each for each in order.values() if each.is_active]
+
+    # --- switching ----------------------------------------------------------------------------------------------------
+
+    def switch(
+        self, activate: Sequence[str], deactivate: Sequence[str], strictness: int = BEST_EFFORT
+    ) -> tuple[bool, str]:
+        """Deactivate controllers and activate others.
+
+        Returns:
+            Whether that was done as far as the strictness asks, and what is to be said of it.
+        """
+        if strictness == 0:
+            self._logger.warning(
+                "Controller Manager: to switch controllers you need to specify a strictness level of "
+                "controller_manager_msgs::SwitchController::STRICT (2) or ::BEST_EFFORT (1). Defaulting to "
+                "::BEST_EFFORT"
+            )
+            strictness = BEST_EFFORT
+        planner = SwitchPlanner(self.controllers, self.resources, self._logger, strictness)
+        try:
+            switch = planner.plan(activate, deactivate)
+        except SwitchRefusedError as error:
+            return False, str(error)
+        if not switch.activate and not switch.deactivate:
+            self._logger.info("Empty activate and deactivate list, not requesting switch")
+            return True, "Empty activate and deactivate list, not requesting switch"
+        start, stop = self._interfaces(switch.activate), self._interfaces(switch.deactivate)
+        if start or stop:
+            objection = self.resources.prepare_switch(start, stop)
+            if objection:
+                told = "Could not switch controllers since prepare command mode switch was rejected."
+                self._logger.error(objection)
+                self._logger.error(told)
+                return False, told
+        failed = self._perform(switch, start, stop)
+        self.on_change()
+        if failed:
+            return False, "; ".join(failed)
+        return True, "Successfully switched controllers!"
+
+    def _interfaces(self, names: Sequence[str]) -> list[str]:
+        known = self.resources.command_names
+        return [each for name in names for each in self.controllers[name].wanted_commands(known)]
+
+    def _perform(self, switch: Switch, start: list[str], stop: list[str]) -> list[str]:
+        self.resources.perform_switch(start, stop)
+        for name in switch.deactivate:
+            self._deactivate(self.controllers[name])
+        for name in switch.from_chained:
+            self._set_chained(self.controllers[name], chained=False)
+        for name in switch.to_chained:
+            self._set_chained(self.controllers[name], chained=True)
+        followers = [each for each in reversed(self.controllers) if each in switch.activate]
+        return [told for name in followers if (told := self._activate(self.controllers[name]))]
+
+    def _set_chained(self, loaded: Loaded, *, chained: bool) -> None:
+        if self._call(loaded, "on_set_chained_mode", lambda: loaded.controller.on_set_chained_mode(chained)):
+            loaded.controller.chained = chained
+
+    def _activate(self, loaded: Loaded) -> str:
+        """Activate a controller; why it is not active then, or nothing."""
+        controller, resources, name = loaded.controller, self.resources, loaded.name
+        wanted = loaded.wanted_commands([each for each in resources.command_names if resources.is_available(each)])
+        told = next(
+            (
+                f"Resource conflict for controller '{name}'. Command interface '{each}' is already claimed."
+                for each in wanted
+                if each in resources.claims
+            ),
+            "",
+        )
+        if not told:
+            try:
+                controller.commands = resources.commands(wanted)
+                controller.states = resources.states(controller.state_interfaces())
+            except KeyError as error:
+                told = f"Can't activate controller '{name}': {error.args[0]}"
+        if told:
+            self._logger.error(told)
+            controller.commands, controller.states = [], []
+            return told
+        resources.claims.update(dict.fromkeys(wanted, name))
+        loaded.next_ns, loaded.before = 0, [nan] * len(controller.commands)
+        if not self._call(loaded, "on_activate", controller.on_activate):
+            label = controller.state.label
+            told = f"After activation, controller '{name}' is in state '{label}' (2), expected 'active' (3)."
+            self._logger.error(told)
+            self._release(loaded)
+            return told
+        controller.state = ACTIVE
+        resources.set_available(name, available=True)
+        self._active = [each for each in self.controllers.values() if each.is_active]
+        return ""
+
+    def _deactivate(self, loaded: Loaded, *, halts: bool = False) -> None:
+        controller = loaded.controller
+        self._call(loaded, "on_deactivate", controller.on_deactivate)
+        loaded.take_back_wrong_commands()
+        if halts:
+            loaded.halt()
+        controller.state = INACTIVE
+        self._release(loaded)
+        self.resources.set_available(loaded.name, available=False)
+        self._active = [each for each in self._active if each is not loaded]
+
+    def _release(self, loaded: Loaded) -> None:
+        claims = self.resources.claims
+        for name in [each for each, owner in claims.items() if owner == loaded.name]:
+            del claims[name]
+        loaded.controller.commands, loaded.controller.states = [], []
+
+    def _call(self, loaded: Loaded, what: str, callback: Callable[[], object]) -> bool:
+        """Call a callback of a controller; whether it succeeded. Why it did not is logged."""
+        logger = loaded.controller.node.logger
+        try:
+            callback()
+        except ControllerError as error:
+            logger.error(error.diagnostics[0].message)  # noqa: TRY400
+            return False
+        except Exception as error:  # noqa: BLE001  # a fault of a controller must not end the others
+            logger.error(_traced(f"Caught exception in callback for {what}", error))  # noqa: TRY400
+            self._on_error(loaded)
+            return False
+        return True
+
+    def _on_error(self, loaded: Loaded) -> None:
+        try:
+            loaded.controller.on_error()
+        except Exception as error:  # noqa: BLE001
+            loaded.controller.node.logger.error(_traced("Caught exception in callback for on_error", error))  # noqa: TRY400
+
+    def set_hardware_state(self, name: str, target: LifecycleState) -> bool:
+        """Lead hardware to a state; whether it came there. What uses it is deactivated before it goes down."""
+        hardware = self.resources.components[name]
+        if hardware.state is ACTIVE and target is not ACTIVE:
+            self._stop(self._users_of([hardware]))
+        done = self.resources.set_state(name, target)
+        self.on_change()
+        return done
+
+    # --- updating -----------------------------------------------------------------------------------------------------
+
+    def cycle(self, time_ns: int, period_s: float) -> None:
+        """Read the hardware, update the controllers, write to the hardware.
+
+        Args:
+            time_ns: the time, in nanoseconds.
+            period_s: the time since the last cycle, in seconds.
+        """
+        failed = self.resources.read(time_ns, period_s)
+        if failed:
+            self._stop_those_of(failed)
+        for loaded in self._active:
+            if loaded.controller.state is not ACTIVE:
+                continue  # one before it has failed, and it with that
+            if loaded.period_ns:
+                if time_ns < loaded.next_ns:
+                    continue
+                step_s = loaded.period_ns / _NANOSECONDS
+                loaded.next_ns = max(loaded.next_ns or time_ns, time_ns - loaded.period_ns) + loaded.period_ns
+            else:
+                step_s = period_s
+            try:
+                loaded.controller.step(time_ns, step_s)
+            except Exception as error:  # noqa: BLE001  # a fault of a controller must not end the others
+                self._fail(loaded, error)  # `_active` is another list then
+                continue
+            wrong = loaded.take_back_wrong_commands()
+            if wrong:
+                self._tell_of_wrong_command(loaded, wrong)
+        failed = self.resources.write(time_ns, period_s)
+        if failed:
+            self._stop_those_of(failed)
+
+    def _tell_of_wrong_command(self, loaded: Loaded, name: str) -> None:
+        loaded.controller.node.logger.error(
+            f"The command '{name}' is not a number; the hardware gets the last position, or 0 for what moves",
+            throttle_duration_sec=1.0,
+        )
+
+    def _fail(self, loaded: Loaded, error: Exception) -> None:
+        """A controller has failed in its update: it and who commands it are deactivated, and what it moved stands."""
+        told = _traced("Caught exception while updating", error)
+        if isinstance(error, ControllerError):
+            told = error.diagnostics[0].message
+        loaded.controller.node.logger.error(told)
+        stopped = [loaded, *self._commanding(loaded)]
+        names = " ".join(each.name for each in stopped)
+        self._logger.error(f"Deactivating controllers : [ {names} ] as their update resulted in an error!")
+        self._stop(stopped)
+        self._on_error(loaded)
+        if loaded.fallbacks:
+            self._logger.error(f"Activating fallback controllers : [ {' '.join(loaded.fallbacks)} ]")
+            self.switch(loaded.fallbacks, (), BEST_EFFORT)
+
+    def _commanding(self, loaded: Loaded) -> list[Loaded]:
+        """The active controllers that command the references of one, and so on."""
+        references = self.resources.references_of(loaded.name)
+        owners = dict.fromkeys(self.resources.claims[each] for each in references if each in self.resources.claims)
+        found = [self.controllers[each] for each in owners]
+        return [*found, *(more for each in found for more in self._commanding(each))]
+
+    def _stop_those_of(self, failed: Sequence[Hardware]) -> None:
+        stopped = self._users_of(failed)
+        if stopped:
+            self._logger.error(
+                f"Deactivating controllers : [ {' '.join(each.name for each in stopped)} ] as their hardware "
+                f"components failed: [ {' '.join(each.description.name for each in failed)} ]"
+            )
+            self._stop(stopped)
+        self.on_change()
+
+    def _users_of(self, hardware: Sequence[Hardware]) -> list[Loaded]:
+        """The active controllers that read or command hardware, and who commands those."""
+        names = {each for component in hardware for each in self.resources.names_of(component)}
+        found = [
+            loaded
+            for loaded in self._active
+            if any(each.name in names for each in (*loaded.controller.commands, *loaded.controller.states))
+        ]
+        return [*found, *(each for loaded in found for each in self._commanding(loaded) if each not in found)]
+
+    def _stop(self, stopped: Sequence[Loaded]) -> None:
+        for each in stopped:
+            if each.is_active:
+                following = {command.component for command in each.controller.commands}
+                self._deactivate(each, halts=True)
+                for name in following & self.controllers.keys():
+                    self._set_chained(self.controllers[name], chained=False)
+        self.on_change()
+
+    def _tell(self, error: LinkwrightError) -> None:
+        for each in error.diagnostics:
+            hint = f" ({each.hint})" if each.hint else ""
+            self._logger.error(f"{each.message}{hint}")
+
+
+def _traced(what: str, error: Exception) -> str:
+    """An error with the place where it came up, as those who write controllers need it."""
+    frames = traceback.format_exception(type(error), error, error.__traceback__)
+    return f"{what}: {type(error).__name__}: {error}\n{''.join(frames).rstrip()}"

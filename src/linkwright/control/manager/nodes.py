@@ -1,0 +1,68 @@
+"""The nodes of controllers: their names, parameters and remappings.
+
+Source: the controller manager of ros2_control. A controller's node gets its parameters from the files that the
+manager's process was started with, then from those in ``NAME.params_file``, then from ``NAME.node_options_args``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from linkwright.graph import Node
+from linkwright.graph.command_line.ros_arguments import parse
+from linkwright.graph.names.rules import join
+from linkwright.graph.parameters.files import read_parameter_file
+from linkwright.graph.parameters.rules import ParameterRules
+
+_OF_THE_PROCESS = ("__node", "__name", "__ns")
+
+
+@dataclass(slots=True)
+class ProcessArguments:
+    """What the process, or the plugin, of the manager was given for all of its nodes.
+
+    Attributes:
+        parameters: by the names of nodes.
+        remappings: rules ``(from, to)``.
+    """
+
+    parameters: ParameterRules = field(default_factory=ParameterRules)
+    remappings: Sequence[tuple[str, str]] = ()
+
+
+def controller_node(manager: Node, name: str, process: ProcessArguments) -> Node:
+    """A new node for a controller.
+
+    Raises:
+        LinkwrightError: its name, or one of its files or arguments, is not valid.
+    """
+    namespace = manager.get_namespace()
+    full_name = join(namespace, name)
+    values: dict[str, Any] = {}
+    if manager.has_parameter("use_sim_time"):
+        values["use_sim_time"] = manager.get_parameter("use_sim_time").value
+    values |= process.parameters.for_node(full_name)
+    for path in words_of(manager, f"{name}.params_file"):
+        values |= read_parameter_file(path).for_node(full_name)
+    ros = parse(
+        ["--ros-args", *(each for each in words_of(manager, f"{name}.node_options_args") if each != "--ros-args")]
+    )
+    values |= ros.parameters_for(full_name)
+    remappings = [*ros.remappings_for(name), *process.remappings]
+    return Node(
+        manager.graph,
+        name,
+        namespace=namespace,
+        parameters=values,
+        remappings=[each for each in remappings if each[0] not in _OF_THE_PROCESS],
+    )
+
+
+def words_of(node: Node, name: str) -> list[str]:
+    """The texts in a parameter, one or a list of them; none where it is not set."""
+    value = node.get_parameter_or(name).value
+    if not value:
+        return []
+    return [value] if isinstance(value, str) else [str(each) for each in value]

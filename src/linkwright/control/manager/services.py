@@ -1,0 +1,202 @@
+"""The services and topics of the controller manager.
+
+Source: controller_manager_msgs and the controller manager of ros2_control.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from linkwright.control.controllers.registry import controller_types
+from linkwright.control.hardware.component import Hardware
+from linkwright.control.manager.loaded import Loaded
+from linkwright.control.manager.manager import ControllerManager
+from linkwright.graph.lifecycle.states import ACTIVE, FINALIZED, INACTIVE, UNCONFIGURED, LifecycleState
+from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from linkwright.messages import get_message
+from linkwright.simulation.plugins.node import PluginNode
+
+_PACKAGE = "controller_manager_msgs"
+_PLAIN, _CHAINABLE = "controller_interface::ControllerInterface", "controller_interface::ChainableControllerInterface"
+_LATCHED = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+_STATES = {state.state_id: state for state in (UNCONFIGURED, INACTIVE, ACTIVE, FINALIZED)}
+
+
+class ManagerServices:
+    """What others ask of a manager, and hear of it.
+
+    Args:
+        manager: the manager.
+        node: its node as plugins have them: callbacks come in the thread of the updates.
+    """
+
+    def __init__(self, manager: ControllerManager, node: PluginNode) -> None:
+        self._manager = manager
+        self._activity = node.publisher(f"{_PACKAGE}/msg/ControllerManagerActivity", "~/activity", _LATCHED)
+        self._diagnostics = node.publisher("diagnostic_msgs/msg/DiagnosticArray", "/diagnostics")
+        manager.on_change = self.publish_activity
+        answers: dict[str, Callable[[Any, Any], Any]] = {
+            "ListControllers": self._list_controllers,
+            "ListControllerTypes": _list_types,
+            "LoadController": lambda request, response: _said(response, manager.load(request.name)),
+            "ConfigureController": lambda request, response: _said(response, manager.configure(request.name)),
+            "CleanupController": lambda request, response: _said(response, manager.cleanup(request.name)),
+            "UnloadController": lambda request, response: _said(response, manager.unload(request.name)),
+            "ReloadControllerLibraries": lambda request, response: _said(
+                response, manager.reload(force=request.force_kill)
+            ),
+            "SwitchController": self._switch,
+            "ListHardwareComponents": self._list_components,
+            "ListHardwareInterfaces": self._list_interfaces,
+            "SetHardwareComponentState": self._set_state,
+        }
+        for name, answer in answers.items():
+            node.service(f"{_PACKAGE}/srv/{name}", f"~/{_service_name(name)}", answer)
+        self.publish_activity()
+
+    def publish_activity(self) -> None:
+        """Publish which controllers and which hardware are in which state."""
+        message = get_message(f"{_PACKAGE}/msg/ControllerManagerActivity")()
+        message.header.stamp = self._manager.node.get_clock().now().to_msg()
+        message.controllers = [
+            _named_state(each.name, each.controller.state) for each in self._manager.controllers.values()
+        ]
+        message.hardware_components = [
+            _named_state(name, each.state) for name, each in self._manager.resources.components.items()
+        ]
+        self._activity.publish(message)
+
+    def publish_diagnostics(self) -> None:
+        """Publish whether all is active, for whom it may concern."""
+        if not self._diagnostics.is_wanted:
+            return
+        message = get_message("diagnostic_msgs/msg/DiagnosticArray")()
+        message.header.stamp = self._manager.node.get_clock().now().to_msg()
+        name = self._manager.node.get_name()
+        controllers = {each.name: each.controller.state for each in self._manager.controllers.values()}
+        components = {name: each.state for name, each in self._manager.resources.components.items()}
+        message.status = [
+            _status(f"{name}: Controllers Activity", "controllers", controllers),
+            _status(f"{name}: Hardware Components Activity", "hardware components", components),
+        ]
+        self._diagnostics.publish(message)
+
+    # --- controllers --------------------------------------------------------------------------------------------------
+
+    def _list_controllers(self, _: Any, response: Any) -> Any:
+        response.controller = [self._controller(each) for each in self._manager.controllers.values()]
+        return response
+
+    def _controller(self, loaded: Loaded) -> Any:
+        resources = self._manager.resources
+        controller = loaded.controller
+        message = get_message(f"{_PACKAGE}/msg/ControllerState")(name=loaded.name, type=loaded.type)
+        message.state = controller.state.label
+        message.update_rate = int(controller.update_rate)
+        message.claimed_interfaces = [name for name, owner in resources.claims.items() if owner == loaded.name]
+        message.is_chainable, message.is_chained = loaded.is_chainable, controller.chained
+        if not loaded.is_configured:
+            return message
+        message.required_command_interfaces = loaded.wanted_commands(resources.command_names)
+        message.required_state_interfaces = loaded.wanted_states(resources.state_names)
+        message.exported_state_interfaces = [each.kind for each in controller.exported]
+        message.reference_interfaces = [each.kind for each in controller.references]
+        chains: dict[str, list[str]] = {}
+        for each in message.required_command_interfaces:
+            name, _, kind = each.partition("/")
+            if name in self._manager.controllers:
+                chains.setdefault(name, []).append(kind)
+        connection = get_message(f"{_PACKAGE}/msg/ChainConnection")
+        message.chain_connections = [connection(name, kinds) for name, kinds in chains.items()]
+        return message
+
+    def _switch(self, request: Any, response: Any) -> Any:
+        response.ok, response.message = self._manager.switch(
+            request.activate_controllers, request.deactivate_controllers, request.strictness
+        )
+        return response
+
+    # --- hardware -----------------------------------------------------------------------------------------------------
+
+    def _list_components(self, _: Any, response: Any) -> Any:
+        response.component = [self._component(each) for each in self._manager.resources.components.values()]
+        return response
+
+    def _component(self, hardware: Hardware) -> Any:
+        described = hardware.description
+        message = get_message(f"{_PACKAGE}/msg/HardwareComponentState")(name=described.name, type=described.type)
+        message.plugin_name = message.class_type = described.plugin
+        message.rw_rate = int(self._manager.update_rate)
+        message.state.id, message.state.label = hardware.state.state_id, hardware.state.label
+        message.command_interfaces = [self._interface(each.name) for each in hardware.commands]
+        message.state_interfaces = [self._interface(each.name) for each in hardware.states]
+        return message
+
+    def _interface(self, name: str) -> Any:
+        resources = self._manager.resources
+        return get_message(f"{_PACKAGE}/msg/HardwareInterface")(
+            name, "double", resources.is_available(name), name in resources.claims
+        )
+
+    def _list_interfaces(self, _: Any, response: Any) -> Any:
+        resources = self._manager.resources
+        response.command_interfaces = [self._interface(each) for each in resources.command_names]
+        response.state_interfaces = [self._interface(each) for each in resources.state_names]
+        for each in response.state_interfaces:
+            each.is_claimed = False
+        return response
+
+    def _set_state(self, request: Any, response: Any) -> Any:
+        resources = self._manager.resources
+        if request.name not in resources.components:
+            self._manager.node.get_logger().error(f"hardware component with name '{request.name}' does not exist")
+            response.ok = False
+            return response
+        wanted = request.target_state
+        target = _STATES.get(wanted.id) or next((each for each in _STATES.values() if each.label == wanted.label), None)
+        response.ok = target is not None and self._manager.set_hardware_state(request.name, target)
+        state = resources.components[request.name].state
+        response.state.id, response.state.label = state.state_id, state.label
+        return response
+
+
+def _service_name(name: str) -> str:
+    """``list_controllers`` of ``ListControllers``."""
+    return "".join(f"_{each.lower()}" if each.isupper() else each for each in name).lstrip("_")
+
+
+def _said(response: Any, done: bool) -> Any:
+    response.ok = done
+    return response
+
+
+def _list_types(_: Any, response: Any) -> Any:
+    from linkwright.control.controllers.controller import Controller
+    from linkwright.control.controllers.registry import controller_class
+    from linkwright.diagnostics import LinkwrightError
+
+    for name in controller_types():
+        try:
+            found = controller_class(name)
+        except LinkwrightError:
+            continue  # its package is broken; loading it says so
+        chains = found.reference_interfaces is not Controller.reference_interfaces
+        response.types.append(name)
+        response.base_classes.append(_CHAINABLE if chains else _PLAIN)
+    return response
+
+
+def _named_state(name: str, state: LifecycleState) -> Any:
+    message = get_message(f"{_PACKAGE}/msg/NamedLifecycleState")(name=name)
+    message.state.id, message.state.label = state.state_id, state.label
+    return message
+
+
+def _status(name: str, what: str, states: dict[str, LifecycleState]) -> Any:
+    status = get_message("diagnostic_msgs/msg/DiagnosticStatus")(name=name, hardware_id="ros2_control")
+    value = get_message("diagnostic_msgs/msg/KeyValue")
+    status.values = [value(key, state.label) for key, state in states.items()]
+    everything = all(state is ACTIVE for state in states.values())
+    status.message = f"All {what} are active" if everything else f"Not all {what} are active"
+    return status

@@ -1,0 +1,67 @@
+"""What a manager's parameters and the robot's description come to: hardware that is loaded and set going.
+
+Source: the controller manager of ros2_control, Humble's names and Jazzy's.
+"""
+
+from __future__ import annotations
+
+from linkwright.control.hardware.description import hardware_of
+from linkwright.control.hardware.resources import Maker
+from linkwright.control.manager.manager import ControllerManager
+from linkwright.control.manager.nodes import words_of
+from linkwright.descriptions import DescriptionLibrary
+from linkwright.diagnostics import Diagnostic, Severity
+from linkwright.graph import Logger
+from linkwright.graph.lifecycle.states import ACTIVE, INACTIVE, UNCONFIGURED
+
+_INITIAL = "hardware_components_initial_state"
+
+
+def load_hardware(manager: ControllerManager, text: str, library: DescriptionLibrary, make: Maker) -> bool:
+    """Load the hardware of a description and lead it to the states that the manager's parameters say.
+
+    Args:
+        manager: the manager.
+        text: the URDF.
+        library: the robot descriptions that the process has read.
+        make: makes hardware.
+
+    Returns:
+        Whether the description can be read; what is wrong with it is logged.
+    """
+    node, logger = manager.node, manager.node.get_logger()
+    reading = library.read(text)
+    if reading.robot is None:
+        logger.error("The published robot description file (urdf) seems not to be genuine.")
+        _tell(logger, [each for each in reading.diagnostics if each.severity is Severity.ERROR])
+        return False
+    descriptions, findings = hardware_of(reading.robot)
+    _tell(logger, findings)
+    manager.robot_description = text
+    resources = manager.resources
+    resources.load(descriptions, make)
+    waiting = dict.fromkeys(resources.components)
+    configured = [*words_of(node, f"{_INITIAL}.inactive"), *words_of(node, "configure_components_on_start")]
+    for target, names in ((UNCONFIGURED, words_of(node, f"{_INITIAL}.unconfigured")), (INACTIVE, configured)):
+        for name in filter(None, names):
+            if name not in waiting:
+                logger.warning(f"Hardware component '{name}' is unknown, therefore not set in '{target.label}' state.")
+                continue
+            logger.info(f"Setting component '{name}' to '{target.label}' state.")
+            resources.set_state(name, target)
+            del waiting[name]
+    started = words_of(node, "activate_components_on_start")
+    for name in waiting:
+        if not started or name in started:
+            resources.set_state(name, ACTIVE)
+    return True
+
+
+def _tell(logger: Logger, findings: list[Diagnostic]) -> None:
+    for each in findings:
+        hint = f" ({each.hint})" if each.hint else ""
+        told = f"{each.message}{hint}"
+        if each.severity is Severity.ERROR:
+            logger.error(told)
+        else:
+            logger.warning(told)

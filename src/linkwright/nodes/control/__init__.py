@@ -1,0 +1,1 @@
+"""The nodes of the packages of ros2_control."""

@@ -1,0 +1,180 @@
+"""What the programs that talk to a controller manager share: its services, called with the texts of the real ones.
+
+Source: controller_manager of ros2_control (options, times, texts).
+"""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+from collections.abc import Callable, Coroutine, Sequence
+from typing import Any, NoReturn
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
+from linkwright.graph import Clock, ClockType, Node, Parameter
+from linkwright.messages import get_message, get_service
+from linkwright.nodes.options import SingleNode
+
+_LOOK_AGAIN = 10.0
+"""Seconds between two lines about a service that is not there."""
+_ATTEMPTS = 3
+
+
+class NoManagerError(Exception):
+    """The services of the manager are not there, or do not answer; the text is that of ros2_control."""
+
+
+class ManagerClient:
+    """Calls services of a controller manager.
+
+    Args:
+        node: who calls.
+        manager: the name of the manager's node; relative to the namespace of `node`.
+        timeout: seconds to wait for a service; 0 for any time.
+        call_timeout: seconds to wait for an answer.
+    """
+
+    def __init__(self, node: Node, manager: str, timeout: float = 0.0, call_timeout: float = 10.0) -> None:
+        namespace = node.get_namespace().rstrip("/")
+        self.manager = manager if manager.startswith("/") else f"{namespace}/{manager}"
+        self._node = node
+        self._timeout, self._call_timeout = timeout, call_timeout
+        self._clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=node.get_clock().timebase)
+
+    async def ask(self, service: str, **fields: Any) -> Any:
+        """Call one of the manager's own services, ``list_controllers``.
+
+        Raises:
+            NoManagerError: it is not there, or does not answer.
+        """
+        kind = "".join(word.capitalize() for word in service.split("_"))
+        return await self._call(f"controller_manager_msgs/srv/{kind}", service, fields)
+
+    async def set_parameter(self, name: str, value: Any) -> bool:
+        """Set a parameter of the manager; whether it took it."""
+        parameter = Parameter(name, value=value).to_parameter_msg()
+        answer = await self._call("rcl_interfaces/srv/SetParameters", "set_parameters", {"parameters": [parameter]})
+        return all(each.successful for each in answer.results)
+
+    async def switch(self, activate: Sequence[str], deactivate: Sequence[str], timeout: float, *, asap: bool) -> Any:
+        """Switch controllers, strictly."""
+        duration = get_message("builtin_interfaces/msg/Duration")(*divmod(round(timeout * 1e9), 1_000_000_000))
+        return await self.ask(
+            "switch_controller",
+            activate_controllers=list(activate),
+            deactivate_controllers=list(deactivate),
+            strictness=2,
+            activate_asap=asap,
+            timeout=duration,
+        )
+
+    async def _call(self, kind: str, service: str, fields: dict[str, Any]) -> Any:
+        made = get_service(kind)
+        name = f"{self.manager}/{service}"
+        client = self._node.create_client(made, name)
+        try:
+            await self._wait_for(client, name)
+            for attempt in range(1, _ATTEMPTS + 1):
+                future = client.call_async(made.Request(**fields))
+                if await self._done(future, self._call_timeout):
+                    return future.result()
+                client.remove_pending_request(future)
+                self._node.get_logger().warning(
+                    f"Failed getting a result from calling {name} in {self._call_timeout:g}. "
+                    f"(Attempt {attempt} of {_ATTEMPTS}.)"
+                )
+        finally:
+            self._node.destroy_client(client)
+        raise NoManagerError(f"Could not successfully call service {name} after {_ATTEMPTS} attempts.")
+
+    async def _wait_for(self, client: Any, name: str) -> None:
+        """Wait until there is a server."""
+        logger = self._node.get_logger()
+        while not client.service_is_ready():
+            logger.info(f"waiting for service {name} to become available...")
+            come: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+
+            def look(come: asyncio.Future[None] = come) -> None:
+                if not come.done() and client.service_is_ready():
+                    come.set_result(None)
+
+            graph, loop = self._node.graph, asyncio.get_running_loop()
+
+            def changed(loop: asyncio.AbstractEventLoop = loop, look: Callable[[], None] = look) -> None:
+                loop.call_soon_threadsafe(look)
+
+            graph.watch(changed)
+            try:
+                ready = client.service_is_ready() or await self._done(come, self._timeout or _LOOK_AGAIN)
+            finally:
+                graph.unwatch(changed)
+                come.cancel()  # what was called meanwhile looks no more
+            if ready:
+                return
+            if self._timeout:
+                raise NoManagerError(f"Could not contact service {name}")
+            logger.warning(f"Could not contact service {name}")
+
+    async def _done(self, future: Any, seconds: float) -> bool:
+        """Wait for a future; whether it came in time, on the clock of the graph."""
+        over: asyncio.Future[bool] = asyncio.get_running_loop().create_future()
+
+        def tell(came: bool) -> None:
+            if not over.done():
+                over.set_result(came)
+
+        timer = self._node.create_timer(seconds, lambda: tell(False), clock=self._clock)
+        future.add_done_callback(lambda _: tell(True))
+        try:
+            return await over
+        finally:
+            self._node.destroy_timer(timer)
+
+
+class ManagerProgram(SingleNode):
+    """A node that has a controller manager do something and ends.
+
+    Derived classes make `_node` and call `_begin`.
+    """
+
+    finished: asyncio.Future[int]
+
+    def _begin(self, work: Callable[[], Coroutine[Any, Any, int]]) -> None:
+        """Run what gives the exit status."""
+        self.finished = asyncio.get_running_loop().create_future()
+        self._task = asyncio.get_running_loop().create_task(self._run(work))
+
+    def close(self) -> None:
+        """End it."""
+        self._task.cancel()
+        super().close()
+
+    async def _run(self, work: Callable[[], Coroutine[Any, Any, int]]) -> None:
+        status = 1
+        try:
+            status = await work()
+        except NoManagerError as error:
+            self._node.get_logger().fatal(str(error))
+        except LinkwrightError as error:
+            self._node.get_logger().fatal(error.diagnostics[0].message)
+        if not self.finished.done():
+            self.finished.set_result(status)
+
+
+def parsed(parser: argparse.ArgumentParser, words: Sequence[str]) -> argparse.Namespace:
+    """The options of a command line.
+
+    Raises:
+        LinkwrightError: NODE831, it cannot be understood.
+    """
+
+    def refuse(message: str) -> NoReturn:
+        text = phrase("{program}: {message}", program=parser.prog, message=foreign(message))
+        raise LinkwrightError(Diagnostic("NODE831", text, hint=foreign(parser.format_usage().strip())))
+
+    # argparse ends the program where a required option is missing, in Python up to 3.12 also with exit_on_error=False.
+    parser.error = refuse  # type: ignore[method-assign]
+    try:
+        return parser.parse_args([word for word in words if word])
+    except argparse.ArgumentError as error:
+        refuse(str(error))

@@ -1,0 +1,116 @@
+"""ros2_control_node of controller_manager: controllers at real time.
+
+It reads, updates and writes at ``update_rate`` on the event loop, so that topics and services need not be handed over.
+The description comes by the topic ``robot_description`` (Jazzy), by ``~/robot_description``, or as a parameter
+(Humble).
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from linkwright.control.hardware.resources import Resources, hardware_by_entry_points
+from linkwright.control.manager.exchange import DirectExchange
+from linkwright.control.manager.manager import ControllerManager
+from linkwright.control.manager.nodes import ProcessArguments
+from linkwright.control.manager.services import ManagerServices
+from linkwright.control.manager.starting import load_hardware
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+from linkwright.graph import DESCRIPTION_QOS, Graph
+from linkwright.graph.command_line.ros_arguments import parse
+from linkwright.graph.parameters.rules import ParameterRules
+from linkwright.messages import String
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.simulation.plugins.node import PluginNode
+
+_NANOSECONDS = 1_000_000_000
+_DEFAULT_RATE = 100
+
+
+class Ros2ControlNode(SingleNode):
+    """The running node.
+
+    Raises:
+        LinkwrightError: NODE830, its update rate is none; a name, a remapping or a ROS argument is not valid.
+    """
+
+    DEFAULT_NAME = "controller_manager"
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        self._node, _ = create_node(graph, options, self.DEFAULT_NAME, any_parameters=True)
+        self._library = options.library
+        with starting(self._node):
+            self._start(options)
+
+    def _start(self, options: NodeOptions) -> None:
+        ros = parse(options.arguments)
+        rules = ParameterRules()
+        rules.add(options.for_others)
+        rules.add(ros.parameters)
+        remappings = [*ros.remappings_for(self.DEFAULT_NAME), *options.remappings]
+        logger = self._node.get_logger()
+        rate = self._rate()
+        logger.info(f"update rate is {rate} Hz")
+        self._manager = ControllerManager(
+            self._node,
+            DirectExchange(),
+            Resources(logger),
+            ProcessArguments(rules, remappings),
+            update_rate=rate,
+        )
+        self._loaded = False
+        text = self._node.get_parameter_or("robot_description").value
+        if text:
+            logger.warning(
+                "[Deprecated] Passing the robot description parameter directly to the control_manager node is "
+                "deprecated. Use the 'robot_description' topic from 'robot_state_publisher' instead."
+            )
+            self._take(text)
+            return
+        topics = dict.fromkeys(
+            self._node.handle.resolve_topic_name(each) for each in ("robot_description", "~/robot_description")
+        )
+        for topic in topics:
+            self._node.create_subscription(String, topic, self._on_description, DESCRIPTION_QOS)
+            logger.info(f"Subscribing to '{topic}' topic for robot description.")
+
+    def close(self) -> None:
+        """Deactivate the controllers, and end."""
+        self._manager.close()
+        super().close()
+
+    def _rate(self) -> int:
+        value: Any = self._node.get_parameter_or("update_rate").value
+        if value is None:
+            self._node.get_logger().warning("'update_rate' parameter not set, using default value.")
+            return _DEFAULT_RATE
+        if not isinstance(value, int) or isinstance(value, bool) or not 0 < value <= 100_000:
+            message = phrase("the update_rate {value} is no whole number of Hz above 0", value=value)
+            raise LinkwrightError(Diagnostic("NODE830", message, hint=phrase("write 'update_rate: 100'")))
+        return value
+
+    def _on_description(self, message: String) -> None:
+        logger = self._node.get_logger()
+        logger.info("Received robot description from topic.")
+        if self._loaded:
+            logger.warning("ResourceManager has already loaded a urdf. Ignoring attempt to reload a robot description.")
+            return
+        self._take(message.data)
+
+    def _take(self, text: str) -> None:
+        manager = self._manager
+        self._loaded = load_hardware(manager, text, self._library, hardware_by_entry_points)
+        if not self._loaded:
+            return
+        node = PluginNode(self._node, DirectExchange(), owned=False, qos={}, usual=None)
+        services = ManagerServices(manager, node)
+        self._node.create_timer(1.0, services.publish_diagnostics)
+        self._clock = self._node.get_clock()
+        self._last_ns = self._clock.now_ns()
+        self._node.create_timer(1.0 / manager.update_rate, self._update)
+
+    def _update(self) -> None:
+        now_ns = self._clock.now_ns()
+        period_s = (now_ns - self._last_ns) / _NANOSECONDS
+        self._last_ns = now_ns
+        self._manager.cycle(now_ns, period_s)

@@ -1,0 +1,60 @@
+from __future__ import annotations
+
+from math import isnan
+
+from tests.control.robots import described, joint, robot
+
+
+def test_components_interfaces_and_parameters():
+    text = robot(
+        joint("hip", "position velocity", initial="0.5")
+        + "<sensor name='imu'><state_interface name='orientation.x'/><param name='frame_id'>base</param></sensor>"
+        + "<gpio name='flange'><command_interface name='out1'/><state_interface name='in1'/></gpio>",
+        parameters="<param name='calculate_dynamics'>true</param>",
+    )
+    (hardware,), findings = described(text)
+    assert findings == []
+    assert (hardware.name, hardware.type, hardware.plugin) == ("arm", "system", "mock_components/GenericSystem")
+    assert hardware.is_set("calculate_dynamics")
+    assert [each.name for each in hardware.joints[0].commands] == ["position", "velocity"]
+    assert hardware.joints[0].states[0].initial_value == 0.5
+    assert isnan(hardware.joints[0].states[1].initial_value)
+    assert hardware.sensors[0].parameters == {"frame_id": "base"}
+    assert [each.kind for each in hardware.components] == ["joint", "sensor", "gpio"]
+
+
+def test_limits_of_commands():
+    limits = "<param name='min'>-1</param><param name='max'>2.5</param>"
+    text = robot(f"<joint name='hip'><command_interface name='position'>{limits}</command_interface></joint>")
+    (hardware,), _ = described(text)
+    command = hardware.joints[0].commands[0]
+    assert (command.minimum, command.maximum) == (-1.0, 2.5)
+
+
+def test_mimicry_is_of_the_joint_or_of_its_parameters():
+    text = robot(joint("hip") + joint("knee", ""), mimic="<mimic joint='hip' multiplier='-2' offset='0.5'/>")
+    (hardware,), _ = described(text)
+    mimic = hardware.joints[1].mimic
+    assert mimic is not None
+    assert (mimic.joint, mimic.multiplier, mimic.offset) == ("hip", -2.0, 0.5)
+    more = "<param name='mimic'>hip</param><param name='multiplier'>3</param>"
+    (hardware,), _ = described(robot(joint("hip") + joint("knee", "", more=more)))
+    mimic = hardware.joints[1].mimic
+    assert mimic is not None
+    assert (mimic.joint, mimic.multiplier) == ("hip", 3.0)
+
+
+def test_mistakes_are_told_and_left_out():
+    text = robot(joint("hip") + joint("kne") + joint("knee", more="<param name='mimic'>hipp</param>"))
+    text = text.replace(
+        "</robot>", "<ros2_control name='b' type='sytem'/><ros2_control name='c' type='system'/></robot>"
+    )
+    (hardware,), findings = described(text)
+    assert [each.name for each in hardware.joints] == ["hip", "knee"]
+    assert findings == [
+        "CTL113 <ros2_control> has joint 'kne', which the robot does not have",
+        "CTL114 Mimicked joint 'hipp' not found",
+        "CTL111 <ros2_control> lacks a name, or its type 'sytem' is none",
+        "CTL112 <ros2_control> 'c' names no plugin that drives it",
+    ]
+    assert described("<robot name='r'><link name='a'/></robot>")[1] == ["CTL110 the description has no <ros2_control>"]

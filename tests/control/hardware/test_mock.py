@@ -1,0 +1,102 @@
+from __future__ import annotations
+
+import pytest
+
+from linkwright.control.hardware.component import HardwareError
+from linkwright.control.hardware.mock import GenericSystem
+from linkwright.graph import Graph
+from tests.control.robots import described, joint, robot
+
+
+@pytest.fixture
+def made(graph: Graph):
+    def make(text: str) -> GenericSystem:
+        (hardware,), _ = described(text)
+        return GenericSystem(hardware, graph.get_logger("mock"))
+
+    return make
+
+
+def parameter(name: str, value: str) -> str:
+    return f"<param name='{name}'>{value}</param>"
+
+
+def states(hardware: GenericSystem) -> dict[str, float]:
+    return {each.name: each.value for each in hardware.states}
+
+
+def command(hardware: GenericSystem, name: str, value: float) -> None:
+    next(each for each in hardware.commands if each.name == name).value = value
+
+
+async def test_states_follow_commands_from_their_initial_values(made):
+    hardware = made(robot(joint("hip", "position velocity", initial="0.5") + joint("knee")))
+    hardware.read(0, 0.01)
+    assert states(hardware) == {"hip/position": 0.5, "hip/velocity": 0, "knee/position": 0, "knee/velocity": 0}
+    command(hardware, "hip/position", 1.0)
+    command(hardware, "hip/velocity", 2.0)
+    hardware.read(0, 0.01)
+    assert (states(hardware)["hip/position"], states(hardware)["hip/velocity"]) == (1.0, 2.0)
+
+
+async def test_an_offset_of_positions(made):
+    hardware = made(robot(joint("hip"), parameters=parameter("position_state_following_offset", "-0.1")))
+    command(hardware, "hip/position", 1.0)
+    hardware.read(0, 0.01)
+    hardware.read(0, 0.01)
+    assert states(hardware)["hip/position"] == pytest.approx(0.9)
+
+
+async def test_an_offset_of_another_interface(made):
+    parameters = parameter("position_state_following_offset", "0.5") + parameter(
+        "custom_interface_with_following_offset", "actual_position"
+    )
+    hardware = made(robot(joint("hip", states="position actual_position"), parameters=parameters))
+    command(hardware, "hip/position", 1.0)
+    hardware.read(0, 0.01)
+    assert states(hardware) == {"hip/position": 1.0, "hip/actual_position": 1.5}
+
+
+async def test_mimicry(made):
+    text = robot(joint("hip") + joint("knee", ""), mimic="<mimic joint='hip' multiplier='-2' offset='0.5'/>")
+    hardware = made(text)
+    command(hardware, "hip/position", 1.0)
+    hardware.read(0, 0.01)
+    assert states(hardware)["knee/position"] == -1.5
+
+
+async def test_disabled_commands(made):
+    hardware = made(robot(joint("hip"), parameters=parameter("disable_commands", "true")))
+    command(hardware, "hip/position", 1.0)
+    hardware.read(0, 0.01)
+    assert states(hardware)["hip/position"] == 0.0
+
+
+async def test_dynamics_of_a_velocity(made):
+    text = robot(
+        joint("hip", "position velocity", "position velocity acceleration"),
+        parameters=parameter("calculate_dynamics", "true"),
+    )
+    hardware = made(text)
+    hardware.prepare_switch(["hip/velocity"], [])
+    hardware.perform_switch(["hip/velocity"], [])
+    command(hardware, "hip/velocity", 2.0)
+    hardware.read(0, 0.1)
+    assert states(hardware) == {"hip/position": 0.0, "hip/velocity": 2.0, "hip/acceleration": pytest.approx(20.0)}
+    hardware.read(0, 0.1)
+    assert states(hardware)["hip/position"] == pytest.approx(0.2)
+    with pytest.raises(HardwareError, match=r"Got multiple \(2\) starting interfaces for joint 'hip'"):
+        hardware.prepare_switch(["hip/velocity", "hip/position"], [])
+
+
+async def test_sensors_and_gpios(made):
+    control = (
+        joint("hip")
+        + "<sensor name='ft'><state_interface name='force.x'/></sensor>"
+        + "<gpio name='io'><command_interface name='out'/><state_interface name='out'/></gpio>"
+    )
+    hardware = made(robot(control, parameters=parameter("mock_sensor_commands", "true")))
+    command(hardware, "ft/force.x", 3.0)
+    command(hardware, "io/out", 1.0)
+    hardware.read(0, 0.01)
+    assert (states(hardware)["ft/force.x"], states(hardware)["io/out"]) == (3.0, 1.0)

@@ -1,0 +1,270 @@
+from __future__ import annotations
+
+from math import inf, nan
+
+import pytest
+
+from linkwright.control.controllers import registry
+from linkwright.control.controllers.controller import Controller, ControllerError
+from linkwright.control.manager.switching import AUTO, BEST_EFFORT, FORCE_AUTO, STRICT
+from linkwright.graph.lifecycle.states import ACTIVE, INACTIVE
+from tests.control.robots import joint, manager, robot
+
+CONTROL = robot(joint("hip", "position velocity") + joint("knee", "position velocity"))
+FORWARD = "forward_command_controller/ForwardCommandController"
+POSITIONS = {"type": FORWARD, "joints": ["hip", "knee"], "interface_name": "position"}
+
+
+class Low(Controller):
+    """Moves the hip as its reference says."""
+
+    fault: BaseException | None = None
+    value = 0.5
+
+    def command_interfaces(self):
+        return ["hip/velocity"]
+
+    def reference_interfaces(self):
+        return ["speed"]
+
+    def update_references(self, time_ns, period_s):
+        self.references[0].value = self.value
+
+    def update(self, time_ns, period_s):
+        if self.fault is not None:
+            raise self.fault
+        self.commands[0].value = self.references[0].value
+
+
+class High(Controller):
+    """Commands the reference of ``low``."""
+
+    def command_interfaces(self):
+        return ["low/speed"]
+
+    def update(self, time_ns, period_s):
+        self.commands[0].value = 2.0
+
+
+class Reluctant(Controller):
+    def on_configure(self):
+        raise ControllerError("it does not like it here")
+
+
+class Broken(Controller):
+    def __init__(self, place):
+        raise ZeroDivisionError("in the beginning")
+
+
+@pytest.fixture
+def made(graph, monkeypatch):
+    """A manager with controllers of this file, too."""
+    ours = {"t/Low": Low, "t/High": High, "t/Reluctant": Reluctant, "t/Broken": Broken}
+    original = registry.controller_class
+
+    def found(name):
+        return ours.get(name) or original(name)
+
+    monkeypatch.setattr("linkwright.control.manager.manager.controller_class", found)
+
+    def make(types=None, text=CONTROL, **given):
+        types = {"low": "t/Low", "high": "t/High"} if types is None else types
+        return manager(graph, text, {name: {"type": kind} for name, kind in types.items()}, **given)
+
+    return make
+
+
+def started(made, *names):
+    for name in names:
+        assert made.load(name)
+        assert made.configure(name)
+
+
+def value(made, name):
+    return {each.name: each.value for each in made.resources.commands([name])}[name]
+
+
+async def test_a_controller_is_loaded_configured_switched_and_unloaded(made, said):
+    it = made({"forward": FORWARD}, forward={"joints": ["hip"], "interface_name": "position"})
+    started(it, "forward")
+    assert it.switch(["forward"], [], STRICT) == (True, "Successfully switched controllers!")
+    assert it.resources.claims == {"hip/position": "forward"}
+    it.controllers["forward"].controller._wanted = [0.7]
+    it.cycle(10, 0.01)
+    it.cycle(20, 0.01)
+    assert it.resources.states(["hip/position"])[0].value == 0.7
+    assert not it.unload("forward")
+    assert said("ERROR") == ["Could not unload controller with name 'forward' because it is still active"]
+    assert it.switch([], ["forward"], STRICT)[0]
+    assert it.resources.claims == {}
+    assert it.unload("forward")
+    assert it.controllers == {}
+
+
+async def test_what_cannot_be_loaded(made, said):
+    it = made({"a": "t/Unknown", "broken": "t/Broken", "low": "t/Low"})
+    assert not it.load("none")
+    assert not it.load("a")
+    assert not it.load("broken")
+    assert it.load("low")
+    assert not it.load("low")
+    errors = said("ERROR")
+    assert errors[0] == "The 'type' param was not defined for 'none'."
+    assert errors[1] == "Loader for controller 'a' (type 't/Unknown') not found."
+    assert "ZeroDivisionError: in the beginning" in errors[3]
+    assert errors[4] == "Could not initialize the controller named 'broken'"
+    assert errors[5] == "A controller named 'low' was already loaded inside the controller manager"
+
+
+async def test_a_controller_may_refuse(made, said):
+    it = made({"reluctant": "t/Reluctant"})
+    it.load("reluctant")
+    assert not it.configure("reluctant")
+    assert said("ERROR") == [
+        "it does not like it here",
+        "After configuring, controller 'reluctant' is in state 'unconfigured' , expected inactive.",
+    ]
+
+
+async def test_interfaces_have_one_owner(made, said):
+    it = made({"one": FORWARD, "two": FORWARD}, one=POSITIONS, two=POSITIONS)
+    started(it, "one", "two")
+    assert it.switch(["one"], [], STRICT)[0]
+    told = "Resource conflict for controller 'two'. Command interface 'hip/position' is already claimed."
+    assert it.switch(["two"], [], STRICT) == (False, told)
+    assert it.controllers["two"].controller.state is INACTIVE
+    assert it.switch(["two"], ["one"], STRICT)[0]
+    assert it.switch(["one"], [], FORCE_AUTO)[0]
+    assert set(it.resources.claims.values()) == {"one"}
+    assert said("ERROR") == [told]
+
+
+async def test_unknown_interfaces_are_told(made, said):
+    it = made({"one": FORWARD}, one={**POSITIONS, "interface_name": "effort"})
+    started(it, "one")
+    told = "Can't activate controller 'one': Command interface with key 'hip/effort' does not exist"
+    assert it.switch(["one"], [], STRICT) == (False, told)
+
+
+async def test_strictness(made, said):
+    it = made()
+    started(it, "low")
+    assert not it.switch(["low", "nobody"], [], STRICT)[0]
+    assert it.controllers["low"].is_inactive
+    assert it.switch(["low", "nobody"], [], BEST_EFFORT)[0]
+    assert it.controllers["low"].is_active
+    assert it.switch([], ["nobody"], BEST_EFFORT) == (
+        True,
+        "Empty activate and deactivate list, not requesting switch",
+    )
+    assert said("ERROR") == ["Aborting, no controller is switched! ('STRICT' switch)"]
+
+
+async def test_a_chain(made):
+    it = made()
+    started(it, "low", "high")
+    assert list(it.controllers) == ["high", "low"]
+    assert not it.switch(["high"], [], STRICT)[0]
+    assert it.switch(["low"], [], STRICT)[0]
+    it.cycle(1, 0.01)
+    assert value(it, "hip/velocity") == 0.5
+    assert it.switch(["high"], [], STRICT)[0]
+    assert it.controllers["low"].controller.chained
+    it.cycle(2, 0.01)
+    assert value(it, "hip/velocity") == 2.0
+    assert not it.switch([], ["low"], STRICT)[0]
+    assert it.switch([], ["high"], STRICT)[0]
+    assert not it.controllers["low"].controller.chained
+    it.cycle(3, 0.01)
+    assert value(it, "hip/velocity") == 0.5
+
+
+async def test_a_chain_is_activated_together_or_by_itself(made):
+    it = made()
+    started(it, "low", "high")
+    assert it.switch(["high", "low"], [], STRICT)[0]
+    assert it.controllers["low"].controller.chained
+    assert it.switch([], ["high", "low"], STRICT)[0]
+    assert it.switch(["high"], [], AUTO)[0]
+    assert all(each.controller.state is ACTIVE for each in it.controllers.values())
+
+
+async def test_a_controller_that_throws_is_deactivated_and_what_it_moved_stands(made, said):
+    it = made()
+    started(it, "low", "high")
+    it.switch(["high", "low"], [], STRICT)
+    it.cycle(1, 0.01)
+    it.controllers["low"].controller.fault = RuntimeError("out of luck")
+    command = it.resources.commands(["hip/velocity"])[0]
+    it.cycle(2, 0.01)
+    assert command.value == 0.0
+    assert [each.is_active for each in it.controllers.values()] == [False, False]
+    errors = said("ERROR")
+    assert errors[0].startswith("Caught exception while updating: RuntimeError: out of luck\nTraceback")
+    assert errors[1] == "Deactivating controllers : [ low high ] as their update resulted in an error!"
+
+
+@pytest.mark.parametrize("wrong", [nan, inf])
+async def test_what_is_no_number_does_not_reach_the_hardware(made, said, wrong):
+    it = made()
+    started(it, "low")
+    it.switch(["low"], [], STRICT)
+    it.cycle(1, 0.01)
+    it.controllers["low"].controller.value = wrong
+    it.cycle(2, 0.01)
+    assert value(it, "hip/velocity") == 0.0
+    assert "'hip/velocity' is not a number" in said("ERROR")[0]
+
+
+async def test_hardware_that_fails_stops_its_controllers(made, said):
+    it = made()
+    started(it, "low", "high")
+    it.switch(["high", "low"], [], STRICT)
+    command = it.resources.commands(["hip/velocity"])[0]
+    it.cycle(1, 0.01)
+
+    def fail(time_ns, period_s):
+        raise OSError("the cable is out")
+
+    it.resources.components["arm"].write = fail
+    it.cycle(2, 0.01)
+    assert command.value == 0.0
+    assert it.resources.components["arm"].state.label == "unconfigured"
+    assert said("ERROR") == [
+        "Error while writing hardware 'arm': OSError: the cable is out",
+        "Deactivating controllers : [ low high ] as their hardware components failed: [ arm ]",
+    ]
+
+
+async def test_hardware_is_led_through_its_life(made):
+    it = made()
+    started(it, "low")
+    it.switch(["low"], [], STRICT)
+    assert it.set_hardware_state("arm", INACTIVE)
+    assert it.controllers["low"].is_inactive
+    assert it.set_hardware_state("arm", ACTIVE)
+    assert it.switch(["low"], [], STRICT)[0]
+
+
+async def test_a_slower_controller_is_updated_at_its_own_rate(made):
+    it = made({"low": "t/Low"}, low={"update_rate": 50})
+    started(it, "low")
+    times = []
+    it.controllers["low"].controller.update = lambda time_ns, period_s: times.append((time_ns, period_s))
+    it.switch(["low"], [], STRICT)
+    for tick in range(1, 6):
+        it.cycle(tick * 10_000_000, 0.01)
+    assert times == [(10_000_000, 0.02), (30_000_000, 0.02), (50_000_000, 0.02)]
+
+
+async def test_initial_states_of_hardware(graph, said):
+    states = {"hardware_components_initial_state": {"inactive": ["arm"], "unconfigured": ["leg"]}}
+    it = manager(graph, CONTROL, states)
+    assert it.resources.components["arm"].state is INACTIVE
+    assert said("WARN") == ["Hardware component 'leg' is unknown, therefore not set in 'unconfigured' state."]
+
+
+async def test_hardware_of_others_is_stood_in_for(graph, said):
+    it = manager(graph, CONTROL.replace("mock_components/GenericSystem", "acme/Driver"))
+    assert it.resources.components["arm"].state is ACTIVE
+    assert said("WARN")[0].startswith("hardware 'arm': 'acme/Driver' is not for Linkwright; mock_components")

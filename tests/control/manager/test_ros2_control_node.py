@@ -1,0 +1,129 @@
+from __future__ import annotations
+
+from linkwright.descriptions import DescriptionLibrary
+from linkwright.graph import DESCRIPTION_QOS
+from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile
+from linkwright.messages import String, get_service
+from linkwright.nodes.control.ros2_control_node import Ros2ControlNode
+from linkwright.nodes.options import NodeOptions
+from tests.control.robots import joint, robot
+
+CONTROL = robot(joint("hip", initial="0.5") + joint("knee"))
+FILE = """
+controller_manager:
+  ros__parameters:
+    update_rate: 100
+    broadcaster: {type: joint_state_broadcaster/JointStateBroadcaster}
+    positions: {type: forward_command_controller/ForwardCommandController}
+positions:
+  ros__parameters:
+    joints: [hip, knee]
+    interface_name: position
+"""
+
+
+def start(graph, tmp_path, text=None, **parameters):
+    path = tmp_path / "controllers.yaml"
+    path.write_text(FILE)
+    words = ["--ros-args", "--params-file", str(path), "-r", "/positions/commands:=/wanted"]
+    if text is not None:
+        parameters["robot_description"] = text
+    return Ros2ControlNode(graph, NodeOptions(parameters=parameters, arguments=words, library=DescriptionLibrary()))
+
+
+async def ask(graph, node, service, **fields):
+    kind = get_service("controller_manager_msgs/srv/" + "".join(word.capitalize() for word in service.split("_")))
+    client = node.create_client(kind, f"/controller_manager/{service}")
+    future = client.call_async(kind.Request(**fields))
+    await graph.settle()
+    return future.result()
+
+
+async def go_on(graph, clock, count):
+    for _ in range(count):
+        await clock.advance(0.01)
+        await graph.settle()
+
+
+async def test_controllers_run_by_services_and_topics(graph, clock, tmp_path, said):
+    running = start(graph, tmp_path, CONTROL)
+    node = graph.create_node("audience")
+    states, activity = [], []
+    node.create_subscription("sensor_msgs/msg/JointState", "/joint_states", states.append, 10)
+    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    node.create_subscription(
+        "controller_manager_msgs/msg/ControllerManagerActivity",
+        "/controller_manager/activity",
+        activity.append,
+        latched,
+    )
+    await graph.settle()
+    for name in ("broadcaster", "positions"):
+        assert (await ask(graph, node, "load_controller", name=name)).ok
+        assert (await ask(graph, node, "configure_controller", name=name)).ok
+    switched = await ask(
+        graph, node, "switch_controller", activate_controllers=["broadcaster", "positions"], strictness=2
+    )
+    assert switched.ok, switched.message
+    await go_on(graph, clock, 2)
+    assert list(states[-1].position) == [0.5, 0.0]
+    listed = (await ask(graph, node, "list_controllers")).controller
+    assert [(each.name, each.state, list(each.claimed_interfaces)) for each in listed] == [
+        ("broadcaster", "active", []),
+        ("positions", "active", ["hip/position", "knee/position"]),
+    ]
+    assert [each.state.label for each in activity[-1].controllers] == ["active", "active"]
+    components = (await ask(graph, node, "list_hardware_components")).component
+    assert [(each.name, each.plugin_name, each.state.label) for each in components] == [
+        ("arm", "mock_components/GenericSystem", "active")
+    ]
+    interfaces = await ask(graph, node, "list_hardware_interfaces")
+    assert [(each.name, each.is_claimed) for each in interfaces.command_interfaces] == [
+        ("hip/position", True),
+        ("knee/position", True),
+    ]
+    assert len((await ask(graph, node, "list_controller_types")).types) >= 6
+    assert (await ask(graph, node, "reload_controller_libraries", force_kill=True)).ok
+    assert (await ask(graph, node, "list_controllers")).controller == []
+    running.close()
+
+
+async def test_remappings_of_the_process_reach_controllers(graph, clock, tmp_path):
+    running = start(graph, tmp_path, CONTROL)
+    node = graph.create_node("audience")
+    states = []
+    node.create_subscription("sensor_msgs/msg/JointState", "/joint_states", states.append, 10)
+    wanted = node.create_publisher("std_msgs/msg/Float64MultiArray", "/wanted", 10)
+    for name in ("broadcaster", "positions"):
+        await ask(graph, node, "load_controller", name=name)
+        await ask(graph, node, "configure_controller", name=name)
+    await ask(graph, node, "switch_controller", activate_controllers=["broadcaster", "positions"], strictness=2)
+    wanted.publish(wanted.msg_type(data=[1.0, -1.0]))
+    await go_on(graph, clock, 3)
+    assert list(states[-1].position) == [1.0, -1.0]
+    running.close()
+
+
+async def test_the_description_comes_by_its_topic(graph, clock, tmp_path, said):
+    running = start(graph, tmp_path)
+    node = graph.create_node("audience")
+    node.create_publisher(String, "/robot_description", DESCRIPTION_QOS).publish(String(CONTROL))
+    await graph.settle()
+    components = (await ask(graph, node, "list_hardware_components")).component
+    assert [each.name for each in components] == ["arm"]
+    set_state = await ask(graph, node, "set_hardware_component_state", name="nobody")
+    assert not set_state.ok
+    assert said("ERROR") == ["hardware component with name 'nobody' does not exist"]
+    running.close()
+
+
+async def test_a_description_that_cannot_be_read_is_told_and_the_next_one_taken(graph, clock, tmp_path, said):
+    running = start(graph, tmp_path)
+    publisher = graph.create_node("audience").create_publisher(String, "/robot_description", DESCRIPTION_QOS)
+    publisher.publish(String("<robot"))
+    await graph.settle()
+    assert said("ERROR")[0].startswith("The published robot description file (urdf) seems not to be genuine")
+    publisher.publish(String(CONTROL))
+    await graph.settle()
+    assert list(running._manager.resources.components) == ["arm"]
+    running.close()

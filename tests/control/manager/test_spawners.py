@@ -1,0 +1,123 @@
+from __future__ import annotations
+
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.nodes.control.hardware_spawner import HardwareSpawner
+from linkwright.nodes.control.spawner import Spawner, Unspawner
+from linkwright.nodes.options import NodeOptions
+from tests.control.manager.test_ros2_control_node import CONTROL, start
+
+OWN = """
+positions:
+  ros__parameters:
+    type: forward_command_controller/ForwardCommandController
+    joints: [knee]
+    interface_name: position
+"""
+
+
+async def run(graph, made, *words):
+    """The status of a program."""
+    running = made(graph, NodeOptions(arguments=list(words)))
+    await graph.settle()
+    status = running.finished.result() if running.finished.done() else None
+    running.close()
+    return status
+
+
+def states(running):
+    return {name: each.controller.state.label for name, each in running._manager.controllers.items()}
+
+
+async def test_controllers_are_spawned_and_unspawned(graph, tmp_path, said):
+    running = start(graph, tmp_path, CONTROL)
+    assert await run(graph, Spawner, "broadcaster", "positions", "-c", "controller_manager") == 0
+    assert states(running) == {"broadcaster": "active", "positions": "active"}
+    told = [each for each in said("INFO") if each.startswith(("Loaded", "Configured and"))]
+    assert told == [
+        "Loaded broadcaster",
+        "Configured and activated broadcaster",
+        "Loaded positions",
+        "Configured and activated positions",
+    ]
+    assert await run(graph, Unspawner, "positions") == 0
+    assert states(running) == {"broadcaster": "active"}
+    assert await run(graph, Unspawner, "positions") == 1
+    running.close()
+
+
+@pytest.mark.parametrize(
+    ("option", "state"),
+    [("--load-only", "unconfigured"), ("--inactive", "inactive"), ("--activate-as-group", "active")],
+)
+async def test_how_far_they_are_led(graph, tmp_path, option, state):
+    running = start(graph, tmp_path, CONTROL)
+    assert await run(graph, Spawner, "broadcaster", option) == 0
+    assert states(running) == {"broadcaster": state}
+    running.close()
+
+
+async def test_a_parameter_file_of_its_own_and_other_names_of_topics(graph, tmp_path, said):
+    running = start(graph, tmp_path, CONTROL)
+    path = tmp_path / "own.yaml"
+    path.write_text(OWN)
+    words = ("--param-file", str(path), "--controller-ros-args", "-r ~/commands:=/other")
+    assert await run(graph, Spawner, "positions", *words) == 0
+    assert running._manager.resources.claims == {"knee/position": "positions"}
+    assert "/other" in graph.topics()
+    running.close()
+
+
+async def test_what_fails_is_told(graph, tmp_path, said):
+    running = start(graph, tmp_path, CONTROL)
+    assert await run(graph, Spawner, "nobody") == 1
+    assert said("FATAL") == ["Failed loading controller nobody"]
+    with pytest.raises(LinkwrightError, match=r"'/no/file\.yaml' does not exist"):
+        Spawner(graph, NodeOptions(arguments=["broadcaster", "-p", "/no/file.yaml"]))
+    with pytest.raises(LinkwrightError, match="--no-option"):
+        Spawner(graph, NodeOptions(arguments=["broadcaster", "--no-option"]))
+    running.close()
+
+
+async def test_a_spawner_waits_for_its_manager(graph, clock, tmp_path, said):
+    spawner = Spawner(graph, NodeOptions(arguments=["broadcaster"]))
+    await graph.settle()
+    assert said("INFO") == ["waiting for service /controller_manager/list_controllers to become available..."]
+    await clock.advance(11.0)
+    assert said("WARN") == ["Could not contact service /controller_manager/list_controllers"]
+    running = start(graph, tmp_path, CONTROL)
+    await graph.settle()
+    assert spawner.finished.result() == 0
+    spawner.close()
+    running.close()
+
+
+async def test_it_does_not_wait_for_ever_if_it_is_said(graph, clock, said):
+    spawner = Spawner(graph, NodeOptions(arguments=["broadcaster", "--controller-manager-timeout", "5"]))
+    await graph.settle()
+    await clock.advance(5.1)
+    assert spawner.finished.result() == 1
+    assert said("FATAL") == ["Could not contact service /controller_manager/list_controllers"]
+    spawner.close()
+
+
+async def test_controllers_go_with_their_spawner(graph, tmp_path):
+    running = start(graph, tmp_path, CONTROL)
+    spawner = Spawner(graph, NodeOptions(arguments=["broadcaster", "-u"]))
+    await graph.settle()
+    assert states(running) == {"broadcaster": "active"}
+    spawner.close()
+    await graph.settle()
+    assert states(running) == {}
+    running.close()
+
+
+async def test_hardware_is_spawned(graph, tmp_path, said):
+    running = start(graph, tmp_path, CONTROL, hardware_components_initial_state={"unconfigured": ["arm"]})
+    assert await run(graph, HardwareSpawner, "arm", "--configure") == 0
+    assert running._manager.resources.components["arm"].state.label == "inactive"
+    assert await run(graph, HardwareSpawner, "arm", "leg", "--activate") == 1
+    assert running._manager.resources.components["arm"].state.label == "active"
+    assert said("WARN")[1:] == ["Hardware Component is not loaded - state can not be changed."]
+    running.close()

@@ -1,0 +1,73 @@
+"""Robots with ros2_control, and managers of them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from linkwright.control.hardware.description import HardwareDescription, hardware_of
+from linkwright.control.hardware.resources import Resources, hardware_by_entry_points
+from linkwright.control.manager.exchange import DirectExchange
+from linkwright.control.manager.manager import ControllerManager
+from linkwright.control.manager.nodes import ProcessArguments
+from linkwright.control.manager.starting import load_hardware
+from linkwright.descriptions import DescriptionLibrary
+from linkwright.graph import Graph
+from linkwright.graph.parameters.rules import ParameterRules
+
+JOINT = "<joint name='{name}'>{commands}{states}{more}</joint>"
+
+
+def joint(
+    name: str, commands: str = "position", states: str = "position velocity", more: str = "", initial: str = ""
+) -> str:
+    """A joint of ``<ros2_control>``."""
+    value = f"<param name='initial_value'>{initial}</param>" if initial else ""
+    return JOINT.format(
+        name=name,
+        more=more,
+        commands="".join(f"<command_interface name='{each}'/>" for each in commands.split()),
+        states="".join(
+            f"<state_interface name='{each}'>{value if each == 'position' else ''}</state_interface>"
+            for each in states.split()
+        ),
+    )
+
+
+def robot(control: str, *, parameters: str = "", mimic: str = "", joints: tuple[str, ...] = ("hip", "knee")) -> str:
+    """A robot whose joints are in a row, with one system of mock hardware."""
+    links = "<link name='base'/>" + "".join(f"<link name='{each}_link'/>" for each in joints)
+    above = ["base", *(f"{each}_link" for each in joints)]
+    moving = "".join(
+        f"<joint name='{each}' type='revolute'><parent link='{parent}'/><child link='{each}_link'/><axis xyz='0 0 1'/>"
+        f"<limit lower='-3' upper='3' effort='10' velocity='5'/>{mimic if each == joints[-1] else ''}</joint>"
+        for each, parent in zip(joints, above, strict=False)
+    )
+    return (
+        f"<robot name='r'>{links}{moving}<ros2_control name='arm' type='system'><hardware>"
+        f"<plugin>mock_components/GenericSystem</plugin>{parameters}</hardware>{control}</ros2_control></robot>"
+    )
+
+
+def described(text: str) -> tuple[list[HardwareDescription], list[str]]:
+    """The hardware in a description, and what is wrong with it."""
+    reading = DescriptionLibrary().read(text)
+    assert reading.robot is not None
+    found, findings = hardware_of(reading.robot)
+    return found, [f"{each.code} {each.message}" for each in findings]
+
+
+def manager(graph: Graph, text: str, parameters: dict[str, Any] | None = None, **given: dict[str, Any]) -> Any:
+    """A manager of a robot: the parameters of its node, and those of the nodes of its controllers."""
+    rules = ParameterRules()
+    for name, values in given.items():
+        for key, value in values.items():
+            rules.set(name, key, value)
+    node = graph.create_node(
+        "controller_manager",
+        parameters=parameters or {},
+        allow_undeclared_parameters=True,
+        automatically_declare_parameters_from_overrides=True,
+    )
+    made = ControllerManager(node, DirectExchange(), Resources(node.get_logger()), ProcessArguments(rules))
+    load_hardware(made, text, DescriptionLibrary(), hardware_by_entry_points)
+    return made
