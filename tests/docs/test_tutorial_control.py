@@ -1,0 +1,144 @@
+"""A reader who follows the tutorial's third chapter ends up with nodes that drive mbot, and tests that say so."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import shlex
+import subprocess
+import sys
+from collections.abc import Iterator
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from linkwright import standins
+from linkwright.cli import main
+from linkwright.standins import process
+from linkwright.testing import SteppedSimulation
+from tests.docs.pages import DOCS, blocks, commands
+
+pytest.importorskip("mujoco")
+
+LANGUAGES = {"en": DOCS / "tutorial-control.md", "zh": DOCS / "zh" / "tutorial-control.md"}
+ROBOT = "package://my_robot_description/urdf/mbot_gazebo.xacro"
+
+
+@pytest.fixture(scope="module")
+def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The package as it is after the last step."""
+    folder = tmp_path_factory.mktemp("control_ws")
+    page = LANGUAGES["en"]
+    create = next(line for line in commands(page) if line.startswith("linkwright pkg create "))
+    assert main([*shlex.split(create)[1:], "--destination-directory", str(folder / "src")]) == 0
+    package = folder / "src" / "my_control"
+    for block in blocks(page):
+        path = package / block.title.removesuffix(", more")
+        if block.title == "package.xml, more":
+            licence = "  <license>MIT</license>\n"
+            text = path.read_text(encoding="utf-8")
+            assert licence in text
+            path.write_text(text.replace(licence, licence + block.text), encoding="utf-8")
+        elif block.title:
+            path.parent.mkdir(exist_ok=True)
+            path.write_text(block.text, encoding="utf-8")
+    return package
+
+
+@pytest.fixture
+def load(package: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
+    """Imports a module of the package."""
+    standins.activate()
+    monkeypatch.syspath_prepend(str(package))
+    yield lambda name: import_module(f"my_control.{name}")
+    for name in [name for name in sys.modules if name.partition(".")[0] == "my_control"]:
+        del sys.modules[name]
+
+
+def test_the_first_node_has_twenty_lines() -> None:
+    (node,) = [block for block in blocks(LANGUAGES["en"]) if block.title == "my_control/first_move.py"]
+    written = [line for line in node.text.splitlines() if line]
+    assert len(written) <= 20
+
+
+def test_the_first_node_moves_the_robot_in_a_circle(load: Any) -> None:
+    with SteppedSimulation("empty", ROBOT) as test:
+        test.init_rclpy()
+        load("first_move").FirstMove()
+        test.advance(2.0 * math.pi)  # half a turn at 0.5 rad/s
+        x, y, *_ = test.robot_pose()
+        assert y == pytest.approx(2 * 0.2 / 0.5, abs=0.15), "the other side of a circle with a radius of 0.4 m"
+        assert abs(x) < 0.2
+
+
+def test_one_metre_is_one_metre(load: Any) -> None:
+    with SteppedSimulation("empty", ROBOT) as test:
+        test.init_rclpy()
+        load("one_metre").OneMetre()
+        odometry = test.record("/odom")
+        test.advance(15.0)
+        assert odometry.last.pose.pose.position.x == pytest.approx(1.0, abs=0.01)
+        assert abs(odometry.last.twist.twist.linear.x) < 1e-3
+
+
+def test_the_distance_is_a_parameter(load: Any) -> None:
+    with SteppedSimulation("empty", ROBOT) as test:
+        test.init_rclpy(["--ros-args", "-p", "distance:=0.5"])
+        load("one_metre").OneMetre()
+        odometry = test.record("/odom")
+        test.advance(10.0)
+        assert odometry.last.pose.pose.position.x == pytest.approx(0.5, abs=0.01)
+
+
+def test_it_stops_before_the_block(load: Any) -> None:
+    with SteppedSimulation("obstacles", ROBOT, arguments={"laser": True}) as test:
+        test.init_rclpy()
+        load("stop_ahead").StopAhead()
+        scans = test.record("/scan")
+        test.advance(20.0)
+        ahead = [distance for number, distance in enumerate(scans.last.ranges) if abs(number - 180) < 30]
+        assert 0.4 < min(ahead) <= 0.62
+
+
+def test_nothing_is_found_in_the_package(package: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    capsys.readouterr()
+    assert main(["check", "--strict", "--format", "json", str(package)]) == 0
+    assert json.loads(capsys.readouterr().out)["diagnostics"] == []
+
+
+def test_the_nodes_are_found(
+    package: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(package)
+    assert main(["pkg", "executables", "my_control"]) == 0
+    assert capsys.readouterr().out.split() == [
+        *("my_control", "first_move", "my_control", "one_metre", "my_control", "stop_ahead")
+    ]
+
+
+def test_the_launch_file_brings_the_simulation(package: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["launch", str(package / "launch" / "stop_ahead.launch.py"), "--show-args"]) == 0
+    assert "'rviz'" in capsys.readouterr().out
+
+
+def test_the_tests_of_the_page_pass(package: Path) -> None:
+    environment = process.environment({**os.environ, "LINKWRIGHT_DDS": "0"})
+    result = subprocess.run(
+        [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "-p", "no:asyncio", "test/test_nodes.py"],
+        cwd=package,
+        env=environment,
+        capture_output=True,
+        encoding="utf-8",
+        timeout=240,
+        check=False,
+    )
+    assert result.returncode == 0, result.stdout + result.stderr
+    assert "2 passed" in result.stdout
+
+
+def test_the_languages_show_the_same_files_and_commands() -> None:
+    english, chinese = ([(each.title, each.text) for each in blocks(page)] for page in LANGUAGES.values())
+    assert english == chinese
