@@ -110,6 +110,18 @@ async def test_it_tells_its_state(stand):
     assert state.time_step == pytest.approx(0.01)
 
 
+@pytest.mark.parametrize("kept", [True, False])
+async def test_the_integral_is_kept_when_it_is_activated_again_unless_told_otherwise(stand, kept):
+    controller = wheel(stand, **WHEEL, gains={"wheel": {"i": 1.0, "save_i_term": kept}})
+    for _ in range(2):
+        controller.on_activate()
+        ask(stand, 1.0)
+        await stand.step(controller)
+        controller.on_deactivate()
+    controller.on_activate()
+    assert controller._pids[0].integral == pytest.approx(0.02 if kept else 0.0)
+
+
 async def test_it_stops_pushing_when_it_is_deactivated(stand):
     controller = wheel(stand, **WHEEL, gains={"wheel": {"p": 2.0}})
     ask(stand, 4.0)

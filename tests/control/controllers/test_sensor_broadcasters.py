@@ -73,6 +73,21 @@ async def test_axes_of_a_wrench_may_have_other_names_and_some_may_lack(stand):
     assert (wrench.force.x, wrench.force.z, wrench.torque.x) == (0.0, 3.0, 4.0)
 
 
+async def test_a_wrench_is_moved_by_an_offset_and_then_multiplied(stand):
+    stand.joint("tcp", **dict.fromkeys(WRENCH, 1.0))
+    broadcaster = stand.start(
+        ForceTorqueBroadcaster,
+        sensor_name="tcp",
+        frame_id="tool0",
+        offset={"force": {"z": 2.0}},
+        multiplier={"force": {"z": -1.0}, "torque": {"x": 0.5}},
+    )
+    heard = stand.heard("geometry_msgs/msg/WrenchStamped", "/controller/wrench")
+    await stand.step(broadcaster)
+    wrench = heard[0].wrench
+    assert (wrench.force.x, wrench.force.z, wrench.torque.x) == (1.0, -3.0, 0.5)
+
+
 async def test_a_range_sensor(stand):
     stand.joint("sonar", range=1.5)
     broadcaster = stand.start(RangeBroadcaster, sensor_name="sonar", frame_id="sonar_link", max_range=3.0)

@@ -37,7 +37,7 @@ class Gains(PidParameters):
 
     feedforward_gain: float = parameter(0.0, description="how much of the reference is added to the command")
     angle_wraparound: bool = parameter(False, description="whether it turns without an end")
-    save_i_term: bool = parameter(False, description="keep the integral when the controller is activated again")
+    save_i_term: bool = parameter(True, description="keep the integral when the controller is activated again")
 
 
 @dataclass(frozen=True, kw_only=True)

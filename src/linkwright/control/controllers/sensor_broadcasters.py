@@ -72,12 +72,48 @@ class PoseNames:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Zeros:
+    """Three numbers that are added."""
+
+    x: float = 0.0
+    y: float = 0.0
+    z: float = 0.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Ones:
+    """Three factors."""
+
+    x: float = 1.0
+    y: float = 1.0
+    z: float = 1.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Offset:
+    """What is added to a wrench, in N and Nm."""
+
+    force: Zeros = Zeros()
+    torque: Zeros = Zeros()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Multiplier:
+    """What a wrench is multiplied with."""
+
+    force: Ones = Ones()
+    torque: Ones = Ones()
+
+
+@dataclass(frozen=True, kw_only=True)
 class WrenchParameters:
-    """Of the force-torque broadcaster."""
+    """Of the force-torque broadcaster; what is measured is moved by `offset`, then multiplied with `multiplier`."""
 
     frame_id: str = parameter("", check=not_empty)
     sensor_name: str = ""
     interface_names: WrenchNames = WrenchNames()
+    offset: Offset = Offset()
+    multiplier: Multiplier = Multiplier()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -90,6 +126,7 @@ class RangeParameters:
     field_of_view: float = parameter(0.52, description="rad")
     min_range: float = parameter(0.52, description="m")
     max_range: float = parameter(4.0, description="m")
+    variance: float = parameter(0.0, description="m²; Humble's messages have no place for it")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -144,6 +181,11 @@ class SensorBroadcaster(Controller[P]):
         return Header(stamp=Time(*divmod(time_ns, _SECOND)), frame_id=frame)
 
 
+def _six(wrench: WrenchNames | Offset | Multiplier) -> list[Any]:
+    """What is said of forces and torques, axis by axis."""
+    return [getattr(vector, axis) for vector in (wrench.force, wrench.torque) for axis in "xyz"]
+
+
 def _vector(values: Sequence[float]) -> Vector3:
     return Vector3(values[0], values[1], values[2])
 
@@ -183,8 +225,7 @@ class ForceTorqueBroadcaster(SensorBroadcaster[WrenchParameters]):
     def on_configure(self) -> None:
         """Find out which interfaces there are; axes without one are 0."""
         said = self.parameters
-        given = said.interface_names
-        named = [getattr(vector, axis) for vector in (given.force, given.torque) for axis in "xyz"]
+        named = _six(said.interface_names)
         if not said.sensor_name and not any(named):
             raise ControllerError(
                 "'sensor_name' or at least one 'interface_names.[force|torque].[x|y|z]' parameter has to be specified."
@@ -205,7 +246,11 @@ class ForceTorqueBroadcaster(SensorBroadcaster[WrenchParameters]):
     def message(self, kind: Any, header: Header, values: Sequence[float]) -> Any:
         """A wrench."""
         there = iter(values)
-        six = [next(there) if name else 0.0 for name in self._names]
+        said = self.parameters
+        six = [
+            ((next(there) if name else 0.0) + offset) * factor
+            for name, offset, factor in zip(self._names, _six(said.offset), _six(said.multiplier), strict=True)
+        ]
         wrench = get_message("geometry_msgs/msg/Wrench")
         return kind(header=header, wrench=wrench(force=_vector(six[:3]), torque=_vector(six[3:])))
 
