@@ -31,7 +31,7 @@ DOCUMENTED = [
 
 def example(page: Path) -> Any:
     """The controller of a page."""
-    (code,) = re.findall(r"```python\n(.*?)```", page.read_text("utf-8"), re.DOTALL)
+    *_, code = re.findall(r"```python\n(.*?)```", page.read_text("utf-8"), re.DOTALL)
     module = ModuleType("my_controllers.swing")
     exec(compile(code, str(page), "exec", dont_inherit=True), module.__dict__)
     return module.__dict__["Swing"]

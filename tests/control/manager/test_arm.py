@@ -1,0 +1,86 @@
+"""An arm with mock hardware behind a manager: trajectories by the action, from request to result."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from linkwright.control.manager.switching import STRICT
+from linkwright.messages import get_action
+from tests.control.controllers.arm import Asked, trajectory
+from tests.control.robots import joint, manager, robot
+
+ACTION = "control_msgs/action/FollowJointTrajectory"
+TYPE = "joint_trajectory_controller/JointTrajectoryController"
+JOINTS = ("hip", "knee")
+SAID = {"joints": list(JOINTS), "command_interfaces": ["position"], "state_interfaces": ["position", "velocity"]}
+SUCCEEDED, CANCELED = 4, 5
+
+
+class Robot:
+    """A robot with an active controller of trajectories."""
+
+    def __init__(self, graph: Any) -> None:
+        self.graph, self.node, self.time_ns = graph, graph.create_node("audience"), 0
+        text = robot(joint("hip", initial="0.2") + joint("knee"))
+        self.manager = manager(graph, text, {"arm": {"type": TYPE}}, arm=SAID)
+        assert self.manager.load("arm")
+        assert self.manager.configure("arm")
+        assert self.manager.switch(["arm"], [], STRICT)[0]
+
+    async def go_on(self, seconds: float) -> None:
+        for _ in range(round(seconds * 100)):
+            await self.graph.settle()
+            self.time_ns += 10_000_000
+            self.manager.cycle(self.time_ns, 0.01)
+        await self.graph.settle()
+
+    def ask(self, *points: Any) -> Asked:
+        goal = get_action(ACTION).Goal(trajectory=trajectory(*points, names=JOINTS))
+        return Asked(self, ACTION, "/arm/follow_joint_trajectory", goal)  # type: ignore[arg-type]  # it has a node
+
+    def positions(self) -> list[float]:
+        return [each.value for each in self.manager.resources.states([f"{name}/position" for name in JOINTS])]
+
+
+async def test_it_holds_where_it_is_and_follows_a_trajectory(graph):
+    arm = Robot(graph)
+    await arm.go_on(0.1)
+    assert arm.positions() == [0.2, 0.0]
+    asked = arm.ask((1.0, [1.2, -1.0]))
+    await arm.go_on(0.5)
+    assert arm.positions() == pytest.approx([0.7, -0.5], abs=0.021)
+    await arm.go_on(0.6)
+    assert asked.status == SUCCEEDED
+    assert arm.positions() == [1.2, -1.0]
+
+
+async def test_a_goal_is_canceled_on_the_event_loop_too(graph):
+    arm = Robot(graph)
+    asked = arm.ask((1.0, [1.2, 1.0]))
+    await arm.go_on(0.5)
+    asked.cancel()
+    await arm.go_on(0.1)
+    assert asked.status == CANCELED
+    held = arm.positions()
+    await arm.go_on(0.5)
+    assert arm.positions() == pytest.approx(held)
+    assert held[0] == pytest.approx(0.7, abs=0.03)
+
+
+async def test_a_goal_ends_when_its_controller_is_deactivated_and_another_may_follow(graph):
+    arm = Robot(graph)
+    first = arm.ask((1.0, [1.2, 1.0]))
+    await arm.go_on(0.5)
+    assert arm.manager.switch([], ["arm"], STRICT)[0]
+    await arm.go_on(0.1)
+    assert first.status == CANCELED
+    late = arm.ask((1.0, [0.0, 0.0]))
+    await arm.go_on(0.1)
+    assert late.accepted is False
+    assert arm.manager.switch(["arm"], [], STRICT)[0]
+    second = arm.ask((0.5, [0.0, 0.0]))
+    await arm.go_on(0.7)
+    assert second.status == SUCCEEDED
+    assert arm.positions() == [0.0, 0.0]
