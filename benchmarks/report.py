@@ -25,6 +25,7 @@ TITLES = {
     "viewer": ("Viewer", "查看器"),
     "page": ("Page", "网页"),
     "simulation": ("Simulation", "仿真"),
+    "drives": ("Controllers of drives", "底盘控制器"),
     "sizes": ("Sizes", "规模"),
 }
 _ENGLISH = """# Benchmarks
