@@ -23,7 +23,6 @@ from linkwright.control.filters.motion_model import ACCELERATION, ANGLES, POSE, 
 from linkwright.control.filters.readings import PoseReader
 from linkwright.geometry.single import Transform, compose, normalized, quaternion_from_rpy
 from linkwright.graph import TF_QOS, Duration, Graph, JumpThreshold, TransformException
-from linkwright.graph.transforms.listener import TransformListener
 from linkwright.messages import TFMessage, Time, TransformBatch, get_message, get_service
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 from linkwright.nodes.robot_localization.configuration import configuration_of
@@ -56,7 +55,6 @@ class EkfNode(SingleNode):
         self._published_ns = -1
         self._clock = self._node.get_clock()
         self._around = Surroundings(self._node, self._configuration, self._estimator, self._message_from_the_past)
-        TransformListener(self._around.buffer, self._node)
         self._sources = [Source(each, self._around) for each in self._configuration.sensors]
         self._open()
 
@@ -107,7 +105,7 @@ class EkfNode(SingleNode):
     def _reset(self) -> None:
         self._estimator.clear()
         self._filter.reset()
-        self._around.buffer.clear()
+        self._around.poses.buffer.clear()
         self._around.ignored_until_ns = -1
         self._published_ns = -1
         for source in self._sources:
@@ -157,7 +155,7 @@ class EkfNode(SingleNode):
         parent, child, pose = frames.world, frames.output, base_in_world
         if frames.world == frames.map:
             try:
-                odom_in_base, _ = self._around.buffer.lookup(frames.base, frames.odom, 0)
+                odom_in_base, _ = self._around.poses.buffer.lookup(frames.base, frames.odom, 0)
             except TransformException as error:
                 self._node.get_logger().error(
                     f"Could not obtain transform from {frames.odom}->{frames.base}: {error}", throttle_duration_sec=5.0
@@ -232,7 +230,7 @@ class EkfNode(SingleNode):
     def _set_pose(self, message: Any) -> None:
         frames, stamp_ns = self._configuration.frames, message.header.stamp.nanoseconds
         frame = message.header.frame_id or frames.world
-        sensor = self._around.transform(frames.world, frame, stamp_ns)
+        sensor = self._around.poses.pose(frames.world, frame, stamp_ns)
         if sensor is None:
             return
         position, orientation = message.pose.pose.position, message.pose.pose.orientation

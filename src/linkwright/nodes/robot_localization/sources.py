@@ -19,16 +19,15 @@ from linkwright.control.filters.readings import (
     without_gravity,
 )
 from linkwright.geometry.single import (
-    IDENTITY,
     Quaternion,
     Transform,
     normalized,
     quaternion_from_rpy,
     quaternion_multiply,
 )
-from linkwright.graph import Node, QoSProfile, ReliabilityPolicy, TransformException
-from linkwright.graph.transforms.core import BufferCore
+from linkwright.graph import Node, QoSProfile, ReliabilityPolicy
 from linkwright.messages import get_message
+from linkwright.nodes.frame_poses import FramePoses
 from linkwright.nodes.robot_localization.configuration import Configuration, SensorSettings
 
 _TYPES = {
@@ -62,7 +61,7 @@ class Surroundings:
         self.configuration = configuration
         self.estimator = estimator
         self.jumped_back = jumped_back
-        self.buffer = BufferCore(logger=node.get_logger().get_child("tf2"))
+        self.poses = FramePoses(node, "Could not obtain transform:")
         self.ignored_until_ns = -1
         """Messages up to this stamp belong to the time before the pose was set."""
 
@@ -70,22 +69,6 @@ class Surroundings:
     def filter(self) -> KalmanFilter:
         """The filter, whose estimate some readings need."""
         return self.estimator.filter
-
-    def transform(self, target: str, source: str, time_ns: int) -> Transform | None:
-        """The pose of a frame in another one at a time, or as it was last known; None where it is not known."""
-        if target == source:
-            return IDENTITY
-        try:
-            return self.buffer.lookup(target, source, time_ns)[0]
-        except TransformException:
-            pass
-        try:
-            return self.buffer.lookup(target, source, 0)[0]
-        except TransformException as error:
-            self.node.get_logger().warning(
-                f"Could not obtain transform from {source} to {target}. Error was {error}", throttle_duration_sec=5.0
-            )
-            return None
 
 
 class Source:
@@ -149,7 +132,7 @@ class Source:
         if not any(self._settings.used[POSE]):
             return
         world = self._frames.world
-        sensor = self._around.transform(world, world if self._settings.differential or not frame else frame, stamp_ns)
+        sensor = self._around.poses.pose(world, world if self._settings.differential or not frame else frame, stamp_ns)
         if sensor is None:
             return
         position = message.pose.position
@@ -214,7 +197,7 @@ class Source:
 
     def _mounting(self, frame: str, stamp_ns: int) -> Transform | None:
         base = self._frames.base
-        return self._around.transform(base, frame or base, stamp_ns)
+        return self._around.poses.pose(base, frame or base, stamp_ns)
 
     def _add(self, reading: Reading | None, what: str, stamp_ns: int, threshold: float) -> None:
         if reading is None or not any(reading.used):

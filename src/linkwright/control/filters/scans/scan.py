@@ -1,0 +1,93 @@
+"""A laser scan, and what every filter of scans is.
+
+A filter is a dataclass: its fields are its parameters, those without a default must be given. Those of others are found
+through the entry points ``linkwright.laser_filters``, by the name that parameter files give as ``type``.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.geometry.arrays import rotation_matrix
+from linkwright.geometry.single import Transform
+
+Floats = NDArray[np.float32]
+Flags = NDArray[np.bool_]
+
+Lookup = Callable[[str, str, int], "Transform | None"]
+"""The pose of a frame (the second name) in another one (the first) at a time in nanoseconds; None where unknown."""
+
+
+@dataclass(slots=True, eq=False)
+class Scan:
+    """A laser scan, as sensor_msgs/msg/LaserScan has it.
+
+    Attributes:
+        ranges: shape (n,), metres; what was not measured is NaN, infinite, or outside of the limits.
+        intensities: shape (n,), or (0,) where there are none.
+        angle_min: of the first range, rad.
+        angle_max: of the last one, rad.
+        angle_increment: from one to the next, rad.
+        range_min: the least that counts, metres.
+        range_max: the most that counts, metres.
+        time_increment: from one range to the next, seconds.
+        stamp_ns: when the first one was measured.
+        frame: x is forward, z upward.
+    """
+
+    ranges: Floats
+    intensities: Floats
+    angle_min: float
+    angle_max: float
+    angle_increment: float
+    range_min: float
+    range_max: float
+    time_increment: float
+    stamp_ns: int
+    frame: str
+
+    @property
+    def angles(self) -> NDArray[np.float64]:
+        """Shape (n,), rad."""
+        return np.asarray(self.angle_min + np.arange(len(self.ranges)) * self.angle_increment, dtype=np.float64)
+
+    @property
+    def measured(self) -> Flags:
+        """Shape (n,): which ranges are within the limits."""
+        return (self.ranges >= self.range_min) & (self.ranges <= self.range_max)
+
+    def points(self, frame: str, lookup: Lookup) -> NDArray[np.float64] | None:
+        """The ends of the rays in a frame, shape (n, 3); None where the frame's place is not known.
+
+        Those of ranges that were not measured mean nothing.
+        """
+        reach = np.where(self.measured, self.ranges, 0.0)
+        angles = self.angles
+        rays = [reach * np.cos(angles), reach * np.sin(angles), np.zeros(len(reach))]
+        points: NDArray[np.float64] = np.stack(rays, axis=-1).astype(np.float64)
+        if frame == self.frame:
+            return points
+        pose = lookup(frame, self.frame, self.stamp_ns)
+        if pose is None:
+            return None
+        turned: NDArray[np.float64] = points @ rotation_matrix(pose[3:]).T + np.array(pose[:3], dtype=np.float64)
+        return turned
+
+
+class ScanFilter(ABC):
+    """Makes a scan of a scan."""
+
+    @abstractmethod
+    def apply(self, scan: Scan, lookup: Lookup) -> Scan | None:
+        """Change a scan, which is its own, and give it back; None where it is to be dropped."""
+
+
+def cleared(scan: Scan, which: Flags, value: float = float("nan")) -> Scan:
+    """The scan with some ranges, shape (n,), replaced."""
+    scan.ranges[which] = value
+    return scan

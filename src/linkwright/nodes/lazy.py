@@ -1,0 +1,48 @@
+"""Subscriptions that are there only while somebody listens to what is made of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from linkwright.graph import Graph, Node, Publisher, Subscription
+
+
+class LazySubscriptions:
+    """Opens subscriptions when the first listener of some publishers comes, and closes them when the last one goes.
+
+    Args:
+        graph: tells of changes.
+        node: owns them.
+        publishers: whose listeners count.
+        subscribe: opens the subscriptions.
+    """
+
+    def __init__(
+        self,
+        graph: Graph,
+        node: Node,
+        publishers: Sequence[Publisher[Any]],
+        subscribe: Callable[[], Sequence[Subscription[Any]]],
+    ) -> None:
+        self._graph = graph
+        self._node = node
+        self._publishers = publishers
+        self._subscribe = subscribe
+        self._open: Sequence[Subscription[Any]] = ()
+        self._changed = node.create_guard_condition(self._look)
+        graph.watch(self._changed.trigger)
+        self._look()
+
+    def close(self) -> None:
+        """Look no more; the subscriptions go with their node."""
+        self._graph.unwatch(self._changed.trigger)
+
+    def _look(self) -> None:
+        wanted = any(publisher.get_subscription_count() for publisher in self._publishers)
+        if wanted and not self._open:
+            self._open = self._subscribe()
+        elif not wanted and self._open:
+            for subscription in self._open:
+                self._node.destroy_subscription(subscription)
+            self._open = ()
