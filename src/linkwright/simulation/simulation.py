@@ -556,6 +556,12 @@ class Servo:
         self._position = self._simulation.joint_state(self._joint)[0]
         self._hold()
 
+    def release(self) -> None:
+        """Let the joint go, until it is to hold it again."""
+        simulation = self._simulation
+        simulation.refresh()
+        simulation.data.eq_active[simulation.model.equality(self._name).id] = 0
+
     def move(self, target: float, seconds: float) -> None:
         """Go on to a position within the joint's limits, in rad (m), for so many seconds."""
         model = self._simulation.model
@@ -571,4 +577,6 @@ class Servo:
         self._simulation.refresh()
         model = self._simulation.model
         start = model.qpos0[model.joint(self._joint).qposadr[0]]
-        model.eq_data[model.equality(self._name).id, 0] = self._position - start
+        number = model.equality(self._name).id
+        model.eq_data[number, 0] = self._position - start
+        self._simulation.data.eq_active[number] = 1

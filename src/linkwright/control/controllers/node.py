@@ -22,11 +22,6 @@ class ControllerNode(PluginNode):
     def __init__(self, node: Node, exchange: Exchange) -> None:
         super().__init__(node, exchange, owned=True, qos={}, usual=None)
 
-    @property
-    def graph_node(self) -> Node:
-        """The node itself, for what is not here, such as actions: its callbacks come on the event loop."""
-        return self._node
-
     def post(self, command: Callable[[], object]) -> None:
         """Have something done in the thread of the updates, before the next one; from any thread."""
         self._exchange.post(command)

@@ -78,6 +78,16 @@ class PluginNode:
         return self._node.get_logger()
 
     @property
+    def graph_node(self) -> Node:
+        """The node itself, for what is not here, such as actions: its callbacks come on the event loop."""
+        return self._node
+
+    @property
+    def exchange(self) -> Exchange:
+        """What hands over between the thread of the simulation and the graph."""
+        return self._exchange
+
+    @property
     def name(self) -> str:
         """The full name of the node."""
         return self._node.get_fully_qualified_name()

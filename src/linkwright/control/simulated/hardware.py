@@ -1,0 +1,127 @@
+"""Hardware that is a part of a simulated world.
+
+It stands in for ``gazebo_ros2_control/GazeboSystem``, ``gz_ros2_control/GazeboSimSystem``,
+``ign_ros2_control/IgnitionSystem``, and for whatever else a description in a simulated world names.
+
+Source: gazebo_ros2_control and gz_ros2_control (interfaces, what is held, texts).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from typing import Protocol
+
+import numpy as np
+
+from linkwright.control.hardware.component import Hardware
+from linkwright.control.hardware.description import HardwareDescription
+from linkwright.control.hardware.interfaces import EFFORT, POSITION, VELOCITY
+from linkwright.control.simulated.joints import SimulatedJoint
+from linkwright.control.simulated.sensors import SimulatedSensor, sensors_of, simulated_sensor
+from linkwright.diagnostics import LinkwrightError, phrase
+from linkwright.graph.log.logger import Logger
+from linkwright.simulation.plugins.plugin import PluginPlace
+from linkwright.simulation.simulation import Simulation
+
+_KINDS = (POSITION, VELOCITY, EFFORT)
+
+
+class ControlledModel(Protocol):
+    """What hardware needs of the plugin in whose model it is."""
+
+    simulation: Simulation
+    place: PluginPlace
+
+    def joint(self, name: str) -> str:
+        """The name in the simulation of a joint of its model that moves."""
+
+    def random_of(self, name: str) -> np.random.Generator:
+        """Random numbers for a sensor."""
+
+
+class SimulatedSystem(Hardware):
+    """Joints and sensors of a model as hardware.
+
+    Args:
+        description: what is written about it.
+        logger: where it tells what it does.
+        plugin: the plugin in whose model it is.
+        holds: whether joints are held where they are while nothing commands them.
+    """
+
+    def __init__(
+        self, description: HardwareDescription, logger: Logger, plugin: ControlledModel, *, holds: bool
+    ) -> None:
+        super().__init__(description, logger)
+        self._joints: dict[str, SimulatedJoint] = {}
+        for each in description.joints:
+            try:
+                name = plugin.joint(each.name)
+            except LinkwrightError as error:
+                logger.warning(f"Skipping joint in the URDF named '{each.name}' which is not in the gazebo model.")
+                logger.debug(error.diagnostics[0].message)
+                self._forget(each.name)
+                continue
+            self._joints[each.name] = SimulatedJoint(
+                plugin.simulation,
+                name,
+                each,
+                {state.kind: state for state in self.states if state.component == each.name},
+                {
+                    command.kind: command
+                    for command in self.commands
+                    if command.component == each.name and command.kind in _KINDS and each.mimic is None
+                },
+                holds=holds,
+            )
+        self._sensors = self._found_sensors(plugin)
+
+    def _forget(self, component: str) -> None:
+        """A component is not there: nor are its interfaces."""
+        self.states = [each for each in self.states if each.component != component]
+        self.commands = [each for each in self.commands if each.component != component]
+
+    def _found_sensors(self, plugin: ControlledModel) -> list[SimulatedSensor]:
+        found = []
+        there = sensors_of(plugin.place)
+        for each in self.description.sensors:
+            placed = there.get(each.name)
+            if placed is None:
+                told = phrase(
+                    "sensor '{name}' of <ros2_control>: the model has no IMU and no force and torque sensor of this "
+                    "name; its states stay as they are",
+                    name=each.name,
+                )
+                self.logger.warning(told)
+                continue
+            states = [state for state in self.states if state.component == each.name]
+            found.append(simulated_sensor(plugin.simulation, placed, states, plugin.random_of(placed.name)))
+        return found
+
+    def begin(self) -> None:
+        """The world has begun anew."""
+        for joint in self._joints.values():
+            mode = joint.mode
+            joint.begin()
+            joint.set_mode(mode)
+
+    def perform_switch(self, start: Collection[str], stop: Collection[str]) -> None:
+        """Move the joints by other interfaces."""
+        for name, joint in self._joints.items():
+            if f"{name}/{joint.mode}" in stop:
+                joint.set_mode("")
+            for kind in (EFFORT, POSITION, VELOCITY):  # a velocity goes before a position, as with gz_ros2_control
+                if f"{name}/{kind}" in start:
+                    joint.set_mode(kind)
+
+    def read(self, time_ns: int, period_s: float) -> None:  # noqa: ARG002
+        """Read joints and sensors."""
+        for joint in self._joints.values():
+            joint.read()
+        for sensor in self._sensors:
+            sensor.read()
+
+    def write(self, time_ns: int, period_s: float) -> None:  # noqa: ARG002
+        """Move the joints."""
+        for joint in self._joints.values():
+            joint.write(period_s)

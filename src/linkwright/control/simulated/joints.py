@@ -1,0 +1,109 @@
+"""Joints of a simulated world as hardware moves them."""
+
+from __future__ import annotations
+
+from math import inf, isfinite, isnan
+
+from linkwright.control.hardware.description import ComponentDescription
+from linkwright.control.hardware.interfaces import EFFORT, POSITION, VELOCITY, CommandInterface, StateInterface
+from linkwright.simulation.simulation import Motor, Servo, Simulation
+
+_GAIN = 20.0
+"""Torque of a motor in N m for each rad/s that its joint is too slow."""
+_FASTEST = 1000.0
+"""Speed in rad/s (m/s) of a joint whose own limit says nothing."""
+
+
+class SimulatedJoint:
+    """A joint that hardware reads and moves.
+
+    Positions are held by a constraint, as Gazebo puts joints where they are commanded; velocities by a motor with the
+    effort limit of the joint; efforts push.
+
+    Args:
+        simulation: the world.
+        name: the joint's name there.
+        described: what ``<ros2_control>`` says of it.
+        states, commands: its interfaces, by kind.
+        holds: whether it is held where it is while nothing commands it.
+    """
+
+    def __init__(
+        self,
+        simulation: Simulation,
+        name: str,
+        described: ComponentDescription,
+        states: dict[str, StateInterface],
+        commands: dict[str, CommandInterface],
+        *,
+        holds: bool,
+    ) -> None:
+        self._simulation = simulation
+        self._name = name
+        self._described = described
+        self._holds = holds
+        self._position, self._velocity = states.get(POSITION), states.get(VELOCITY)
+        self._effort = states.get(EFFORT)
+        self._commands = commands
+        self._mode = ""
+        placed = simulation.scene.joints[name]
+        simulation.keep_awake(placed.child)
+        limit = placed.axes[0][0].limit.effort
+        greatest = limit if isfinite(limit) and limit > 0.0 else inf
+        self._motor: Motor | None = None
+        self._servo: Servo | None = None
+        if VELOCITY in commands:
+            self._motor = simulation.add_velocity_motor(name, _GAIN, greatest)
+        if POSITION in commands:
+            self._servo = simulation.add_servo(name, _FASTEST)
+        self.begin()
+
+    def begin(self) -> None:
+        """Be where the description says at the start, and stay there."""
+        for each in self._described.states:
+            if each.name == POSITION and not isnan(each.initial_value):
+                self._simulation.set_joint_position(self._name, each.initial_value)
+        self.set_mode("")
+
+    def set_mode(self, kind: str) -> None:
+        """Be commanded by the interface of a kind from now on; by none if it is empty."""
+        self._mode = kind
+        if self._motor is not None:
+            self._motor.target = 0.0
+        if EFFORT in self._commands:
+            self._simulation.push_joint(self._name, 0.0)
+        if self._servo is not None:
+            self._servo.restart()
+            if kind not in ("", POSITION) or (not kind and not self._holds):
+                self._servo.release()
+
+    @property
+    def mode(self) -> str:
+        """The kind of the interface that commands it; empty for none."""
+        return self._mode
+
+    def read(self) -> None:
+        """Bring the states up to date."""
+        position, velocity = self._simulation.joint_state(self._name)
+        if self._position is not None:
+            self._position.value = position
+        if self._velocity is not None:
+            self._velocity.value = velocity
+        if self._effort is not None:
+            joint = self._simulation.data.joint(self._name)
+            self._effort.value = float(joint.qfrc_actuator[0] + joint.qfrc_applied[0])
+
+    def write(self, period_s: float) -> None:
+        """Do what is commanded; what is no number leaves it as it is."""
+        command = self._commands.get(self._mode)
+        if command is None:
+            return
+        value = command.value
+        if value != value:
+            return
+        if self._mode == POSITION and self._servo is not None:
+            self._servo.move(value, period_s)
+        elif self._mode == VELOCITY and self._motor is not None:
+            self._motor.target = value
+        elif self._mode == EFFORT:
+            self._simulation.push_joint(self._name, value)

@@ -1,0 +1,127 @@
+"""``libgazebo_ros2_control.so``, ``gz_ros2_control-system`` and ``ign_ros2_control-system``: controllers in a world.
+
+Controllers are updated in the thread of the world, in simulated time, at ``update_rate`` of the manager.
+
+Source: gazebo_ros2_control and gz_ros2_control (parameters, names of nodes, where the description comes from).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from linkwright.control.hardware.component import Hardware
+from linkwright.control.hardware.description import HardwareDescription
+from linkwright.control.hardware.resources import Resources
+from linkwright.control.manager.manager import ControllerManager
+from linkwright.control.manager.nodes import ProcessArguments
+from linkwright.control.manager.services import ManagerServices
+from linkwright.control.manager.starting import load_hardware
+from linkwright.control.simulated.hardware import SimulatedSystem
+from linkwright.descriptions import DescriptionLibrary
+from linkwright.graph import DESCRIPTION_QOS, Logger, Node
+from linkwright.graph.names.rules import join
+from linkwright.graph.parameters.files import read_parameter_file
+from linkwright.graph.parameters.rules import ParameterRules
+from linkwright.simulation.plugins.node import PluginNode
+from linkwright.simulation.plugins.plugin import SimulatedPlugin
+from linkwright.simulation.plugins.ros_element import node_of
+from linkwright.simulation.simulation import NANOSECONDS
+
+_DEFAULT_RATE = 100
+
+
+@dataclass(frozen=True, kw_only=True)
+class Parameters:
+    """Of the plugins."""
+
+    parameters: tuple[str, ...] = ()
+    robot_param: str = "robot_description"
+    robot_param_node: str = "robot_state_publisher"
+    controller_manager_name: str = "controller_manager"
+    hold_joints: bool = True
+    position_proportional_gain: float = 0.1
+
+
+class SimulatedControl(SimulatedPlugin[Parameters]):
+    """Runs the controllers of a robot in the world."""
+
+    PARAMETERS = Parameters
+    IGNORED = ("e_stop_topic", "control_period", "robot_sim_type", "controller_manager_prefix_node_name")
+
+    def start(self) -> None:
+        """Make the manager, and wait for the description."""
+        namespace = self.node.name.rpartition("/")[0] or "/"
+        rules = ParameterRules()
+        for path in self.parameters.parameters:
+            rules.add(read_parameter_file(path))
+        described = node_of(self.place.name, self.place.element, namespace)
+        name = self.parameters.controller_manager_name
+        values = {"use_sim_time": True, **rules.for_node(join(namespace, name)), **described.parameters}
+        node = Node(
+            self.node.graph_node.graph,
+            name,
+            namespace=namespace,
+            parameters=values,
+            remappings=[each for each in described.remappings if not each[0].startswith("__")],
+            allow_undeclared_parameters=True,
+            automatically_declare_parameters_from_overrides=True,
+        )
+        self._manager_node = PluginNode(node, self.node.exchange, owned=True, qos={}, usual=None)
+        rate = values.get("update_rate", _DEFAULT_RATE)
+        self._manager = ControllerManager(
+            node,
+            self.node.exchange,
+            Resources(node.get_logger()),
+            ProcessArguments(rules, described.remappings),
+            update_rate=float(rate),
+        )
+        self._systems: list[SimulatedSystem] = []
+        self._last = self.simulation.time
+        self._loaded = False
+        node.get_logger().info("Loading controller_manager")
+        topics = dict.fromkeys(
+            node.handle.resolve_topic_name(each) for each in ("robot_description", "~/robot_description")
+        )
+        for topic in topics:
+            self._manager_node.subscribe("std_msgs/msg/String", topic, self._on_description, DESCRIPTION_QOS)
+
+    def reset(self) -> None:
+        """Begin anew; controllers stay as active as they are."""
+        self._last = self.simulation.time
+        for each in self._systems:
+            each.begin()
+        for loaded in self._manager.controllers.values():
+            loaded.next_ns = 0
+
+    def stop(self) -> None:
+        """End the controllers and the manager."""
+        if hasattr(self, "_manager"):
+            self._manager.close()
+            self._manager_node.close()
+
+    def random_of(self, name: str) -> Any:
+        """Random numbers for a sensor; the same for the same seed."""
+        return self._environment.random(name)
+
+    def _on_description(self, message: Any) -> None:
+        if self._loaded:
+            return
+        manager = self._manager
+        self._loaded = load_hardware(manager, message.data, DescriptionLibrary(), self._system)
+        if not self._loaded:
+            return
+        services = ManagerServices(manager, self._manager_node)
+        self.every(1.0, services.publish_diagnostics)
+        self._last = self.simulation.time
+        self.every(manager.update_rate, self._update)
+
+    def _system(self, description: HardwareDescription, logger: Logger) -> Hardware:
+        system = SimulatedSystem(description, logger, self, holds=self.parameters.hold_joints)
+        self._systems.append(system)
+        return system
+
+    def _update(self) -> None:
+        now = self.simulation.time
+        period, self._last = now - self._last, now
+        self._manager.cycle(now, period / NANOSECONDS)

@@ -1,0 +1,93 @@
+"""Sensors of a simulated world as hardware reads them: IMUs, and forces in joints.
+
+Source: gazebo_ros2_control and gz_ros2_control (which sensors, names of interfaces).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+
+import numpy as np
+
+from linkwright.control.hardware.interfaces import StateInterface
+from linkwright.simulation.plugins.places import of_model
+from linkwright.simulation.plugins.plugin import PlacedSensor, PluginPlace
+from linkwright.simulation.sensors.force_torque import ForceTorqueSensor
+from linkwright.simulation.sensors.imu import ImuSensor
+from linkwright.simulation.sensors.mount import Mount
+from linkwright.simulation.simulation import Simulation
+
+_TYPES = ("imu", "force_torque")
+
+
+class SimulatedSensor:
+    """A sensor that hardware reads.
+
+    Args:
+        measure: gives what it measures, by the names of interfaces.
+        states: its interfaces.
+    """
+
+    def __init__(self, measure: Callable[[], dict[str, float]], states: Sequence[StateInterface]) -> None:
+        self._measure = measure
+        self._states = states
+
+    def read(self) -> None:
+        """Bring the states up to date."""
+        measured = self._measure()
+        for each in self._states:
+            each.value = measured.get(each.kind, each.value)
+
+
+def sensors_of(place: PluginPlace) -> dict[str, PlacedSensor]:
+    """The sensors of a model that hardware can read, by their names."""
+    assert place.model is not None
+    places: Iterator[PluginPlace] = of_model(place.world, place.model, place.path)
+    return {
+        each.sensor.sensor.name: each.sensor
+        for each in places
+        if each.sensor is not None and each.sensor.sensor.type in _TYPES
+    }
+
+
+def simulated_sensor(
+    simulation: Simulation, placed: PlacedSensor, states: Sequence[StateInterface], generator: np.random.Generator
+) -> SimulatedSensor:
+    """A sensor with the interfaces that show what it measures."""
+    if placed.sensor.type == "imu":
+        return SimulatedSensor(_imu(simulation, placed, generator), states)
+    return SimulatedSensor(_forces(simulation, placed, generator), states)
+
+
+def _imu(
+    simulation: Simulation, placed: PlacedSensor, generator: np.random.Generator
+) -> Callable[[], dict[str, float]]:
+    mount = Mount(simulation, placed.link, placed.pose)
+    sensor = ImuSensor(mount, placed.sensor.imu, generator=generator)
+
+    def measure() -> dict[str, float]:
+        measured = sensor.measure()
+        return {
+            **_named("orientation", "xyzw", measured.orientation),
+            **_named("angular_velocity", "xyz", measured.angular_velocity),
+            **_named("linear_acceleration", "xyz", measured.linear_acceleration),
+        }
+
+    return measure
+
+
+def _forces(
+    simulation: Simulation, placed: PlacedSensor, generator: np.random.Generator
+) -> Callable[[], dict[str, float]]:
+    simulation.keep_awake(placed.link)
+    sensor = ForceTorqueSensor(simulation, placed.joint, placed.sensor.force_torque, generator)
+
+    def measure() -> dict[str, float]:
+        force, torque = sensor.measure()
+        return {**_named("force", "xyz", force.tolist()), **_named("torque", "xyz", torque.tolist())}
+
+    return measure
+
+
+def _named(name: str, axes: str, values: Sequence[float]) -> dict[str, float]:
+    return {f"{name}.{axis}": float(value) for axis, value in zip(axes, values, strict=True)}

@@ -1,0 +1,213 @@
+from __future__ import annotations
+
+from math import isnan
+
+import pytest
+
+from linkwright.graph import DESCRIPTION_QOS
+from linkwright.messages import String, get_service
+from linkwright.testing import Recording
+from tests.simulation.test_plugins import SECOND, robot, served
+from tests.simulation.worlds import GROUND
+
+FILE = """
+controller_manager:
+  ros__parameters:
+    update_rate: 100
+    broadcaster: {type: joint_state_broadcaster/JointStateBroadcaster}
+    wheels: {type: velocity_controllers/JointGroupVelocityController}
+wheels:
+  ros__parameters:
+    joints: [left_joint, right_joint]
+"""
+PLUGINS = {
+    "classic": ("libgazebo_ros2_control.so", "gazebo_ros2_control", "gazebo_ros2_control/GazeboSystem"),
+    "gz": ("gz_ros2_control-system", "gz_ros2_control::GazeboSimROS2ControlPlugin", "gz_ros2_control/GazeboSimSystem"),
+}
+IMU = "<sensor name='imu' type='imu'><update_rate>10</update_rate></sensor>"
+
+
+def wheel(name: str, command: str = "velocity", initial: str = "") -> str:
+    value = f"<param name='initial_value'>{initial}</param>" if initial else ""
+    return (
+        f"<joint name='{name}'><command_interface name='{command}'/>"
+        f"<state_interface name='position'>{value}</state_interface><state_interface name='velocity'/>"
+        "<state_interface name='effort'/></joint>"
+    )
+
+
+def description(control: str, plugin: str = PLUGINS["classic"][2]) -> str:
+    joints = "".join(
+        f"<link name='{side}'/><joint name='{side}_joint' type='continuous'><parent link='base'/><child link='{side}'/>"
+        "</joint>"
+        for side in ("left", "right", "third")
+    )
+    return (
+        f"<robot name='mbot'><link name='base'/>{joints}<ros2_control name='drive' type='system'><hardware><plugin>"
+        f"{plugin}</plugin></hardware>{control}</ros2_control></robot>"
+    )
+
+
+class Controlled:
+    """A robot in a world with a manager."""
+
+    def __init__(self, server, graph) -> None:
+        self.server, self.graph = server, graph
+        self.node = graph.create_node("audience")
+
+    async def describe(self, text: str, topic: str = "/robot_description") -> None:
+        self.node.create_publisher(String, topic, DESCRIPTION_QOS).publish(String(text))
+        await self.go_on(0.01)
+
+    async def go_on(self, seconds: float) -> None:
+        await self.graph.settle()
+        self.server.advance(round(seconds * SECOND))
+        await self.graph.settle()
+
+    async def ask(self, service: str, manager: str = "/controller_manager", **fields):
+        kind = get_service("controller_manager_msgs/srv/" + "".join(word.capitalize() for word in service.split("_")))
+        future = self.node.create_client(kind, f"{manager}/{service}").call_async(kind.Request(**fields))
+        await self.go_on(0.01)
+        return future.result()
+
+    async def start(self, *names: str, manager: str = "/controller_manager") -> None:
+        for name in names:
+            assert (await self.ask("load_controller", manager, name=name)).ok
+            assert (await self.ask("configure_controller", manager, name=name)).ok
+        assert (await self.ask("switch_controller", manager, activate_controllers=list(names), strictness=2)).ok
+
+    async def command(self, *values: float, topic: str = "/wheels/commands") -> None:
+        publisher = self.node.create_publisher("std_msgs/msg/Float64MultiArray", topic, 10)
+        publisher.publish(publisher.msg_type(data=list(values)))
+        await self.go_on(0.02)
+
+
+def controlled(path, which: str = "classic", more: str = "", inside: str = "") -> str:
+    filename, name, _ = PLUGINS[which]
+    text = robot(f'<plugin filename="{filename}" name="{name}"><parameters>{path}</parameters>{more}</plugin>')
+    return text.replace("</link>", f"{inside}</link>", 1)
+
+
+@pytest.fixture
+def file(tmp_path):
+    path = tmp_path / "controllers.yaml"
+    path.write_text(FILE)
+    return path
+
+
+@pytest.mark.parametrize("which", PLUGINS)
+async def test_wheels_turn_as_they_are_told_and_stop_with_their_controller(file, which):
+    async with served(GROUND, controlled(file, which)) as (server, graph, log):
+        world = Controlled(server, graph)
+        states = Recording(graph, server.node, "/joint_states")
+        await world.describe(description(wheel("left_joint") + wheel("right_joint"), PLUGINS[which][2]))
+        await world.start("broadcaster", "wheels")
+        await world.command(2.0, 2.0)
+        await world.go_on(2.0)
+        assert states.last.name == ["left_joint", "right_joint"]
+        assert list(states.last.velocity) == pytest.approx([2.0, 2.0], abs=0.05)
+        before = server.simulation.model_pose("mbot")[0]
+        assert before > 0.15
+        assert (await world.ask("switch_controller", deactivate_controllers=["wheels"], strictness=2)).ok
+        await world.go_on(0.5)
+        assert list(states.last.velocity) == pytest.approx([0.0, 0.0], abs=0.05)
+        assert not [each.text for each in log if each.level.name in ("WARN", "ERROR")]
+
+
+async def test_positions_are_held_from_their_initial_values_on(file, tmp_path):
+    positions = tmp_path / "positions.yaml"
+    positions.write_text(
+        "controller_manager: {ros__parameters: {arm: {type: position_controllers/JointGroupPositionController}}}\n"
+        "arm: {ros__parameters: {joints: [left_joint]}}\n"
+    )
+    more = f"<parameters>{positions}</parameters>"
+    async with served(controlled(file, more=more), options=None) as (server, graph, _):
+        world = Controlled(server, graph)
+        await world.describe(description(wheel("left_joint", "position", "0.5")))
+        assert server.simulation.joint_state("mbot::left_joint")[0] == pytest.approx(0.5, abs=0.01)
+        await world.start("arm")
+        await world.command(-0.25, topic="/arm/commands")
+        await world.go_on(0.5)
+        assert server.simulation.joint_state("mbot::left_joint")[0] == pytest.approx(-0.25, abs=0.01)
+
+
+async def test_efforts_push_and_are_measured(file, tmp_path):
+    efforts = tmp_path / "efforts.yaml"
+    efforts.write_text(
+        "controller_manager: {ros__parameters: {arm: {type: effort_controllers/JointGroupEffortController},"
+        " broadcaster: {type: joint_state_broadcaster/JointStateBroadcaster}}}\n"
+        "arm: {ros__parameters: {joints: [left_joint]}}\n"
+    )
+    async with served(GROUND, controlled(efforts)) as (server, graph, _):
+        world = Controlled(server, graph)
+        states = Recording(graph, server.node, "/joint_states")
+        await world.describe(description(wheel("left_joint", "effort")))
+        await world.start("arm", "broadcaster")
+        await world.command(0.01, topic="/arm/commands")
+        await world.go_on(0.2)
+        assert list(states.last.effort) == pytest.approx([0.01])
+        assert server.simulation.joint_state("mbot::left_joint")[1] > 0.05
+
+
+async def test_an_imu_is_hardware_too(file):
+    states = "<state_interface name='orientation.w'/><state_interface name='linear_acceleration.z'/>"
+    sensor = f"<sensor name='imu'>{states}</sensor>"
+    async with served(GROUND, controlled(file, inside=IMU)) as (server, graph, _):
+        world = Controlled(server, graph)
+        states = Recording(graph, server.node, "/dynamic_joint_states")
+        await world.describe(description(wheel("left_joint") + sensor))
+        await world.start("broadcaster")
+        await world.go_on(0.5)
+        values = dict(zip(states.last.joint_names, states.last.interface_values, strict=True))["imu"]
+        assert values.interface_names == ["orientation.w", "linear_acceleration.z"]
+        assert list(values.values) == pytest.approx([1.0, 9.8], abs=0.05)
+
+
+async def test_namespaces_and_names(file):
+    file.write_text(FILE.replace("\ncontroller_manager:", "\n/r1/manager:").replace("\nwheels:", "\n/r1/wheels:"))
+    more = (
+        "<controller_manager_name>manager</controller_manager_name>"
+        "<ros><namespace>r1</namespace><remapping>wheels/commands:=wanted</remapping></ros>"
+    )
+    async with served(GROUND, controlled(file, more=more)) as (server, graph, _):
+        world = Controlled(server, graph)
+        await world.describe(description(wheel("left_joint") + wheel("right_joint")), "/r1/robot_description")
+        await world.start("wheels", manager="/r1/manager")
+        assert "/r1/wheels" in graph.node_names()
+
+
+async def test_what_is_not_in_the_model_is_told(file):
+    text = wheel("left_joint") + wheel("third_joint") + "<sensor name='ft'><state_interface name='force.x'/></sensor>"
+    async with served(GROUND, controlled(file)) as (server, graph, log):
+        world = Controlled(server, graph)
+        await world.describe(description(text))
+        joint, sensor = (each.text for each in log if each.level.name == "WARN")
+        assert joint == "Skipping joint in the URDF named 'third_joint' which is not in the gazebo model."
+        assert sensor.startswith("sensor 'ft' of <ros2_control>: the model has no IMU and no force and torque sensor")
+        interfaces = await world.ask("list_hardware_interfaces")
+        assert [each.name for each in interfaces.command_interfaces] == ["left_joint/velocity"]
+
+
+async def test_a_reset_goes_on_with_what_is_active(file):
+    async with served(GROUND, controlled(file)) as (server, graph, _):
+        world = Controlled(server, graph)
+        states = Recording(graph, server.node, "/joint_states")
+        await world.describe(description(wheel("left_joint") + wheel("right_joint")))
+        await world.start("broadcaster", "wheels")
+        await world.command(2.0, 2.0)
+        await world.go_on(0.5)
+        server.reset()
+        await world.go_on(1.0)
+        assert states.last.header.stamp.sec == 1
+        assert list(states.last.velocity) == pytest.approx([2.0, 2.0], abs=0.05)
+        assert not any(isnan(each) for each in states.last.effort)
+
+
+async def test_the_manager_goes_with_its_robot(file):
+    async with served(GROUND, controlled(file)) as (server, graph, _):
+        world = Controlled(server, graph)
+        await world.describe(description(wheel("left_joint") + wheel("right_joint")))
+        await world.start("broadcaster", "wheels")
+        server.delete("mbot")
+        await world.go_on(0.1)
+        assert graph.node_names() == ["/audience", "/gazebo"]
