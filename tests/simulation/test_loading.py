@@ -221,3 +221,45 @@ async def test_a_robot_comes_anew_where_it_is_and_drives(tmp_path):
         command.publish(twist)
         await steps(it, 2000)
         assert simulation.model_pose("mbot")[0] > before[0] + 0.5
+
+
+CLASSIC = DRIVE.replace("</plugin>", "<publish_odom>true</publish_odom><odometry_source>0</odometry_source></plugin>")
+GZ = """<plugin name="drive" filename="gz-sim-diff-drive-system"><left_joint>left_joint</left_joint>
+<right_joint>right_joint</right_joint><wheel_separation>0.38</wheel_separation><wheel_radius>0.06</wheel_radius>
+<topic>cmd_vel</topic><odom_topic>odom</odom_topic></plugin>"""
+MAST = "<link name='mast'/><joint name='m' type='fixed'><parent>base_link</parent><child>mast</child></joint>"
+
+
+@pytest.mark.parametrize("drive", [CLASSIC, GZ])
+async def test_a_drive_that_is_what_it_was_goes_on_with_its_odometry_and_command(tmp_path, drive):
+    async with simulator(tmp_path, robot(drive)) as it:
+        simulation = it.simulator.server.simulation
+        command = it.node.create_publisher(get_message("geometry_msgs/msg/Twist"), "/cmd_vel", 10)
+        heard = it.hear("nav_msgs/msg/Odometry", "/odom")
+        twist = get_message("geometry_msgs/msg/Twist")()
+        twist.linear.x = 0.5
+        command.publish(twist)
+        await steps(it, 2000)
+        before = simulation.model_pose("mbot")[0]
+        assert before > 0.5
+        await load(it, tmp_path, robot(drive, MAST))
+        heard.clear()
+        await steps(it, 1000)
+        await eventually(lambda: bool(heard))
+        assert simulation.model_pose("mbot")[0] > before + 0.3
+        assert heard[-1].pose.pose.position.x == pytest.approx(simulation.model_pose("mbot")[0], abs=0.05)
+
+
+async def test_a_drive_that_is_another_one_begins_anew(tmp_path):
+    async with simulator(tmp_path, robot(CLASSIC)) as it:
+        command = it.node.create_publisher(get_message("geometry_msgs/msg/Twist"), "/cmd_vel", 10)
+        twist = get_message("geometry_msgs/msg/Twist")()
+        twist.linear.x = 0.5
+        command.publish(twist)
+        await steps(it, 2000)
+        heard = it.hear("nav_msgs/msg/Odometry", "/odom")
+        await load(it, tmp_path, robot(CLASSIC.replace("0.38", "0.4"), MAST))
+        heard.clear()
+        await steps(it, 1000)
+        await eventually(lambda: bool(heard))
+        assert abs(heard[-1].pose.pose.position.x) < 0.1

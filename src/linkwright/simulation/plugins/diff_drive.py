@@ -90,6 +90,7 @@ class _Pair:
 class _DiffDrive(SimulatedPlugin[P], Generic[P]):
     """Turns a velocity of the robot into those of its wheels, and their turns into a place."""
 
+    CARRIED: ClassVar[tuple[str, ...]] = ("_wanted", "_now", "_place")
     _pairs: tuple[_Pair, ...]
     _topics: OdometryTopics
 
@@ -157,6 +158,7 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
     """``libgazebo_ros_diff_drive.so``."""
 
     PARAMETERS: ClassVar[type[Any]] = ClassicParameters
+    CARRIED: ClassVar[tuple[str, ...]] = (*_DiffDrive.CARRIED, "_wheel_speeds")
 
     def start(self) -> None:
         """Give the wheels motors, and listen."""
@@ -213,9 +215,19 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
             said = self.parameters
             greatest = inf if said.max_wheel_acceleration <= 0 else said.max_wheel_acceleration * self._interval
             change = greatest / pair.drive.left_radius
-            left, right = _nearer(now[0], wanted[0], change), _nearer(now[1], wanted[1], change)
-            self._wheel_speeds[number] = left, right
-            pair.left.target, pair.right.target = left, right
+            self._turn(number, _nearer(now[0], wanted[0], change), _nearer(now[1], wanted[1], change))
+
+    def _turn(self, number: int, left: float, right: float) -> None:
+        """Have a pair of wheels turn so fast, in rad/s."""
+        pair = self._pairs[number]
+        self._wheel_speeds[number] = left, right
+        pair.left.target, pair.right.target = left, right
+
+    def go_on(self, before: SimulatedPlugin[ClassicParameters]) -> None:
+        """Go on with the velocity, and from the place, of one before."""
+        super().go_on(before)
+        for number, (left, right) in enumerate(self._wheel_speeds):
+            self._turn(number, left, right)
 
     @property
     def _interval(self) -> float:
@@ -244,6 +256,12 @@ class GzDiffDrive(_DiffDrive[GzParameters]):
         """Stand still where it began."""
         self._commands.restart()
         super().reset()
+
+    def go_on(self, before: SimulatedPlugin[GzParameters]) -> None:
+        """Go on with the velocity, and from the place, of one before."""
+        super().go_on(before)
+        assert isinstance(before, GzDiffDrive)
+        self._commands.go_on(before._commands)
 
     def _drive(self) -> None:
         self._measure()

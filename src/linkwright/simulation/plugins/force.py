@@ -1,7 +1,7 @@
 """Pushing a link: ``libgazebo_ros_force.so``.
 
-Source: gazebo_ros_pkgs for ROS 2 and ROS 1 (parameters, topic; a force acts on the centre of mass until the next
-message).
+Source: gazebo_ros_pkgs for ROS 2 and ROS 1 (parameters, topic; before each step the force of the last message is added
+at the centre of mass, in the axes of the world or of the link).
 """
 
 from __future__ import annotations
@@ -31,6 +31,7 @@ class ClassicForce(SimulatedPlugin[ForceParameters]):
     """``libgazebo_ros_force.so``."""
 
     PARAMETERS = ForceParameters
+    CARRIED = ("_wrench",)
 
     def start(self) -> None:
         """Find the link, and listen.

@@ -52,6 +52,7 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
     """``gz-sim-ackermann-steering-system``: a car, or its steering alone."""
 
     PARAMETERS = SteeringParameters
+    CARRIED = ("_angle", "_place")
     IGNORED = (
         *("steer_i_gain", "steer_d_gain", "steer_i_max", "steer_i_min", "steer_cmd_offset"),
         *("use_actuator_msg", "actuator_number"),
@@ -123,6 +124,13 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
         for servo in (each for side in self._servos for each in side):
             servo.restart()
         self._turn_wheels(0.0, 0.0)
+
+    def go_on(self, before: SimulatedPlugin[SteeringParameters]) -> None:
+        """Go on with the velocity, and from the place, of one before."""
+        super().go_on(before)
+        assert isinstance(before, GzAckermann)
+        self._commands.go_on(before._commands)
+        self._limiter = before._limiter
 
     # --- the wheels ---------------------------------------------------------------------------------------------------
 

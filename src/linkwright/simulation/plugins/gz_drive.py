@@ -54,6 +54,10 @@ class DriveCommands:
         for limiter in self._limiters:
             limiter.restart()
 
+    def go_on(self, before: DriveCommands) -> None:
+        """Go on with the velocity of one with the same limits."""
+        self.is_enabled, self._wanted, self._limiters = before.is_enabled, before._wanted, before._limiters
+
     def take(self, twist: Any) -> None:
         """Take a command, ``geometry_msgs/msg/Twist``."""
         if self.is_enabled:

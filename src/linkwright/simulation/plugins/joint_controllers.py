@@ -123,6 +123,7 @@ class GzJointPosition(_JointController[PositionParameters]):
     """
 
     PARAMETERS = PositionParameters
+    CARRIED = ("_wanted",)
 
     def start(self) -> None:
         """Find the joints, and hold them."""
@@ -170,6 +171,11 @@ class GzJointVelocity(_JointController[VelocityParameters]):
     def _begin(self) -> None:
         super()._begin()
         self._turn(self.parameters.initial_velocity)
+
+    def go_on(self, before: SimulatedPlugin[VelocityParameters]) -> None:
+        """Go on with the velocity of one before."""
+        assert isinstance(before, GzJointVelocity)
+        self._turn(before._wanted)
 
     def _commanded(self, message: Any) -> None:
         self._turn(float(message.data))

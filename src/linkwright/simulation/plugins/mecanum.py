@@ -22,6 +22,7 @@ from linkwright.simulation.plugins.gz_drive import (
 )
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.planar_move import PlanarDrive
+from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,6 +42,7 @@ class GzMecanum(PlanarDrive[MecanumParameters]):
     """``gz-sim-mecanum-drive-system``."""
 
     PARAMETERS = MecanumParameters
+    CARRIED = ("_place",)
 
     def start(self) -> None:
         """Give the wheels motors, and listen.
@@ -79,6 +81,12 @@ class GzMecanum(PlanarDrive[MecanumParameters]):
         self._commands.restart()
         self._begin()
         self._turn_wheels((0.0, 0.0, 0.0))
+
+    def go_on(self, before: SimulatedPlugin[MecanumParameters]) -> None:
+        """Go on with the velocity, and from the place, of one before."""
+        super().go_on(before)
+        assert isinstance(before, GzMecanum)
+        self._commands.go_on(before._commands)
 
     def _drive(self) -> None:
         self._turn_wheels(self._commands.follow())

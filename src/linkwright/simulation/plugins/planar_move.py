@@ -68,6 +68,7 @@ class PlanarMove(PlanarDrive[PlanarMoveParameters]):
 
     PARAMETERS = PlanarMoveParameters
     IGNORED = ("update_rate",)
+    CARRIED = ("_wanted",)
 
     def start(self) -> None:
         """Listen, and hold the velocity.

@@ -21,7 +21,7 @@ bits. What is costly is made only where ``output.is_wanted``.
 
 Everything is called in the simulation's thread: `start` after the model has come, what was passed to `every` at its
 simulated times, callbacks of topics and services between two chunks of time, `reset` after time has begun anew, `stop`
-before the model goes.
+before the model goes. A model whose file was saved comes anew where it is; `go_on` takes over what has to go on.
 """
 
 from __future__ import annotations
@@ -117,6 +117,7 @@ class SimulatedPlugin(Generic[P]):
     Attributes:
         PARAMETERS: the dataclass with its parameters.
         IGNORED: names of parameters that are known and change nothing here.
+        CARRIED: names of the attributes that go on when its model comes anew, and it is what it was.
         place: where it stands.
         node: what it has of ROS.
         parameters: what it is given.
@@ -126,6 +127,7 @@ class SimulatedPlugin(Generic[P]):
 
     PARAMETERS: ClassVar[type[Any]] = NoParameters
     IGNORED: ClassVar[Collection[str]] = ()
+    CARRIED: ClassVar[tuple[str, ...]] = ()
 
     def __init__(self, place: PluginPlace, node: PluginNode, parameters: P, environment: Environment) -> None:
         self.place = place
@@ -147,6 +149,21 @@ class SimulatedPlugin(Generic[P]):
 
     def reset(self) -> None:
         """Time has begun anew, and everything is where it was at the start."""
+
+    def go_on(self, before: SimulatedPlugin[P]) -> None:
+        """Go on as one with the same parameters did, whose model has come anew where it was; called after `start`.
+
+        Args:
+            before: that one, which has ended.
+        """
+        for name in self.CARRIED:
+            setattr(self, name, getattr(before, name))
+
+    def is_like(self, other: SimulatedPlugin[Any]) -> bool:
+        """Whether another one stands in the same place of a model and has the same parameters."""
+        one, two = self.place, other.place
+        same_place = (one.path, one.name) == (two.path, two.name)
+        return type(self) is type(other) and same_place and bool(self.parameters == other.parameters)
 
     def stop(self) -> None:
         """End; its node and what was asked for with `every` ends by itself."""

@@ -28,6 +28,7 @@ class GzVelocityControl(PlanarDrive[VelocityControlParameters]):
 
     PARAMETERS = VelocityControlParameters
     IGNORED = ("link_name",)
+    CARRIED = ("_wanted",)
 
     def start(self) -> None:
         """Listen.

@@ -169,8 +169,10 @@ class SimulationServer:
         """Let models go and others come, those of the same name in their places."""
         simulation = self.simulation
         told = len(simulation.scene.diagnostics)
+        before: dict[str, list[SimulatedPlugin[object]]] = {}
         for name in (*gone, *(each.name for each in coming if each.name in simulation.scene.models)):
-            self._end(self._plugins.pop(name, []))
+            before[name] = self._plugins.pop(name, [])
+            self._end(before[name])
             simulation.delete(name)
         come_into(simulation, coming)
         for each in coming:
@@ -179,7 +181,9 @@ class SimulationServer:
         self._tell(simulation.scene.diagnostics[told:])
         for each in coming:
             self._namespaces[each.name] = each.namespace
-            self._load(each.name, of_model(simulation.world, each.model, each.name), each.namespace)
+            places = of_model(simulation.world, each.model, each.name)
+            goes_on = each.here and each.motion is not None
+            self._load(each.name, places, each.namespace, before[each.name] if goes_on else ())
         self._changed()
 
     def delete(self, name: str) -> None:
@@ -242,7 +246,14 @@ class SimulationServer:
 
     # --- plugins ------------------------------------------------------------------------------------------------------
 
-    def _load(self, owner: str, places: Iterable[PluginPlace], namespace: str) -> None:
+    def _load(
+        self,
+        owner: str,
+        places: Iterable[PluginPlace],
+        namespace: str,
+        before: Sequence[SimulatedPlugin[object]] = (),
+    ) -> None:
+        """Start what runs of the plugins and sensors of a model or world; those that ran before go on."""
         running = self._plugins[owner] = []
         unknown: dict[str, None] = {}
         for place in places:
@@ -251,7 +262,11 @@ class SimulationServer:
                 if found is None:
                     unknown |= dict.fromkeys(_kinds(place))
                 else:
-                    running.append(self._started(found, place, namespace))
+                    plugin = self._started(found, place, namespace)
+                    running.append(plugin)
+                    same = next((each for each in before if plugin.is_like(each)), None)
+                    if same is not None:
+                        plugin.go_on(same)
         new = [each for each in unknown if each not in self._told]
         self._told.update(new)
         if new:
