@@ -159,7 +159,52 @@ async def test_other_lasers_of_ros_1_have_the_messages_that_they_had(library: st
         elif library == "block_laser":
             assert [(each.x, each.y, each.z) for each in message.points] == [pytest.approx((2.0, 0.0, 0.0))]
         else:
-            assert (message.width, [each.name for each in message.fields]) == (1, ["x", "y", "z", "intensity"])
+            names = ["x", "y", "z", "intensity", "ring", "time"]
+            assert (message.width, message.point_step, [each.name for each in message.fields]) == (1, 22, names)
+        assert not log
+
+
+def rows_of(cloud) -> np.ndarray:
+    """The points of a cloud, by the names of their fields."""
+    kinds = {4: np.uint16, 7: np.float32}
+    layout = np.dtype(
+        {
+            "names": [each.name for each in cloud.fields],
+            "formats": [kinds[each.datatype] for each in cloud.fields],
+            "offsets": [each.offset for each in cloud.fields],
+            "itemsize": cloud.point_step,
+        }
+    )
+    return np.frombuffer(bytes(cloud.data), layout)
+
+
+LASERS = RAYS.replace(
+    "</horizontal>",
+    "</horizontal><vertical><samples>2</samples><min_angle>-0.1</min_angle><max_angle>0.1</max_angle></vertical>",
+)
+
+
+async def test_points_of_a_velodyne_tell_which_laser_measured_them():
+    said = plugin("libgazebo_ros_velodyne_laser.so", "<topicName>/told</topicName>")
+    async with served(WALL, carrier(sensor("ray", f"<ray>{LASERS}</ray>" + said))) as (server, graph, log):
+        (message,) = await heard(server, graph, "/told")
+        rows = rows_of(message)
+        assert (message.height, message.width, message.is_dense) == (1, 2, True)
+        assert rows["ring"].tolist() == [0, 1]
+        assert rows["z"].tolist() == pytest.approx([-2 * tan(0.1), 2 * tan(0.1)])
+        assert not rows["time"].any()
+        assert not log
+
+
+async def test_an_organized_cloud_of_a_velodyne_has_a_row_for_each_firing():
+    more = "<topicName>/told</topicName><organize_cloud>true</organize_cloud><max_range>5</max_range>"
+    said = plugin("libgazebo_ros_velodyne_laser.so", more)
+    async with served(WALL, carrier(sensor("ray", f"<ray>{LASERS}</ray>" + said))) as (server, graph, log):
+        (message,) = await heard(server, graph, "/told")
+        rows = rows_of(message).reshape(message.height, message.width)
+        assert (message.height, message.width, message.is_dense) == (3, 2, False)
+        assert rows["ring"].tolist() == [[0, 1]] * 3
+        assert np.isfinite(rows["x"]).tolist() == [[False, False], [True, True], [False, False]]
         assert not log
 
 
@@ -170,6 +215,8 @@ async def test_a_lidar_of_gz_has_points_beside_its_scan():
         assert scan.header.frame_id == "robot/head/eye"
         assert list(scan.ranges) == [inf, 2.0, inf]
         assert (cloud.width, cloud.height, cloud.is_dense) == (3, 1, False)
+        assert [(each.name, each.offset) for each in cloud.fields][3:] == [("intensity", 16), ("ring", 24)]
+        assert cloud.point_step == 32
         assert not log
 
 

@@ -9,23 +9,61 @@ import numpy as np
 
 from linkwright.messages import get_message
 
-_FLOAT32 = 7
+_NUMBERS = {np.dtype(np.uint16): 4, np.dtype(np.float32): 7}
+"""Of sensor_msgs/msg/PointField, by the types that there are here."""
 Points = np.ndarray[Any, np.dtype[Any]]
 
 
+def _layout(size: int, **offsets: int) -> np.dtype[Any]:
+    kinds = [np.uint16 if name == "ring" else np.float32 for name in offsets]
+    return np.dtype({"names": [*offsets], "formats": kinds, "offsets": [*offsets.values()], "itemsize": size})
+
+
+CLASSIC = _layout(16, x=0, y=4, z=8, intensity=12)
+"""A point of ``gazebo_ros_ray_sensor``."""
+VELODYNE = _layout(22, x=0, y=4, z=8, intensity=12, ring=16, time=18)
+"""A point of velodyne_simulator, as velodyne_pointcloud has it; all points of a turn have time 0."""
+GZ = _layout(32, x=0, y=4, z=8, intensity=16, ring=24)
+"""A point of gz-sensors, each field at a multiple of 8 bytes."""
+_COLOURED = _layout(32, x=0, y=4, z=8, rgb=16)
+
+
 @cache
-def _fields(*names_and_offsets: tuple[str, int]) -> tuple[Any, ...]:
+def _fields(layout: np.dtype[Any]) -> tuple[Any, ...]:
     kind = get_message("sensor_msgs/msg/PointField")
-    return tuple(kind(name=name, offset=offset, datatype=_FLOAT32, count=1) for name, offset in names_and_offsets)
+    places = {name: layout.fields[name] for name in layout.names or ()} if layout.fields else {}
+    return tuple(
+        kind(name=name, offset=offset, datatype=_NUMBERS[number], count=1)
+        for name, (number, offset, *_) in places.items()
+    )
 
 
-def fill_lidar_cloud(message: Any, points: Points, intensities: Points, *, height: int = 1) -> None:
-    """Put points, shape (n, 3), and their intensities, shape (n,), into a PointCloud2 of `height` rows."""
-    rows = np.empty((len(points), 4), np.float32)
-    rows[:, :3], rows[:, 3] = points, intensities
-    message.fields = list(_fields(("x", 0), ("y", 4), ("z", 8), ("intensity", 12)))
+def fill_lidar_cloud(
+    message: Any,
+    points: Points,
+    intensities: Points,
+    rings: Points | None = None,
+    *,
+    layout: np.dtype[Any] = CLASSIC,
+    height: int = 1,
+) -> None:
+    """Put what a lidar measured into a PointCloud2.
+
+    Args:
+        message: the PointCloud2.
+        points: in m, shape (n, 3).
+        intensities: shape (n,).
+        rings: which of the lasers above each other measured a point, the lowest is 0, shape (n,); for layouts with it.
+        layout: of a point.
+        height: how many rows there are.
+    """
+    rows = np.zeros(len(points), layout)
+    rows["x"], rows["y"], rows["z"] = points.T
+    rows["intensity"] = intensities
+    if rings is not None:
+        rows["ring"] = rings
     _fill(message, rows, height)
-    message.is_dense = bool(np.isfinite(rows).all())
+    message.is_dense = bool(np.isfinite(points).all() and np.isfinite(intensities).all())
 
 
 def fill_camera_cloud(message: Any, points: Points, colour: Points, *, swapped: bool = False) -> None:
@@ -41,14 +79,15 @@ def fill_camera_cloud(message: Any, points: Points, colour: Points, *, swapped: 
     bytes_of = rows.view(np.uint8).reshape(height * width, 32)
     # As PCL packs them, blue is the lowest byte.
     bytes_of[:, 16:19] = colour.reshape(-1, 3)[:, :: 1 if swapped else -1]
-    message.fields = list(_fields(("x", 0), ("y", 4), ("z", 8), ("rgb", 16)))
-    _fill(message, rows, height)
+    _fill(message, rows.view(_COLOURED).reshape(-1), height)
     message.is_dense = False
 
 
 def _fill(message: Any, rows: Points, height: int) -> None:
+    """Put points, of a layout and shape (n,), into a PointCloud2 of `height` rows."""
+    message.fields = list(_fields(rows.dtype))
     message.height, message.width = height, len(rows) // max(height, 1)
-    message.point_step = rows.shape[1] * 4
+    message.point_step = rows.dtype.itemsize
     message.row_step = message.point_step * message.width
     message.is_bigendian = False
     message.data = rows.view(np.uint8).reshape(-1)

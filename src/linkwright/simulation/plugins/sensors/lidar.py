@@ -1,13 +1,14 @@
 """Lidars and sonars: ``gazebo_ros_ray_sensor``, the lasers of ROS 1, and ``gpu_lidar`` of gz.
 
 Source: gazebo_ros_pkgs for ROS 2 (types of output, the middle row of several, what a Range is made of), for ROS 1
-(names), gz-sensors (topics).
+(names), velodyne_simulator (points), gz-sensors and gz-msgs (topics, points).
 """
 
 from __future__ import annotations
 
 from abc import abstractmethod
 from dataclasses import dataclass
+from math import inf
 from typing import Any, ClassVar, Generic, TypeVar
 
 import numpy as np
@@ -19,7 +20,7 @@ from linkwright.sdf.sensors import Lidar
 from linkwright.simulation.plugins.node import Output
 from linkwright.simulation.plugins.parameters import NoParameters, parameter
 from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, FrameName, OneTopic, SensorPlugin
-from linkwright.simulation.plugins.sensors.clouds import fill_lidar_cloud
+from linkwright.simulation.plugins.sensors.clouds import GZ, VELODYNE, fill_lidar_cloud
 from linkwright.simulation.sensors.lidar import LidarSensor, Scan
 
 P = TypeVar("P")
@@ -239,15 +240,20 @@ class VelodyneParameters(LaserParameters):
     """Of ``gazebo_ros_velodyne_laser``."""
 
     topic_name: str = parameter("~/out", aliases=("topicName",))
-    min_intensity: float = 0.0
+    min_range: float = 0.0
+    max_range: float = inf
+    min_intensity: float = -inf
     organize_cloud: bool = False
 
 
 class Velodyne(_OneLidar[VelodyneParameters]):
-    """``libgazebo_ros_velodyne_laser.so`` of velodyne_simulator: points with x, y, z and intensity."""
+    """``libgazebo_ros_velodyne_laser.so`` of velodyne_simulator: points with intensity, ring and time.
+
+    One firing of all lasers comes after the other; in an organized cloud each is a row.
+    """
 
     PARAMETERS = VelodyneParameters
-    IGNORED = ("min_range", "max_range", "gaussianNoise")
+    IGNORED = ("gaussianNoise",)
 
     def make_topics(self) -> None:
         """Make the topic."""
@@ -257,11 +263,17 @@ class Velodyne(_OneLidar[VelodyneParameters]):
         """Publish it as a cloud."""
         said = self.parameters
         message = self.message(_CLOUD, self.classic_frame())
+        shape = scan.ranges.shape
+        points = self.points(scan).reshape(*shape, 3).swapaxes(0, 1).reshape(-1, 3)
+        ranges, intensities = scan.ranges.T.ravel(), scan.intensities.T.ravel()
+        rings = np.tile(np.arange(shape[0], dtype=np.uint16), shape[1])
+        seen = (ranges > said.min_range) & (ranges < said.max_range) & (intensities >= said.min_intensity)
         if said.organize_cloud:
-            intensities = np.maximum(scan.intensities.ravel(), said.min_intensity)
-            fill_lidar_cloud(message, self.points(scan), intensities, height=self.lidar.vertical.count)
+            points[~seen], intensities[~seen] = np.nan, np.nan
         else:
-            fill_lidar_cloud(message, *self.finite(scan, said.min_intensity))
+            points, intensities, rings = points[seen], intensities[seen], rings[seen]
+        height = shape[1] if said.organize_cloud else 1
+        fill_lidar_cloud(message, points, intensities, rings, layout=VELODYNE, height=height)
         self.output.publish(message)
 
 
@@ -289,5 +301,8 @@ class GzLidar(_LidarPlugin[NoParameters]):
         self._scans.publish(self.scan_message(self._frame, scan))
         if self._clouds.is_wanted:
             message = self.message(_CLOUD, self._frame)
-            fill_lidar_cloud(message, self.points(scan), scan.intensities.ravel(), height=self.lidar.vertical.count)
+            height, width = scan.ranges.shape
+            rings = np.repeat(np.arange(height, dtype=np.uint16), width)
+            points, intensities = self.points(scan), scan.intensities.ravel()
+            fill_lidar_cloud(message, points, intensities, rings, layout=GZ, height=height)
             self._clouds.publish(message)
