@@ -11,7 +11,7 @@ import linkwright.testing.simulated
 from linkwright.diagnostics import LinkwrightError
 from linkwright.geometry.single import rpy_from_quaternion
 from linkwright.graph import Parameter
-from linkwright.messages import get_message
+from linkwright.messages import get_message, get_service
 from linkwright.testing import AsyncSteppedSimulation, SteppedSimulation
 from tests.places import PACKAGE
 
@@ -189,3 +189,48 @@ def test_an_error_in_a_callback_comes_out_of_the_step():
         test.create_node("broken").create_timer(0.05, lambda: 1 / 0)
         with pytest.raises(ZeroDivisionError):
             test.advance(0.1)
+
+
+def test_robots_come_and_go_while_the_test_runs(tmp_path):
+    (tmp_path / "crate.sdf").write_text(BOX)
+    with SteppedSimulation("empty") as test:
+        assert test.spawn(tmp_path / "crate.sdf", pose=(1, 2, 0.5, 0, 0, 0)) == "crate"
+        assert test.spawn(tmp_path / "crate.sdf", "second", pose=(3, 2, 0.5, 0, 0, 0)) == "second"
+        assert test.spawn(MBOT, namespace="/one", arguments={"laser": True}) == "mbot"
+        odometry = test.record("/one/odom")
+        test.advance(0.1)
+        assert test.simulation.model_pose("second")[:3] == pytest.approx((3, 2, 0.5), abs=1e-3)
+        assert odometry.messages
+        with pytest.raises(LinkwrightError, match="already a model"):
+            test.spawn(tmp_path / "crate.sdf")
+        test.delete("crate")
+        assert [name for name in test.simulation.scene.models if name != "ground"] == ["second", "mbot"]
+
+
+def test_the_services_of_a_simulator_answer_at_once():
+    spawn, empty = get_service("gazebo_msgs/srv/SpawnEntity"), get_service("std_srvs/srv/Empty")
+    with SteppedSimulation("empty") as test:
+        request = spawn.Request(name="crate", xml=BOX)
+        request.initial_pose.position.z = 5.0
+        assert test.call("/spawn_entity", request).success
+        test.call("/pause_physics", empty.Request())
+        test.advance(1.0)
+        assert (test.now, test.simulation.time) == (1.0, 0)
+        assert test.simulation.model_pose("crate")[2] == 5.0
+        step = get_service("simulation_interfaces/srv/StepSimulation")
+        assert test.call("/step_simulation", step.Request(steps=100)).result.result == 1
+        assert test.simulation.time == 100_000_000
+        test.call("/unpause_physics", empty.Request())
+        test.advance(0.5)
+        assert test.simulation.time == 600_000_000
+        assert test.simulation.model_pose("crate")[2] < 4.0
+
+
+def test_robot_state_publisher_is_there_on_request():
+    with SteppedSimulation("empty", MBOT, robot_state_publisher=True) as test:
+        description, transforms = test.record("/robot_description"), test.record("/tf")
+        test.drive(0.5)
+        test.advance(0.5)
+        assert "<robot" in description.last.data
+        moved = {each.child_frame_id for message in transforms for each in message.transforms}
+        assert {"left_wheel_link", "right_wheel_link", "base_footprint"} <= moved

@@ -10,8 +10,7 @@ from linkwright.descriptions.conversion import as_sdf
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.packages import PackageFinder
 from linkwright.sdf.models import Model
-from linkwright.sdf.worlds import World
-from linkwright.simulation.server.worlds import load_world
+from linkwright.simulation.server.worlds import LoadedWorld, load_world
 
 _MOST = 64
 """So many worlds and robots are kept; a sweep over arguments makes one for each value."""
@@ -26,18 +25,18 @@ class _Kept(NamedTuple):
 _kept: dict[tuple[object, ...], _Kept] = {}
 
 
-def read_world(name: str) -> World:
+def read_world(name: str) -> LoadedWorld:
     """A world by its file or name, with its includes, as `load_world` reads it.
 
     Raises:
         LinkwrightError: those of `load_world`.
     """
 
-    def read() -> tuple[World, tuple[Path, ...]]:
+    def read() -> tuple[LoadedWorld, tuple[Path, ...]]:
         loaded = load_world(name)
-        return loaded.world, loaded.files
+        return loaded, loaded.files
 
-    world: World = _read_once(("world", str(Path.cwd()), name), read)
+    world: LoadedWorld = _read_once(("world", str(Path.cwd()), name), read)
     return world
 
 

@@ -8,15 +8,21 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING
 
+from linkwright.descriptions import DescriptionLibrary, examine
+from linkwright.diagnostics import LinkwrightError
 from linkwright.geometry.single import Transform, quaternion_from_rpy
 from linkwright.graph import CLOCK_QOS
 from linkwright.messages import Time, get_message
+from linkwright.nodes.options import NodeOptions
+from linkwright.nodes.robot_state_publisher import RobotStatePublisher
 from linkwright.packages import PackageFinder
 from linkwright.sdf.models import Model
 from linkwright.sdf.resources import ResourceFinder
 from linkwright.sdf.variation import with_friction, with_mass, with_noise
 from linkwright.sdf.worlds import World
+from linkwright.simulation.plugins.node import PluginNode
 from linkwright.simulation.server.server import ServerOptions, SimulationServer
+from linkwright.simulation.server.services import Services
 from linkwright.simulation.simulation import NANOSECONDS, Simulation
 from linkwright.testing.scenes import read_model, read_world
 from linkwright.testing.stepped import AsyncSteppedGraph
@@ -28,6 +34,7 @@ if TYPE_CHECKING:
 _NODE = "gazebo"
 _CLOCK, _TWIST = "rosgraph_msgs/msg/Clock", "geometry_msgs/msg/Twist"
 _PERIOD = 0.01
+_ORIGIN = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 class AsyncSteppedSimulation(AsyncSteppedGraph):
@@ -39,27 +46,30 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         robot: str | Path | None = None,
         *,
         arguments: Mapping[str, object] | None = None,
-        pose: Sequence[float] = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+        pose: Sequence[float] = _ORIGIN,
         seed: int = 0,
         friction: float | None = None,
         mass: float = 1.0,
         noise: float = 1.0,
+        robot_state_publisher: bool = False,
         period: float = _PERIOD,
         start: float = 1_700_000_000.0,
         strict: bool = True,
     ) -> None:
         super().__init__(start=start, strict=strict)
-        self._path = None if robot is None else PackageFinder(start=[Path.cwd()]).resolve(str(robot), Path.cwd())
-        self._world = read_world(str(world))
+        self._path = None if robot is None else _path(robot)
+        self._loaded = read_world(str(world))
         if friction is not None:
-            self._world = _gripping(self._world, friction)
+            self._loaded = self._loaded._replace(world=_gripping(self._loaded.world, friction))
         self._model: Model | None = None
+        self._description: str | None = None
         if self._path is not None:
-            model = read_model(self._path, {name: _text(value) for name, value in (arguments or {}).items()})
+            if robot_state_publisher:
+                self._description = _described(self._path, arguments or {})
+            model = _model(self._path, arguments or {})
             model = model if mass == 1.0 else with_mass(model, mass)
             self._model = model if noise == 1.0 else with_noise(model, noise)
-        x, y, z, roll, pitch, yaw = pose
-        self._pose: Transform = (x, y, z, *quaternion_from_rpy((roll, pitch, yaw)))
+        self._pose = _transform(pose)
         self._options = ServerOptions(seed, usual_names=True)
         self._folders = [
             Path.cwd(),
@@ -67,7 +77,7 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
             Path(world).absolute().parent,
         ]
         self._period = round(period * NANOSECONDS)
-        self._until = 0
+        self._left = 0
         self._server: SimulationServer | None = None
 
     async def __aenter__(self) -> Self:
@@ -86,13 +96,19 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         await super().__aexit__(kind, error, trace)
 
     def _begin(self) -> None:
-        simulation = Simulation(self._world, ResourceFinder(PackageFinder(start=self._folders)))
+        simulation = Simulation(self._loaded.world, ResourceFinder(PackageFinder(start=self._folders)))
         node = self.graph.create_node(_NODE)
         self._clock_topic = node.create_publisher(get_message(_CLOCK), "/clock", CLOCK_QOS)
         self._server = SimulationServer(simulation, node, self._options)
+        own = PluginNode(node, self._server.exchange, owned=False, qos={}, usual=None)
+        self._progress = _Progress(simulation)
+        Services(self._server, self._progress, own, self._loaded, DescriptionLibrary())
         self._server.start()
         if self._model is not None:
             self._server.spawn(self._model, self._model.name, self._pose)
+        if self._description is not None:
+            said = {"robot_description": self._description, "use_sim_time": True}
+            RobotStatePublisher(self.graph, NodeOptions(parameters=said))
         self._tell_time()
 
     @property
@@ -111,6 +127,24 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         """The world that moves."""
         return self.server.simulation
 
+    def spawn(
+        self,
+        robot: str | Path,
+        name: str = "",
+        *,
+        pose: Sequence[float] = _ORIGIN,
+        namespace: str = "",
+        arguments: Mapping[str, object] | None = None,
+    ) -> str:
+        """Put another robot into the world; see `SteppedSimulation.spawn`."""
+        model = _model(_path(robot), arguments or {})
+        self.server.spawn(model, name or model.name, _transform(pose), namespace)
+        return name or model.name
+
+    def delete(self, name: str) -> None:
+        """Take a model out of the world; see `SteppedSimulation.delete`."""
+        self.server.delete(name)
+
     def robot_pose(self) -> Transform:
         """Where the robot really is; see `SteppedSimulation.robot_pose`."""
         assert self._model is not None, "there is a robot"
@@ -122,6 +156,19 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         message.linear.x, message.angular.z = float(linear), float(angular)
         self.publish(topic, message)
 
+    async def settle(self) -> None:
+        """Run everything that is ready, and what comes of it, in the graph and in the simulation; time stands still.
+
+        Raises:
+            Exception: the error of a callback.
+        """
+        await self.graph.settle()
+        self.server.exchange.work()
+        self.server.exchange.deliver()
+        await super().settle()
+
+    spin = settle
+
     async def advance(self, seconds: float) -> None:
         """Let time pass in the simulation and in the graph.
 
@@ -130,13 +177,17 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
             Exception: the error of a callback; time has passed all the same.
         """
         await self.settle()
-        self._until += round(seconds * NANOSECONDS)
+        self._left += round(seconds * NANOSECONDS)
         server, simulation = self.server, self.simulation
-        while simulation.time < self._until:
-            before = simulation.time
+        while self._left > 0:
             server.exchange.work()
-            simulation.advance(min(self._period, self._until - before))
-            await self.clock.advance((simulation.time - before) / NANOSECONDS, is_settled=True)
+            passed = min(self._period, self._left)
+            if not self._progress.paused:
+                before = simulation.time
+                simulation.advance(passed)
+                passed = simulation.time - before
+            self._left -= passed
+            await self.clock.advance(passed / NANOSECONDS, is_settled=True)
             self._tell_time()
             server.exchange.deliver()
             await self.graph.settle()
@@ -148,7 +199,7 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         Nodes and what was recorded stay, and so does the time of day.
         """
         self.server.reset()
-        self._until = 0
+        self._left = 0
         self._tell_time()
         await self.settle()
 
@@ -172,6 +223,9 @@ class SteppedSimulation(SteppedGraph):
     gives twice the same bits. Nodes written for rclpy live in it after `init_rclpy`, and follow simulated time with
     the parameter ``use_sim_time``.
 
+    The services of a simulator are there: ``/spawn_entity``, ``/delete_entity``, ``/set_entity_state``,
+    ``/pause_physics`` and so on; `spawn` and `delete` do the first two with a file.
+
     The names of topics are those of ``linkwright sim``: ``/cmd_vel``, ``/odom``, ``/scan``. Worlds and robots are
     read once in a process; a robot whose files have changed is read anew.
 
@@ -185,6 +239,8 @@ class SteppedSimulation(SteppedGraph):
             what is written. Of two that touch, the lesser counts.
         mass: how many times as heavy as written the robot is, its inertias too.
         noise: how many times as noisy as written its sensors are; 0 for exact ones.
+        robot_state_publisher: whether that node is there for the robot, with its description and the transforms of its
+            links, which follow ``/joint_states``.
         period: how long the world moves between two looks at the graph, in s.
         start: the time of day at the beginning, in seconds since the epoch.
         strict: whether errors of callbacks are raised by the step in which they happen; else they are only logged.
@@ -202,11 +258,12 @@ class SteppedSimulation(SteppedGraph):
         robot: str | Path | None = None,
         *,
         arguments: Mapping[str, object] | None = None,
-        pose: Sequence[float] = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+        pose: Sequence[float] = _ORIGIN,
         seed: int = 0,
         friction: float | None = None,
         mass: float = 1.0,
         noise: float = 1.0,
+        robot_state_publisher: bool = False,
         period: float = _PERIOD,
         start: float = 1_700_000_000.0,
         strict: bool = True,
@@ -221,6 +278,7 @@ class SteppedSimulation(SteppedGraph):
                 friction=friction,
                 mass=mass,
                 noise=noise,
+                robot_state_publisher=robot_state_publisher,
                 period=period,
                 start=start,
                 strict=strict,
@@ -237,6 +295,41 @@ class SteppedSimulation(SteppedGraph):
     def simulation(self) -> Simulation:
         """The world that moves: where links and joints are, what pushes them."""
         return self._steps.simulation
+
+    def spawn(
+        self,
+        robot: str | Path,
+        name: str = "",
+        *,
+        pose: Sequence[float] = _ORIGIN,
+        namespace: str = "",
+        arguments: Mapping[str, object] | None = None,
+    ) -> str:
+        """Put another robot, or any model, into the world, as ``/spawn_entity`` does with a text.
+
+        Args:
+            robot: a file in URDF, xacro or SDF, or its ``package://`` address.
+            name: what it is called; that in the file if empty.
+            pose: of its frame: x, y, z in m, roll, pitch, yaw in rad.
+            namespace: of the nodes of its plugins that name none.
+            arguments: values for its ``<xacro:arg>``.
+
+        Returns:
+            What it is called.
+
+        Raises:
+            LinkwrightError: SIM102 there is a model of that name; SIM140 it cannot be simulated; SIM142 there is no
+                model in the file; what is wrong with it.
+        """
+        return self._steps.spawn(robot, name, pose=pose, namespace=namespace, arguments=arguments)
+
+    def delete(self, name: str) -> None:
+        """Take a model out of the world.
+
+        Raises:
+            LinkwrightError: SIM141 there is none of that name.
+        """
+        self._steps.delete(name)
 
     def robot_pose(self) -> Transform:
         """Where the frame of the robot really is in the world: x, y, z in m and a quaternion x, y, z, w."""
@@ -261,6 +354,50 @@ def _gripping(world: World, friction: float) -> World:
     """A world in which what stands still has another coefficient of friction."""
     models = tuple(with_friction(each, friction) if each.static else each for each in world.models)
     return replace(world, models=models)
+
+
+class _Progress:
+    """Lets the services of a simulator pause it, and make single steps."""
+
+    def __init__(self, simulation: Simulation) -> None:
+        self.paused = False
+        self._simulation = simulation
+
+    def pause(self) -> None:
+        self.paused = True
+
+    def go_on(self) -> None:
+        self.paused = False
+
+    def step(self, count: int) -> None:
+        self._simulation.advance(count * self._simulation.step)
+
+
+def _path(robot: str | Path) -> Path:
+    return PackageFinder(start=[Path.cwd()]).resolve(str(robot), Path.cwd())
+
+
+def _model(path: Path, arguments: Mapping[str, object]) -> Model:
+    return read_model(path, {name: _text(value) for name, value in arguments.items()})
+
+
+def _described(path: Path, arguments: Mapping[str, object]) -> str:
+    """The text of a robot.
+
+    Raises:
+        LinkwrightError: what is wrong with it.
+    """
+    finder = PackageFinder(start=[path.parent, Path.cwd()])
+    texts = {name: _text(value) for name, value in arguments.items()}
+    description = examine(str(path), arguments=texts, packages=finder)
+    if description.robot is None:
+        raise LinkwrightError(*description.diagnostics)
+    return description.text
+
+
+def _transform(pose: Sequence[float]) -> Transform:
+    x, y, z, roll, pitch, yaw = pose
+    return (x, y, z, *quaternion_from_rpy((roll, pitch, yaw)))
 
 
 def _text(value: object) -> str:

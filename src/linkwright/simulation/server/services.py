@@ -6,7 +6,7 @@ Source: gazebo_ros_pkgs for ROS 2 (``gazebo_ros_init``, ``gazebo_ros_factory``, 
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Protocol
 
 from linkwright.descriptions import DescriptionLibrary
 from linkwright.diagnostics import LinkwrightError
@@ -18,7 +18,6 @@ from linkwright.simulation.plugins.entities import Entities, answered, numbers, 
 from linkwright.simulation.plugins.node import PluginNode
 from linkwright.simulation.server.entities import entity_from
 from linkwright.simulation.server.loading import WorldLoader
-from linkwright.simulation.server.runner import Runner
 from linkwright.simulation.server.server import SimulationServer
 from linkwright.simulation.server.worlds import LoadedWorld
 from linkwright.simulation.server.wrenches import Wrench, Wrenches
@@ -26,6 +25,27 @@ from linkwright.simulation.simulation import NANOSECONDS
 
 _OK, _WRONG_STATE, _FAILED = 1, 3, 4
 """Of simulation_interfaces/msg/Result."""
+
+
+class Progress(Protocol):
+    """What advances a simulation."""
+
+    @property
+    def paused(self) -> bool:
+        """Whether no time passes."""
+
+    def pause(self) -> None:
+        """Let no time pass."""
+
+    def go_on(self) -> None:
+        """Let time pass again."""
+
+    def step(self, count: int) -> None:
+        """Make steps.
+
+        Raises:
+            UnstableError: something is no number any more.
+        """
 
 
 class Services:
@@ -45,7 +65,7 @@ class Services:
     def __init__(
         self,
         server: SimulationServer,
-        runner: Runner,
+        runner: Progress,
         node: PluginNode,
         world: LoadedWorld,
         library: DescriptionLibrary,
