@@ -19,7 +19,6 @@ from linkwright.hosting.simulated import SimulatedView, SimulatedWorld
 from linkwright.nodes.simulator import Simulator
 from linkwright.packages import PackageFinder
 from linkwright.simulation.server.server import SimulationServer
-from linkwright.simulation.server.worlds import load_world
 from linkwright.simulation.simulation import Simulation
 from tests.hosting.test_driven import MBOT, drive_of
 from tests.simulation.worlds import GROUND, box
@@ -108,7 +107,6 @@ def with_robot(folder: Path, text: str) -> SimulatedWorld:
         description,
         description.text,
         description.robot.name,
-        loaded=load_world(str(folder / "a.world")),
     )
 
 
@@ -119,8 +117,7 @@ def has(*names: str) -> Callable[[Simulation], bool]:
 
 async def test_a_world_that_is_saved_comes_and_what_is_the_same_stays(tmp_path):
     (tmp_path / "a.world").write_text(world(FALLING))
-    loaded = load_world(str(tmp_path / "a.world"))
-    async with shown(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world", loaded=loaded)) as it:
+    async with shown(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world")) as it:
         await it.look(lambda simulation: simulation.set_model_pose("falling", (1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0)))
         (tmp_path / "a.world").write_text(world(FALLING, box("new", "5 5 1 0 0 0")))
         await it.when(has("ground", "falling", "new"))
@@ -130,8 +127,7 @@ async def test_a_world_that_is_saved_comes_and_what_is_the_same_stays(tmp_path):
 
 async def test_a_broken_world_is_told_and_what_runs_goes_on(tmp_path):
     (tmp_path / "a.world").write_text(world(FALLING))
-    loaded = load_world(str(tmp_path / "a.world"))
-    async with shown(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world", loaded=loaded)) as it:
+    async with shown(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world")) as it:
         (tmp_path / "a.world").write_text("<sdf version='1.7'><world></sdf>")
         await it.until("error[XML")
         assert [each.code[:3] for each in it.view.reload.findings()] == ["XML"]
@@ -144,8 +140,7 @@ async def test_a_broken_world_is_told_and_what_runs_goes_on(tmp_path):
 
 async def test_a_world_that_cannot_be_simulated_is_told(tmp_path):
     (tmp_path / "a.world").write_text(world(FALLING))
-    loaded = load_world(str(tmp_path / "a.world"))
-    async with shown(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world", loaded=loaded)) as it:
+    async with shown(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world")) as it:
         never = '<physics type="ode"><max_step_size>-1</max_step_size></physics>'
         (tmp_path / "a.world").write_text(world(FALLING, never))
         await it.until("the simulation goes on as before: a time step of -1.0 s")
@@ -155,8 +150,7 @@ async def test_a_model_that_the_world_includes_is_watched_too(tmp_path):
     (tmp_path / "crate").mkdir()
     (tmp_path / "crate/model.sdf").write_text(f'<sdf version="1.7">{FALLING}</sdf>')
     (tmp_path / "a.world").write_text(world("<include><uri>model://crate</uri></include>"))
-    loaded = load_world(str(tmp_path / "a.world"))
-    async with shown(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world", loaded=loaded)) as it:
+    async with shown(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world")) as it:
         (tmp_path / "crate/model.sdf").write_text(f'<sdf version="1.7">{box("crate", "1 1 1 0 0 0")}</sdf>')
         await it.when(has("ground", "crate"))
 

@@ -95,12 +95,12 @@ def run(arguments: argparse.Namespace) -> int:
         print_diagnostics(written.refused, sys.stderr)
         return 1 if written.refused else 0
     load_mujoco()
+    load_world(arguments.world)  # a world that cannot be had is said at once, and not in the middle of a log
     print_diagnostics([each for each in found.diagnostics if each.severity is not Severity.INFO], sys.stderr)
     say(localized(_summary(robot, found)))
     world = replace(
         SimulatedWorld.of(arguments.world, description, found, inferred),
         arguments=tuple(values.items()),
-        loaded=load_world(arguments.world),
         seconds=arguments.seconds,
         headless=arguments.headless,
         rate=arguments.rate,

@@ -42,7 +42,7 @@ def run(arguments: argparse.Namespace) -> int:
     from linkwright.simulation.server.worlds import load_world
 
     load_mujoco()
-    loaded = load_world(arguments.world)  # a world that cannot be had is said at once, and not in the middle of a log
+    load_world(arguments.world)  # a world that cannot be had is said at once, and not in the middle of a log
     path = Path(arguments.robot or arguments.world).absolute()
     finder = PackageFinder(start=[path.parent, Path.cwd()])
     world = SimulatedWorld(
@@ -56,7 +56,6 @@ def run(arguments: argparse.Namespace) -> int:
         paused=arguments.pause,
         headless=arguments.headless,
         gazebo_mistakes=arguments.gazebo_mistakes,
-        loaded=loaded,
     )
     if arguments.robot is not None:
         values = parse_assignments(arguments.values)

@@ -13,6 +13,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.hosting.launch_log import output_destinations
 from linkwright.hosting.network import Network, SharedNames
 from linkwright.hosting.plans import HostedPlan, Supervisor
+from linkwright.hosting.simulator_reload import follow_files
 from linkwright.hosting.viewer_host import ViewerHost
 
 if TYPE_CHECKING:
@@ -175,6 +176,7 @@ class NodeHost:
     def _take_in(self, process_name: str, running: RunningNode, parameters: Mapping[str, Any]) -> None:
         self._process_of_logger[running.node.get_logger().name] = process_name
         self._bind_descriptions(process_name, running, parameters)
+        follow_files(running, self._session, lambda: self.launcher_node)
         self._viewers.attach_panel(running)
 
     def _not_started(self, plan: HostedPlan, error: LinkwrightError) -> None:

@@ -8,15 +8,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from linkwright.diagnostics import Diagnostic, foreign, phrase
 from linkwright.hosting.launch_log import LaunchLog
 from linkwright.hosting.plans import VIEWER, HostedPlan, HostOptions
 from linkwright.hosting.sensor_topics import image_topics, scan_topics
 from linkwright.hosting.signals import SignalWatch, run_to_end
-from linkwright.hosting.simulated_files import SimulatedDescriptions, WorldCall
+from linkwright.hosting.simulated_files import SimulatedDescriptions
 from linkwright.hosting.view import ModelView
 from linkwright.hosting.xacro_calls import XacroCall
-from linkwright.messages import get_service
 from linkwright.packages import PackageFinder
 from linkwright.xmltree import write
 
@@ -24,11 +22,9 @@ if TYPE_CHECKING:
     from linkwright.bag import BagWriter
     from linkwright.descriptions import Description
     from linkwright.inference import Inference
-    from linkwright.simulation.server.worlds import LoadedWorld
     from linkwright.urdf import Robot
     from linkwright.viewer import RvizConfig
 
-_LOAD_WORLD = "simulation_interfaces/srv/LoadWorld"
 _SIMULATOR = ("gazebo_ros", "gzserver")
 _CLOCK_RATE = 100.0
 """Hz of simulated time in which the time is told: transforms are not older than that."""
@@ -70,7 +66,6 @@ class SimulatedWorld:
         gazebo_mistakes: whether plugins make the known mistakes of Gazebo.
         arguments: name and value of the xacro arguments of the robot.
         complete: makes the text that is simulated of the robot when its file was saved.
-        loaded: the world, if it was read already: its files are watched.
     """
 
     world: str
@@ -88,7 +83,6 @@ class SimulatedWorld:
     gazebo_mistakes: bool = False
     arguments: tuple[tuple[str, str], ...] = ()
     complete: Callable[[Description], str] = _as_it_is
-    loaded: LoadedWorld | None = None
 
     @classmethod
     def of(
@@ -182,20 +176,7 @@ class SimulatedView(ModelView):
             self._plan(
                 "robot_state_publisher", "robot_state_publisher", {"robot_description": text, "use_sim_time": True}
             )
-        if self._world.loaded is not None:
-            call = self._files.begin_with(self._world.loaded)
-            self.reload.bind(call, lambda path: self.spawn(self._load_world(call, path)))
         return True
-
-    async def _load_world(self, call: WorldCall, path: str) -> None:
-        """Have the simulator take the world of a file, which was saved."""
-        client = self.host.launcher_node.create_client(get_service(_LOAD_WORLD), "/load_world")
-        request = client.srv_type.Request(ignore_missing_or_unsupported_assets=True)
-        request.world_resource.uri = path
-        answer = await client.call_async(request)
-        if answer is not None and answer.result.result != answer.result.RESULT_OK:
-            message = phrase("the simulation goes on as before: {reason}", reason=foreign(answer.result.error_message))
-            self.reload.report(call, [Diagnostic("SIM153", message)])
 
     def _plan_others(self) -> None:
         self._plan(*_SIMULATOR, self._world.parameters, output="screen", waits=False)

@@ -3,24 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from linkwright.descriptions import is_world
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity
-from linkwright.hosting.xacro_calls import Descriptions, XacroCall
+from linkwright.hosting.xacro_calls import Descriptions, WorldCall, XacroCall
 from linkwright.packages import PackageFinder
 
 if TYPE_CHECKING:
     from linkwright.descriptions import Description
     from linkwright.descriptions.conversion import Converted
-    from linkwright.simulation.server.worlds import LoadedWorld
-
-
-@dataclass(frozen=True)
-class WorldCall(XacroCall):
-    """The file of a world."""
 
 
 class SimulatedDescriptions(Descriptions):
@@ -34,15 +27,6 @@ class SimulatedDescriptions(Descriptions):
     def __init__(self, finder: PackageFinder, complete: Callable[[Description], str]) -> None:
         super().__init__(finder)
         self._complete = complete
-        self._known: set[tuple[str, str]] = set()
-
-    def begin_with(self, world: LoadedWorld) -> WorldCall:
-        """Take a world that was read already; what is wrong with it is known, and nobody is told again."""
-        call = WorldCall(world.path.absolute())
-        self.begin(call)
-        self._known = {_essence(each) for each in world.diagnostics}
-        self._files[call] = world.files
-        return call
 
     def read(self, call: XacroCall) -> Any:
         """Read a robot, model or world; may run in another thread.
@@ -50,17 +34,14 @@ class SimulatedDescriptions(Descriptions):
         Raises:
             LinkwrightError: what is wrong with it; of a world, what was not from the start.
         """
-        if isinstance(call, WorldCall):
-            return self._read_world(call)
-        if is_world(call.path.name):
+        if not isinstance(call, WorldCall) and is_world(call.path.name):
             return self._read_model(call)
         return super().read(call)
 
     def take(self, call: XacroCall, description: Any) -> tuple[str | None, tuple[Diagnostic, ...]]:
         """Remember what was read; its text, of a world its file, and what is remarkable about it."""
         if isinstance(call, WorldCall):
-            self._files[call] = description.files
-            return str(call.path), self._new(description.diagnostics)
+            return super().take(call, description)
         if is_world(call.path.name):
             from linkwright.sdf.writer import save
 
@@ -76,16 +57,6 @@ class SimulatedDescriptions(Descriptions):
         self._files[call] = files
         return text
 
-    def _read_world(self, call: WorldCall) -> LoadedWorld:
-        from linkwright.simulation.server.worlds import load_world
-
-        self.begin(call)
-        loaded = load_world(str(call.path))
-        wrong = [each for each in self._new(loaded.diagnostics) if each.severity is Severity.ERROR]
-        if wrong:
-            raise LinkwrightError(*wrong)
-        return loaded
-
     def _read_model(self, call: XacroCall) -> Converted:
         from linkwright.descriptions.conversion import as_sdf
 
@@ -95,10 +66,3 @@ class SimulatedDescriptions(Descriptions):
         if wrong or converted.sdf is None or not converted.sdf.models:
             raise LinkwrightError(*wrong or converted.diagnostics)
         return converted
-
-    def _new(self, findings: tuple[Diagnostic, ...]) -> tuple[Diagnostic, ...]:
-        return tuple(each for each in findings if _essence(each) not in self._known)
-
-
-def _essence(finding: Diagnostic) -> tuple[str, str]:
-    return finding.code, str(finding.message)

@@ -1,4 +1,4 @@
-"""Robot descriptions that come from xacro: which text was expanded from which file, with which arguments."""
+"""Descriptions that come from files: which text was expanded from which file, with which arguments; and worlds."""
 
 from __future__ import annotations
 
@@ -9,13 +9,14 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity
 from linkwright.packages import PackageFinder
 
 if TYPE_CHECKING:
     from linkwright.descriptions import Description, DescriptionLibrary
+    from linkwright.simulation.server.worlds import LoadedWorld
 
 
 @dataclass(frozen=True)
@@ -29,6 +30,11 @@ class XacroCall:
 
     path: Path
     arguments: tuple[tuple[str, str], ...] = ()
+
+
+@dataclass(frozen=True)
+class WorldCall(XacroCall):
+    """The file of a world that is simulated."""
 
 
 class DescriptionError(LinkwrightError):
@@ -61,6 +67,7 @@ class Descriptions:
         self._read_ns: dict[XacroCall, int] = {}
         self._calls: dict[str, XacroCall] = {}
         self._files: dict[XacroCall, tuple[Path, ...]] = {}
+        self._known: set[tuple[str, str]] = set()
         self._library: DescriptionLibrary | None = None
 
     @property
@@ -80,13 +87,26 @@ class Descriptions:
         """
         return self.remember(call, self.read(call))
 
-    def read(self, call: XacroCall) -> Description:
+    def begin_with(self, world: LoadedWorld) -> WorldCall:
+        """Take a world that was read already; what is wrong with it is known, and nobody is told again."""
+        call = WorldCall(world.path.absolute())
+        self._read_ns[call] = world.read_ns
+        self._known |= {_essence(each) for each in world.diagnostics}
+        self._files[call] = world.files
+        return call
+
+    def read(self, call: XacroCall) -> Any:
         """Expand and read, without remembering anything; may run in another thread.
+
+        Returns:
+            The `Description` of a robot, the `LoadedWorld` of a world.
 
         Raises:
             DescriptionError: what the file, or one it includes, does wrong; what is wrong in the parts that are whole
-                is told with it.
+                is told with it; of a world, what was not wrong from the start.
         """
+        if isinstance(call, WorldCall):
+            return self._read_world(call)
         from linkwright.descriptions import examine
 
         self.begin(call)
@@ -110,8 +130,14 @@ class Descriptions:
         self._warnings[call] = description.remarks
         return text
 
-    def take(self, call: XacroCall, description: Description) -> tuple[str | None, tuple[Diagnostic, ...]]:
-        """Remember what was read; its text, which is None where there is no robot, and what is remarkable about it."""
+    def take(self, call: XacroCall, description: Any) -> tuple[str | None, tuple[Diagnostic, ...]]:
+        """Remember what was read; its text, of a world its file, and what is remarkable about it.
+
+        The text is None where there is no robot.
+        """
+        if isinstance(call, WorldCall):
+            self._files[call] = description.files
+            return str(call.path), self._new(description.diagnostics)
         text = self.remember(call, description)
         return (None if description.robot is None else text), description.diagnostics
 
@@ -130,6 +156,23 @@ class Descriptions:
     def files_of(self, call: XacroCall) -> tuple[Path, ...]:
         """The files that the last good expansion read; the model file alone while there was none."""
         return self._files.get(call, (call.path,))
+
+    def _read_world(self, call: WorldCall) -> LoadedWorld:
+        from linkwright.simulation.server.worlds import load_world
+
+        self.begin(call)
+        loaded = load_world(str(call.path))
+        wrong = [each for each in self._new(loaded.diagnostics) if each.severity is Severity.ERROR]
+        if wrong:
+            raise DescriptionError(call, wrong)
+        return loaded
+
+    def _new(self, findings: tuple[Diagnostic, ...]) -> tuple[Diagnostic, ...]:
+        return tuple(each for each in findings if _essence(each) not in self._known)
+
+
+def _essence(finding: Diagnostic) -> tuple[str, str]:
+    return finding.code, str(finding.message)
 
 
 _current: ContextVar[Descriptions | None] = ContextVar("linkwright_descriptions", default=None)

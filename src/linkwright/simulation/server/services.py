@@ -6,6 +6,7 @@ Source: gazebo_ros_pkgs for ROS 2 (``gazebo_ros_init``, ``gazebo_ros_factory``, 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, Protocol
 
 from linkwright.descriptions import DescriptionLibrary
@@ -60,6 +61,7 @@ class Services:
 
     Attributes:
         worlds: what makes the world another one.
+        on_spawned: called with name and description of what came by ``/spawn_entity``, in the simulation's thread.
     """
 
     def __init__(
@@ -73,6 +75,7 @@ class Services:
         self._server = server
         self._runner = runner
         self.worlds = WorldLoader(server, world)
+        self.on_spawned: list[Callable[[str, str], object]] = []
         self._library = library
         self._entities = Entities(server.simulation)
         self._wrenches = Wrenches(server.simulation)
@@ -141,7 +144,9 @@ class Services:
     def _spawn(self, request: Any, response: Any) -> Any:
         def spawn() -> str:
             pose = compose(self._entities.frame(request.reference_frame), transform_in(request.initial_pose))
-            self.spawn(request.xml, request.name, pose, request.robot_namespace)
+            name = self.spawn(request.xml, request.name, pose, request.robot_namespace)
+            for function in self.on_spawned:
+                function(name, request.xml)
             return f"SpawnEntity: Successfully spawned entity [{request.name}]"
 
         return answered(response, spawn)

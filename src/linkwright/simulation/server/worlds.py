@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from pathlib import Path
 from typing import NamedTuple
 
@@ -23,6 +24,7 @@ class LoadedWorld(NamedTuple):
         diagnostics: what is remarkable about it.
         path: the file.
         files: all files that it was made of.
+        read_ns: before when none of them was read, in nanoseconds since the epoch.
     """
 
     world: World
@@ -30,6 +32,7 @@ class LoadedWorld(NamedTuple):
     diagnostics: tuple[Diagnostic, ...]
     path: Path
     files: tuple[Path, ...]
+    read_ns: int
 
 
 def load_world(name: str, text: str | None = None) -> LoadedWorld:
@@ -43,6 +46,7 @@ def load_world(name: str, text: str | None = None) -> LoadedWorld:
         LinkwrightError: SIM150 there is no such world; SIM151 the file has none; SIM105 it has too many
             links; what is wrong with it.
     """
+    read_ns = time.time_ns()
     path = Path(name.removeprefix("file://")).expanduser()
     finder = PackageFinder(start=[path.absolute().parent, Path.cwd()])
     resources = ResourceFinder(finder)
@@ -58,7 +62,7 @@ def load_world(name: str, text: str | None = None) -> LoadedWorld:
         raise LinkwrightError(*wrong or [Diagnostic("SIM151", message, hint=hint)])
     world = description.sdf.worlds[0]
     count_links(world.models)
-    return LoadedWorld(world, resources, description.diagnostics, path, description.files)
+    return LoadedWorld(world, resources, description.diagnostics, path, description.files, read_ns)
 
 
 def _found(name: str, finder: ResourceFinder) -> Path:

@@ -1,0 +1,71 @@
+"""The files of what a simulator simulates, whoever started it: what is saved is taken over while it runs."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from functools import partial
+from typing import TYPE_CHECKING
+
+from linkwright.diagnostics import Diagnostic, foreign, phrase
+from linkwright.hosting.plans import Supervisor
+
+if TYPE_CHECKING:
+    from linkwright.graph import Node
+    from linkwright.hosting.xacro_calls import WorldCall, XacroCall
+    from linkwright.nodes import RunningNode
+    from linkwright.nodes.simulator import Simulator
+
+_LOAD_WORLD = "simulation_interfaces/srv/LoadWorld"
+
+
+def follow_files(running: RunningNode, session: Supervisor, launcher: Callable[[], Node]) -> None:
+    """Have a simulator take over its world, and robots that were spawned, when their files are saved.
+
+    A robot is followed where its description is a text that this process has expanded from a file.
+
+    Args:
+        running: a node that has started; nothing happens where it is no simulator.
+        session: what it runs in.
+        launcher: gives the node that asks services.
+    """
+    from linkwright.nodes.simulator import Simulator
+
+    if not isinstance(running, Simulator):
+        return
+    loop, world = asyncio.get_running_loop(), running.services.worlds.loaded
+    if world.path.is_file():
+        call = session.descriptions.begin_with(world)
+        session.reload.bind(call, lambda path: session.spawn(_load_world(call, path, session, launcher())))
+    followed: set[tuple[XacroCall, str]] = set()
+
+    def follow(name: str, text: str) -> None:
+        call = session.descriptions.call_of(text)
+        if call is not None and (call, name) not in followed:
+            followed.add((call, name))
+            session.reload.bind(call, partial(_renew, running, name))
+
+    running.services.on_spawned.append(lambda name, text: loop.call_soon_threadsafe(follow, name, text))
+
+
+def _renew(simulator: Simulator, name: str, text: str) -> None:
+    """Have a robot come anew where it is, if it is still there.
+
+    Raises:
+        LinkwrightError: what is wrong with its description.
+    """
+    if not simulator.node.handle.is_destroyed and name in simulator.server.simulation.scene.models:
+        simulator.services.renew(text, name)
+
+
+async def _load_world(call: WorldCall, path: str, session: Supervisor, node: Node) -> None:
+    """Have the simulator take the world of a file, which was saved."""
+    from linkwright.messages import get_service
+
+    client = node.create_client(get_service(_LOAD_WORLD), "/load_world")
+    request = client.srv_type.Request(ignore_missing_or_unsupported_assets=True)
+    request.world_resource.uri = path
+    answer = await client.call_async(request)
+    if answer is not None and answer.result.result != answer.result.RESULT_OK:
+        message = phrase("the simulation goes on as before: {reason}", reason=foreign(answer.result.error_message))
+        session.reload.report(call, [Diagnostic("SIM153", message)])
