@@ -10,7 +10,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
-from linkwright.hosting.launch_log import output_destinations
+from linkwright.hosting.launch_log import SCREEN, output_destinations
 from linkwright.hosting.network import Network, SharedNames
 from linkwright.hosting.plans import HostedPlan, Supervisor
 from linkwright.hosting.simulator_reload import follow_files
@@ -46,6 +46,7 @@ class NodeHost:
         self._process_of_logger: dict[str, str] = {}
         self._destinations: dict[str, frozenset[str]] = {}
         self._speaking = "launch"
+        self._held_back: list[tuple[str, LogRecord]] | None = None
         self._starting = asyncio.Lock()
         self._closing = False
         self._closed = asyncio.Event()
@@ -159,7 +160,7 @@ class NodeHost:
         session.log.say(plan.process_name, "started in the launcher's process")
         options = plan.node_options(session.descriptions.library)
         try:
-            with self._speak_as(plan.process_name):
+            with self._speak_as(plan.process_name), self._holding_back():
                 running = EXECUTABLES[(plan.package, plan.executable)](self.graph, options)
         except LinkwrightError as error:
             self._not_started(plan, error)
@@ -297,7 +298,25 @@ class NodeHost:
 
     def _on_log(self, record: LogRecord) -> None:
         process = self._process_of(record.node)
+        if self._held_back is not None and record.level.name == "FATAL":
+            self._held_back.append((process, record))
+            return
         self._session.log.node_record(process, record, self._destinations.get(process, _ON_SCREEN))
+
+    @contextmanager
+    def _holding_back(self) -> Iterator[None]:
+        """Keep off the screen what a node that does not start says is fatal: its diagnostics say it, with the place."""
+        self._held_back, off_screen = [], False
+        try:
+            yield
+        except LinkwrightError:
+            off_screen = True
+            raise
+        finally:
+            held, self._held_back = self._held_back, None
+            for process, record in held:
+                destinations = self._destinations.get(process, _ON_SCREEN)
+                self._session.log.node_record(process, record, destinations - {SCREEN} if off_screen else destinations)
 
     @contextmanager
     def _speak_as(self, process_name: str) -> Iterator[None]:

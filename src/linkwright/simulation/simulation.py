@@ -80,7 +80,7 @@ class Simulation:
             self._meshes = MeshLibrary(finder)
             self.scene = Scene(self.world, self._meshes, step, refused)
             made = compiled(self.scene)
-        self.step = _whole_step(self.scene.step)
+        self.step = _whole_step(self.scene.step, self.world)
         self.time = 0
         self.schedule = Schedule()
         self._bodies: dict[str, int] = {}
@@ -480,15 +480,21 @@ class Simulation:
         self.data.tree_asleep[self.data.tree_asleep >= 0] = _AWAKE
 
 
-def _whole_step(step: float) -> int:
-    """A time step in s as nanoseconds.
+def _whole_step(step: float, world: World) -> int:
+    """A time step in s as nanoseconds, which may be that of a world.
 
     Raises:
         LinkwrightError: SIM106 no time passes in it.
     """
     if not (isfinite(step) and round(step * NANOSECONDS) > 0):
         message = phrase("a time step of {step} s cannot be simulated", step=step)
-        raise LinkwrightError(Diagnostic("SIM106", message, hint=phrase("0.001 is usual: <max_step_size>0.001")))
+        hint = phrase("0.001 is usual: <max_step_size>0.001")
+        said = physics_of(world)
+        element = said.element if said.max_step_size == step else None
+        if element is None:
+            raise LinkwrightError(Diagnostic("SIM106", message, hint=hint))
+        place = element.first("max_step_size") or element
+        raise LinkwrightError(Diagnostic("SIM106", message, place.span(), hint=hint, source=place.source))
     return round(step * NANOSECONDS)
 
 

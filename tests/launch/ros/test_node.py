@@ -247,6 +247,7 @@ class TestHostedNodes:
             LogInfo(msg="others go on"),
         )
         assert "error[NODE101]" in done.err
+        assert "FATAL" not in done.err, "that says the same"
         assert "[ERROR] [robot_state_publisher-1]: node has not started" in done.err
         assert done.messages == ["others go on", "gone"]
         assert not done.succeeded
