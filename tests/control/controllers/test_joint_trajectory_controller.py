@@ -532,6 +532,16 @@ async def test_hardware_that_tells_no_positions_yet_cannot_be_held(stand):
         stand.start(JointTrajectoryController, **parameters)
 
 
+async def test_a_velocity_that_hardware_does_not_know_is_taken_for_none(stand):
+    arm = Arm(stand)
+    stand.states["shoulder/velocity"].value = nan
+    arm.say(trajectory((1.0, [1.0, 1.0], [0.0, 0.0])))
+    await arm.run(0.5)
+    assert arm.command("shoulder") == pytest.approx(0.5)
+    await arm.run(0.6)
+    assert arm.command("shoulder") == 1.0
+
+
 async def test_other_joints_may_be_commanded_than_those_that_are_measured(stand):
     stand.joint("hip", position=0.0)
     stand.joint("motor", commands=("position",))

@@ -111,6 +111,30 @@ def test_positions_follow_from_velocities_and_velocities_from_accelerations():
     assert trajectory.points[2].state.velocities == [4.0]
 
 
+@given(
+    st.lists(st.tuples(st.floats(0.05, 3.0), numbers, numbers, numbers), min_size=1, max_size=6),
+    numbers,
+    st.sampled_from([1, 2, 3]),
+)
+def test_a_trajectory_goes_through_its_points_without_a_jump(points, begin, known):
+    times = np.cumsum([each[0] for each in points])
+    made = [
+        point(float(time), *([each] for each in values[:known]))
+        for time, (_, *values) in zip(times, points, strict=True)
+    ]
+    trajectory = Trajectory(made)
+    trajectory.begin(0, MotionState([begin], [0.0], [0.0]))
+    assert sampled(trajectory, 0.0).state.positions == pytest.approx([begin])
+    for time, (_, position, *_rest) in zip(times, points, strict=True):
+        ns = round(float(time) * SECOND)
+        just_before, then = trajectory.sample(ns - 1), trajectory.sample(ns)
+        assert just_before is not None
+        assert then is not None
+        assert just_before.state.positions == pytest.approx([position], abs=1e-5)
+        assert then.state.positions == pytest.approx([position], abs=1e-9)
+    assert sampled(trajectory, float(times[-1])).ended
+
+
 def test_without_interpolation_the_next_point_is_sent_at_once():
     trajectory = Trajectory([point(1.0, [1.0]), point(2.0, [2.0])], interpolated=False)
     trajectory.begin(SECOND, MotionState([0.0]))

@@ -263,7 +263,7 @@ class JointTrajectoryController(Controller[Parameters]):
         first = not trajectory.begun
         if first:
             before = self._last_command if self.parameters.open_loop else self._current
-            trajectory.begin(time_ns, before, self._wrapped)
+            trajectory.begin(time_ns, _as_far_as_known(before), self._wrapped)
         desired = self._following if time_ns == self._following_ns else trajectory.sample(time_ns)
         following = trajectory.sample(time_ns + self._period_ns)
         assert desired is not None
@@ -430,3 +430,9 @@ class JointTrajectoryController(Controller[Parameters]):
             response.position, response.velocity = state.positions, state.velocities
             response.acceleration = state.accelerations
         return response
+
+
+def _as_far_as_known(state: MotionState) -> MotionState:
+    """A state without the velocities or accelerations that hardware does not know."""
+    known = [values if all(map(isfinite, values)) else [] for values in (state.velocities, state.accelerations)]
+    return MotionState(state.positions, *known)
