@@ -15,7 +15,7 @@ from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.scene.meshes import MeshLibrary
 from linkwright.simulation.scene.scene import Scene
 
-_MANY_LINKS, _MOST_LINKS = 1000, 10_000
+_MANY_LINKS, MOST_LINKS = 1000, 10_000
 """From how many links on MuJoCo is given memory for all pairs of them, and how many there may be."""
 _BYTES_A_PAIR, _BYTES = 3, 1 << 28
 
@@ -27,11 +27,15 @@ def count_links(models: Iterable[Model]) -> int:
         LinkwrightError: SIM105 they are too many.
     """
     count = sum(_links_in(model) for model in models)
-    if count > _MOST_LINKS:
+    if count > MOST_LINKS:
         message = phrase("a world of {count} links is more than can be simulated", count=count)
-        hint = phrase("at most {most}; shapes that never move may be in one link", most=_MOST_LINKS)
-        raise LinkwrightError(Diagnostic("SIM105", message, hint=hint))
+        raise LinkwrightError(Diagnostic("SIM105", message, hint=fewer_links()))
     return count
+
+
+def fewer_links() -> Phrase:
+    """What to do about a world of too many links."""
+    return phrase("at most {most}; shapes that never move may be in one link", most=MOST_LINKS)
 
 
 def _links_in(model: Model) -> int:

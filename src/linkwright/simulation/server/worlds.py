@@ -12,7 +12,9 @@ from linkwright.packages import PackageFinder
 from linkwright.sdf.resources import ResourceFinder
 from linkwright.sdf.worlds import World
 from linkwright.simulation.scene.compiling import count_links
+from linkwright.simulation.server.crowds import refuse_crowd
 from linkwright.xmltree import Overlay
+from linkwright.xmltree.reader import read_bytes
 
 
 class LoadedWorld(NamedTuple):
@@ -52,6 +54,8 @@ def load_world(name: str, text: str | None = None) -> LoadedWorld:
     resources = ResourceFinder(finder)
     if text is None:
         path = _found(name, resources)
+    if path.suffix != ".xacro" and (text is not None or path.is_file()):
+        refuse_crowd(read_bytes(path) if text is None else text)
     description = examine_world(path, packages=finder, overlay=None if text is None else Overlay({path: text}))
     if description.sdf is None:
         raise LinkwrightError(*description.diagnostics)
