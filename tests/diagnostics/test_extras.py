@@ -62,22 +62,19 @@ def test_what_is_missing_is_asked_for_by_name(extra, use, without, tmp_path):
 
 
 def small_mesh(folder):
-    """A tetrahedron in an STL file."""
+    """A tetrahedron in an OBJ file: of STL nothing is needed."""
     corners = ((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1))
-    faces = ((0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2))
-    lines = [" ".join(["vertex", *map(str, corners[corner])]) for face in faces for corner in face]
-    facets = [
-        "facet normal 0 0 0 outer loop " + " ".join(lines[at : at + 3]) + " endloop endfacet" for at in (0, 3, 6, 9)
-    ]
-    path = folder / "tetrahedron.stl"
-    path.write_text("solid t\n" + "\n".join(facets) + "\nendsolid t\n")
+    faces = ((1, 3, 2), (1, 2, 4), (2, 3, 4), (1, 4, 3))
+    lines = [f"v {x} {y} {z}" for x, y, z in corners] + [f"f {a} {b} {c}" for a, b, c in faces]
+    path = folder / "tetrahedron.obj"
+    path.write_text("\n".join(lines) + "\n")
     return path
 
 
 ROBOT = """<robot name="r"><link name="base"><inertial><mass value="1"/>
   <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
-  <visual><geometry><mesh filename="tetrahedron.stl"/></geometry></visual>
-  <collision><geometry><mesh filename="tetrahedron.stl"/></geometry></collision></link></robot>"""
+  <visual><geometry><mesh filename="tetrahedron.obj"/></geometry></visual>
+  <collision><geometry><mesh filename="tetrahedron.obj"/></geometry></collision></link></robot>"""
 
 
 def test_a_check_says_once_that_it_did_not_look_into_meshes(without, tmp_path):
