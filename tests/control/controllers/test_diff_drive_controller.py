@@ -322,6 +322,8 @@ def test_what_cannot_drive_is_not_configured(wheels, parameters, words):
 async def test_a_wheel_that_tells_no_number_is_named(wheels):
     controller = wheels.start(DiffDriveController, NAME, **ROBOT)
     wheels.states["right/position"].value = nan
+    await wheels.step(controller)
+    told(wheels, 1.0)
     with pytest.raises(LinkwrightError, match="Either the left or right wheel position is invalid for index"):
         await wheels.step(controller)
 

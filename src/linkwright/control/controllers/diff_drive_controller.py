@@ -98,6 +98,7 @@ class DiffDriveController(Controller[Parameters]):
             ControllerError: wheels or their sizes are missing, or limits are none.
         """
         said, node = self.parameters, self.node
+        self._said = said
         self._check_wheels()
         radius = said.wheel_radius
         self._drive = DifferentialDrive(
@@ -169,7 +170,7 @@ class DiffDriveController(Controller[Parameters]):
         """Turn the wheels, and tell where the robot is.
 
         Raises:
-            ControllerError: a wheel tells no number.
+            ControllerError: it moves, and a wheel tells no number.
         """
         wanted = [reference.value for reference in self.references]
         if not all(map(isfinite, wanted)):
@@ -180,22 +181,24 @@ class DiffDriveController(Controller[Parameters]):
         count = len(self.commands) // 2
         for number, command in enumerate(self.commands):
             command.value = left if number < count else right
-        if self.parameters.open_loop:
+        if self._said.open_loop:
             self._odometry.odometer.assume((forward, 0.0, turning), period_s)
         else:
-            self._measure(period_s)
+            self._measure(period_s, moves=forward != 0.0 or turning != 0.0)
         self._odometry.tell(time_ns)
         if self._limited is not None and self._limited.is_wanted:
             twist = get_message("geometry_msgs/msg/Twist")(Vector3(forward, 0.0, 0.0), Vector3(0.0, 0.0, turning))
             header = Header(Time(*divmod(time_ns, _NANOSECONDS)), "")
             self._limited.publish(get_message("geometry_msgs/msg/TwistStamped")(header, twist))
 
-    def _measure(self, period_s: float) -> None:
-        """Go on by what the wheels of both sides do on average."""
+    def _measure(self, period_s: float, *, moves: bool) -> None:
+        """Go on by what the wheels of both sides do on average; before it moves they need not tell yet."""
         values = [state.value for state in self.states]
         count = len(values) // 2
         left, right = sum(values[:count]) / count, sum(values[count:]) / count
         if isnan(left) or isnan(right):
+            if not moves:
+                return
             wrong = next(number for number, value in enumerate(values) if isnan(value))
             raise ControllerError(
                 phrase(
@@ -204,7 +207,7 @@ class DiffDriveController(Controller[Parameters]):
                     index=wrong % count,
                 )
             )
-        if self.parameters.position_feedback:
+        if self._said.position_feedback:
             before, self._angles = self._angles or (left, right), (left, right)
             if period_s <= 0.0:
                 return

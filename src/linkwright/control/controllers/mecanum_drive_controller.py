@@ -101,7 +101,8 @@ class MecanumDriveController(Controller[Parameters]):
         Raises:
             ControllerError: wheels or their sizes are missing.
         """
-        said, node, sizes = self.parameters, self.node, self.parameters.kinematics
+        said, node = self.parameters, self.node
+        self._said, sizes = said, said.kinematics
         wrong = [
             not_empty(f"{corner}_wheel_command_joint_name", name)
             for corner, name in zip(_CORNERS, self._joints("command"), strict=True)
@@ -166,7 +167,7 @@ class MecanumDriveController(Controller[Parameters]):
 
     def _turn(self, wanted: list[float]) -> None:
         forward, sideways, turning = wanted
-        offset = self.parameters.kinematics.base_frame_offset
+        offset = self._said.kinematics.base_frame_offset
         along, across = _turned(forward, sideways, offset.theta)
         speeds = self._drive.wheel_speeds(along + offset.y * turning, across - offset.x * turning, turning)
         front_left, front_right, rear_left, rear_right = speeds
@@ -175,7 +176,7 @@ class MecanumDriveController(Controller[Parameters]):
 
     def _of_base(self, forward: float, sideways: float, turning: float) -> tuple[float, float, float]:
         """The velocity of the frame of the robot, of that of the middle of its wheels."""
-        offset = self.parameters.kinematics.base_frame_offset
+        offset = self._said.kinematics.base_frame_offset
         along, across = _turned(forward - offset.y * turning, sideways + offset.x * turning, -offset.theta)
         return along, across, turning
 

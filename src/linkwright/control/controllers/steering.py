@@ -129,6 +129,7 @@ class SteeringController(Controller[P], Generic[P]):
             ControllerError: joints or sizes are missing.
         """
         said, node = self.parameters, self.node
+        self._said = said
         self._check_joints()
         self._drive = self.drive()
         for name, value in (("wheelbase", self._drive.wheelbase), ("traction_wheels_radius", self._drive.radius)):
@@ -196,7 +197,7 @@ class SteeringController(Controller[P], Generic[P]):
         """Turn and steer the wheels, and tell where the vehicle is."""
         forward, turning = (reference.value for reference in self.references)
         told = isfinite(forward) and isfinite(turning)
-        if self.parameters.open_loop:
+        if self._said.open_loop:
             self._odometry.odometer.assume((forward, 0.0, turning) if told else (0.0, 0.0, 0.0), period_s)
         else:
             self._measure(period_s)
@@ -218,7 +219,7 @@ class SteeringController(Controller[P], Generic[P]):
         if not all(map(isfinite, values)) or period_s <= 0.0:
             return
         wheels, angles = values[:driving], values[driving:]
-        if self.parameters.position_feedback:
+        if self._said.position_feedback:
             before, self._angles = self._angles or wheels, wheels
             wheels = [(now - then) / period_s for now, then in zip(wheels, before, strict=True)]
         self._steered = self._drive.middle_angle(angles[-1], angles[0]) if steering > 1 else angles[0]
@@ -227,7 +228,7 @@ class SteeringController(Controller[P], Generic[P]):
 
     def _move(self, forward: float, turning: float) -> None:
         """Tell the wheels: their speeds go with the angle that the steering has, not the one that it is to have."""
-        said, (driving, steering) = self.parameters, self.JOINTS
+        said, (driving, steering) = self._said, self.JOINTS
         angle = self._drive.steering_angle(forward, turning)
         steered = angle if said.open_loop else self._steered
         if said.reduce_wheel_speed_until_steering_reached:
@@ -242,9 +243,9 @@ class SteeringController(Controller[P], Generic[P]):
         driving = self.JOINTS[0]
         states, commands = [each.value for each in self.states], [each.value for each in self.commands]
         wheels: list[float] = states[:driving]
-        by_position = self.parameters.position_feedback
+        by_position = self._said.position_feedback
         told = get_message("control_msgs/msg/SteeringControllerStatus")(
-            header=Header(Time(*divmod(time_ns, _NANOSECONDS)), self.parameters.odom_frame_id),
+            header=Header(Time(*divmod(time_ns, _NANOSECONDS)), self._said.odom_frame_id),
             traction_wheels_position=wheels if by_position else [],
             traction_wheels_velocity=[] if by_position else wheels,
             steer_positions=states[driving:],

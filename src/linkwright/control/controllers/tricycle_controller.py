@@ -100,6 +100,7 @@ class TricycleController(Controller[Parameters]):
             ControllerError: joints or sizes are missing, or limits are none.
         """
         said, node = self.parameters, self.node
+        self._said = said
         for name, check in (
             ("traction_joint_name", not_empty),
             ("steering_joint_name", not_empty),
@@ -158,7 +159,7 @@ class TricycleController(Controller[Parameters]):
         speed = self._traction.follow(speed * _share(abs(angle - angle_now)), period_s)
         angle = self._steering.follow(angle, period_s)
         self.commands[0].value, self.commands[1].value = speed, angle
-        if self.parameters.open_loop:
+        if self._said.open_loop:
             forward, turning = self._drive.motion(speed, angle)
             self._odometry.odometer.assume((forward, 0.0, turning), period_s)
         else:

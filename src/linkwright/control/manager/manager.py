@@ -6,7 +6,7 @@ Source: the controller manager of ros2_control (order of what is done, rules, te
 from __future__ import annotations
 
 import traceback
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from math import nan
 from typing import Any
 
@@ -210,7 +210,10 @@ class ControllerManager:
         return done
 
     def _sort(self) -> None:
-        """Order the controllers: who commands another's references, or exports what another reads, comes before it."""
+        """Order the controllers: who commands another's references, or exports what another reads, comes before it.
+
+        Who does both, as a drive over PID controllers that tell how fast wheels are, comes before it.
+        """
         order: dict[str, Loaded] = {}
         names = self.resources.command_names
 
@@ -218,7 +221,9 @@ class ControllerManager:
             if loaded.name in order or loaded.name in path:
                 return
             references = set(self.resources.references_of(loaded.name))
-            reads = {each.partition("/")[0] for each in loaded.wanted_states([])} if loaded.is_configured else set()
+            reads: set[str] = set()
+            if loaded.is_configured:
+                reads = _owners(loaded.wanted_states([])) - _owners(loaded.wanted_commands([]))
             for other in self.controllers.values():
                 if other.name in reads or (
                     references and other.is_configured and references.intersection(other.wanted_commands(names))
@@ -465,6 +470,11 @@ class ControllerManager:
         for each in error.diagnostics:
             hint = f" ({each.hint})" if each.hint else ""
             self._logger.error(f"{each.message}{hint}")
+
+
+def _owners(interfaces: Iterable[str]) -> set[str]:
+    """What interfaces are named after: joints, or controllers."""
+    return {each.partition("/")[0] for each in interfaces}
 
 
 def _traced(what: str, error: Exception) -> str:

@@ -1,0 +1,88 @@
+"""A drive with mock hardware behind a manager: through PID controllers in chained mode, and what stops it."""
+
+from __future__ import annotations
+
+from math import cos, nan, sin
+from typing import Any
+
+import pytest
+
+from linkwright.control.manager.switching import STRICT
+from linkwright.graph.lifecycle.states import ACTIVE, INACTIVE
+from tests.control.controllers.driving import stamped
+from tests.control.robots import joint, manager, robot
+
+WHEELS = robot(joint("left", "velocity") + joint("right", "velocity"), joints=("left", "right"))
+DRIVE, PID = "diff_drive_controller/DiffDriveController", "pid_controller/PidController"
+SAID = {"wheel_separation": 0.4, "wheel_radius": 0.1, "cmd_vel_timeout": 9.0, "publish_rate": 100.0}
+
+
+class Base:
+    """A robot on two wheels with active controllers."""
+
+    def __init__(self, graph: Any, types: dict[str, str], **given: dict[str, Any]) -> None:
+        self.graph, self.node, self.time_ns = graph, graph.create_node("audience"), 0
+        self.manager = manager(graph, WHEELS, {name: {"type": kind} for name, kind in types.items()}, **given)
+        for name in types:
+            assert self.manager.load(name)
+            assert self.manager.configure(name)
+        assert self.manager.switch(list(types), [], STRICT)[0]
+        self.odometry: list[Any] = []
+        self.node.create_subscription("nav_msgs/msg/Odometry", "/base/odom", self.odometry.append, 1000)
+
+    async def drive(self, forward: float, turning: float, updates: int) -> None:
+        publisher = self.node.create_publisher("geometry_msgs/msg/TwistStamped", "/base/cmd_vel", 10)
+        publisher.publish(stamped(self.time_ns, forward, turning))
+        for _ in range(updates):
+            await self.graph.settle()
+            self.time_ns += 10_000_000
+            self.manager.cycle(self.time_ns, 0.01)
+        await self.graph.settle()
+
+    def wheels(self) -> list[float]:
+        return [each.value for each in self.manager.resources.commands(["left/velocity", "right/velocity"])]
+
+
+async def test_a_drive_commands_pid_controllers_in_chained_mode(graph):
+    given = {
+        f"pid_{side}": {
+            "dof_names": [side],
+            "command_interface": "velocity",
+            "reference_and_state_interfaces": ["velocity"],
+            "enable_feedforward": True,
+            f"gains.{side}.feedforward_gain": 1.0,
+        }
+        for side in ("left", "right")
+    }
+    names = {"left_wheel_names": ["pid_left/left"], "right_wheel_names": ["pid_right/right"]}
+    base = Base(
+        graph,
+        {"pid_left": PID, "pid_right": PID, "base": DRIVE},
+        base=SAID | names | {"position_feedback": False},
+        **given,
+    )
+    await base.drive(0.0, 0.0, 2)
+    await base.drive(1.0, 0.5, 301)
+    assert base.wheels() == pytest.approx([9.0, 11.0])
+    place, turn = base.odometry[-1].pose.pose.position, 0.5 * 3.0
+    assert (place.x, place.y) == pytest.approx((2.0 * sin(turn), 2.0 * (1.0 - cos(turn))), abs=0.05)
+    assert base.manager.controllers["pid_left"].controller.chained
+
+
+async def test_a_drive_whose_wheel_tells_no_number_is_deactivated_and_stands(graph, log):
+    names = {"left_wheel_names": ["left"], "right_wheel_names": ["right"]}
+    base = Base(graph, {"base": DRIVE}, base=SAID | names)
+    await base.drive(1.0, 0.0, 10)
+    assert base.wheels() == pytest.approx([10.0, 10.0])
+    assert base.manager.controllers["base"].controller.state is ACTIVE
+    hardware = base.manager.resources.components["arm"]
+
+    def read(*_: object) -> None:
+        for state in hardware.states:
+            state.value = nan
+
+    hardware.read = read
+    await base.drive(1.0, 0.0, 2)
+    assert base.manager.controllers["base"].controller.state is INACTIVE
+    assert base.wheels() == [0.0, 0.0]
+    assert any("Either the left or right wheel position is invalid" in each.text for each in log)
