@@ -50,6 +50,14 @@ export interface CameraScene {
   far: number;
 }
 
+/** Fog of a world: its colour, red, green, blue; from `start` to `end` in m, or with `density` by that, in 1/m. */
+export interface FogScene {
+  color: number[];
+  start: number;
+  end: number;
+  density: number | null;
+}
+
 /** World: what is drawn; `revision` counts descriptions. */
 export interface WorldScene {
   revision: number;
@@ -61,6 +69,8 @@ export interface WorldScene {
   shadows: boolean;
   lidars: LidarScene[];
   cameras: CameraScene[];
+  daylight: number | null;
+  fog: FogScene | null;
   kind: "world_scene";
 }
 

@@ -17,11 +17,13 @@ import { number } from "../state/views/view-controller";
 import { distanceBetween } from "../state/views/vector";
 import { AMBIENT } from "./light";
 import { Smoothing } from "./smoothing";
+import { SkyAndFog, type OwnLight } from "./surroundings";
 
 const LARGEST_PIXEL_RATIO = 2;
 const FAR_CLIP = 1000;
 /** The share of the camera's light beside lights that stand in the scene. */
 const FAINT = 0.15;
+const NOTHING = { background: null, daylight: null, fog: null };
 /** What programs call themselves that draw on the processor. */
 const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
 /** Longest side of a picture, pixels. */
@@ -40,6 +42,7 @@ export class Viewport {
   private readonly smoothing = new Smoothing();
   private part = 1;
   private readonly ambient = new AmbientLight(0xffffff, AMBIENT * Math.PI);
+  private readonly around = new SkyAndFog(this.scene);
   private ownBackground = "#303030";
   private drawnBy: string | null = null;
   private readonly headlight = new DirectionalLight(0xffffff, (1 - AMBIENT) * Math.PI);
@@ -77,12 +80,13 @@ export class Viewport {
   }
 
   /** Lights the scene: by the camera (null), or by lights that stand in it, which leave the camera a faint one. */
-  light(own: { shadows: boolean; background: string | null } | null): void {
+  light(own: OwnLight | null): void {
     const { renderer } = this;
     this.headlight.intensity = (own ? FAINT : 1 - AMBIENT) * Math.PI;
     this.ambient.intensity = own ? 0 : AMBIENT * Math.PI;
     renderer.shadowMap.enabled = own?.shadows ?? false;
     renderer.setClearColor(new Color(own?.background ?? this.ownBackground));
+    this.around.set(own ?? NOTHING, this.inUse === this.orthographic);
   }
 
   /** The camera in use: views differ in their projection. */

@@ -71,9 +71,13 @@ export class WorldLights {
     return this.shadowed;
   }
 
-  /** The colour behind the world, where its own lights are lit. */
-  background(scene: WorldScene): string | null {
-    if (this.lighting !== "World") return null;
+  /** Whether its own lights are lit. */
+  get isOfWorld(): boolean {
+    return this.lighting === "World";
+  }
+
+  /** The colour behind the world. */
+  background(scene: WorldScene): string {
     const [r = 0, g = 0, b = 0] = scene.background;
     return `#${new Color(r, g, b).getHexString()}`;
   }

@@ -41,7 +41,8 @@ WITHOUT_EFFECT = {
     "actor": {"static"},
     "world": {"audio", "gui"},
     "physics": {"bullet", "dart", "dt", "magnetic_field", "ode", "profile", "simbody", "update_rate"},
-    "scene": {"cloud", "fog", "shadow_caster_material_name", "shadow_caster_render_back_faces", "sky"},
+    "scene": {"cloud", "shadow_caster_material_name", "shadow_caster_render_back_faces"},
+    "sky": {"clouds", "cubemap_uri"},
     "model": {"battery", "gripper", "joint"},
     "link": {
         "acceleration",

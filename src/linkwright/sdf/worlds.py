@@ -18,6 +18,7 @@ from linkwright.sdf.models import FRAME, INCLUDE, MODEL, Frame, Include, Model
 from linkwright.sdf.plugins import PLUGIN, Plugin
 from linkwright.sdf.populations import POPULATION, Population, models_of
 from linkwright.sdf.poses import POSE, RawPose
+from linkwright.sdf.skies import FOG, SKY, Fog, Sky
 from linkwright.sdf.values import (
     COLOR,
     INTEGER,
@@ -63,13 +64,15 @@ class Physics:
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """How the world looks; colours are as in `Material`."""
+    """How the world looks; colours are as in `Material`. Where there is no sky it is None, and so is fog."""
 
     ambient: Color = (0.4, 0.4, 0.4, 1.0)
     background: Color = (0.7, 0.7, 0.7, 1.0)
     shadows: bool = True
     grid: bool = True
     origin_visual: bool = True
+    sky: Sky | None = None
+    fog: Fog | None = None
     element: Element | None = field(default=None, compare=False, repr=False)
 
 
@@ -345,6 +348,8 @@ WORLD = ElementRule(
             value("shadows", TRUTH, "whether there are shadows", default="true"),
             value("grid", TRUTH, "whether a grid is drawn", default="true"),
             value("origin_visual", TRUTH, "whether the origin is drawn", default="true"),
+            SKY,
+            FOG,
             located=True,
             default=Scene(),
         ),

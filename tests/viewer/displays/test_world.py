@@ -274,6 +274,29 @@ async def test_the_lights_of_a_world_are_sent_with_where_they_are_and_how_they_s
         assert (bulb["range"], bulb["fading"], bulb["cone"]) == (20, [0.5, 0.1, 0.01], [0.5, 1])
 
 
+SKY = """<world name="yard"><scene><sky><time>{}</time><clouds/></sky>
+<fog><type>{}</type><color>0.5 0.6 0.7 1</color><start>2</start><end>30</end><density>0.1</density></fog></scene>"""
+
+
+@pytest.mark.parametrize(
+    ("time", "type_", "daylight", "fog"),
+    [
+        (12, "none", 1.0, None),
+        (6, "linear", 0.5, {"color": [0.5, 0.6, 0.7], "start": 2.0, "end": 30.0, "density": None}),
+        (23, "quadratic", 0.0, {"color": [0.5, 0.6, 0.7], "start": 2.0, "end": 30.0, "density": 0.1}),
+    ],
+)
+async def test_sky_and_fog_are_sent(time, type_, daylight, fog):
+    async with world(config("world")) as made:
+        await Simulation(made).describe(WORLD)
+        scene = sent(made, "world_scene").fields
+        assert (scene["daylight"], scene["fog"]) == (None, None)
+        await Simulation(made).describe(WORLD.replace('<world name="yard">', SKY.format(time, type_)))
+        await eventually(lambda: sent(made, "world_scene").fields["revision"] == 2)
+        scene = sent(made, "world_scene").fields
+        assert (scene["daylight"], scene["fog"]) == (daylight, fog)
+
+
 SEEING = """
   <model name="scout"><link name="head"><pose>0 0 1 0 0 0</pose>
     <sensor name="laser" type="gpu_lidar"><pose>0.1 0 0 0 0 0</pose><visualize>true</visualize>

@@ -4,16 +4,11 @@ import type { WorldPoses, WorldScene } from "../../protocol";
 import type { Described, Hit, SelectionBox } from "../picking";
 import { dataPose, poseMatrix } from "../pose";
 import { RobotDrawing } from "../robot/robot-drawing";
+import type { OwnLight } from "../surroundings";
 import { WorldLights } from "../world-lights";
 import type { Drawing, DrawingContext } from "./drawing";
 import { Displacement, modelOf } from "./world-models";
 import { WorldSensors } from "./world-sensors";
-
-/** How a world lights the scene by itself: whether with shadows, and the colour behind it, if it has one. */
-export interface OwnLight {
-  readonly shadows: boolean;
-  readonly background: string | null;
-}
 
 /** Begins the keys of the rays of lidars. */
 const RAYS = "rays ";
@@ -86,7 +81,14 @@ export class WorldDrawing implements Drawing {
   /** How it is lit; null while it is drawn in the light of the camera. */
   get ownLight(): OwnLight | null {
     if (!this.scene || !this.lights.isLit) return null;
-    return { shadows: this.lights.castsShadows, background: this.lights.background(this.scene) };
+    const own = this.lights.isOfWorld;
+    const { daylight, fog } = this.scene;
+    return {
+      shadows: this.lights.castsShadows,
+      background: own ? this.lights.background(this.scene) : null,
+      daylight,
+      fog: own ? fog : null,
+    };
   }
 
   /** Whether something of it has a place. */

@@ -30,6 +30,7 @@ from linkwright.viewer.protocol.displays import StatusLevel
 from linkwright.viewer.protocol.robot import MeshStatus
 from linkwright.viewer.protocol.worlds import WorldPoses, WorldRays, WorldScene
 from linkwright.viewer.sensors import sensors_of
+from linkwright.viewer.skies import daylight, fog_of
 from linkwright.viewer.web.files import MeshIndex
 from linkwright.viewer.worlds import WorldContent, content_of
 
@@ -72,7 +73,8 @@ class WorldDisplay(TopicDisplay):
             "Light",
             "enum",
             "Automatic",
-            "What lights the scene: the camera, as in RViz, a studio, or the lights of the world with its background. "
+            "What lights the scene: the camera, as in RViz, a studio, or the lights of the world with its background, "
+            "sky and fog. "
             "Automatic: the studio where a graphics card draws, else the camera.",
             options=("Automatic", "Camera", "Studio", "World"),
         ),
@@ -249,6 +251,8 @@ class WorldDisplay(TopicDisplay):
             world.scene.shadows,
             [each.scene for each in lidars],
             cameras,
+            daylight(world.scene.sky),
+            fog_of(world.scene.fog),
         )
         self._rays.describe(lidars)
         self.send(scene, key=_SCENE_KEY)

@@ -77,10 +77,20 @@ class CameraScene(Record):
     far: float
 
 
+class FogScene(Record):
+    """Fog of a world: its colour, red, green, blue; from `start` to `end` in m, or with `density` by that, in 1/m."""
+
+    color: list[float]
+    start: float
+    end: float
+    density: float | None
+
+
 class WorldScene(DataContent):
     """World: what is drawn; `revision` counts descriptions.
 
-    `ambient` and `background` are colours, red, green, blue; `shadows` tells whether lights cast any.
+    `ambient` and `background` are colours, red, green, blue; `shadows` tells whether lights cast any. `daylight`
+    is that of its sky, from 0 at night to 1; None where there is no sky.
     """
 
     revision: int
@@ -92,6 +102,8 @@ class WorldScene(DataContent):
     shadows: bool
     lidars: list[LidarScene]
     cameras: list[CameraScene]
+    daylight: float | None = None
+    fog: FogScene | None = None
 
 
 class WorldPoses(DataContent):

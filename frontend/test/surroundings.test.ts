@@ -1,0 +1,32 @@
+import { Color, DataTexture, Fog, FogExp2, Scene } from "three";
+import { describe, expect, it } from "vitest";
+import { SkyAndFog } from "../src/scene/surroundings";
+
+const NONE = { background: null, daylight: null, fog: null };
+const FOG = { color: [1, 1, 1], start: 2, end: 9, density: null };
+
+describe("sky and fog", () => {
+  it("are there for worlds that have them, and made once", () => {
+    const scene = new Scene();
+    const around = new SkyAndFog(scene);
+    around.set({ ...NONE, daylight: 1, fog: FOG }, false);
+    const { background, fog } = scene;
+    expect(background).toBeInstanceOf(DataTexture);
+    expect(fog).toBeInstanceOf(Fog);
+    expect(fog).toMatchObject({ near: 2, far: 9 });
+    around.set({ ...NONE, daylight: 1, fog: { ...FOG } }, false);
+    expect(scene.background).toBe(background);
+    expect(scene.fog).toBe(fog);
+    around.set({ ...NONE, daylight: 0, fog: { ...FOG, density: 0.5 } }, false);
+    expect(scene.background).not.toBe(background);
+    expect(scene.fog).toBeInstanceOf(FogExp2);
+    around.set(NONE, false);
+    expect([scene.background, scene.fog]).toEqual([null, null]);
+  });
+
+  it("are of one colour where the camera sees in parallel", () => {
+    const scene = new Scene();
+    new SkyAndFog(scene).set({ ...NONE, daylight: 1 }, true);
+    expect(scene.background).toBeInstanceOf(Color);
+  });
+});

@@ -1,0 +1,62 @@
+"""``<sky>`` and ``<fog>`` of a scene.
+
+Source of the elements and defaults: the SDFormat specification 1.12, ``scene.sdf``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from linkwright.sdf.values import COLOR, NUMBER, TEXT, Color, made, value
+from linkwright.xmltree import Element
+
+
+@dataclass(frozen=True, slots=True)
+class Sky:
+    """A sky; the time of the day, of sunrise and of sunset in hours."""
+
+    time: float = 10.0
+    sunrise: float = 6.0
+    sunset: float = 20.0
+    element: Element | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Fog:
+    """Fog.
+
+    Attributes:
+        color: of what is lost in it.
+        type: ``none``, ``linear``, from `start` to `end`, or by `density`: ``constant`` (Gazebo: ``exp``) or
+            ``quadratic`` (``exp2``).
+        start: the distance in m at which it begins.
+        end: the distance in m from which nothing is seen.
+        density: in 1/m.
+    """
+
+    color: Color = (1.0, 1.0, 1.0, 1.0)
+    type: str = "none"
+    start: float = 1.0
+    end: float = 100.0
+    density: float = 1.0
+
+
+SKY = made(
+    Sky,
+    "sky",
+    "a sky instead of the background",
+    value("time", NUMBER, "the time of the day", "h", default="10"),
+    value("sunrise", NUMBER, "when the sun rises", "h", default="6"),
+    value("sunset", NUMBER, "when it sets", "h", default="20"),
+    located=True,
+)
+FOG = made(
+    Fog,
+    "fog",
+    "fog",
+    value("color", COLOR, "its colour", default="1 1 1 1"),
+    value("type", TEXT, "none, linear, constant or quadratic", default="none"),
+    value("start", NUMBER, "where it begins", "m", default="1"),
+    value("end", NUMBER, "from where on nothing is seen", "m", default="100"),
+    value("density", NUMBER, "how dense it is, unless it is linear", "1/m", default="1"),
+)

@@ -1,0 +1,28 @@
+"""Sky and fog of a world for the page."""
+
+from __future__ import annotations
+
+from math import isfinite
+
+from linkwright.sdf.skies import Fog, Sky
+from linkwright.viewer.protocol.worlds import FogScene
+
+_TWILIGHT = 1.0
+"""Hours that it takes to become bright or dark."""
+
+
+def daylight(sky: Sky | None) -> float | None:
+    """How bright a sky is, from 0 at night to 1; None for none."""
+    if sky is None:
+        return None
+    time = sky.time % 24.0
+    risen, left = (time - sky.sunrise) / _TWILIGHT, (sky.sunset - time) / _TWILIGHT
+    return max(0.0, min(1.0, risen + 0.5, left + 0.5))
+
+
+def fog_of(fog: Fog | None) -> FogScene | None:
+    """Fog, if there is any."""
+    if fog is None or fog.type.strip() in ("", "none") or not all(map(isfinite, (fog.start, fog.end, fog.density))):
+        return None
+    density = None if fog.type.strip() == "linear" else max(fog.density, 0.0)
+    return FogScene(list(fog.color[:3]), fog.start, max(fog.end, fog.start), density)
