@@ -95,6 +95,40 @@ async def test_nothing_is_sent_while_no_panel_is_seen():
         assert content.fields["data"].tolist() == [1, 2, 3]
 
 
+async def test_while_no_panel_is_seen_nobody_listens_after_one_image():
+    async with world(config("Image")) as w:
+        display = w.display("Image")
+        publisher = w.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
+        assert publisher.get_subscription_count() == 1
+        display.receive(PictureSize(display.id, 0, 0))
+        publisher.publish(picture(1, 2, 3))
+        await w.settle()
+        assert publisher.get_subscription_count() == 0
+        display.receive(PictureSize(display.id, 3, 1))
+        assert publisher.get_subscription_count() == 1
+        publisher.publish(picture(4, 5, 6))
+        await w.settle()
+        (content,) = contents(display)
+        assert content.fields["data"].tolist() == [4, 5, 6]
+        display.receive(PictureSize(display.id, 0, 0))
+        assert publisher.get_subscription_count() == 0
+        display.set_checked(False)
+        display.enabled_changed()
+        display.receive(PictureSize(display.id, 3, 1))
+        assert publisher.get_subscription_count() == 0
+
+
+async def test_the_panel_of_a_page_that_is_gone_is_not_seen():
+    async with world(config("Image")) as w:
+        publisher = w.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
+        publisher.publish(picture(1, 2, 3))
+        async with page(w.viewer) as only:
+            await only.send("picture_size", display=w.display("Image").id, width=30, height=18)
+            await eventually(lambda: w.display("Image")._panel)
+            assert publisher.get_subscription_count() == 1
+        await eventually(lambda: publisher.get_subscription_count() == 0)
+
+
 async def test_of_all_panels_the_largest_counts(monkeypatch):
     async with world(config("Image")) as w, page(w.viewer) as first:
         display = w.display("Image")

@@ -175,9 +175,23 @@ class ImageDisplay(ImageTopicDisplay):
     _panel: PictureSize | None = None
     """The largest panel of pages; None while no page has told its own."""
 
+    @property
+    def _is_hidden(self) -> bool:
+        """Whether pages have told how large their panels are, and nobody sees one."""
+        return self._panel is not None and (self._panel.width <= 0 or self._panel.height <= 0)
+
     def receive(self, message: Any) -> None:
-        """Send no more pixels than panels show, and nothing while none is seen."""
+        """Send no more pixels than panels show; while none is seen, listen no longer than to the next image.
+
+        So cameras that make pictures only for who listens make none for a panel behind another one.
+        """
         before, self._panel = self._panel, message
+        if self._is_hidden:
+            if self.last is not None:
+                self._unsubscribe()
+            return
+        if self.enabled and self._subscription is None:
+            self._subscribe()
         if before is not None and (message.width > before.width or message.height > before.height):
             self.show_again()
 
@@ -196,7 +210,8 @@ class ImageDisplay(ImageTopicDisplay):
 
     def take_image(self, message: Any, pose: Pose | None) -> None:  # noqa: ARG002 - images have no place
         """Show an image."""
-        if self._panel is not None and (self._panel.width <= 0 or self._panel.height <= 0):
+        if self._is_hidden:
+            self._unsubscribe()
             return
         ranged = has_range(getattr(message, "encoding", ""))
         if ranged != self._ranged:

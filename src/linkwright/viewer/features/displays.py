@@ -44,13 +44,14 @@ class DisplaysFeature(PageFeature):
     def page_gone(self, page: Page) -> None:
         """Make pictures for the panels of the other pages alone."""
         for display, sizes in list(self._sizes.items()):
-            if sizes.pop(page, None) is not None and sizes:
+            if sizes.pop(page, None) is not None:
                 self._tell_size(display)
 
     def _tell_size(self, display: ViewerDisplay) -> None:
-        """Tell a display the size of the largest panel that shows it."""
+        """Tell a display the size of the largest panel that shows it, nothing where none does."""
         sizes = self._sizes[display].values()
-        width, height = max(each.width for each in sizes), max(each.height for each in sizes)
+        width = max((each.width for each in sizes), default=0)
+        height = max((each.height for each in sizes), default=0)
         display.receive(PictureSize(display.id, width, height))
 
 
