@@ -1,0 +1,160 @@
+"""An arm in a simulated world follows trajectories by position, velocity and effort."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from linkwright.graph import DESCRIPTION_QOS
+from linkwright.messages import String, get_action, get_service
+from tests.control.controllers.arm import Asked, trajectory
+from tests.simulation.test_plugins import SECOND, served
+
+ACTION = "control_msgs/action/FollowJointTrajectory"
+JOINTS = ("shoulder", "elbow")
+SUCCEEDED, CANCELED = 4, 5
+LENGTH, MASS = 0.5, 1.0
+"""Of each link, in m and kg."""
+
+
+def model(parameters: Path) -> str:
+    """An arm of two links of 1 kg, which hang on the world at a height of 2 m and turn up and down."""
+    inertia = "<ixx>0.001</ixx><iyy>0.02</iyy><izz>0.02</izz>"
+    links = joints = ""
+    for number, (name, parent) in enumerate(zip(JOINTS, ("world", "shoulder_link"), strict=True)):
+        links += (
+            f'<link name="{name}_link"><pose>{number * LENGTH} 0 0 0 0 0</pose><inertial>'
+            f"<pose>{LENGTH / 2} 0 0 0 0 0</pose><mass>{MASS}</mass><inertia>{inertia}</inertia></inertial></link>"
+        )
+        joints += (
+            f'<joint name="{name}" type="revolute"><parent>{parent}</parent><child>{name}_link</child><axis>'
+            "<xyz>0 1 0</xyz><limit><lower>-3</lower><upper>3</upper><effort>100</effort></limit></axis></joint>"
+        )
+    plugin = (
+        '<plugin name="gz_ros2_control::GazeboSimROS2ControlPlugin" filename="gz_ros2_control-system">'
+        f"<parameters>{parameters}</parameters></plugin>"
+    )
+    return f'<model name="arm"><pose>0 0 2 0 0 0</pose>{links}{joints}{plugin}</model>'
+
+
+def description(kind: str) -> str:
+    """The arm as its controllers see it: each joint is commanded by one kind of interface."""
+    interfaces = f"<command_interface name='{kind}'/>" + "".join(
+        f"<state_interface name='{each}'/>" for each in ("position", "velocity")
+    )
+    links = "".join(f"<link name='{each}'/>" for each in ("world", *(f"{each}_link" for each in JOINTS)))
+    joints = "".join(
+        f"<joint name='{name}' type='revolute'><parent link='{parent}'/><child link='{name}_link'/><axis xyz='0 1 0'/>"
+        "<limit lower='-3' upper='3' effort='100' velocity='5'/></joint>"
+        for name, parent in zip(JOINTS, ("world", "shoulder_link"), strict=True)
+    )
+    control = "".join(f"<joint name='{name}'>{interfaces}</joint>" for name in JOINTS)
+    return (
+        f"<robot name='arm'>{links}{joints}<ros2_control name='arm' type='system'><hardware>"
+        f"<plugin>gz_ros2_control/GazeboSimSystem</plugin></hardware>{control}</ros2_control></robot>"
+    )
+
+
+def parameters(kind: str, folder: Path) -> Path:
+    """The parameter file of the controllers."""
+    path = folder / "controllers.yaml"
+    gains = "{p: 50.0, i: 50.0}" if kind == "velocity" else "{p: 200.0, i: 200.0, d: 8.0}"
+    scale = ", ff_velocity_scale: 1.0" if kind == "velocity" else ""
+    path.write_text(
+        "controller_manager:\n  ros__parameters:\n    update_rate: 500\n"
+        "    arm: {type: joint_trajectory_controller/JointTrajectoryController}\n"
+        f"arm:\n  ros__parameters:\n    joints: [shoulder, elbow]\n    command_interfaces: [{kind}]\n"
+        "    state_interfaces: [position, velocity]\n    constraints:\n      goal_time: 1.0\n"
+        "      shoulder: {trajectory: 0.3, goal: 0.02}\n      elbow: {trajectory: 0.3, goal: 0.02}\n"
+        f"    gains:\n      shoulder: {gains[:-1]}{scale}}}\n      elbow: {gains[:-1]}{scale}}}\n"
+    )
+    return path
+
+
+class Arm:
+    """The arm with an active controller."""
+
+    def __init__(self, server: Any, graph: Any) -> None:
+        self.server, self.graph, self.node = server, graph, graph.create_node("audience")
+
+    async def begin(self, kind: str) -> None:
+        node = self.graph.create_node("robot_state_publisher")
+        node.create_publisher(String, "robot_description", DESCRIPTION_QOS).publish(String(data=description(kind)))
+        await self.go_on(0.01)
+        for service, fields in (
+            ("LoadController", {"name": "arm"}),
+            ("ConfigureController", {"name": "arm"}),
+            ("SwitchController", {"activate_controllers": ["arm"], "strictness": 2}),
+        ):
+            asked = get_service(f"controller_manager_msgs/srv/{service}")
+            name = service.replace("Controller", "_controller").lower()
+            future = self.node.create_client(asked, f"/controller_manager/{name}").call_async(asked.Request(**fields))
+            await self.go_on(0.02)
+            assert future.result().ok, service
+
+    async def go_on(self, seconds: float) -> None:
+        """Let time pass in chunks, between which messages are handed over."""
+        left = round(seconds * SECOND)
+        while left > 0:
+            await self.graph.settle()
+            self.server.advance(min(left, SECOND // 100))
+            left -= SECOND // 100
+        await self.graph.settle()
+
+    def positions(self) -> list[float]:
+        return [self.server.simulation.joint_state(f"arm::{each}")[0] for each in JOINTS]
+
+    def ask(self, *points: Any) -> Asked:
+        goal = get_action(ACTION).Goal(trajectory=trajectory(*points))
+        return Asked(self, ACTION, "/arm/follow_joint_trajectory", goal)  # type: ignore[arg-type]  # it has a node
+
+
+STATE = "control_msgs/msg/JointTrajectoryControllerState"
+
+
+@pytest.mark.parametrize("kind", ["position", "velocity", "effort"])
+async def test_an_arm_follows_a_trajectory_against_gravity(kind, tmp_path):
+    async with served(model(parameters(kind, tmp_path))) as (server, graph, _):
+        arm = Arm(server, graph)
+        await arm.begin(kind)
+        states: list[Any] = []
+        graph.create_node("listener").create_subscription(STATE, "/arm/controller_state", states.append, 10)
+        asked = arm.ask((2.0, [-0.6, 0.9], [0.0, 0.0]))
+        await arm.go_on(2.5)
+        assert asked.status == SUCCEEDED, asked.result
+        assert arm.positions() == pytest.approx([-0.6, 0.9], abs=0.02)
+        errors = [abs(error) for state in states for error in state.error.positions]
+        assert max(errors) < 0.2
+        wanted = [state.reference.positions[1] for state in states]
+        assert max(wanted) == pytest.approx(0.9, abs=0.01)
+        await arm.go_on(1.0)
+        assert arm.positions() == pytest.approx([-0.6, 0.9], abs=0.02)
+
+
+async def test_a_goal_that_is_canceled_stops_the_arm(tmp_path):
+    async with served(model(parameters("position", tmp_path))) as (server, graph, _):
+        arm = Arm(server, graph)
+        await arm.begin("position")
+        asked = arm.ask((2.0, [-0.6, 0.9]))
+        await arm.go_on(1.0)
+        asked.cancel()
+        await arm.go_on(0.1)
+        held = arm.positions()
+        await arm.go_on(1.0)
+        assert asked.status == CANCELED
+        assert arm.positions() == pytest.approx(held, abs=0.01)
+        assert held == pytest.approx([-0.3, 0.45], abs=0.05)
+
+
+async def test_the_same_trajectory_gives_the_same_bits(tmp_path):
+    async def run() -> list[float]:
+        async with served(model(parameters("effort", tmp_path))) as (server, graph, _):
+            arm = Arm(server, graph)
+            await arm.begin("effort")
+            arm.ask((1.0, [-0.3, 0.4]))
+            await arm.go_on(1.5)
+            return arm.positions()
+
+    assert await run() == await run()
