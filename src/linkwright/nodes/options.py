@@ -6,7 +6,7 @@ import asyncio
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeVar, runtime_checkable
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import Graph, Node
@@ -18,6 +18,8 @@ from linkwright.graph.parameters.rules import ParameterRules
 if TYPE_CHECKING:
     from linkwright.descriptions import DescriptionLibrary
     from linkwright.nodes.joint_panel import JointPanel
+
+N = TypeVar("N", bound=Node)
 
 
 def _library() -> DescriptionLibrary:
@@ -124,10 +126,22 @@ def create_node(
     Raises:
         LinkwrightError: a name, a remapping or a ROS argument is not valid.
     """
+    return create_node_of(Node, graph, options, default_name, any_parameters=any_parameters)
+
+
+def create_node_of(
+    node_class: Callable[..., N], graph: Graph, options: NodeOptions, default_name: str, *, any_parameters: bool = False
+) -> tuple[N, list[str]]:
+    """As `create_node`, for a node that `node_class` makes of the arguments that `Node` takes.
+
+    Raises:
+        LinkwrightError: a name, a remapping or a ROS argument is not valid.
+    """
     ros = parse(options.arguments)
     name = options.name or default_name
     remappings = [*ros.remappings_for(name), *options.remappings]
-    node = graph.create_node(
+    node = node_class(
+        graph,
         name,
         namespace=options.namespace,
         parameters={**options.parameters, **ros.parameters_for(_full_name(name, options.namespace, remappings))},

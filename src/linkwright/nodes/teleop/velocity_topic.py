@@ -27,7 +27,7 @@ class VelocityTopic:
         self._node = node
         self._topic = topic
         self._stamped = stamped
-        self._frame_id = frame_id
+        self.frame_id = frame_id
         self._publisher: Publisher[Any] | None = None
         self.name = node.resolve_topic_name(topic)
         self.review()
@@ -67,7 +67,7 @@ class VelocityTopic:
         twist = message
         if publisher.type_name == TWIST_STAMPED:
             message.header.stamp = self._node.get_clock().now().to_msg()
-            message.header.frame_id = self._frame_id
+            message.header.frame_id = self.frame_id
             twist = message.twist
         for vector, values in ((twist.linear, linear), (twist.angular, angular)):
             vector.x, vector.y, vector.z = map(float, values)

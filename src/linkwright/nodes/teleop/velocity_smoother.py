@@ -1,0 +1,230 @@
+"""velocity_smoother of nav2: velocities from ``cmd_vel`` within limits, on ``cmd_vel_smoothed``.
+
+A managed node; parameters, defaults and rules are those of nav2. Different on purpose: unless
+``enable_stamped_cmd_vel`` is set it takes Twist and TwistStamped, and publishes what the subscribers take; it stops the
+robot when it is deactivated; and there is no bond.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Mapping, Sequence
+from math import isfinite
+from typing import Any
+
+from linkwright.diagnostics import Phrase, joined, phrase
+from linkwright.graph import Graph, Node, Parameter, ParameterType, SetParametersResult
+from linkwright.graph.lifecycle.managed_node import LifecycleNodeMixin
+from linkwright.graph.lifecycle.states import LifecycleState, TransitionCallbackReturn
+from linkwright.messages import get_message
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node_of
+from linkwright.nodes.teleop.smoothing import Limits, smoothed
+from linkwright.nodes.teleop.velocity_topic import TWIST, TWIST_STAMPED, VelocityTopic
+
+_DEPTH = 10
+_NANOSECONDS = 1e9
+_AXES = tuple((part, axis) for part in ("linear", "angular") for axis in "xyz")
+_PLANAR = (0, 1, 5)
+"""The axes of limits with three entries: x, y and yaw."""
+_LIMITS = {
+    "max_velocity": [0.5, 0.0, 2.5],
+    "min_velocity": [-0.5, 0.0, -2.5],
+    "max_accel": [2.5, 0.0, 3.2],
+    "max_decel": [-2.5, 0.0, -3.2],
+    "deadband_velocity": [0.0, 0.0, 0.0],
+}
+
+
+class _ManagedSmoother(LifecycleNodeMixin, Node):
+    """The node of the graph."""
+
+    def __init__(self, *arguments: Any, **named: Any) -> None:
+        Node.__init__(self, *arguments, **named)
+        LifecycleNodeMixin.__init__(self)
+        self._output: VelocityTopic | None = None
+        self._parts: list[Any] = []
+        self._timer: Any = None
+        self._command: list[float] | None = None
+        self._commanded_ns = 0
+        self._last = [0.0] * len(_AXES)
+        self._stopped = False
+        self._measured: deque[tuple[int, list[float]]] = deque()
+        self.declare_parameter("smoothing_frequency", 20.0)
+        self.declare_parameter("feedback", "OPEN_LOOP")
+        self.declare_parameter("scale_velocities", False)
+        for name, value in _LIMITS.items():
+            self.declare_parameter(name, value)
+        self.declare_parameter("odom_topic", "odom")
+        self.declare_parameter("odom_duration", 0.1)
+        self.declare_parameter("velocity_timeout", 1.0)
+        self.declare_parameter("use_realtime_priority", False)
+        self._stamped: bool | None = self.declare_parameter("enable_stamped_cmd_vel", ParameterType.BOOL).value
+        self.declare_parameter("autostart_node", False)
+        self.add_on_set_parameters_callback(self._check)
+        self.add_post_set_parameters_callback(lambda _: self._follow())
+
+    def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:  # noqa: ARG002
+        """Read the parameters and join the topics."""
+        problem = self._problem({})
+        if problem is not None:
+            self.get_logger().error(str(problem))
+            return TransitionCallbackReturn.FAILURE
+        self._read()
+        stamped = self._stamped
+        kinds = (TWIST, TWIST_STAMPED) if stamped is None else (TWIST_STAMPED if stamped else TWIST,)
+        self._output = VelocityTopic(self, "cmd_vel_smoothed", stamped)
+        for kind in kinds:
+            self._parts.append(self.create_subscription(kind, "cmd_vel", self._heard, _DEPTH))
+        if self._value("feedback") == "CLOSED_LOOP":
+            odometry = get_message("nav_msgs/msg/Odometry")
+            self._parts.append(self.create_subscription(odometry, self._value("odom_topic"), self._on_odometry, _DEPTH))
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:  # noqa: ARG002
+        """Begin to publish."""
+        self._start_timer()
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:  # noqa: ARG002
+        """Stop, and publish nothing more."""
+        self._end_timer()
+        if self._output is not None and any(self._last):
+            self._output.stop()
+        self._last, self._command = [0.0] * len(_AXES), None
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:  # noqa: ARG002
+        """Leave the topics."""
+        self._end_timer()
+        for part in self._parts:
+            self.destroy_subscription(part)
+        self._parts.clear()
+        if self._output is not None:
+            self._output.close()
+            self._output = None
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """As when it is cleaned up."""
+        return self.on_cleanup(state)
+
+    def _start_timer(self) -> None:
+        self._end_timer()
+        self._timer = self.create_timer(1.0 / self._frequency, self._smooth)
+
+    def _end_timer(self) -> None:
+        if self._timer is not None:
+            self.destroy_timer(self._timer)
+            self._timer = None
+
+    def _value(self, name: str) -> Any:
+        return self.get_parameter(name).value
+
+    def _read(self) -> None:
+        self._frequency: float = self._value("smoothing_frequency")
+        self._scaled: bool = self._value("scale_velocities")
+        self._closed: bool = self._value("feedback") == "CLOSED_LOOP"
+        self._timeout: float = self._value("velocity_timeout")
+        self._duration: float = self._value("odom_duration")
+        columns = [list(self._value(name)) for name in _LIMITS]
+        if len(columns[0]) == len(_PLANAR):  # x, y and yaw
+            columns = [_spread(column) for column in columns]
+        self._limits = [Limits(least, most, *rest) for most, least, *rest in zip(*columns, strict=True)]
+
+    def _check(self, parameters: list[Parameter]) -> SetParametersResult:
+        problem = self._problem({each.name: each.value for each in parameters})
+        return SetParametersResult(successful=problem is None, reason="" if problem is None else str(problem))
+
+    def _follow(self) -> None:
+        """Obey changed parameters while it is at work; the topics stay those that it was configured with."""
+        if self._output is not None:
+            before = self._frequency
+            self._read()
+            if self._timer is not None and before != self._frequency:
+                self._start_timer()
+
+    def _problem(self, changed: Mapping[str, Any]) -> Phrase | None:
+        """What is wrong with the parameters once some of them have changed."""
+
+        def value(name: str) -> Any:
+            return changed.get(name, self._value(name))
+
+        if not value("smoothing_frequency") > 0.0:
+            return phrase("smoothing_frequency must be more than 0")
+        if value("feedback") not in ("OPEN_LOOP", "CLOSED_LOOP"):
+            return phrase(
+                "feedback must be OPEN_LOOP or CLOSED_LOOP, and it is '{feedback}'", feedback=value("feedback")
+            )
+        lengths = {len(value(name)) for name in _LIMITS}
+        if lengths not in ({len(_PLANAR)}, {len(_AXES)}):
+            return phrase("{names} must all have 3 entries (x, y, yaw) or all 6", names=joined(list(_LIMITS)))
+        for name, sign in (("max_velocity", 1), ("min_velocity", -1), ("max_accel", 1), ("max_decel", -1)):
+            if any(each * sign < 0.0 for each in value(name)):
+                return (
+                    phrase("{name} must not be negative", name=name)
+                    if sign > 0
+                    else phrase("{name} must not be positive", name=name)
+                )
+        return None
+
+    def _heard(self, message: Any) -> None:
+        stamped = hasattr(message, "twist")
+        twist = message.twist if stamped else message
+        values = _values(twist)
+        if not all(map(isfinite, values)):
+            self.get_logger().error("Velocity message contains NaNs or Infs! Ignoring as invalid!")
+            return
+        assert self._output is not None, "it is configured"
+        if not any(self._last):
+            self._output.review()
+        self._output.frame_id = message.header.frame_id if stamped else ""
+        self._command = values
+        self._commanded_ns = self.get_clock().now().nanoseconds
+
+    def _on_odometry(self, message: Any) -> None:
+        now = self.get_clock().now().nanoseconds
+        self._measured.append((now, _values(message.twist.twist)))
+        while now - self._measured[0][0] > self._duration * _NANOSECONDS:
+            self._measured.popleft()
+
+    def _smooth(self) -> None:
+        if self._command is None:
+            return
+        if (self.get_clock().now().nanoseconds - self._commanded_ns) / _NANOSECONDS > self._timeout:
+            if self._stopped or not any(self._last):
+                self._stopped = True
+                return
+            self._command = [0.0] * len(_AXES)
+        self._stopped = False
+        now = self._last
+        if self._closed:
+            seen = [values for _, values in self._measured] or [[0.0] * len(_AXES)]
+            now = [sum(column) / len(seen) for column in zip(*seen, strict=True)]
+        self._last = smoothed(self._limits, now, self._command, 1.0 / self._frequency, scaled=self._scaled)
+        quiet = [axis.quiet(each) for axis, each in zip(self._limits, self._last, strict=True)]
+        assert self._output is not None, "it is configured"
+        self._output.publish(quiet[:3], quiet[3:])
+
+
+class VelocitySmoother(SingleNode):
+    """The running node; ``autostart_node`` has it configure and activate itself, where no lifecycle manager does."""
+
+    DEFAULT_NAME = "velocity_smoother"
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        node, _ = create_node_of(_ManagedSmoother, graph, options, self.DEFAULT_NAME)
+        self._node = node
+        if node.get_parameter("autostart_node").value and node.trigger_configure() == TransitionCallbackReturn.SUCCESS:
+            node.trigger_activate()
+
+
+def _values(twist: Any) -> list[float]:
+    return [float(getattr(getattr(twist, part), axis)) for part, axis in _AXES]
+
+
+def _spread(column: Sequence[float]) -> list[float]:
+    """Limits of x, y and yaw as those of all axes; the other three stay at 0."""
+    spread = [0.0] * len(_AXES)
+    for axis, value in zip(_PLANAR, column, strict=True):
+        spread[axis] = value
+    return spread
