@@ -40,6 +40,9 @@ class LocalGraph(GraphQueries):
         threads: whether callbacks are not for the running event loop.
         levels: the levels of the graph's loggers; new ones when left out.
         on_namesakes: what is told which nodes have namesakes in other processes; a warning is logged when left out.
+
+    Attributes:
+        makers: who made nodes that other nodes made, such as those of controllers: by the names of their loggers.
     """
 
     def __init__(
@@ -53,6 +56,7 @@ class LocalGraph(GraphQueries):
     ) -> None:
         self.timebase: Timebase = clock or SystemClock()
         self.bus = Bus()
+        self.makers: dict[str, str] = {}
         self.levels = levels or LogLevels()
         self._sink = on_log or print_to_console
         self._nodes: dict[NodeHandle, None] = {}

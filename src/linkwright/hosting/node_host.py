@@ -328,9 +328,10 @@ class NodeHost:
             self._speaking = before
 
     def _process_of(self, logger: str) -> str:
-        """The process that a logger, or the nearest one above it, belongs to."""
+        """The process that a logger, or the nearest one above it, belongs to, or the node that made it."""
+        makers = {} if self._graph is None else dict(self._graph.makers)
         while logger:
             if logger in self._process_of_logger:
                 return self._process_of_logger[logger]
-            logger = logger.rpartition(".")[0]
+            logger = makers.pop(logger, "") or logger.rpartition(".")[0]
         return self._speaking

@@ -51,13 +51,15 @@ def controller_node(manager: Node, name: str, process: ProcessArguments) -> Node
     )
     values |= ros.parameters_for(full_name)
     remappings = [*ros.remappings_for(name), *process.remappings]
-    return Node(
+    node = Node(
         manager.graph,
         name,
         namespace=namespace,
         parameters=values,
         remappings=[each for each in remappings if each[0] not in _OF_THE_PROCESS],
     )
+    manager.graph.makers[node.get_logger().name] = manager.get_logger().name
+    return node
 
 
 def words_of(node: Node, name: str) -> list[str]:

@@ -316,6 +316,7 @@ class SimulationServer:
             remappings=described.remappings,
         )
         self._node_names.add(full_name)
+        node.graph.makers[node.get_logger().name] = self.node.get_logger().name
         return PluginNode(node, self.exchange, owned=True, qos=described.qos, usual=None)
 
     @contextmanager

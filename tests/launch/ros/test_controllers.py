@@ -1,0 +1,38 @@
+"""Controllers in launch files: their words come from the process that runs them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from launch_ros.actions import Node
+
+from tests.control.robots import joint, robot
+from tests.launch.ending import ends_when, printed
+
+FILE = """
+controller_manager:
+  ros__parameters:
+    arm: {type: joint_trajectory_controller/JointTrajectoryController}
+arm:
+  ros__parameters:
+    joints: [hip, knee]
+    command_interfaces: [position]
+    state_interfaces: [position, velocity]
+    open_lop_control: true
+"""
+
+
+async def test_what_a_controller_says_is_said_by_the_node_that_runs_it(launch: Any, write: Callable[[str, str], Path]):
+    parameters = [str(write("controllers.yaml", FILE)), {"robot_description": robot(joint("hip") + joint("knee"))}]
+    done = await launch(
+        Node(package="controller_manager", executable="ros2_control_node", parameters=parameters),
+        Node(package="controller_manager", executable="spawner", arguments=["arm"]),
+        ends_when(printed("Configured and activated arm")),
+    )
+    assert done.succeeded, done.err
+    (line,) = [each for each in done.err.splitlines() if "open_lop_control" in each]
+    assert re.match(r"\[ros2_control_node-1\] \[WARN\] \[[0-9.]+\] \[arm\]: ", line)
+    assert line.endswith("'open_lop_control' is no parameter of this controller; did you mean 'open_loop_control'?")
