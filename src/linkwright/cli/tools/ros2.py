@@ -14,6 +14,7 @@ COMMANDS = (
     "action",
     "bag",
     "component",
+    "control",
     "daemon",
     "doctor",
     "interface",
@@ -31,7 +32,6 @@ COMMANDS = (
 
 _OTHER_NAMES = {"wtf": "doctor"}
 _ONLY_IN_ROS = {
-    "control": "it talks to a controller_manager of ros2_control",
     "extension_points": "it lists plugins of ros2cli",
     "extensions": "it lists plugins of ros2cli",
     "multicast": "it tests the network below DDS",

@@ -1,0 +1,358 @@
+"""``linkwright control``: the controller manager of ros2_control: its controllers and its hardware.
+
+Source: ros2controlcli (verbs, options, what they print, without its colours).
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Callable, Coroutine, Sequence
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from linkwright.cli.calls import call
+from linkwright.cli.nested import SubVerb, configure_nested, run_nested
+from linkwright.cli.output import write_output
+from linkwright.cli.session import add_session_arguments, run_in_graph
+
+if TYPE_CHECKING:
+    from linkwright.cli.session import Session
+
+Ask = Callable[..., Coroutine[Any, Any, Any]]
+"""Calls a service of the manager: its name, such as ``list_controllers``, and the fields of the request."""
+
+_LOGS = "check controller_manager logs"
+_SECTIONS = {
+    "claimed_interfaces": "claimed interfaces",
+    "required_command_interfaces": "required command interfaces",
+    "required_state_interfaces": "required state interfaces",
+    "chained_interfaces": "chained to interfaces",
+    "reference_interfaces": "exported reference interfaces",
+}
+
+
+def _common(parser: argparse.ArgumentParser) -> None:
+    add_session_arguments(parser)
+    parser.add_argument(
+        "-c",
+        "--controller-manager",
+        metavar="NAME",
+        default="/controller_manager",
+        help="the controller manager's node, default /controller_manager",
+    )
+    parser.add_argument("--include-hidden-nodes", action="store_true", help="accepted for ros2's sake")
+
+
+def _controller(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("controller_name", metavar="CONTROLLER", help="its name")
+    _common(parser)
+
+
+def _run(job: Callable[[argparse.Namespace, Ask], Coroutine[Any, Any, int]], arguments: argparse.Namespace) -> int:
+    async def work(session: Session) -> int:
+        from linkwright.messages import get_service
+
+        manager = f"/{arguments.controller_manager.strip('/')}"
+
+        async def ask(service: str, **fields: Any) -> Any:
+            kind = "controller_manager_msgs/srv/" + "".join(word.capitalize() for word in service.split("_"))
+            return await call(session, kind, f"{manager}/{service}", get_service(kind).Request(**fields))
+
+        return await job(arguments, ask)
+
+    return run_in_graph(arguments, work)
+
+
+def _fail(text: str) -> int:
+    print(text, file=sys.stderr)
+    return 1
+
+
+# --- looking ----------------------------------------------------------------------------------------------------------
+
+
+def _configure_list_controllers(parser: argparse.ArgumentParser) -> None:
+    for name in _SECTIONS:
+        parser.add_argument(f"--{name.replace('_', '-')}", action="store_true", help="print these interfaces too")
+    parser.add_argument("-v", "--verbose", action="store_true", help="print all of them")
+    _common(parser)
+
+
+async def _list_controllers(arguments: argparse.Namespace, ask: Ask) -> int:
+    found = (await ask("list_controllers")).controller
+    if not found:
+        print("No controllers are currently loaded!")
+        return 0
+    names, types, states = (max(len(getattr(each, part)) for each in found) for part in ("name", "type", "state"))
+    for each in found:
+        print(f"{each.name:<{names}} {each.type:<{types}}  {each.state:<{states}}")
+        for section, said in _SECTIONS.items():
+            if arguments.verbose or getattr(arguments, section):
+                print(f"\t{said}:")
+                for interface in _interfaces(each, section):
+                    print(f"\t\t{interface}")
+    return 0
+
+
+def _interfaces(controller: Any, section: str) -> Sequence[str]:
+    if section != "chained_interfaces":
+        names: Sequence[str] = getattr(controller, section)
+        return names
+    return [f"{name:20s}" for chain in controller.chain_connections for name in chain.reference_interfaces]
+
+
+async def _list_types(_: argparse.Namespace, ask: Ask) -> int:
+    found = await ask("list_controller_types")
+    for name, base in zip(found.types, found.base_classes, strict=True):
+        print(f"{name:70s} {base}")
+    return 0
+
+
+def _configure_list_hardware(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("-v", "--verbose", action="store_true", help="print state interfaces, or data types, too")
+    _common(parser)
+
+
+async def _list_components(arguments: argparse.Namespace, ask: Ask) -> int:
+    for number, each in enumerate((await ask("list_hardware_components")).component, start=1):
+        print(f"Hardware Component {number}\n\tname: {each.name}\n\ttype: {each.type}")
+        print(f"\tplugin name: {each.plugin_name}\n\tstate: id={each.state.id} label={each.state.label}")
+        print("\tcommand interfaces")
+        for command in each.command_interfaces:
+            print(f"\t\t{command.name} {_availability(command)} {_claim(command)}")
+        if arguments.verbose:
+            print("\tstate interfaces")
+            for state in each.state_interfaces:
+                print(f"\t\t{state.name} {_availability(state)}")
+    return 0
+
+
+async def _list_interfaces(arguments: argparse.Namespace, ask: Ask) -> int:
+    found = await ask("list_hardware_interfaces")
+    print("command interfaces")
+    for each in sorted(found.command_interfaces, key=lambda interface: interface.name):
+        print(f"\t{each.name}{_data_type(each, arguments)} {_availability(each)} {_claim(each)}")
+    print("state interfaces")
+    for each in sorted(found.state_interfaces, key=lambda interface: interface.name):
+        print(f"\t{each.name}{_data_type(each, arguments)}")
+    return 0
+
+
+def _availability(interface: Any) -> str:
+    return "[available]" if interface.is_available else "[unavailable]"
+
+
+def _claim(interface: Any) -> str:
+    return "[claimed]" if interface.is_claimed else "[unclaimed]"
+
+
+def _data_type(interface: Any, arguments: argparse.Namespace) -> str:
+    return f" [{interface.data_type}]" if arguments.verbose else ""
+
+
+def _configure_chains(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--save", action="store_true", help="accepted for ros2's sake: the diagram is always saved")
+    _common(parser)
+
+
+async def _view_chains(_: argparse.Namespace, ask: Ask) -> int:
+    text = _diagram((await ask("list_controllers")).controller)
+    _save(text)
+    return 0
+
+
+def _save(text: str) -> None:
+    from linkwright.urdf.diagram import render
+
+    gv, picture = Path("controller_diagram.gv"), Path("controller_diagram.pdf")
+    write_output(gv, text)
+    render(text, picture)
+    print(f"Saved controller diagram to {picture.resolve()}")
+
+
+def _diagram(controllers: Sequence[Any]) -> str:
+    """Controllers and the hardware as boxes, interfaces between them as arrows."""
+    names = {each.name for each in controllers}
+    lines = ["digraph g {", "rankdir=LR;", "node [shape=box, style=rounded];"]
+    lines += [f'"{name}";' for name in sorted(names)]
+    for each in controllers:
+        for interface in each.required_command_interfaces:
+            owner, _, kind = interface.partition("/")
+            target, label = (owner, kind) if owner in names else ("hw command_interfaces", interface)
+            lines.append(f'"{each.name}" -> "{target}" [label="{label}"];')
+        for interface in each.required_state_interfaces:
+            owner, _, kind = interface.partition("/")
+            source, label = (owner, kind) if owner in names else ("hw state_interfaces", interface)
+            lines.append(f'"{source}" -> "{each.name}" [label="{label}"];')
+    return "\n".join([*lines, "}", ""])
+
+
+# --- changing ---------------------------------------------------------------------------------------------------------
+
+
+def _configure_load(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("controller_name", metavar="CONTROLLER", help="its name")
+    parser.add_argument(
+        "--set-state", choices=("unconfigured", "inactive", "active", "configured"), help="lead it there, too"
+    )
+    _common(parser)
+
+
+async def _load(arguments: argparse.Namespace, ask: Ask) -> int:
+    name, state = arguments.controller_name, arguments.set_state
+    if not (await ask("load_controller", name=name)).ok:
+        return _fail(f"Error loading controller, {_LOGS}")
+    if state in (None, "unconfigured"):
+        print(f"Successfully loaded controller {name}")
+        return 0
+    if not (await ask("configure_controller", name=name)).ok:
+        return _fail("Error configuring controller")
+    if state == "active" and not (await _switch(ask, [name], [])).ok:
+        return _fail(f"Error activating controller, {_LOGS}")
+    print(f"Successfully loaded controller {name} into state {'active' if state == 'active' else 'inactive'}")
+    return 0
+
+
+async def _switch(ask: Ask, activate: Sequence[str], deactivate: Sequence[str], strictness: int = 2) -> Any:
+    return await ask(
+        "switch_controller",
+        activate_controllers=list(activate),
+        deactivate_controllers=list(deactivate),
+        strictness=strictness,
+        activate_asap=True,
+    )
+
+
+async def _unload(arguments: argparse.Namespace, ask: Ask) -> int:
+    name = arguments.controller_name
+    if not (await ask("unload_controller", name=name)).ok:
+        return _fail(f"Error unloading controller {name}, {_LOGS}")
+    print(f"Successfully unloaded controller {name}")
+    return 0
+
+
+def _configure_set_state(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("controller_name", metavar="CONTROLLER", help="its name")
+    parser.add_argument("state", choices=("unconfigured", "inactive", "active"), help="the state that it is to have")
+    _common(parser)
+
+
+async def _set_state(arguments: argparse.Namespace, ask: Ask) -> int:
+    name, wanted = arguments.controller_name, arguments.state
+    found = next((each for each in (await ask("list_controllers")).controller if each.name == name), None)
+    if found is None:
+        return _fail(f"controller {name} does not seem to be loaded")
+    steps: dict[tuple[str, str], tuple[str, str, Callable[[], Coroutine[Any, Any, Any]]]] = {
+        ("inactive", "unconfigured"): ("cleaning up", "cleaned up", lambda: ask("cleanup_controller", name=name)),
+        ("unconfigured", "inactive"): ("configuring", "configured", lambda: ask("configure_controller", name=name)),
+        ("active", "inactive"): ("stopping", "deactivated", lambda: _switch(ask, [], [name])),
+        ("inactive", "active"): ("activating", "activated", lambda: _switch(ask, [name], [])),
+    }
+    step = steps.get((found.state, wanted))
+    if step is None:
+        verb = {"active": "activate", "unconfigured": "cleanup"}.get(wanted)
+        action = f"cannot {verb} {name}" if verb else f"cannot put {name} in '{wanted}' state"
+        return _fail(f"{action} from its current state {found.state}")
+    doing, done, work = step
+    if not (await work()).ok:
+        return _fail(f"Error {doing} controller, {_LOGS}")
+    print(f"Successfully {done} {name}")
+    return 0
+
+
+def _configure_switch(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--deactivate", "--stop", metavar="NAME", nargs="*", default=[], help="controllers to deactivate"
+    )
+    parser.add_argument("--activate", "--start", metavar="NAME", nargs="*", default=[], help="controllers to activate")
+    parser.add_argument("--strict", action="store_true", help="switch all of them, or none")
+    parser.add_argument("--activate-asap", "--start-asap", action="store_true", help="accepted for ros2's sake")
+    parser.add_argument("--switch-timeout", metavar="SECONDS", type=float, default=5.0, help="accepted for ros2's sake")
+    _common(parser)
+
+
+async def _switch_controllers(arguments: argparse.Namespace, ask: Ask) -> int:
+    answer = await _switch(ask, arguments.activate, arguments.deactivate, 2 if arguments.strict else 1)
+    if not answer.ok:
+        return _fail(f"Error switching controllers, {_LOGS}")
+    print("Successfully switched controllers")
+    return 0
+
+
+def _configure_reload(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--force-kill", action="store_true", help="deactivate active controllers first")
+    _common(parser)
+
+
+async def _reload(arguments: argparse.Namespace, ask: Ask) -> int:
+    if not (await ask("reload_controller_libraries", force_kill=arguments.force_kill)).ok:
+        return _fail(f"Error reloading libraries, {_LOGS}")
+    print("Reload successful")
+    return 0
+
+
+def _configure_set_hardware(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("hardware_component_name", metavar="HARDWARE", help="its name")
+    parser.add_argument("state", choices=("unconfigured", "inactive", "active"), help="the state that it is to have")
+    _common(parser)
+
+
+async def _set_hardware(arguments: argparse.Namespace, ask: Ask) -> int:
+    from linkwright.messages import get_message
+
+    name = arguments.hardware_component_name
+    if name not in [each.name for each in (await ask("list_hardware_components")).component]:
+        return _fail(f"component {name} does not seem to be loaded")
+    wanted = get_message("lifecycle_msgs/msg/State")(label=arguments.state)
+    answer = await ask("set_hardware_component_state", name=name, target_state=wanted)
+    if not answer.ok:
+        return _fail(f"Error setting hardware component to {arguments.state}, {_LOGS}")
+    print(f"Successfully set {name} to state {answer.state}")
+    return 0
+
+
+VERBS = {
+    "cleanup_controller": SubVerb(
+        _controller,
+        partial(_run, lambda arguments, ask: _set_state(_to(arguments, "unconfigured"), ask)),
+        help="lead an inactive controller back to unconfigured",
+    ),
+    "list_controller_types": SubVerb(_common, partial(_run, _list_types), help="list the types that there are"),
+    "list_controllers": SubVerb(
+        _configure_list_controllers, partial(_run, _list_controllers), help="list the controllers that are loaded"
+    ),
+    "list_hardware_components": SubVerb(
+        _configure_list_hardware, partial(_run, _list_components), help="list the hardware and its states"
+    ),
+    "list_hardware_interfaces": SubVerb(
+        _configure_list_hardware, partial(_run, _list_interfaces), help="list the interfaces of the hardware"
+    ),
+    "load_controller": SubVerb(_configure_load, partial(_run, _load), help="load a controller"),
+    "reload_controller_libraries": SubVerb(
+        _configure_reload, partial(_run, _reload), help="forget all controllers and look for their types anew"
+    ),
+    "set_controller_state": SubVerb(
+        _configure_set_state, partial(_run, _set_state), help="lead a controller to a state"
+    ),
+    "set_hardware_component_state": SubVerb(
+        _configure_set_hardware, partial(_run, _set_hardware), help="lead hardware to a state"
+    ),
+    "switch_controllers": SubVerb(
+        _configure_switch, partial(_run, _switch_controllers), help="deactivate controllers and activate others"
+    ),
+    "unload_controller": SubVerb(_controller, partial(_run, _unload), help="forget a controller that is not active"),
+    "view_controller_chains": SubVerb(
+        _configure_chains, partial(_run, _view_chains), help="draw which controller has which interfaces"
+    ),
+}
+
+
+def _to(arguments: argparse.Namespace, state: str) -> argparse.Namespace:
+    arguments.state = state
+    return arguments
+
+
+configure = partial(configure_nested, verbs=VERBS)
+run = run_nested

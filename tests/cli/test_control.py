@@ -1,0 +1,138 @@
+"""``linkwright control``: what ros2 prints of controllers and hardware."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.cli import main
+from linkwright.graph import Graph
+from linkwright.nodes import NodeOptions
+from linkwright.nodes.control.ros2_control_node import Ros2ControlNode
+from tests.control.robots import joint, robot
+
+POSITIONS = {"joints": ["hip"], "interface_name": "position"}
+
+
+@pytest.fixture
+def manager(in_graph, tmp_path):
+    """A manager whose controllers are in some state when a command looks."""
+    path = tmp_path / "c.yaml"
+    path.write_text("positions: {ros__parameters: {joints: [hip], interface_name: position}}")
+
+    def use(state: str = "") -> None:
+        def make(graph: Graph) -> None:
+            parameters = {
+                "robot_description": robot(joint("hip")),
+                "broadcaster": {"type": "joint_state_broadcaster/JointStateBroadcaster"},
+                "positions": {"type": "forward_command_controller/ForwardCommandController"},
+            }
+            words = ["--ros-args", "--params-file", str(path)]
+            running = Ros2ControlNode(graph, NodeOptions(parameters=parameters, arguments=words))
+            if state:
+                for name in ("positions", "broadcaster"):
+                    assert running._manager.load(name)
+                    assert state == "unconfigured" or running._manager.configure(name)
+                assert state != "active" or running._manager.switch(["positions", "broadcaster"], [])[0]
+
+        in_graph(make)
+
+    return use
+
+
+def run(capsys, *words: str, status: int = 0) -> str:
+    assert main(["control", *words]) == status
+    captured = capsys.readouterr()
+    return captured.err if status else captured.out
+
+
+def test_controllers_are_listed(manager, capsys):
+    manager()
+    assert run(capsys, "list_controllers") == "No controllers are currently loaded!\n"
+    manager("active")
+    assert run(capsys, "list_controllers").splitlines() == [
+        "positions   forward_command_controller/ForwardCommandController  active",
+        "broadcaster joint_state_broadcaster/JointStateBroadcaster        active",
+    ]
+    lines = run(capsys, "list_controllers", "--claimed-interfaces").splitlines()
+    assert lines[1:3] == ["\tclaimed interfaces:", "\t\thip/position"]
+    assert "\texported reference interfaces:" in run(capsys, "list_controllers", "-v").splitlines()
+
+
+def test_types_and_hardware_are_listed(manager, capsys):
+    manager("active")
+    types = run(capsys, "list_controller_types")
+    name = "joint_state_broadcaster/JointStateBroadcaster"
+    assert f"{name:70s} controller_interface::ControllerInterface" in types.splitlines()
+    assert run(capsys, "list_hardware_components").splitlines() == [
+        "Hardware Component 1",
+        "\tname: arm",
+        "\ttype: system",
+        "\tplugin name: mock_components/GenericSystem",
+        "\tstate: id=3 label=active",
+        "\tcommand interfaces",
+        "\t\thip/position [available] [claimed]",
+    ]
+    assert run(capsys, "list_hardware_interfaces").splitlines() == [
+        "command interfaces",
+        "\thip/position [available] [claimed]",
+        "state interfaces",
+        "\thip/position",
+        "\thip/velocity",
+    ]
+
+
+def test_controllers_are_loaded_and_unloaded(manager, capsys):
+    manager()
+    assert run(capsys, "load_controller", "positions") == "Successfully loaded controller positions\n"
+    assert run(capsys, "load_controller", "positions", "--set-state", "active").endswith("into state active\n")
+    assert run(capsys, "load_controller", "nobody", status=1).endswith("check controller_manager logs\n")
+    manager("inactive")
+    assert run(capsys, "unload_controller", "positions") == "Successfully unloaded controller positions\n"
+    assert run(capsys, "reload_controller_libraries") == "Reload successful\n"
+    manager("active")
+    assert "Error unloading controller positions" in run(capsys, "unload_controller", "positions", status=1)
+    assert "Error reloading" in run(capsys, "reload_controller_libraries", status=1)
+
+
+def test_states_are_set(manager, capsys):
+    manager("unconfigured")
+    assert run(capsys, "set_controller_state", "positions", "inactive") == "Successfully configured positions\n"
+    said = run(capsys, "set_controller_state", "positions", "active", status=1)
+    assert said.endswith("cannot activate positions from its current state unconfigured\n")
+    manager("inactive")
+    assert run(capsys, "set_controller_state", "positions", "active") == "Successfully activated positions\n"
+    assert run(capsys, "cleanup_controller", "positions") == "Successfully cleaned up positions\n"
+    manager("active")
+    assert run(capsys, "set_controller_state", "positions", "inactive") == "Successfully deactivated positions\n"
+    said = run(capsys, "set_controller_state", "nobody", "inactive", status=1)
+    assert said.endswith("controller nobody does not seem to be loaded\n")
+
+
+def test_controllers_are_switched(manager, capsys):
+    manager("active")
+    words = ("switch_controllers", "--deactivate", "positions", "--strict")
+    assert run(capsys, *words) == "Successfully switched controllers\n"
+    said = run(capsys, "switch_controllers", "--activate", "nobody", "--strict", status=1)
+    assert said.endswith("Error switching controllers, check controller_manager logs\n")
+
+
+def test_hardware_is_led(manager, capsys):
+    manager("active")
+    said = run(capsys, "set_hardware_component_state", "arm", "inactive")
+    assert said.startswith("Successfully set arm to state lifecycle_msgs.msg.State(id=2, label='inactive')")
+    said = run(capsys, "set_hardware_component_state", "leg", "inactive", status=1)
+    assert said.endswith("component leg does not seem to be loaded\n")
+
+
+def test_chains_are_drawn(manager, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    manager("active")
+    assert run(capsys, "view_controller_chains").startswith("Saved controller diagram to")
+    text = (tmp_path / "controller_diagram.gv").read_text()
+    assert '"positions" -> "hw command_interfaces" [label="hip/position"];' in text
+
+
+def test_another_manager_is_asked(manager, capsys):
+    manager()
+    said = run(capsys, "list_controllers", "-c", "/robot/controller_manager", status=1)
+    assert "/robot/controller_manager/list_controllers" in said
