@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 from types import ModuleType
@@ -10,16 +11,22 @@ from typing import Any, get_type_hints
 
 import pytest
 
+from linkwright import extensions
 from linkwright.control.controllers.gripper_action_controller import EffortGripper, ParallelGripper, PositionGripper
 from linkwright.control.controllers.joint_trajectory_controller import JointTrajectoryController
 from linkwright.control.controllers.pid_controller import PidController
+from linkwright.control.controllers.registry import GROUP, controller_class
 from linkwright.control.controllers.sensor_broadcasters import (
     ForceTorqueBroadcaster,
     ImuBroadcaster,
     PoseBroadcaster,
     RangeBroadcaster,
 )
+from linkwright.control.manager.switching import STRICT
+from linkwright.diagnostics import LinkwrightError
 from linkwright.messages import get_message
+from linkwright.packages.readers.entry_points import in_pyproject
+from tests.control.robots import joint, manager, robot
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 PAGES = [DOCS / "control.md", DOCS / "zh" / "control.md"]
@@ -49,6 +56,49 @@ async def test_the_example_swings_a_joint(stand, page):
     await stand.step(controller, count=50)
     assert stand.commands["elbow/position"].value == pytest.approx(0.9)
     assert "'speed' is no parameter of this controller" in [str(each.text) for each in stand.log]
+
+
+@pytest.fixture
+def installed(tmp_path, monkeypatch):
+    """The package of the page's example, installed as the page says."""
+    text = PAGES[0].read_text("utf-8")
+    *_, code = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+    (declared,) = re.findall(r"```toml\n(.*?)```", text, re.DOTALL)
+    package, facts = tmp_path / "my_controllers", tmp_path / "my_controllers-1.0.dist-info"
+    package.mkdir()
+    facts.mkdir()
+    (package / "__init__.py").touch()
+    (package / "swing.py").write_text(code, encoding="utf-8")
+    lines = [f"[{GROUP}]", *in_pyproject(declared, GROUP), "my/Broken = nowhere:None"]
+    (facts / "entry_points.txt").write_text("\n".join(lines))
+    monkeypatch.syspath_prepend(str(tmp_path))
+    extensions._all_groups.cache_clear()
+    yield
+    monkeypatch.undo()
+    extensions._all_groups.cache_clear()
+    for name in ("my_controllers.swing", "my_controllers"):
+        sys.modules.pop(name, None)
+
+
+@pytest.mark.usefixtures("installed")
+async def test_a_manager_runs_the_controller_of_a_package(graph):
+    text = robot(joint("hip") + joint("knee"))
+    made = manager(graph, text, {"swing": {"type": "my_controllers/Swing"}}, swing={"joint": "hip", "frequency": 1.0})
+    assert made.load("swing")
+    assert made.configure("swing")
+    assert made.switch(["swing"], [], STRICT)[0]
+    for number in range(1, 26):
+        made.cycle(number * 10_000_000, 0.01)
+    assert made.resources.commands(["hip/position"])[0].value == pytest.approx(0.2)
+
+
+@pytest.mark.usefixtures("installed")
+def test_a_package_that_cannot_be_imported_is_told_of_by_its_name():
+    with pytest.raises(LinkwrightError) as raised:
+        controller_class("my/Broken")
+    (found,) = raised.value.diagnostics
+    assert found.code == "CTL104"
+    assert "my_controllers" in str(found.hint)
 
 
 def names(table: Any) -> set[str]:
