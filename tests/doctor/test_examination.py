@@ -16,6 +16,7 @@ from linkwright.doctor import (
     Observation,
     StampSeen,
     TransformSeen,
+    VelocitiesSeen,
     examine,
 )
 from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
@@ -279,6 +280,49 @@ def test_twist_against_twist_stamped():
         subscription("/diff_drive", "/cmd_vel", "geometry_msgs/msg/TwistStamped"),
     )
     assert "stamped:=true" in only(seen, "DOC202").hint
+
+
+TWIST = "geometry_msgs/msg/Twist"
+
+
+def test_velocities_that_nobody_takes():
+    found = only(more(WELL, publisher("/teleop", "/cmd_vel", TWIST)), "DOC207")
+    assert (
+        found.message == "'/teleop' publishes velocities on '/cmd_vel', and nobody subscribes to it, so nothing moves"
+    )
+    assert "running" in found.hint
+
+
+def test_velocities_that_somebody_takes_elsewhere():
+    seen = more(
+        WELL,
+        publisher("/teleop", "/cmd_vel", TWIST),
+        subscription("/drive", "/base/command", "geometry_msgs/msg/TwistStamped"),
+    )
+    assert only(seen, "DOC207").hint.endswith("-r /cmd_vel:=/base/command")
+
+
+@pytest.mark.parametrize(
+    "more_endpoints",
+    [
+        [publisher("/teleop", "/cmd_vel", TWIST), subscription("/drive", "/cmd_vel", TWIST)],
+        [publisher("/gps", "/vehicle/twist", TWIST)],
+    ],
+)
+def test_velocities_that_reach_somebody_or_command_nothing_are_well(more_endpoints):
+    assert examine(more(WELL, *more_endpoints)) == []
+
+
+def test_a_misspelt_command_is_told_once():
+    seen = more(WELL, publisher("/teleop", "/cmd_vel", TWIST), subscription("/drive", "/robot/cmd_vel", TWIST))
+    assert codes(seen) == ["DOC204"]
+
+
+def test_two_drivers_on_one_topic():
+    seen = more(WELL, publisher("/teleop", "/cmd_vel", TWIST), subscription("/drive", "/cmd_vel", TWIST))
+    found = only(replace(seen, velocities=(VelocitiesSeen("/cmd_vel", ("/planner", "/teleop")),)), "DOC208")
+    assert found.message == "two drivers on one topic: '/planner', '/teleop' publish velocities on '/cmd_vel'"
+    assert codes(replace(seen, velocities=(VelocitiesSeen("/cmd_vel", ("/teleop",)),))) == []
 
 
 def test_quality_of_service_that_does_not_match_names_policy_and_sides():

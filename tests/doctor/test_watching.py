@@ -71,3 +71,26 @@ async def test_an_endpoint_of_no_node_is_waited_for_no_longer_than_a_second(join
     seen = await seen_of(joined, Outside(TELEOP, LATE))
     assert seen.endpoints == (TELEOP, LATE)
     assert time.monotonic() - begun > 0.9
+
+
+async def test_who_sends_velocities_is_written_down(joined: Graph) -> None:
+    node, other = joined.create_node("keys"), joined.create_node("planner")
+    idle = joined.create_node("idle")
+    idle.create_publisher(TWIST, "/cmd_vel", 10)
+    publishers = [
+        each.create_publisher(kind, topic, 10)
+        for each, kind, topic in (
+            (node, TWIST, "/cmd_vel"),
+            (other, TWIST, "/cmd_vel"),
+            (node, TWIST_STAMPED, "/arm/cmd_vel"),
+        )
+    ]
+    watched = asyncio.ensure_future(seen_of(joined, Outside(), seconds=1.0))
+    while not watched.done():
+        for each in publishers:
+            each.publish(each.msg_type())
+        await asyncio.sleep(0.01)
+    assert [(each.topic, each.senders) for each in watched.result().velocities] == [
+        ("/arm/cmd_vel", ("/keys",)),
+        ("/cmd_vel", ("/keys", "/planner")),
+    ]

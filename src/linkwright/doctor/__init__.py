@@ -10,6 +10,7 @@ from linkwright.doctor.record import (
     Observation,
     StampSeen,
     TransformSeen,
+    VelocitiesSeen,
 )
 from linkwright.doctor.report import report
 from linkwright.doctor.watching import observe
@@ -22,6 +23,7 @@ __all__ = [
     "Observation",
     "StampSeen",
     "TransformSeen",
+    "VelocitiesSeen",
     "examine",
     "examine_parameter_files",
     "observe",

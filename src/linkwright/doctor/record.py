@@ -9,6 +9,7 @@ from linkwright.diagnostics import Phrase, phrase, quoted_names
 from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
 from linkwright.graph.names.rules import join
 
+TWIST, TWIST_STAMPED = "geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"
 UNKNOWN_NODE = "an unknown node"
 """The name of who sent something, where discovery does not tell."""
 
@@ -80,6 +81,19 @@ class StampSeen:
 
 
 @dataclass(frozen=True, slots=True)
+class VelocitiesSeen:
+    """The velocities on one topic.
+
+    Attributes:
+        topic: where they came, as Twist or TwistStamped.
+        senders: full names of the nodes that published them, sorted.
+    """
+
+    topic: str
+    senders: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class ClockSeen:
     """What ``/clock`` told.
 
@@ -119,6 +133,7 @@ class Observation:
         joints: what was published of joints.
         descriptions: the robot descriptions published.
         stamps: of topics whose messages have a header.
+        velocities: who published velocities.
         clock: what ``/clock`` told; None when it told nothing.
         sim_time: ``use_sim_time`` of the nodes that answered, by full name.
         lifecycle: states of the managed nodes, by full name.
@@ -133,6 +148,7 @@ class Observation:
     joints: tuple[JointSeen, ...] = ()
     descriptions: tuple[DescriptionSeen, ...] = ()
     stamps: tuple[StampSeen, ...] = ()
+    velocities: tuple[VelocitiesSeen, ...] = ()
     clock: ClockSeen | None = None
     sim_time: Mapping[str, bool] = field(default_factory=dict)
     lifecycle: Mapping[str, str] = field(default_factory=dict)

@@ -6,12 +6,14 @@ from collections import Counter
 from collections.abc import Iterator
 
 from linkwright.diagnostics import Diagnostic, Note, Phrase, Severity, nearest, phrase
-from linkwright.doctor.record import Observation, listed, node_of, nodes_of
+from linkwright.doctor.record import TWIST, TWIST_STAMPED, UNKNOWN_NODE, Observation, listed, node_of, nodes_of
 from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
 from linkwright.graph.qos.compatibility import incompatible_policies
 from linkwright.graph.qos.profile import QoSPolicyKind
 
-_TWIST, _TWIST_STAMPED = "geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"
+_COMMAND = "cmd_vel"
+"""The last part of the names of topics that velocities are commanded on; others may be for nobody yet."""
+_VELOCITIES = (TWIST, TWIST_STAMPED)
 _EVERYWHERE = frozenset({"/parameter_events", "/rosout", "/clock"})
 """Topics that nodes subscribe to whether or not somebody publishes them."""
 _MOST_DIFFERENT = 3
@@ -24,6 +26,8 @@ def examine_topics(seen: Observation) -> Iterator[Diagnostic]:
     yield from _types(seen)
     yield from _qos(seen)
     yield from _unpublished(seen)
+    yield from _unheard_commands(seen)
+    yield from _two_drivers(seen)
     yield from _unserved(seen)
 
 
@@ -49,7 +53,7 @@ def _types(seen: Observation) -> Iterator[Diagnostic]:
         if len(types) < 2:
             continue
         notes = tuple(note for name, endpoints in sorted(types.items()) for note in _who(endpoints, name))
-        if set(types) == {_TWIST, _TWIST_STAMPED}:
+        if set(types) == {TWIST, TWIST_STAMPED}:
             yield Diagnostic(
                 "DOC202",
                 phrase(
@@ -157,7 +161,8 @@ def _terms(endpoint: EndpointInfo, policy: QoSPolicyKind) -> str:
     return str(getattr(value, "name", value))
 
 
-def _unpublished(seen: Observation) -> Iterator[Diagnostic]:
+def _misnamed(seen: Observation) -> Iterator[tuple[str, str, list[EndpointInfo], str]]:
+    """Topics that nobody publishes, with type and subscriptions, and the published one that is probably meant."""
     published: dict[str, set[str]] = {}
     for endpoint in seen.of_kind(EndpointKind.PUBLISHER):
         published.setdefault(endpoint.name, set()).add(endpoint.type_name)
@@ -170,8 +175,12 @@ def _unpublished(seen: Observation) -> Iterator[Diagnostic]:
         # What somebody hears already is probably meant for them.
         unheard = [name for name, types in published.items() if type_name in types and name not in heard]
         like = _alike(topic, unheard)
-        if like is None:
-            continue
+        if like is not None:
+            yield topic, type_name, endpoints, like
+
+
+def _unpublished(seen: Observation) -> Iterator[Diagnostic]:
+    for topic, type_name, endpoints, like in _misnamed(seen):
         senders = nodes_of(seen.publishers_of(like))
         yield Diagnostic(
             "DOC204",
@@ -196,6 +205,59 @@ def _unpublished(seen: Observation) -> Iterator[Diagnostic]:
                 "if they are meant to meet, remap one of them: --ros-args -r {topic}:={like}", topic=topic, like=like
             ),
         )
+
+
+def _unheard_commands(seen: Observation) -> Iterator[Diagnostic]:
+    """Velocities that are meant to move something, and reach nobody."""
+    heard = {endpoint.name for endpoint in seen.of_kind(EndpointKind.SUBSCRIPTION)}
+    told = {like for _, _, _, like in _misnamed(seen)}
+    taking = {
+        endpoint.name for endpoint in seen.of_kind(EndpointKind.SUBSCRIPTION) if endpoint.type_name in _VELOCITIES
+    }
+    unheard: dict[str, list[EndpointInfo]] = {}
+    for endpoint in seen.of_kind(EndpointKind.PUBLISHER):
+        name = endpoint.name
+        if endpoint.type_name in _VELOCITIES and name.rpartition("/")[2] == _COMMAND and name not in heard | told:
+            unheard.setdefault(name, []).append(endpoint)
+    for topic, publishers in sorted(unheard.items()):
+        hint = (
+            phrase(
+                "velocities are taken on {topics}; remap one side: --ros-args -r {topic}:={other}",
+                topics=listed(sorted(taking)),
+                topic=topic,
+                other=min(taking),
+            )
+            if taking
+            else phrase("is the robot, its simulation or its controller running, and in the same ROS_DOMAIN_ID?")
+        )
+        yield Diagnostic(
+            "DOC207",
+            phrase(
+                "{nodes_of} publishes velocities on '{topic}', and nobody subscribes to it, so nothing moves",
+                nodes_of=listed(nodes_of(publishers)),
+                topic=topic,
+            ),
+            severity=Severity.WARNING,
+            hint=hint,
+        )
+
+
+def _two_drivers(seen: Observation) -> Iterator[Diagnostic]:
+    """Several nodes that sent velocities on one topic while it was looked."""
+    for velocities in seen.velocities:
+        drivers = [name for name in velocities.senders if name != UNKNOWN_NODE]
+        if len(drivers) > 1:
+            yield Diagnostic(
+                "DOC208",
+                phrase(
+                    "two drivers on one topic: {drivers} publish velocities on '{topic}'",
+                    drivers=listed(drivers),
+                    topic=velocities.topic,
+                ),
+                severity=Severity.WARNING,
+                notes=(Note(phrase("the robot obeys each message in turn, so it jerks between them")),),
+                hint=phrase("end one of them, or let twist_mux choose between them by priority"),
+            )
 
 
 def _alike(name: str, candidates: list[str]) -> str | None:

@@ -11,6 +11,8 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from linkwright.doctor.record import (
+    TWIST,
+    TWIST_STAMPED,
     UNKNOWN_NODE,
     ClockSeen,
     DescriptionSeen,
@@ -19,6 +21,7 @@ from linkwright.doctor.record import (
     Observation,
     StampSeen,
     TransformSeen,
+    VelocitiesSeen,
     node_of,
 )
 from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind, MessageInfo
@@ -91,6 +94,7 @@ async def observe(
         joints=watcher.joints(),
         descriptions=tuple(watcher.descriptions.values()),
         stamps=watcher.stamps_seen(sim_time),
+        velocities=watcher.velocities(),
         clock=watcher.clock,
         sim_time=sim_time,
         lifecycle=lifecycle,
@@ -109,6 +113,7 @@ class _Watcher:
         self._transforms: dict[tuple[str, str], tuple[set[str], bool, bool]] = {}
         self._joints: dict[str, tuple[set[str], set[str]]] = {}
         self._stamps: dict[tuple[str, str], tuple[int, int]] = {}
+        self._velocities: dict[str, set[str]] = {}
         self.descriptions: dict[tuple[str, str], DescriptionSeen] = {}
         self.clock: ClockSeen | None = None
 
@@ -156,8 +161,11 @@ class _Watcher:
             self._listen(endpoint, lambda message, info: self._on_description(topic, message, info))
         elif kind == _CLOCK and topic == "/clock":
             self._listen(endpoint, lambda message, _info: self._on_clock(message))
+        elif kind == TWIST:
+            self._listen(endpoint, lambda _data, info: self._on_velocity(topic, info), raw=True)
         elif _begins_with_header(kind):
-            self._listen(endpoint, lambda data, info: self._on_stamped(topic, data, info), raw=True)
+            driving = kind == TWIST_STAMPED
+            self._listen(endpoint, lambda data, info: self._on_stamped(topic, data, info, driving=driving), raw=True)
 
     def _listen(self, endpoint: EndpointInfo, callback: Any, *, raw: bool = False) -> None:
         """Subscribe so that every publisher matches; latched ones are asked for what they keep."""
@@ -215,7 +223,12 @@ class _Watcher:
             ClockSeen(1, now_ns, now_ns) if before is None else ClockSeen(before.ticks + 1, before.first_ns, now_ns)
         )
 
-    def _on_stamped(self, topic: str, data: bytes, info: MessageInfo) -> None:
+    def _on_velocity(self, topic: str, info: MessageInfo) -> None:
+        self._velocities.setdefault(topic, set()).add(self._sender(topic, info))
+
+    def _on_stamped(self, topic: str, data: bytes, info: MessageInfo, *, driving: bool) -> None:
+        if driving:
+            self._on_velocity(topic, info)
         seconds, nanoseconds = _STAMP[data[1] & 1].unpack_from(data, _CDR_HEADER)
         self._note_stamp(topic, self._sender(topic, info), seconds, nanoseconds)
 
@@ -236,6 +249,12 @@ class _Watcher:
         return tuple(
             JointSeen(name, tuple(sorted(senders)), tuple(sorted(topics)))
             for name, (senders, topics) in sorted(self._joints.items())
+        )
+
+    def velocities(self) -> tuple[VelocitiesSeen, ...]:
+        """Who published velocities, by topic."""
+        return tuple(
+            VelocitiesSeen(topic, tuple(sorted(senders))) for topic, senders in sorted(self._velocities.items())
         )
 
     def stamps_seen(self, sim_time: Mapping[str, bool]) -> tuple[StampSeen, ...]:
