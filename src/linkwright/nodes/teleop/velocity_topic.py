@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from linkwright.graph import EndpointInfo, EndpointKind, Node, Publisher
+from linkwright.graph import EndpointKind, Node, Publisher
 
 TWIST = "geometry_msgs/msg/Twist"
 TWIST_STAMPED = "geometry_msgs/msg/TwistStamped"
@@ -13,7 +13,7 @@ _DEPTH = 10
 
 
 class VelocityTopic:
-    """A topic of velocities.
+    """A topic of velocities; it is left alone where it carries something else.
 
     Args:
         node: who publishes.
@@ -21,6 +21,13 @@ class VelocityTopic:
         stamped: whether to publish TwistStamped; None to do what the subscribers of the topic do, and to publish Twist
             where there is none, or some of each.
         frame_id: the frame in the header of a TwistStamped.
+
+    Attributes:
+        name: its name in full.
+        foreign: a type that others have on the topic and that is neither; None where there is none.
+
+    Raises:
+        LinkwrightError: the name is none of a topic.
     """
 
     def __init__(self, node: Node, topic: str, stamped: bool | None = None, frame_id: str = "") -> None:
@@ -30,17 +37,13 @@ class VelocityTopic:
         self.frame_id = frame_id
         self._publisher: Publisher[Any] | None = None
         self.name = node.resolve_topic_name(topic)
+        self.foreign: str | None = None
         self.review()
 
     @property
     def type_name(self) -> str:
         """The type that is published now."""
         return self._publisher.type_name if self._publisher is not None else ""
-
-    def others(self) -> list[EndpointInfo]:
-        """Who else publishes on the topic or subscribes to it."""
-        own = None if self._publisher is None else self._publisher.gid
-        return [each for each in self._node.graph.endpoints() if each.name == self.name and each.gid != own]
 
     def review(self, *, may_change: bool = True) -> int:
         """Look which type the subscribers take, and take it too.
@@ -51,7 +54,14 @@ class VelocityTopic:
         Returns:
             How many subscribers take what is published.
         """
-        listeners = [each.type_name for each in self.others() if each.kind is EndpointKind.SUBSCRIPTION]
+        own = None if self._publisher is None else self._publisher.gid
+        others = [each for each in self._node.graph.endpoints() if each.name == self.name and each.gid != own]
+        self.foreign = min({each.type_name for each in others} - {TWIST, TWIST_STAMPED}, default=None)
+        if self.foreign is not None:
+            self.stop()
+            self.close()
+            return 0
+        listeners = [each.type_name for each in others if each.kind is EndpointKind.SUBSCRIPTION]
         kind = self._wanted(listeners)
         if self._publisher is None or (may_change and self._publisher.type_name != kind):
             self.close()

@@ -4,20 +4,16 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable
-from typing import Any
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.graph import EndpointKind, Node, Publisher
+from linkwright.graph import Node
+from linkwright.nodes.teleop.velocity_topic import VelocityTopic
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
 from linkwright.viewer.protocol.monitor import AimTeleop, Drive, TeleopState, TeleopTarget
 from linkwright.viewer.web.audience import Page
 
 _SILENCE = 0.4
 """Seconds without a word from a page that drives, after which the robot is stopped."""
-
-_DEPTH = 10
-_PACKAGE = "geometry_msgs/msg/"
-_PLAIN, _STAMPED = f"{_PACKAGE}Twist", f"{_PACKAGE}TwistStamped"
 
 
 class TeleopFeature(PageFeature):
@@ -66,85 +62,55 @@ class _Pad:
         self._node = node
         self._target = target
         self._tell = tell
-        self._publisher: Publisher[Any] | None = None
+        self._topic: VelocityTopic | None = None
         self._told: TeleopState | None = None
         self._silent: asyncio.TimerHandle | None = None
         self.review()
 
     def drive(self, velocity: Drive) -> None:
         """Publish a velocity, and stop unless another comes soon."""
-        if self._publisher is None or len(velocity.linear) != 3 or len(velocity.angular) != 3:
+        if self._topic is None or len(velocity.linear) != 3 or len(velocity.angular) != 3:
             return
         self._cancel()
-        self._publish(velocity.linear, velocity.angular)
+        self._topic.publish(velocity.linear, velocity.angular)
         if any(velocity.linear) or any(velocity.angular):
             self._silent = asyncio.get_running_loop().call_later(_SILENCE, self._stop)
 
     def close(self) -> None:
         """Stop, and leave the topic."""
         self._stop()
-        self._retire()
+        if self._topic is not None:
+            self._topic.close()
 
     def review(self) -> None:
         """Look which type the topic's subscribers have, and how many they are. A pad that drives keeps its own type."""
+        target = self._target
         try:
-            topic = self._node.resolve_topic_name(self._target.topic)
+            if self._topic is None:
+                stamped = None if target.kind == "auto" else target.kind == "TwistStamped"
+                self._topic = VelocityTopic(self._node, target.topic, stamped, target.frame_id)
+            listeners = self._topic.review(may_change=self._silent is None)
         except LinkwrightError as error:
-            self._say(TeleopState(self._target.topic, "", 0, error.diagnostics[0].message))
+            self._say(TeleopState(target.topic, "", 0, error.diagnostics[0].message))
             return
-        others = [
-            endpoint
-            for endpoint in self._node.graph.endpoints()
-            if endpoint.name == topic and (self._publisher is None or endpoint.gid != self._publisher.gid)
-        ]
-        listeners = [each.type_name for each in others if each.kind is EndpointKind.SUBSCRIPTION]
-        kind = self._kind(listeners)
-        foreign = sorted({each.type_name for each in others} - {_PLAIN, _STAMPED})
-        if foreign:
-            self._stop()
-            self._retire()
-            self._say(TeleopState(topic, "", 0, f"the topic carries {foreign[0]}"))
+        topic = self._topic
+        if topic.foreign is not None:
+            self._cancel()
+            self._say(TeleopState(topic.name, "", 0, f"the topic carries {topic.foreign}"))
             return
-        if self._silent is None and (self._publisher is None or self._publisher.type_name != kind):
-            self._retire()
-            self._publisher = self._node.create_publisher(kind, topic, _DEPTH)
-        kind = self._publisher.type_name if self._publisher is not None else kind
-        self._say(TeleopState(topic, kind.removeprefix(_PACKAGE), listeners.count(kind), None))
-
-    def _kind(self, listeners: list[str]) -> str:
-        if self._target.kind != "auto":
-            return f"{_PACKAGE}{self._target.kind}"
-        return _STAMPED if _STAMPED in listeners and _PLAIN not in listeners else _PLAIN
-
-    def _publish(self, linear: list[float], angular: list[float]) -> None:
-        publisher = self._publisher
-        if publisher is None:
-            return
-        message = publisher.msg_type()
-        twist = message
-        if publisher.type_name == _STAMPED:
-            message.header.stamp = self._node.get_clock().now().to_msg()
-            message.header.frame_id = self._target.frame_id
-            twist = message.twist
-        for vector, values in ((twist.linear, linear), (twist.angular, angular)):
-            vector.x, vector.y, vector.z = values
-        publisher.publish(message)
+        self._say(TeleopState(topic.name, topic.type_name.rpartition("/")[2], listeners, None))
 
     def _stop(self) -> None:
         """Publish zero, if something else was published last."""
         if self._silent is not None:
             self._cancel()
-            self._publish([0.0] * 3, [0.0] * 3)
+            if self._topic is not None:
+                self._topic.stop()
 
     def _cancel(self) -> None:
         if self._silent is not None:
             self._silent.cancel()
             self._silent = None
-
-    def _retire(self) -> None:
-        if self._publisher is not None:
-            self._node.destroy_publisher(self._publisher)
-            self._publisher = None
 
     def _say(self, state: TeleopState) -> None:
         if state != self._told:
