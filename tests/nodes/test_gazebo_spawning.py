@@ -13,6 +13,7 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.messages import get_service
 from linkwright.nodes import NodeOptions
 from linkwright.nodes.gazebo.create import Create
+from linkwright.nodes.gazebo.entities import DeleteEntity, Remove, SetEntityPose
 from linkwright.nodes.gazebo.spawn_entity import SpawnEntity, parse
 from tests.nodes.stage import Stage
 
@@ -24,7 +25,8 @@ class Simulator:
 
     Attributes:
         spawned: the requests for entities.
-        deleted: the names of those that were taken out.
+        deleted: the names of those that were to be taken out.
+        put: the states that were asked for.
         names: the models of the world.
         calls: other services that were called.
     """
@@ -32,12 +34,14 @@ class Simulator:
     def __init__(self, stage: Stage, namespace: str = "") -> None:
         self.spawned: list[Any] = []
         self.deleted: list[str] = []
+        self.put: list[Any] = []
         self.names = ["ground"]
         self.calls: list[str] = []
         self.refuses = False
         node = stage.graph.create_node("gazebo", namespace=namespace or "/")
         node.create_service(get_service("gazebo_msgs/srv/SpawnEntity"), "spawn_entity", self._spawn)
         node.create_service(get_service("gazebo_msgs/srv/DeleteEntity"), "delete_entity", self._delete)
+        node.create_service(get_service("gazebo_msgs/srv/SetEntityState"), "set_entity_state", self._put)
         node.create_service(get_service("gazebo_msgs/srv/GetModelList"), "get_model_list", self._list)
         node.create_service(get_service("std_srvs/srv/Empty"), "unpause_physics", self._unpause)
 
@@ -49,6 +53,12 @@ class Simulator:
 
     def _delete(self, request: Any, response: Any) -> Any:
         self.deleted.append(request.name)
+        response.success = request.name in self.names
+        return response
+
+    def _put(self, request: Any, response: Any) -> Any:
+        self.put.append(request.state)
+        response.success = request.state.name in self.names
         return response
 
     def _list(self, _: Any, response: Any) -> Any:
@@ -242,3 +252,44 @@ async def test_create_says_what_is_wrong(stage, words, code):
     with pytest.raises(LinkwrightError) as caught:
         create(stage, *words)
     assert caught.value.diagnostics[0].code == code
+
+
+@pytest.mark.parametrize(("name", "status"), [("ground", 0), ("nothing", 1)])
+async def test_remove_and_delete_entity_take_a_model_out_and_end(stage, name, status):
+    simulator = Simulator(stage)
+    remove = Remove(stage.graph, NodeOptions(parameters={"entity_name": name, "world": "any"}))
+    delete = DeleteEntity(stage.graph, NodeOptions(arguments=["--name", name]))
+    await stage.graph.settle()
+    assert (remove.finished.result(), delete.finished.result()) == (status, status)
+    assert simulator.deleted == [name, name]
+
+
+async def test_set_entity_pose_puts_a_model_elsewhere_and_ends(stage):
+    simulator = Simulator(stage)
+    words = ["--name", "ground", "--pos", "-1", "2", "3", "--euler", "0", "0", str(math.pi)]
+    turned = SetEntityPose(stage.graph, NodeOptions(arguments=words))
+    plain = SetEntityPose(
+        stage.graph, NodeOptions(arguments=["--name", "link", "--type", "2", "--quat", "1", "0", "0", "0"])
+    )
+    await stage.graph.settle()
+    assert (turned.finished.result(), plain.finished.result()) == (0, 1)
+    first, second = simulator.put
+    position = first.pose.position
+    assert (position.x, position.y, position.z) == (-1.0, 2.0, 3.0)
+    assert first.pose.orientation.z == pytest.approx(1.0)
+    assert (second.name, second.pose.orientation.x, second.pose.orientation.w) == ("link", 1.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("node", "words"),
+    [
+        (Remove, []),
+        (DeleteEntity, ["--id", "3"]),
+        (SetEntityPose, ["--name", "a", "--pos", "1"]),
+        (SetEntityPose, ["--name", "a", "--type", "5"]),
+    ],
+)
+async def test_programs_that_are_not_told_what_to_do_say_so(stage, node, words):
+    with pytest.raises(LinkwrightError) as error:
+        node(stage.graph, NodeOptions(arguments=words))
+    assert error.value.diagnostics[0].code == "NODE812"

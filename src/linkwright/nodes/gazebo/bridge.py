@@ -1,4 +1,4 @@
-"""parameter_bridge of ros_gz_bridge and image_bridge of ros_gz_image.
+"""parameter_bridge and static_bridge of ros_gz_bridge, and image_bridge of ros_gz_image.
 
 Topics of gz are topics of the graph here, with the names and types that they have after a bridge. So a bridge has work
 to do only where the two sides have different names or types: it hands messages on from one to the other.
@@ -170,6 +170,16 @@ class ParameterBridge(_Bridge):
             topics = [topic_of_word(word) for word in words]
             topics += topics_of_file(path) if path else []
             self._connect(graph, topics)
+
+
+class StaticBridge(_Bridge):
+    """The running bridge for ``chatter``, the topic of texts in examples."""
+
+    DEFAULT_NAME = "ros_gz_bridge"
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
+        self._connect(graph, [BridgedTopic("chatter", "chatter", "std_msgs/msg/String", "gz.msgs.StringMsg")])
 
 
 class ImageBridge(_Bridge):

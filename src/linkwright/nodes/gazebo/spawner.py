@@ -1,4 +1,4 @@
-"""What spawn_entity.py of gazebo_ros and create of ros_gz_sim share: asking for a description, and spawning it."""
+"""What programs share that ask a simulator: spawn_entity.py of gazebo_ros and create of ros_gz_sim above all."""
 
 from __future__ import annotations
 
@@ -53,48 +53,26 @@ def spawn_request(entity: Entity, text: str) -> Any:
     return request
 
 
-class EntitySpawner(SingleNode):
-    """A node that spawns one entity and ends; its status is 1 where that was not done.
+class SimulatorClient(SingleNode):
+    """A node that asks the simulator for something and ends; its status is 1 where that was not done.
 
-    Derived classes make `_node`, and call `_prepare` and one of the ways to a description.
+    Derived classes make `_node` and call `_connect`.
     """
 
     finished: asyncio.Future[int]
-    _entity: Entity
 
-    def _prepare(
-        self, node: Node, entity: Entity, *, service_namespace: str = "", timeout: float | None = None
-    ) -> None:
-        """Say what is to be spawned.
+    def _connect(self, node: Node, *, service_namespace: str = "", timeout: float | None = None) -> None:
+        """Say who asks whom.
 
         Args:
             node: the node.
-            entity: what to spawn.
             service_namespace: where the simulator's services are.
             timeout: seconds to wait for the service at most, on the clock of the machine; None for any time.
         """
         self._node = node
-        self._entity = entity
         self._timeout = timeout
         self._service_namespace = service_namespace.rstrip("/")
-        self._described = False
         self.finished = asyncio.get_running_loop().create_future()
-
-    # --- ways to a description ------------------------------------------------------------------------------------
-
-    def _wait_for(self, topic: str) -> None:
-        """Take the description that is published on a topic, or was before."""
-        self._say(f"Waiting for entity xml on {topic}")
-        self._node.create_subscription(String, topic, lambda message: self._spawn(message.data), DESCRIPTION_QOS)
-
-    # --- the request ----------------------------------------------------------------------------------------------
-
-    def _spawn(self, text: str) -> None:
-        """Spawn a description as soon as the simulator is there; only the first one counts."""
-        if self._described:
-            return
-        self._described = True
-        self._ask(SPAWN_SERVICE, "spawn_entity", spawn_request(self._entity, text), self._answered)
 
     def _ask(self, kind: str, name: str, request: Any, then: Callable[[Any], None]) -> None:
         """Call a service of the simulator; what answers is given to a function."""
@@ -118,6 +96,50 @@ class EntitySpawner(SingleNode):
 
         timer = self._node.create_timer(self._timeout, look, clock=steady)
 
+    def _say(self, text: str) -> None:
+        self._node.get_logger().info(text)
+
+    def _fail(self, text: str) -> None:
+        self._node.get_logger().error(text)
+        self._end(1)
+
+    def _end(self, status: int) -> None:
+        if not self.finished.done():
+            self.finished.set_result(status)
+
+
+class EntitySpawner(SimulatorClient):
+    """A node that spawns one entity and ends.
+
+    Derived classes make `_node`, and call `_prepare` and one of the ways to a description.
+    """
+
+    _entity: Entity
+
+    def _prepare(
+        self, node: Node, entity: Entity, *, service_namespace: str = "", timeout: float | None = None
+    ) -> None:
+        """Say what is to be spawned, and the rest as for `_connect`."""
+        self._connect(node, service_namespace=service_namespace, timeout=timeout)
+        self._entity = entity
+        self._described = False
+
+    # --- ways to a description ------------------------------------------------------------------------------------
+
+    def _wait_for(self, topic: str) -> None:
+        """Take the description that is published on a topic, or was before."""
+        self._say(f"Waiting for entity xml on {topic}")
+        self._node.create_subscription(String, topic, lambda message: self._spawn(message.data), DESCRIPTION_QOS)
+
+    # --- the request ----------------------------------------------------------------------------------------------
+
+    def _spawn(self, text: str) -> None:
+        """Spawn a description as soon as the simulator is there; only the first one counts."""
+        if self._described:
+            return
+        self._described = True
+        self._ask(SPAWN_SERVICE, "spawn_entity", spawn_request(self._entity, text), self._answered)
+
     def _ask_for_names(self, then: Callable[[list[str]], None]) -> None:
         """Ask which models the world has."""
         self._ask(_LIST, "get_model_list", get_service(_LIST).Request(), lambda answer: then(list(answer.model_names)))
@@ -132,17 +154,6 @@ class EntitySpawner(SingleNode):
     def _spawned(self) -> None:
         """The entity is in the world."""
         self._end(0)
-
-    def _say(self, text: str) -> None:
-        self._node.get_logger().info(text)
-
-    def _fail(self, text: str) -> None:
-        self._node.get_logger().error(text)
-        self._end(1)
-
-    def _end(self, status: int) -> None:
-        if not self.finished.done():
-            self.finished.set_result(status)
 
 
 def text_at(address: str) -> str:

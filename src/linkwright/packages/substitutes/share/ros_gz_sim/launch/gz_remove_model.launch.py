@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A model that is taken out of the world, with the arguments of ros_gz_sim's file of this name."""
+
+from launch.actions import DeclareLaunchArgument
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node
+
+from launch import LaunchDescription
+
+ARGUMENTS = {"world": "The world's name", "entity_name": "The model's name"}
+
+
+def generate_launch_description():
+    """Return the node that takes it out."""
+    arguments = [
+        DeclareLaunchArgument(name, default_value="", description=description)
+        for name, description in ARGUMENTS.items()
+    ]
+    parameters = {name: LaunchConfiguration(name) for name in ARGUMENTS}
+    remove = Node(package="ros_gz_sim", executable="remove", output="screen", parameters=[parameters])
+    return LaunchDescription([*arguments, remove])
