@@ -64,6 +64,15 @@ def test_a_part_that_stands_relative_to_nothing_stands_in_its_link():
     assert model.geom("m::l::c#collision").pos.tolist() == [0, 0, 0.25]
 
 
+def test_a_link_as_light_as_dust_moves():
+    tensor = "<ixx>1e-20</ixx><iyy>1e-20</iyy><izz>1e-20</izz>"
+    inertial = f"<inertial><mass>1e-5</mass><inertia>{tensor}</inertia></inertial>"
+    simulation = begun(f'<model name="m"><pose>0 0 5 0 0 0</pose><link name="l">{inertial}</link></model>')
+    assert told(simulation) == []
+    simulation.advance(100_000_000)
+    assert simulation.model_pose("m")[2] < 5.0
+
+
 def test_a_time_step_of_nothing_is_a_millisecond():
     simulation = begun(CRATE, "<physics type='ode'><max_step_size>0</max_step_size></physics>")
     assert simulation.step == 1_000_000

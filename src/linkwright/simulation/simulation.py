@@ -164,6 +164,10 @@ class Simulation:
         """Positions or velocities of `data` have been set: work out what depends on them when it is asked for."""
         self._current = False
 
+    def set_altered(self) -> None:
+        """The specification of `scene` has been changed: MuJoCo is given it when it is needed."""
+        self._changed = True
+
     def free_links(self, name: str) -> list[str]:
         """The links of a model that move by themselves, fixed to nothing.
 

@@ -1,25 +1,31 @@
 """What models, links and joints are made of, asked by services: ``libgazebo_ros_properties.so``.
 
-Source: gazebo_ros_pkgs for ROS 2 (services and their answers). Of what it sets, gravity can be set here; of the
-settings of the physics engine ODE, which is not here, nothing is told.
+Source: gazebo_ros_pkgs for ROS 2 (services and their answers). What only the physics engine ODE has is neither told nor
+set. Lights are neither.
 """
 
 from __future__ import annotations
 
+from math import inf
 from typing import Any
 
 import numpy as np
 
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+from linkwright.geometry.validity import TOLERANCE, is_positive_definite, triangle_excess
 from linkwright.messages import Vector3
 from linkwright.sdf.poses import SEPARATOR
 from linkwright.sdf.worlds import physics_of
 from linkwright.simulation.plugins.entities import Entities, answered, numbers, pose_message
 from linkwright.simulation.plugins.parameters import NoParameters
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
+from linkwright.simulation.scene.bodies import set_first
 from linkwright.simulation.simulation import NANOSECONDS
 
 _TYPES = {"revolute": 0, "continuous": 1, "prismatic": 2, "fixed": 3, "ball": 4, "universal": 5}
 """Those of GetJointProperties."""
+_FAR = 1e9
+"""In rad (m): a limit that no joint reaches."""
 
 
 class ClassicProperties(SimulatedPlugin[NoParameters]):
@@ -32,6 +38,8 @@ class ClassicProperties(SimulatedPlugin[NoParameters]):
             ("GetModelProperties", self._model),
             ("GetLinkProperties", self._link),
             ("GetJointProperties", self._joint),
+            ("SetLinkProperties", self._set_link),
+            ("SetJointProperties", self._set_joint),
             ("GetPhysicsProperties", self._physics),
             ("SetPhysicsProperties", self._set_physics),
         ):
@@ -81,6 +89,40 @@ class ClassicProperties(SimulatedPlugin[NoParameters]):
 
         return answered(response, tell)
 
+    def _set_link(self, request: Any, response: Any) -> Any:
+        def put() -> str:
+            link = self._entities.link(request.link_name)
+            moments = (request.ixx, request.iyy, request.izz, request.ixy, request.ixz, request.iyz)
+            if not (0.0 < request.mass < inf and _is_possible(*moments)):
+                raise LinkwrightError(Diagnostic("SIM111", phrase("no body has such a mass or inertia")))
+            centre = numbers(request.com.position)
+            body = self.simulation.scene.spec.body(link)
+            body.explicitinertial, body.mass, body.ipos = True, request.mass, list(centre)
+            body.fullinertia, body.gravcomp = list(moments), 0.0 if request.gravity_mode else 1.0
+            self.simulation.set_altered()
+            return "SetLinkProperties: properties set"
+
+        return answered(response, put)
+
+    def _set_joint(self, request: Any, response: Any) -> Any:
+        """Set damping and limits of the first axis; the rest is ODE's own."""
+
+        def put() -> str:
+            self.simulation.refresh()
+            placed = self.simulation.scene.joints[self._entities.joint(request.joint_name)]
+            said = request.ode_joint_config
+            joint, now = self.simulation.scene.spec.joint(placed.name), self.simulation.model.joint(placed.name)
+            lower, upper = now.range.tolist() if self.simulation.model.jnt_limited[now.id] else (-_FAR, _FAR)
+            if len(said.lo_stop) or len(said.hi_stop):
+                joint.range = [next(iter(said.lo_stop), lower), next(iter(said.hi_stop), upper)]
+                joint.limited = True
+            if len(said.damping):
+                set_first(joint, "damping", said.damping[0])
+            self.simulation.set_altered()
+            return "SetJointProperties: properties set"
+
+        return answered(response, put)
+
     def _physics(self, _: Any, response: Any) -> Any:
         self.simulation.refresh()
         response.time_step = self.simulation.step / NANOSECONDS
@@ -93,3 +135,9 @@ class ClassicProperties(SimulatedPlugin[NoParameters]):
         self.simulation.set_gravity(numbers(request.gravity))
         response.success, response.status_message = True, "gravity is set, nothing else"
         return response
+
+
+def _is_possible(ixx: float, iyy: float, izz: float, ixy: float, ixz: float, iyz: float) -> bool:
+    """Whether a body can have this inertia."""
+    tensor = np.array([[ixx, ixy, ixz], [ixy, iyy, iyz], [ixz, iyz, izz]])
+    return bool(np.isfinite(tensor).all()) and is_positive_definite(tensor) and triangle_excess(tensor) <= TOLERANCE

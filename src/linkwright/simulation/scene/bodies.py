@@ -40,6 +40,8 @@ _LEAST_MASS = 1e-6
 """In kg: MuJoCo moves nothing that has no mass."""
 _LEAST_INERTIA = 1e-9
 """In kg m2."""
+_LEAST_MOMENT = 1e-12
+"""In kg m2: MuJoCo takes a moment of inertia of less than 1e-14 for none."""
 _USUAL_INERTIAL = Inertial()
 _WATER = 1000.0
 """The density of what says nothing of its own, in kg/m3."""
@@ -102,6 +104,9 @@ class BodyWriter:
             self._warn("SIM111", message, inertial.element or link.element)
         elif excess > -_FLAT:  # of flat bodies MuJoCo would take the mean for a rounding
             tensor = tensor + np.eye(3) * np.trace(tensor) / 2 * (max(excess, 0.0) + _FLAT)
+        least = float(np.linalg.eigvalsh(tensor)[0])
+        if least < _LEAST_MOMENT:
+            tensor = tensor + np.eye(3) * (_LEAST_MOMENT - least)
         body.explicitinertial = True
         body.mass = mass
         body.ipos = list(placed[:3])
@@ -146,8 +151,8 @@ class BodyWriter:
         joint.actfrclimited = isfinite(limit.effort) and limit.effort > 0
         if joint.actfrclimited:
             joint.actfrcrange = [-limit.effort, limit.effort]
-        _set_first(joint, "damping", max(dynamics.damping, 0.0))
-        _set_first(joint, "stiffness", max(dynamics.spring_stiffness, 0.0))
+        set_first(joint, "damping", max(dynamics.damping, 0.0))
+        set_first(joint, "stiffness", max(dynamics.spring_stiffness, 0.0))
         joint.springref = dynamics.spring_reference
         joint.frictionloss = max(dynamics.friction, 0.0)
 
@@ -226,7 +231,7 @@ def _colour(visual: Visual) -> list[float]:
     return [min(max(each, 0.0), 1.0) for each in (red, green, blue, alpha * (1.0 - visual.transparency))]
 
 
-def _set_first(thing: Any, name: str, value: float) -> None:
+def set_first(thing: Any, name: str, value: float) -> None:
     """Set a coefficient; of some MuJoCo has a polynomial since version 4, whose first term is what it had before."""
     held = getattr(thing, name)
     if np.ndim(held):
