@@ -257,7 +257,7 @@ def _numbers(node: Node, name: str, lengths: tuple[int, ...]) -> list[float] | N
     given = node.get_parameter_or(name, Parameter(name)).value
     if given is None:
         return None
-    _check_length(name, len(given), lengths)
+    check_length(name, len(given), lengths)
     return [float(each) for each in given]
 
 
@@ -266,11 +266,16 @@ def _flags(node: Node, name: str, length: int) -> Used | None:
     given = node.get_parameter_or(name, Parameter(name)).value
     if given is None:
         return None
-    _check_length(name, len(given), (length,))
+    check_length(name, len(given), (length,))
     return tuple(bool(each) for each in given)
 
 
-def _check_length(name: str, length: int, lengths: tuple[int, ...]) -> None:
+def check_length(name: str, length: int, lengths: tuple[int, ...]) -> None:
+    """See that a parameter has as many values as it must.
+
+    Raises:
+        LinkwrightError: NODE441, it has not.
+    """
     if length not in lengths:
         known = " / ".join(str(each) for each in lengths)
         told = phrase(

@@ -1,0 +1,158 @@
+"""Places on the earth as metres: UTM, and a plane that touches the ellipsoid. Degrees are those of WGS 84.
+
+Sources: L. Krüger 1912 for the transverse Mercator projection, with the coefficients of C. Karney, "Transverse Mercator
+with an accuracy of a few nanometers", 2011, to the fourth order, which leaves far less than a millimetre within a zone;
+EPSG Guidance Note 7-2 for the zones, false origins and the plane.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import asinh, atan, atan2, atanh, cos, cosh, degrees, floor, hypot, radians, sin, sinh, sqrt, tan
+from typing import NamedTuple
+
+from linkwright.geometry.vectors import Vector3
+
+_RADIUS = 6378137.0
+_FLATTENING = 1.0 / 298.257223563
+_ECCENTRICITY_SQUARED = _FLATTENING * (2.0 - _FLATTENING)
+_ECCENTRICITY = sqrt(_ECCENTRICITY_SQUARED)
+_N = _FLATTENING / (2.0 - _FLATTENING)
+_SCALE, _FALSE_EASTING, _FALSE_NORTHING = 0.9996, 500000.0, 10000000.0
+_RECTIFYING = _RADIUS / (1.0 + _N) * (1.0 + _N**2 / 4.0 + _N**4 / 64.0)
+_FORWARD = (
+    _N / 2.0 - 2.0 * _N**2 / 3.0 + 5.0 * _N**3 / 16.0 + 41.0 * _N**4 / 180.0,
+    13.0 * _N**2 / 48.0 - 3.0 * _N**3 / 5.0 + 557.0 * _N**4 / 1440.0,
+    61.0 * _N**3 / 240.0 - 103.0 * _N**4 / 140.0,
+    49561.0 * _N**4 / 161280.0,
+)
+_BACKWARD = (
+    _N / 2.0 - 2.0 * _N**2 / 3.0 + 37.0 * _N**3 / 96.0 - _N**4 / 360.0,
+    _N**2 / 48.0 + _N**3 / 15.0 - 437.0 * _N**4 / 1440.0,
+    17.0 * _N**3 / 480.0 - 37.0 * _N**4 / 840.0,
+    4397.0 * _N**4 / 161280.0,
+)
+_ROUNDS = 6
+"""So often a latitude is refined; the error shrinks by hundreds each time."""
+
+
+class Zone(NamedTuple):
+    """A zone of UTM, 1 to 60, on the northern or the southern half of the earth."""
+
+    number: int
+    northern: bool
+
+    @property
+    def meridian(self) -> float:
+        """The longitude of its middle, rad."""
+        return radians(6.0 * self.number - 183.0)
+
+
+def zone_of(latitude: float, longitude: float) -> Zone:
+    """The zone of a place in degrees, with the wider ones of Norway and Svalbard."""
+    longitude = (longitude + 180.0) % 360.0 - 180.0
+    number = floor((longitude + 180.0) / 6.0) + 1
+    if 56.0 <= latitude < 64.0 and 3.0 <= longitude < 12.0:
+        number = 32
+    elif 72.0 <= latitude <= 84.0 and 0.0 <= longitude < 42.0:
+        number = 31 + 2 * int((longitude + 3.0) // 12.0)
+    return Zone(number, latitude >= 0.0)
+
+
+def utm_of(latitude: float, longitude: float, zone: Zone) -> tuple[float, float]:
+    """Easting and northing in metres of a place in degrees."""
+    tau = tan(radians(latitude))
+    sigma = sinh(_ECCENTRICITY * atanh(_ECCENTRICITY * tau / hypot(1.0, tau)))
+    conformal = tau * hypot(1.0, sigma) - sigma * hypot(1.0, tau)
+    offset = radians(longitude) - zone.meridian
+    xi = atan2(conformal, cos(offset))
+    eta = asinh(sin(offset) / hypot(conformal, cos(offset)))
+    north, east = xi, eta
+    for order, factor in enumerate(_FORWARD, 1):
+        north += factor * sin(2 * order * xi) * cosh(2 * order * eta)
+        east += factor * cos(2 * order * xi) * sinh(2 * order * eta)
+    false_northing = 0.0 if zone.northern else _FALSE_NORTHING
+    return _FALSE_EASTING + _SCALE * _RECTIFYING * east, false_northing + _SCALE * _RECTIFYING * north
+
+
+def degrees_of_utm(easting: float, northing: float, zone: Zone) -> tuple[float, float]:
+    """Latitude and longitude in degrees of a place in metres; the way back of `utm_of`."""
+    north = (northing - (0.0 if zone.northern else _FALSE_NORTHING)) / (_SCALE * _RECTIFYING)
+    east = (easting - _FALSE_EASTING) / (_SCALE * _RECTIFYING)
+    xi, eta = north, east
+    for order, factor in enumerate(_BACKWARD, 1):
+        xi -= factor * sin(2 * order * north) * cosh(2 * order * east)
+        eta -= factor * cos(2 * order * north) * sinh(2 * order * east)
+    wanted = sin(xi) / hypot(sinh(eta), cos(xi))
+    tau = wanted / (1.0 - _ECCENTRICITY_SQUARED)
+    for _ in range(_ROUNDS):
+        sigma = sinh(_ECCENTRICITY * atanh(_ECCENTRICITY * tau / hypot(1.0, tau)))
+        conformal = tau * hypot(1.0, sigma) - sigma * hypot(1.0, tau)
+        slope = (1.0 + (1.0 - _ECCENTRICITY_SQUARED) * tau * tau) / (1.0 - _ECCENTRICITY_SQUARED)
+        tau += (wanted - conformal) / hypot(1.0, conformal) * slope / hypot(1.0, tau)
+    longitude = degrees(zone.meridian + atan2(sinh(eta), cos(xi)))
+    return degrees(atan(tau)), (longitude + 180.0) % 360.0 - 180.0
+
+
+def convergence(latitude: float, longitude: float, zone: Zone) -> float:
+    """By which angle in rad, clockwise, the north of the grid differs from that of a place in degrees."""
+    return atan(tan(radians(longitude) - zone.meridian) * sin(radians(latitude)))
+
+
+@dataclass(frozen=True, slots=True)
+class TangentPlane:
+    """A plane that touches the ellipsoid, whose x, y and z point to the east, north and up.
+
+    Args:
+        latitude: of its origin, degrees.
+        longitude: of its origin, degrees.
+        altitude: of its origin above the ellipsoid, metres.
+    """
+
+    latitude: float
+    longitude: float
+    altitude: float
+
+    def point_of(self, latitude: float, longitude: float, altitude: float) -> Vector3:
+        """A place in degrees and metres above the ellipsoid, as a point in metres."""
+        x, y, z = _geocentric(latitude, longitude, altitude)
+        ox, oy, oz = _geocentric(self.latitude, self.longitude, self.altitude)
+        east, north, up = self._axes()
+        apart = (x - ox, y - oy, z - oz)
+        return _dot(east, apart), _dot(north, apart), _dot(up, apart)
+
+    def place_of(self, point: Vector3) -> Vector3:
+        """A point in metres as latitude and longitude in degrees and altitude in metres."""
+        ox, oy, oz = _geocentric(self.latitude, self.longitude, self.altitude)
+        axes = self._axes()
+        x, y, z = (sum(axis[each] * along for axis, along in zip(axes, point, strict=True)) for each in range(3))
+        return _geodetic(ox + x, oy + y, oz + z)
+
+    def _axes(self) -> tuple[Vector3, Vector3, Vector3]:
+        phi, lam = radians(self.latitude), radians(self.longitude)
+        return (
+            (-sin(lam), cos(lam), 0.0),
+            (-sin(phi) * cos(lam), -sin(phi) * sin(lam), cos(phi)),
+            (cos(phi) * cos(lam), cos(phi) * sin(lam), sin(phi)),
+        )
+
+
+def _geocentric(latitude: float, longitude: float, altitude: float) -> Vector3:
+    phi, lam = radians(latitude), radians(longitude)
+    radius = _RADIUS / sqrt(1.0 - _ECCENTRICITY_SQUARED * sin(phi) ** 2)
+    level = (radius + altitude) * cos(phi)
+    return level * cos(lam), level * sin(lam), (radius * (1.0 - _ECCENTRICITY_SQUARED) + altitude) * sin(phi)
+
+
+def _geodetic(x: float, y: float, z: float) -> Vector3:
+    level = hypot(x, y)
+    phi, altitude = atan2(z, level * (1.0 - _ECCENTRICITY_SQUARED)), 0.0
+    for _ in range(_ROUNDS):
+        radius = _RADIUS / sqrt(1.0 - _ECCENTRICITY_SQUARED * sin(phi) ** 2)
+        altitude = level * cos(phi) + z * sin(phi) - _RADIUS * sqrt(1.0 - _ECCENTRICITY_SQUARED * sin(phi) ** 2)
+        phi = atan2(z, level * (1.0 - _ECCENTRICITY_SQUARED * radius / (radius + altitude)))
+    return degrees(phi), degrees(atan2(y, x)), altitude
+
+
+def _dot(first: Vector3, second: Vector3) -> float:
+    return first[0] * second[0] + first[1] * second[1] + first[2] * second[2]
