@@ -52,8 +52,7 @@ def wrapped(angle: float) -> float:
 
 def wrap_angles(state: Vector) -> None:
     """Bring roll, pitch and yaw of a state between -pi and pi, in place."""
-    for index in (State.ROLL, State.PITCH, State.YAW):
-        state[index] = wrapped(float(state[index]))
+    state[ANGLES] = [wrapped(angle) for angle in state[ANGLES].tolist()]
 
 
 def rotation(roll: float, pitch: float, yaw: float) -> Matrix:
@@ -70,7 +69,7 @@ def rotation(roll: float, pitch: float, yaw: float) -> Matrix:
 
 def predicted(state: Vector, seconds: float) -> Vector:
     """The state some seconds later; a new array, shape (15,), its angles between -pi and pi."""
-    turn, angle_rates = rotation(*state[ANGLES]), _angle_rates(state)
+    turn, angle_rates = rotation(*state[ANGLES].tolist()), _angle_rates(state)
     later = state.copy()
     later[POSITION] += turn @ _shift(state, seconds)
     later[ANGLES] += angle_rates @ state[RATES] * seconds
@@ -81,7 +80,7 @@ def predicted(state: Vector, seconds: float) -> Vector:
 
 def derivatives(state: Vector, seconds: float) -> Matrix:
     """The derivatives of `predicted` by the state, shape (15, 15)."""
-    roll, pitch, yaw = state[ANGLES]
+    roll, pitch, yaw = state[ANGLES].tolist()
     turn, angle_rates = rotation(roll, pitch, yaw), _angle_rates(state)
     jacobian = np.eye(SIZE)
     jacobian[POSITION, VELOCITY] = turn * seconds
@@ -92,12 +91,13 @@ def derivatives(state: Vector, seconds: float) -> Matrix:
     # Turning the body a little about an axis moves a point of it by the cross product of the axis with the point.
     shift = _shift(state, seconds)
     moved = turn @ shift
-    jacobian[POSITION, State.ROLL] = turn @ (0.0, -shift[2], shift[1])
-    jacobian[POSITION, State.PITCH] = np.cross((-sin(yaw), cos(yaw), 0.0), moved)
-    jacobian[POSITION, State.YAW] = (-moved[1], moved[0], 0.0)
+    mx, my, mz = moved.tolist()
+    jacobian[POSITION, State.ROLL] = turn[:, 2] * shift[1] - turn[:, 1] * shift[2]
+    jacobian[POSITION, State.PITCH] = (cos(yaw) * mz, sin(yaw) * mz, -sin(yaw) * my - cos(yaw) * mx)
+    jacobian[POSITION, State.YAW] = (-my, mx, 0.0)
 
     sr, cr, sp, cp = sin(roll), cos(roll), sin(pitch), cos(pitch)
-    _, pitch_rate, yaw_rate = state[RATES] * seconds
+    _, pitch_rate, yaw_rate = (state[RATES] * seconds).tolist()
     across, along = cr * pitch_rate - sr * yaw_rate, sr * pitch_rate + cr * yaw_rate
     jacobian[State.ROLL, State.ROLL] += across * sp / cp
     jacobian[State.PITCH, State.ROLL] = -along

@@ -157,7 +157,9 @@ def read_twist(
     turn = rotation_matrix(mounting[3:])
     both = _twice(turn)
     reading = _empty()
-    reading.values[VELOCITY] = turn @ linear + np.cross(mounting[:3], rates)
+    x, y, z = mounting[:3]
+    roll, pitch, yaw = rates.tolist()
+    reading.values[VELOCITY] = turn @ linear + (y * yaw - z * pitch, z * roll - x * yaw, x * pitch - y * roll)
     reading.values[RATES] = turn @ angular
     reading.covariance[TWIST, TWIST] = both @ covariance @ both.T
     mask = (*([False] * 6), *_turned(used, turn, VELOCITY), *_turned(used, turn, RATES), *([False] * 3))
