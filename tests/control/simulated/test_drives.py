@@ -196,3 +196,9 @@ async def test_a_robot_stops_when_commands_stop(robot, tmp_path):
         await drive.go_on(0.5)
         assert 0.0 < stopped.x - moving.x < 0.1
         assert drive.truth.x == pytest.approx(stopped.x, abs=1e-3)
+
+
+async def test_the_wheels_of_a_robot_cost_one_new_model_together(tmp_path):
+    """MuJoCo's model is made anew for motors; many robots would begin slowly if each wheel were to need one."""
+    async with driven(DIFFERENTIAL, tmp_path) as drive:
+        assert drive.server.simulation.revision <= 1

@@ -67,8 +67,8 @@ class SimulatedJoint:
 
     def set_mode(self, kind: str) -> None:
         """Be commanded by the interface of a kind from now on; by none if it is empty."""
-        self._mode = kind
-        if self._motor is not None:
+        before, self._mode = self._mode, kind
+        if before == VELOCITY and self._motor is not None:  # else it holds 0 already, and to say so costs a new model
             self._motor.target = 0.0
         if EFFORT in self._commands:
             self._simulation.push_joint(self._name, 0.0)
