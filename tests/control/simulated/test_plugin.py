@@ -8,7 +8,7 @@ from linkwright.graph import DESCRIPTION_QOS
 from linkwright.messages import String, get_service
 from linkwright.testing import Recording
 from tests.simulation.test_plugins import SECOND, robot, served
-from tests.simulation.worlds import GROUND
+from tests.simulation.worlds import GROUND, model
 
 FILE = """
 controller_manager:
@@ -211,3 +211,31 @@ async def test_the_manager_goes_with_its_robot(file):
         server.delete("mbot")
         await world.go_on(0.1)
         assert graph.node_names() == ["/audience", "/gazebo"]
+
+
+async def test_controllers_go_on_when_the_model_is_changed(file):
+    text = controlled(file)
+    async with served(GROUND, text) as (server, graph, _):
+        world = Controlled(server, graph)
+        await world.describe(description(wheel("left_joint") + wheel("right_joint")))
+        await world.start("broadcaster", "wheels")
+        heavier = text.replace("<mass>", "<mass>1", 1)
+        server.renew(model(heavier), "mbot")
+        await world.go_on(0.1)
+        listed = (await world.ask("list_controllers")).controller
+        assert {each.name: each.state for each in listed} == {"broadcaster": "active", "wheels": "active"}
+        await world.command(2.0, 2.0)
+        await world.go_on(1.0)
+        assert server.simulation.joint_state("mbot::left_joint")[1] == pytest.approx(2.0, abs=0.05)
+
+
+async def test_a_robot_that_comes_anew_has_no_controllers_yet(file):
+    text = controlled(file)
+    async with served(GROUND, text) as (server, graph, _):
+        world = Controlled(server, graph)
+        await world.describe(description(wheel("left_joint") + wheel("right_joint")))
+        await world.start("wheels")
+        server.delete("mbot")
+        server.spawn(model(text), "mbot")
+        await world.go_on(0.1)
+        assert (await world.ask("list_controllers")).controller == []

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import traceback
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
 from math import nan
 from typing import Any
 
@@ -20,11 +21,24 @@ from linkwright.control.manager.loaded import Loaded
 from linkwright.control.manager.nodes import ProcessArguments, controller_node, words_of
 from linkwright.control.manager.switching import BEST_EFFORT, Switch, SwitchPlanner, SwitchRefusedError
 from linkwright.diagnostics import LinkwrightError
-from linkwright.graph import Node
+from linkwright.graph import Node, Parameter
 from linkwright.graph.lifecycle.states import ACTIVE, FINALIZED, INACTIVE, UNCONFIGURED, LifecycleState
 from linkwright.simulation.exchange import Exchange
 
 _NANOSECONDS = 1_000_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class Kept:
+    """What a manager had, for another one that takes its place.
+
+    Attributes:
+        parameters: of its node, by name.
+        controllers: the names of those that were loaded, with the labels of their states, in the order of updates.
+    """
+
+    parameters: dict[str, Any] = field(default_factory=dict)
+    controllers: tuple[tuple[str, str], ...] = ()
 
 
 class ControllerManager:
@@ -141,6 +155,26 @@ class ControllerManager:
             self.unload(name)
         self._logger.info("Controller manager: reloaded controller libraries for 'controller_interface'")
         return True
+
+    def kept(self) -> Kept:
+        """What another manager needs to take its place."""
+        parameters = {name: each.value for name, each in self.node.get_parameters_by_prefix("").items()}
+        states = tuple((each.name, each.controller.state.label) for each in self.controllers.values())
+        return Kept(parameters, states)
+
+    def resume(self, kept: Kept) -> None:
+        """Load, configure and activate what another manager had, as far as that can be."""
+        new = [
+            Parameter(name, value=value) for name, value in kept.parameters.items() if not self.node.has_parameter(name)
+        ]
+        if new:
+            self.node.set_parameters(new)
+        for name, state in kept.controllers:
+            if self.load(name) and state != UNCONFIGURED.label:
+                self.configure(name)
+        active = [name for name, state in kept.controllers if state == ACTIVE.label and name in self.controllers]
+        if active:
+            self.switch(active, (), BEST_EFFORT)
 
     def close(self) -> None:
         """Deactivate what is active, and end."""

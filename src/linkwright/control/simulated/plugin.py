@@ -13,7 +13,7 @@ from typing import Any
 from linkwright.control.hardware.component import Hardware
 from linkwright.control.hardware.description import HardwareDescription
 from linkwright.control.hardware.resources import Resources
-from linkwright.control.manager.manager import ControllerManager
+from linkwright.control.manager.manager import ControllerManager, Kept
 from linkwright.control.manager.nodes import ProcessArguments
 from linkwright.control.manager.services import ManagerServices
 from linkwright.control.manager.starting import load_hardware
@@ -96,8 +96,9 @@ class SimulatedControl(SimulatedPlugin[Parameters]):
             loaded.next_ns = 0
 
     def stop(self) -> None:
-        """End the controllers and the manager."""
+        """End the controllers and the manager; with a changed model they begin again."""
         if hasattr(self, "_manager"):
+            self.left[self._manager_node.name] = self._manager.kept()
             self._manager.close()
             self._manager_node.close()
 
@@ -116,6 +117,7 @@ class SimulatedControl(SimulatedPlugin[Parameters]):
         self.every(1.0, services.publish_diagnostics)
         self._last = self.simulation.time
         self.every(manager.update_rate, self._update)
+        manager.resume(self.left.pop(self._manager_node.name, Kept()))
 
     def _system(self, description: HardwareDescription, logger: Logger) -> Hardware:
         system = SimulatedSystem(description, logger, self, holds=self.parameters.hold_joints)

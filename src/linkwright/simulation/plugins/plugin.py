@@ -107,6 +107,10 @@ class Environment(Protocol):
     def gazebo_mistakes(self) -> bool:
         """Whether known mistakes of Gazebo are made, too."""
 
+    @property
+    def left(self) -> dict[str, Any]:
+        """What plugins leave, by names of their choice, for those that come in their places with a changed model."""
+
     def random(self, name: str) -> np.random.Generator:
         """Random numbers of its own for whatever has a name; the same for the same seed."""
 
@@ -167,6 +171,11 @@ class SimulatedPlugin(Generic[P]):
 
     def stop(self) -> None:
         """End; its node and what was asked for with `every` ends by itself."""
+
+    @property
+    def left(self) -> dict[str, Any]:
+        """What those left, by names of their choice, in whose places plugins come with a changed model."""
+        return self._environment.left
 
     # --- what it needs ------------------------------------------------------------------------------------------------
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from typing import Any
 from zlib import crc32
 
 import numpy as np
@@ -66,6 +67,7 @@ class SimulationServer:
         exchange: messages to the graph, and commands from there.
         on_change: called after models have come or gone.
         on_reset: called after a reset.
+        left: what plugins leave for those that come in their places.
     """
 
     def __init__(self, simulation: Simulation, node: Node, options: ServerOptions | None = None) -> None:
@@ -77,6 +79,7 @@ class SimulationServer:
         self._options = options or ServerOptions()
         self._usual: set[str] | None = set() if self._options.usual_names else None
         self._plugins: dict[str, list[SimulatedPlugin[object]]] = {}
+        self.left: dict[str, Any] = {}
         self._namespaces: dict[str, str] = {}
         self._of_world = set(simulation.scene.models)
         self._node_names: set[str] = set()
@@ -194,6 +197,7 @@ class SimulationServer:
         """
         self._model(name)
         self._end(self._plugins.pop(name, []))
+        self.left.clear()
         self._of_world.discard(name)
         self.simulation.delete(name)
         self._changed()
