@@ -104,8 +104,8 @@ class PidController(Controller[Parameters]):
 
     def on_activate(self) -> None:
         """Wait for a reference."""
-        names = self._measured_names()
-        self._measured = [nan] * len(names)
+        self._measured = [each.value for each in self.states] or [nan] * len(self._measured_names())
+        self._export()
         for reference in self.references:
             reference.value = nan
         for pid, gains in zip(self._pids, self.parameters.gains.values(), strict=True):
@@ -122,8 +122,7 @@ class PidController(Controller[Parameters]):
         """Command as far as references and states are known."""
         if self.states:
             self._measured = [each.value for each in self.states]
-        for exported, value in zip(self.exported, self._measured, strict=True):
-            exported.value = value
+        self._export()
         for number, (name, pid, command) in enumerate(
             zip(self.parameters.dof_names, self._pids, self.commands, strict=True)
         ):
@@ -132,6 +131,10 @@ class PidController(Controller[Parameters]):
                 command.value = self._command(number, pid, gains, period_s)
         if self._output.is_wanted:
             self._publish(time_ns, period_s)
+
+    def _export(self) -> None:
+        for exported, value in zip(self.exported, self._measured, strict=True):
+            exported.value = value
 
     def _command(self, number: int, pid: Pid, gains: Gains, period_s: float) -> float:
         pid.gains = gains.pid

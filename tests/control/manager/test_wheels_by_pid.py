@@ -1,0 +1,58 @@
+"""A chain: a drive commands PID controllers, and these the wheels."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from linkwright.control.manager.switching import STRICT
+from linkwright.messages import get_message, get_service
+from tests.control.robots import joint, manager, robot
+
+WHEELS = ("left", "right")
+TWIST = "geometry_msgs/msg/Twist"
+RADIUS = 0.015
+
+
+def pid(wheel: str) -> dict[str, Any]:
+    gains = {"p": 0.15, "i": 1.0, "i_clamp_min": -2.0, "i_clamp_max": 2.0, "antiwindup": True, "feedforward_gain": 0.95}
+    return {
+        "dof_names": [wheel],
+        "command_interface": "velocity",
+        "reference_and_state_interfaces": ["velocity"],
+        "gains": {wheel: gains},
+    }
+
+
+async def test_a_drive_turns_its_wheels_by_way_of_pid(graph):
+    types = {f"pid_{each}": {"type": "pid_controller/PidController"} for each in WHEELS}
+    types["base"] = {"type": "diff_drive_controller/DiffDriveController"}
+    base = {
+        "left_wheel_names": ["pid_left/left"],
+        "right_wheel_names": ["pid_right/right"],
+        "wheel_separation": 0.1,
+        "wheel_radius": RADIUS,
+        "position_feedback": False,
+        "use_stamped_vel": False,
+    }
+    text = robot("".join(joint(each, "velocity") for each in WHEELS), joints=WHEELS)
+    made = manager(graph, text, types, pid_left=pid("left"), pid_right=pid("right"), base=base)
+    for name in types:
+        assert made.load(name)
+        assert made.configure(name)
+    assert made.switch(["pid_left", "pid_right"], [], STRICT)[0]
+    assert made.switch(["base"], [], STRICT)[0]
+    node = graph.create_node("driver")
+    switch = get_service("std_srvs/srv/SetBool")
+    for each in WHEELS:
+        node.create_client(switch, f"/pid_{each}/set_feedforward_control").call_async(switch.Request(data=True))
+    twists = node.create_publisher(TWIST, "/base/cmd_vel_unstamped", 10)
+    command = get_message(TWIST)()
+    command.linear.x = 0.3
+    for number in range(1, 301):
+        twists.publish(command)
+        await graph.settle()
+        made.cycle(number * 10_000_000, 0.01)
+    speeds = [each.value for each in made.resources.states([f"{each}/velocity" for each in WHEELS])]
+    assert speeds == pytest.approx([0.3 / RADIUS] * 2, rel=0.01)
