@@ -39,6 +39,8 @@ _ROUNDING = 1e-6
 """The share of its size that a geom may be beside of what is seen by rounding alone."""
 _QUADS, _LIT_QUADS = 1, 4
 """Into how many squares a side of a box is cut each way: light is computed at their corners."""
+_SLICES = 28
+"""Into how many slices balls and cylinders are cut, as by MuJoCo; half as many stacks reach as near to a ball."""
 _SPARE_GEOMS = 100
 """Room in the list of what is drawn beside the geoms of the model."""
 
@@ -126,6 +128,7 @@ class OpenGlRenderer:
         model.vis.global_.offwidth, model.vis.global_.offheight = self._size
         even = _is_the_same_everywhere(lights_of(simulation, np.zeros(3)))
         model.vis.quality.numquads = _QUADS if even else _LIT_QUADS
+        model.vis.quality.numslices, model.vis.quality.numstacks = _SLICES, _SLICES // 2
         model.stat.extent = 1.0
         if self._draw_context is not None:
             self._draw_context.free()
