@@ -10,6 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from linkwright.descriptions import examine
@@ -181,3 +182,30 @@ async def test_a_robot_that_drives_is_completed_again(tmp_path):
         await it.when(lambda simulation: "mbot::mast" in simulation.scene.bodies)
         radius = await it.look(lambda simulation: simulation.wheel_radius("mbot::left_wheel_link"))
         assert radius == pytest.approx(0.06)
+
+
+CUBE = "".join(
+    f"facet normal 0 0 0 outer loop vertex {a} vertex {b} vertex {c} endloop endfacet\n"
+    for a, b, c in [
+        ("0 0 0", "0 1 0", "1 0 0"),
+        ("0 0 0", "1 0 0", "0 0 1"),
+        ("0 0 0", "0 0 1", "0 1 0"),
+        ("1 0 0", "0 1 0", "0 0 1"),
+    ]
+)
+
+
+async def test_a_mesh_of_the_robot_that_is_saved_is_read_again(tmp_path):
+    (tmp_path / "part.stl").write_text(f"solid part\n{CUBE}endsolid part\n")
+    mesh = '<visual><geometry><mesh filename="part.stl"/></geometry></visual>'
+    async with shown(
+        with_robot(tmp_path, ARM.format("").replace('<link name="tip">', f'<link name="tip">{mesh}'))
+    ) as it:
+        assert await it.look(_extent) < 1.5
+        (tmp_path / "part.stl").write_text(f"solid part\n{CUBE.replace('1 0 0', '3 0 0')}endsolid part\n")
+        await it.when(lambda simulation: _extent(simulation) > 2.0)
+
+
+def _extent(simulation: Simulation) -> float:
+    """The greatest extent of all meshes in m."""
+    return float(np.ptp(simulation.model.mesh_vert, axis=0).max())

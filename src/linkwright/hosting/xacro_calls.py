@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,6 +17,7 @@ from linkwright.packages import PackageFinder
 if TYPE_CHECKING:
     from linkwright.descriptions import Description, DescriptionLibrary
     from linkwright.simulation.server.worlds import LoadedWorld
+    from linkwright.urdf import Collision, Robot, Visual
 
 
 @dataclass(frozen=True)
@@ -67,6 +68,8 @@ class Descriptions:
         self._read_ns: dict[XacroCall, int] = {}
         self._calls: dict[str, XacroCall] = {}
         self._files: dict[XacroCall, tuple[Path, ...]] = {}
+        self._robots: dict[XacroCall, Robot] = {}
+        self._meshes: dict[XacroCall, tuple[Path, ...]] = {}
         self._known: set[tuple[str, str]] = set()
         self._library: DescriptionLibrary | None = None
 
@@ -128,6 +131,9 @@ class Descriptions:
         self._files[call] = description.files
         self._calls[text] = call
         self._warnings[call] = description.remarks
+        if description.robot is not None:
+            self._robots[call] = description.robot
+            self._meshes.pop(call, None)
         return text
 
     def take(self, call: XacroCall, description: Any) -> tuple[str | None, tuple[Diagnostic, ...]]:
@@ -154,8 +160,10 @@ class Descriptions:
         return self._read_ns.get(call, 0)
 
     def files_of(self, call: XacroCall) -> tuple[Path, ...]:
-        """The files that the last good expansion read; the model file alone while there was none."""
-        return self._files.get(call, (call.path,))
+        """The files that the last good expansion read, and meshes; the model file alone while there was none."""
+        if call in self._robots and call not in self._meshes:
+            self._meshes[call] = _mesh_files(self._robots[call], self.finder, call.path.parent)
+        return (*self._files.get(call, (call.path,)), *self._meshes.get(call, ()))
 
     def _read_world(self, call: WorldCall) -> LoadedWorld:
         from linkwright.simulation.server.worlds import load_world
@@ -169,6 +177,22 @@ class Descriptions:
 
     def _new(self, findings: tuple[Diagnostic, ...]) -> tuple[Diagnostic, ...]:
         return tuple(each for each in findings if _essence(each) not in self._known)
+
+
+def _mesh_files(robot: Robot, finder: PackageFinder, folder: Path) -> tuple[Path, ...]:
+    """The files of the meshes of a robot, each once; of those that are there."""
+    from linkwright.urdf import Mesh
+
+    found: dict[Path, None] = {}
+    for link in robot.links.values():
+        parts: list[Visual | Collision] = [*link.visuals, *link.collisions]
+        for part in parts:
+            if isinstance(part.geometry, Mesh):
+                source = None if part.element is None else part.element.source
+                base = folder if source is None else Path(source.name).absolute().parent
+                with suppress(LinkwrightError, ValueError):
+                    found[finder.resolve(part.geometry.filename, base)] = None
+    return tuple(path for path in found if path.is_file())
 
 
 def _essence(finding: Diagnostic) -> tuple[str, str]:

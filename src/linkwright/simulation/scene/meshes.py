@@ -71,7 +71,7 @@ class MeshLibrary:
         """
         if isinstance(shape, Heightmap):
             return self._heightmap(body, shape, pose, element)
-        key = ("collision", shape, self._path(shape, element), fixed)
+        key = ("collision", shape, _version(self._path(shape, element)), fixed)
         if key not in self._assets:
             self._assets[key] = [self._hull(corners) for corners in self._pieces(shape, element, fixed=fixed)]
         return [self._geom(body, pose, name) for name in self._assets[key]]
@@ -81,7 +81,7 @@ class MeshLibrary:
         if isinstance(shape, Heightmap):
             return self._heightmap(body, shape, pose, element)
         path = self._path(shape, element)
-        key = ("visual", shape, path)
+        key = ("visual", shape, _version(path))
         if key not in self._assets:
             if isinstance(shape, Mesh):
                 self._assets[key] = [] if path is None else list(self._drawn(shape, path, element))
@@ -181,7 +181,7 @@ class MeshLibrary:
         path = self._path(shape, element)
         if path is None:
             return []
-        key = ("heights", shape, path)
+        key = ("heights", shape, _version(path))
         if key not in self._assets:
             try:
                 heights = read_heights(path)
@@ -261,3 +261,11 @@ def _joined(parts: Sequence[Triangles]) -> tuple[Array, Any]:
 def _flat(values: Any, kind: Any = np.float32) -> list[Any]:
     with np.errstate(over="ignore"):  # MuJoCo refuses what is too great, and says so
         return list(np.asarray(values, dtype=kind).ravel().tolist())
+
+
+def _version(path: Path | None) -> tuple[Path | None, int]:
+    """A file, and when it was changed: one that is saved is read anew for what comes anew."""
+    try:
+        return path, 0 if path is None else path.stat().st_mtime_ns
+    except OSError:
+        return path, 0
