@@ -8,15 +8,19 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from launch.actions import OpaqueFunction
 
+from launch import LaunchContext, LaunchDescriptionEntity
 from linkwright.graph import Graph
 from linkwright.launch.frontend.include import IncludeLaunchDescription
 from linkwright.launch.model.actions.execute import ExecuteProcess
+from linkwright.launch.ros import Node
 from linkwright.messages import get_service
 from linkwright.nodes import EXECUTABLES, NodeOptions
 from linkwright.nodes.options import SingleNode, create_node
 from linkwright.packages import PackageFinder, is_substitute
 from tests.places import GAZEBO_PACKAGE
+from tests.waiting import eventually
 
 Write = Callable[[str, str], Path]
 WORLD = GAZEBO_PACKAGE / "worlds" / "playground.world"
@@ -144,7 +148,7 @@ async def test_gz_sim_launch_py(
 ) -> None:
     launched = await launch(include(package, name, **arguments))
     assert launched.succeeded, launched.err
-    assert simulators.started == [("ros_gz_sim", {"world": str(WORLD), "pause": False}, [])]
+    assert simulators.started == [("ros_gz_sim", {"world": str(WORLD), "pause": False, "gui": True}, [])]
 
 
 async def test_a_second_include_for_the_window_starts_no_second_server(
@@ -170,13 +174,45 @@ async def test_commands_of_gazebo(
     action = ExecuteProcess(cmd=command, output="screen", **options)
     launched = await launch(action)
     assert launched.succeeded, launched.err
-    assert simulators.started == [("gazebo_ros", {"world": str(WORLD)}, [])]
+    ((package, parameters, words),) = simulators.started
+    assert (package, parameters["world"], words) == ("gazebo_ros", str(WORLD), [])
     assert action.return_code == 0
 
 
 async def test_gz_sim_as_a_command(launch: Callable[..., Any], simulators: Simulators) -> None:
-    await launch(ExecuteProcess(cmd=["gz", "sim", "-r", str(WORLD)]))
-    assert simulators.started == [("ros_gz_sim", {"world": str(WORLD), "pause": False}, [])]
+    await launch(ExecuteProcess(cmd=["gz", "sim", "-r", "-s", str(WORLD)]))
+    assert simulators.started == [("ros_gz_sim", {"world": str(WORLD), "pause": False, "gui": False}, [])]
+
+
+@pytest.mark.parametrize(
+    ("entities", "pages"),
+    [
+        ([include("gazebo_ros", "gzclient.launch.py")], 1),
+        ([include("ros_gz_sim", "gz_sim.launch.py", gz_args=str(WORLD))], 1),
+        ([include("ros_gz_sim", "gz_sim.launch.py", gz_args=f"-s {WORLD}")], 0),
+        ([ExecuteProcess(cmd=["gazebo", str(WORLD)])], 1),
+        ([ExecuteProcess(cmd=["gzserver", str(WORLD)])], 0),
+        ([include("gazebo_ros", "gzclient.launch.py"), ExecuteProcess(cmd=["gz", "sim", "-g"])], 1),
+        ([include("gazebo_ros", "gzclient.launch.py"), Node(package="rviz2", executable="rviz2")], 1),
+    ],
+)
+async def test_a_window_of_gazebo_is_a_page_with_the_world(
+    launch: Callable[..., Any], simulators: Simulators, entities: list[LaunchDescriptionEntity], pages: int
+) -> None:
+    """That of RViz where there is one; else one that is there as long as the program which opens the window."""
+    simulators.spawned = []  # the server goes on
+
+    def look(context: LaunchContext) -> None:
+        async def seen() -> None:
+            if pages:
+                await eventually(lambda: context.session.host.shows_world)
+            context.session.shut_down("seen")
+
+        context.session.spawn(seen())
+
+    launched = await launch(*entities, OpaqueFunction(function=look))
+    assert launched.succeeded, launched.err
+    assert launched.out.count("Viewer: ") == pages
 
 
 async def test_other_commands_of_gz_are_processes(launch: Callable[..., Any], simulators: Simulators) -> None:

@@ -15,10 +15,10 @@ FACTORY = "-s libgazebo_ros_init.so -s libgazebo_ros_factory.so"
     ("line", "parameters"),
     [
         ("gzserver", {}),
-        (f"gazebo --verbose {FACTORY} /w/a.world", {"world": "/w/a.world"}),
+        (f"gazebo --verbose {FACTORY} /w/a.world", {"world": "/w/a.world", "gui": True}),
         (f"gzserver /w/a.world {FACTORY}", {"world": "/w/a.world"}),
         (f"gzserver {FACTORY} -u --seed 7 a.world", {"world": "a.world", "pause": True, "seed": 7}),
-        ("/usr/bin/gazebo -e bullet --seed=7 a.world", {"world": "a.world", "seed": 7}),
+        ("/usr/bin/gazebo -e bullet --seed=7 a.world", {"world": "a.world", "seed": 7, "gui": True}),
     ],
 )
 def test_classic(line, parameters):
@@ -31,13 +31,13 @@ def test_classic(line, parameters):
 @pytest.mark.parametrize(
     ("line", "parameters"),
     [
-        ("gz sim", {"pause": True}),
-        ("gz sim -r empty.sdf", {"pause": False, "world": "empty.sdf"}),
-        ("gz sim -r -s -v 4 /w/a.sdf", {"pause": False, "world": "/w/a.sdf"}),
-        ("gz sim -v4 a.sdf -r", {"pause": False, "world": "a.sdf"}),
-        ("gz sim -v a.sdf", {"pause": True, "world": "a.sdf"}),
-        ("ign gazebo --headless-rendering -z 100 -r a.sdf", {"pause": False, "world": "a.sdf"}),
-        ("gz sim --gui-config g.config --physics-engine p a.sdf", {"pause": True, "world": "a.sdf"}),
+        ("gz sim", {"pause": True, "gui": True}),
+        ("gz sim -r empty.sdf", {"pause": False, "gui": True, "world": "empty.sdf"}),
+        ("gz sim -r -s -v 4 /w/a.sdf", {"pause": False, "gui": False, "world": "/w/a.sdf"}),
+        ("gz sim -v4 a.sdf -r", {"pause": False, "gui": True, "world": "a.sdf"}),
+        ("gz sim -v a.sdf", {"pause": True, "gui": True, "world": "a.sdf"}),
+        ("ign gazebo --headless-rendering -z 100 -r a.sdf", {"pause": False, "gui": True, "world": "a.sdf"}),
+        ("gz sim --gui-config g.config --physics-engine p a.sdf", {"pause": True, "gui": True, "world": "a.sdf"}),
     ],
 )
 def test_gz(line, parameters):

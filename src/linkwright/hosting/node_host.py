@@ -38,6 +38,7 @@ class NodeHost:
         self._planned: list[HostedPlan] = []
         self._running: dict[str, tuple[HostedPlan, RunningNode]] = {}
         self._viewers = ViewerHost(session)
+        self._windows: dict[str, HostedPlan] = {}
         self._graph: Graph | None = None
         self._shared_names: SharedNames | None = None
         self._model_findings: list[Diagnostic] = []
@@ -61,6 +62,11 @@ class NodeHost:
     def has_viewer(self) -> bool:
         """Whether a viewer runs."""
         return bool(self._viewers)
+
+    @property
+    def shows_world(self) -> bool:
+        """Whether a page shows the simulated world."""
+        return self._viewers.shows_world
 
     @property
     def graph(self) -> Graph:
@@ -110,8 +116,12 @@ class NodeHost:
                 self._planned.remove(plan)
                 self._destinations[plan.process_name] = plan.destinations[2]
                 if plan.is_viewer:
-                    await self._start_viewer(plan)
+                    with_world = any(each.opens_gazebo_window for each in self._planned)
+                    await self._start_viewer(plan, with_world=with_world)
                 else:
+                    if plan.opens_gazebo_window and not self._viewers.shows_world:
+                        self._windows[plan.process_name] = window = plan.gazebo_window
+                        await self._start_viewer(window)
                     self._start_node(plan)
                     await asyncio.sleep(0)
         if not self._closing:
@@ -268,11 +278,12 @@ class NodeHost:
 
     # --- viewers --------------------------------------------------------------------------------------------
 
-    async def _start_viewer(self, plan: HostedPlan) -> None:
+    async def _start_viewer(self, plan: HostedPlan, *, with_world: bool = False) -> None:
         session = self._session
+        nodes = [running for _, running in self._running.values()]
         try:
             with self._speak_as(plan.process_name):
-                await self._viewers.start(plan, self.graph, [running for _, running in self._running.values()])
+                await self._viewers.start(plan, self.graph, nodes, with_world=with_world)
         except LinkwrightError as error:
             session.fail(plan)
             session.log.diagnostics(error.diagnostics)
@@ -281,7 +292,8 @@ class NodeHost:
             return
         logger = ".".join([*plan.namespace.strip("/").split("/"), plan.node_name or plan.executable]).lstrip(".")
         self._process_of_logger[logger] = plan.process_name
-        session.node_started(plan)
+        if plan.owner is not None:
+            session.node_started(plan)
 
     async def _stop_viewer(self, plan: HostedPlan, viewer: Viewer) -> None:
         await self._viewers.stop(plan, viewer)
@@ -294,7 +306,11 @@ class NodeHost:
             self._session.log.say(plan.process_name, "has finished cleanly")
         else:
             self._session.log.complain(plan.process_name, f"has ended with exit code {status}")
-        self._session.node_ended(plan, status)
+        if plan.owner is not None:
+            self._session.node_ended(plan, status)
+        window = self._windows.pop(plan.process_name, None)
+        if window is not None:
+            self._session.spawn(self._stop_viewer(window, self._viewers.take(window)))
 
     def _on_log(self, record: LogRecord) -> None:
         process = self._process_of(record.node)

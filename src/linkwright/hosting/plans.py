@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
 VIEWER = ("rviz2", "rviz2")
 """Package and executable of RViz, for which our viewer stands in."""
+_GAZEBO_WINDOW = "gzclient"
+"""The executable of Gazebo's window, whose place our viewer takes, too."""
 
 
 @dataclass(eq=False)
@@ -27,7 +29,7 @@ class HostedPlan:
     """A node to be started in this process.
 
     Attributes:
-        owner: who asks for it, such as an action of a launch file.
+        owner: who asks for it, such as an action of a launch file; None for what only comes with another node.
         process_name: its name in the log, such as ``robot_state_publisher-1``.
         package: the package it belongs to.
         executable: its executable there.
@@ -64,6 +66,26 @@ class HostedPlan:
     def is_viewer(self) -> bool:
         """Whether it is RViz, for which our viewer stands in."""
         return is_viewer(self.package, self.executable)
+
+    @property
+    def opens_gazebo_window(self) -> bool:
+        """Whether the program that it stands in for is Gazebo's window, or opens one besides."""
+        return self.executable == _GAZEBO_WINDOW or self.parameters.get("gui") is True
+
+    @property
+    def gazebo_window(self) -> HostedPlan:
+        """The viewer that stands in for the window which this node opens."""
+        from linkwright.hosting.world_config import world_config
+
+        return HostedPlan(
+            None,
+            f"{self.process_name}-window",
+            *VIEWER,
+            "viewer",
+            "/",
+            {"use_sim_time": True},
+            viewer_config=lambda: world_config("Gazebo"),
+        )
 
     def node_options(self, library: DescriptionLibrary) -> NodeOptions:
         """How to start it; `library` is the readings of robot descriptions that the process shares."""

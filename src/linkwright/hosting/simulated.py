@@ -28,11 +28,8 @@ if TYPE_CHECKING:
 _SIMULATOR = ("gazebo_ros", "gzserver")
 _CLOCK_RATE = 100.0
 """Hz of simulated time in which the time is told: transforms are not older than that."""
-_WORLD_DISPLAY, _WORLD_FRAME = "linkwright/World", "world"
 _SCAN_DISPLAY, _IMAGE_DISPLAY = "rviz_default_plugins/LaserScan", "rviz_default_plugins/Image"
 _ODOMETRY_DISPLAY, _ODOMETRY_TOPIC = "rviz_default_plugins/Odometry", "/odom"
-_DISTANCE = 5.0
-"""Metres from which a robot and what is around it are seen."""
 _DRIVES = re.compile(r"diff.drive|DiffDrive|skid_steer|planar_move|ackermann|mecanum|velocity.control", re.IGNORECASE)
 
 
@@ -184,17 +181,13 @@ class SimulatedView(ModelView):
             self._plan(*VIEWER, {"use_sim_time": True}, name="viewer", viewer_config=self._viewer_config)
 
     def _viewer_config(self) -> RvizConfig:
-        """The world with the robot in it, its scans and pictures, so that the world stands still.
+        """The world with the robot in it, its scans and pictures.
 
-        Model and transforms of the robot are there too, but off: they would draw it a second time. Pictures cost time
-        to make, so that only the first camera's are shown; odometry would cover the robot with arrows.
+        Pictures cost time to make, so that only the first camera's are shown; odometry would cover the robot.
         """
-        from linkwright.viewer import RvizConfig
+        from linkwright.hosting.world_config import world_config
 
-        config = RvizConfig.for_model(_WORLD_FRAME, name=str(self._world.path))
-        for display in config.displays:
-            display.checked = display.cls.endswith("/Grid")
-        config.insert(config.make(_WORLD_DISPLAY, "World"))
+        config = world_config(str(self._world.path), *self._world.pose[:2])
 
         def add(cls: str, topic: str, *, checked: bool = True) -> None:
             display = config.make(cls, cls.rpartition("/")[2])
@@ -210,10 +203,6 @@ class SimulatedView(ModelView):
             add(_IMAGE_DISPLAY, topic, checked=number == 0)
         if _DRIVES.search(text):
             add(_ODOMETRY_DISPLAY, _ODOMETRY_TOPIC, checked=False)
-        view = config.views.current
-        x, y = self._world.pose[:2]
-        view.values |= {"Distance": _DISTANCE, "Focal Point/X": x, "Focal Point/Y": y}
-        config.views.current = view
         return config
 
     def node_ended(self, plan: HostedPlan, status: int) -> None:

@@ -31,6 +31,13 @@ class ViewerHost:
     def __bool__(self) -> bool:
         return bool(self._viewers)
 
+    @property
+    def shows_world(self) -> bool:
+        """Whether a page shows the simulated world."""
+        from linkwright.hosting.world_config import shows_world
+
+        return any(shows_world(viewer.config) for _, viewer in self._viewers.values())
+
     def plans(self) -> Iterator[HostedPlan]:
         """The plans of those that run."""
         return iter([plan for plan, _ in self._viewers.values()])
@@ -46,13 +53,16 @@ class ViewerHost:
         for _, viewer in self._viewers.values():
             _attach_panel(viewer, running)
 
-    async def start(self, plan: HostedPlan, graph: Graph, nodes: list[RunningNode]) -> None:
+    async def start(
+        self, plan: HostedPlan, graph: Graph, nodes: list[RunningNode], *, with_world: bool = False
+    ) -> None:
         """Start a viewer, and say where it is.
 
         Args:
             plan: how.
             graph: what it shows.
             nodes: those that run already.
+            with_world: whether the page shows the simulated world too, in place of a window of its own.
 
         Raises:
             LinkwrightError: why it cannot start.
@@ -67,6 +77,10 @@ class ViewerHost:
 
             config, findings = read_viewer_config(plan.arguments)
         session.log.diagnostics([*findings, *find_unsaved(config)])
+        if with_world:
+            from linkwright.hosting.world_config import show_world
+
+            show_world(config)
         viewer = Viewer(
             graph,
             library=session.descriptions.library,
@@ -82,8 +96,9 @@ class ViewerHost:
         session.log.announce(f"Viewer: {viewer.url}")
         if session.options.open_browser:
             _open_in_browser(viewer.url)
+        instead = "RViz" if plan.owner is not None else "Gazebo's window"
         session.log.say(
-            plan.process_name, "started in the launcher's process: the viewer in the browser stands in for RViz"
+            plan.process_name, f"started in the launcher's process: the viewer in the browser stands in for {instead}"
         )
         viewer.show_diagnostics([*self._findings, *findings])
         for running in nodes:

@@ -29,6 +29,7 @@ _PARAMETERS: dict[str, Any] = {
     "step": 0.0,
     "seed": 0,
     "pause": False,
+    "gui": False,
     "seconds": 0.0,
     "usual_names": False,
     "gazebo_mistakes": False,
@@ -57,6 +58,8 @@ class Simulator(SingleNode):
     ``seed``, ``pause``, ``seconds``
         what random numbers follow from; whether it begins paused; after how many simulated seconds it ends, 0 for
         never.
+    ``gui``
+        whether a page with the world is to be opened as well; whoever hosts the node does that.
     ``usual_names``
         whether topics of gz have their usual names too.
     ``gazebo_mistakes``

@@ -29,7 +29,7 @@ class SimulatorCommand:
     Attributes:
         package: the node's package.
         executable: ``gzserver``, or ``gzclient`` for a window alone.
-        parameters: of the node: ``world``, ``pause``, ``seed``.
+        parameters: of the node: ``world``, ``pause``, ``seed``, and ``gui`` where a window comes with the server.
         ros_arguments: those that it is given besides, with ``--ros-args``.
     """
 
@@ -44,7 +44,7 @@ def simulator_command(words: Sequence[str]) -> SimulatorCommand | None:
     program, *rest = words
     name = PurePath(program).name
     if name in ("gazebo", "gzserver"):
-        return classic_server(rest)
+        return classic_server(rest, window=name == "gazebo")
     if name == "gzclient":
         return SimulatorCommand("gazebo_ros", "gzclient")
     if (name, rest[:1]) in (("gz", ["sim"]), ("ign", ["gazebo"]), ("ign", ["sim"])):
@@ -52,11 +52,11 @@ def simulator_command(words: Sequence[str]) -> SimulatorCommand | None:
     return None
 
 
-def classic_server(words: Sequence[str]) -> SimulatorCommand:
-    """What the words after ``gzserver`` or ``gazebo`` ask for."""
+def classic_server(words: Sequence[str], *, window: bool = False) -> SimulatorCommand:
+    """What the words after ``gzserver`` ask for, or after ``gazebo``, which has a window."""
     own, ros = _divided(words)
     options, others = _read(own, _CLASSIC_VALUES.split())
-    parameters = _seed(options)
+    parameters = _seed(options) | ({"gui": True} if window else {})
     if others:
         parameters["world"] = others[0]
     if "-u" in options or "--pause" in options:
@@ -70,7 +70,7 @@ def gz_server(words: Sequence[str]) -> SimulatorCommand:
     options, others = _read(own, _GZ_VALUES.split())
     if "-g" in options:
         return SimulatorCommand("ros_gz_sim", "gzclient")
-    parameters = _seed(options) | {"pause": "-r" not in options}
+    parameters = _seed(options) | {"pause": "-r" not in options, "gui": "-s" not in options}
     if others:
         parameters["world"] = others[0]
     return SimulatorCommand("ros_gz_sim", "gzserver", parameters, ros)
