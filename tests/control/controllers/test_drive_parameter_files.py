@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
 
 from linkwright.control.controllers.registry import controller_class
-from linkwright.graph.parameters.files import read_parameter_file
-from tests.control.controllers.driving import warnings
+from linkwright.diagnostics import SourceText
+from linkwright.graph.parameters.files import parse_parameters, read_parameter_file
+from tests.control.controllers.driving import stamped, warnings
 
 FILE = Path(__file__).with_name("drives.yaml")
 TYPES = {
@@ -31,4 +33,24 @@ async def test_a_parameter_file_is_read_whole(stand, name):
     parameters = read_parameter_file(FILE).for_node(f"/{name}")
     controller = stand.start(controller_class(TYPES[name]), name, **parameters)
     await stand.step(controller)
+    assert not warnings(stand)
+
+
+def documented(page: str) -> str:
+    """The parameter file of a drive on a page."""
+    text = (Path(__file__).resolve().parents[3] / "docs" / page).read_text("utf-8")
+    (example,) = re.findall(r"```yaml\n(base_controller.*?)```", text, re.DOTALL)
+    return example
+
+
+@pytest.mark.parametrize("page", ["control.md", "zh/control.md"])
+async def test_the_documented_drive_starts(stand, page):
+    for joint in ("left_joint", "right_joint"):
+        stand.joint(joint, commands=("velocity",), position=0.0, velocity=0.0)
+    parameters = parse_parameters(SourceText(page, documented(page))).for_node("/base_controller")
+    controller = stand.start(controller_class(TYPES["jazzy_base"]), "base_controller", **parameters)
+    second = 1_000_000_000
+    stand.say("geometry_msgs/msg/TwistStamped", "/base_controller/cmd_vel", stamped(second, 9.0))
+    await stand.step(controller, 1.0)
+    assert [each.value for each in controller.commands] == pytest.approx([0.8 / 0.06] * 2)
     assert not warnings(stand)
