@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from math import pi
+from math import inf, nan, pi
 
 import numpy as np
 import pytest
@@ -106,6 +106,28 @@ def test_acceleration_is_turned_into_the_body():
     reading = read_acceleration(np.array([1.0, 0.0, 0.0]), np.eye(3), mounting, only("AX"), two_d=False)
     assert reading.values[12:] == pytest.approx([0.0, 1.0, 0.0])
     assert names_of(reading.used) == {"AY"}
+
+
+def test_what_is_no_number_is_left_out_and_the_rest_counts():
+    reading = PoseReader(only("X", "Y", "YAW")).read((1.0, nan, nan, nan, 0.0, 0.0, 1.0), SIX, IDENTITY, 0)
+    assert names_of(reading.used) == {"X"}
+    assert reading.values[State.X] == 1.0
+    assert np.isfinite(reading.values).all()
+    twist = read_twist(
+        np.array([1.0, nan, 0.0]), np.array([inf, 0.0, 2.0]), SIX, IDENTITY, np.zeros(3), ALL, two_d=False
+    )
+    assert names_of(twist.used) == {"VX", "VZ", "VPITCH", "VYAW"}
+    felt = read_acceleration(np.array([nan, 2.0, 3.0]), np.eye(3), IDENTITY, ALL, two_d=False)
+    assert names_of(felt.used) == {"AY", "AZ"}
+    slanting = read_acceleration(np.array([nan, 2.0, 3.0]), np.eye(3), pose(rpy=(0, 0, 0.7)), ALL, two_d=False)
+    assert names_of(slanting.used) == {"AZ"}
+
+
+def test_a_relative_sensor_that_begins_without_numbers_counts_from_the_first_that_it_has():
+    reader = PoseReader(only("X"), relative=True)
+    assert reader.read((nan, nan, nan, nan, nan, nan, nan), SIX, IDENTITY, 0) is None
+    assert reader.read(pose(5.0), SIX, IDENTITY, 1).values[State.X] == 0.0
+    assert reader.read(pose(7.0), SIX, IDENTITY, 2).values[State.X] == 2.0
 
 
 def _inverse(quaternion):

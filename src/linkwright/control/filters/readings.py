@@ -7,9 +7,11 @@ is mounted turned, and the attitude by which gravity is taken away where the IMU
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import isfinite
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from linkwright.control.filters.motion_model import (
     ACCELERATION,
@@ -86,7 +88,8 @@ class PoseReader:
             time_ns: when it was measured.
 
         Returns:
-            The reading, or None for the first pose of a differential sensor.
+            The reading, or None for the first pose of a differential sensor, and for one that has no numbers. Of others
+            what is no number is left out.
         """
         turn = rotation_matrix(sensor[3:])
         return self._read(pose, covariance, sensor, turn, time_ns)
@@ -109,7 +112,10 @@ class PoseReader:
     def _read(
         self, pose: Transform, covariance: Matrix, sensor: Transform, turn: Matrix, time_ns: int
     ) -> Reading | None:
-        used = (*_turned(self.used, turn, POSITION), *_turned(self.used, turn, ANGLES))
+        pose, known = _known_pose(pose, self.used)
+        if not any(known):
+            return None
+        used = (*_turned(self.used, known, turn, POSITION), *_turned(self.used, known, turn, ANGLES))
         both = _twice(turn)
         turned = both @ covariance @ both.T
         if self.differential:
@@ -156,13 +162,15 @@ def read_twist(
     """
     turn = rotation_matrix(mounting[3:])
     both = _twice(turn)
+    known = _finite(_finite(used, VELOCITY, linear), RATES, angular)
+    linear, angular = _numbers(linear), _numbers(angular)
     reading = _empty()
     x, y, z = mounting[:3]
     roll, pitch, yaw = rates.tolist()
     reading.values[VELOCITY] = turn @ linear + (y * yaw - z * pitch, z * roll - x * yaw, x * pitch - y * roll)
     reading.values[RATES] = turn @ angular
     reading.covariance[TWIST, TWIST] = both @ covariance @ both.T
-    mask = (*([False] * 6), *_turned(used, turn, VELOCITY), *_turned(used, turn, RATES), *([False] * 3))
+    mask = (*([False] * 6), *_turned(used, known, turn, VELOCITY), *_turned(used, known, turn, RATES), *([False] * 3))
     return _finished(reading, mask, two_d)
 
 
@@ -179,10 +187,11 @@ def read_acceleration(
         two_d: whether the body moves on a plane.
     """
     turn = rotation_matrix(mounting[3:])
+    known = _finite(used, ACCELERATION, acceleration)
     reading = _empty()
-    reading.values[ACCELERATION] = turn @ acceleration
+    reading.values[ACCELERATION] = turn @ _numbers(acceleration)
     reading.covariance[ACCELERATION, ACCELERATION] = turn @ covariance @ turn.T
-    return _finished(reading, (*([False] * 12), *_turned(used, turn, ACCELERATION)), two_d)
+    return _finished(reading, (*([False] * 12), *_turned(used, known, turn, ACCELERATION)), two_d)
 
 
 def without_gravity(acceleration: Vector, orientation: Quaternion, gravity: float = GRAVITY) -> Vector:
@@ -210,10 +219,41 @@ def _finished(reading: Reading, used: Used, two_d: bool) -> Reading:
     return reading._replace(used=used)
 
 
-def _turned(used: Used, turn: Matrix, part: slice) -> Used:
-    """Which components are known of a vector in our axes when some are known in the sensor's."""
-    known = turn[:, np.array(used[part], dtype=bool)]
-    return tuple(bool(each) for each in np.sum(known * known, axis=1) >= _LEAST * _LEAST)
+def _known_pose(pose: Transform, used: Used) -> tuple[Transform, Used]:
+    """A pose with 0 and no turn for what is no number, and which of the 15 values it still gives."""
+    x, y, z = (each if isfinite(each) else 0.0 for each in pose[:3])
+    known = _finite(used, POSITION, np.array(pose[:3]))
+    if all(isfinite(each) for each in pose[3:]):
+        return (x, y, z, *pose[3:]), known
+    return (x, y, z, *IDENTITY[3:]), tuple(each and not 3 <= index < 6 for index, each in enumerate(known))
+
+
+def _finite(used: Used, part: slice, values: Vector) -> Used:
+    """Which values are used, without those that are no numbers."""
+    flags = list(used)
+    flags[part] = [bool(each) for each in np.array(used[part]) & np.isfinite(values)]
+    return tuple(flags)
+
+
+def _numbers(values: Vector) -> Vector:
+    numbers: Vector = np.where(np.isfinite(values), values, 0.0)
+    return numbers
+
+
+def _turned(used: Used, known: Used, turn: Matrix, part: slice) -> Used:
+    """Which components are known of a vector in our axes when some are known of those used in the sensor's."""
+    lost = tuple(each and not here for each, here in zip(used, known, strict=True))
+    return tuple(
+        bool(here and not gone)
+        for here, gone in zip(_touched(known, turn, part), _touched(lost, turn, part), strict=True)
+    )
+
+
+def _touched(flags: Used, turn: Matrix, part: slice) -> NDArray[np.bool_]:
+    """Which components in our axes have a share of one of the flagged ones in the sensor's."""
+    columns = turn[:, np.array(flags[part], dtype=bool)]
+    touched: NDArray[np.bool_] = np.sum(columns * columns, axis=1) >= _LEAST * _LEAST
+    return touched
 
 
 def _twice(turn: Matrix) -> Matrix:
