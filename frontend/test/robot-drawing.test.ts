@@ -25,6 +25,7 @@ function shape(part: Partial<Shape> & Pick<Shape, "kind" | "size">): Shape {
     outlines: [],
     heights: null,
     columns: 0,
+    surface: null,
     ...part,
   };
 }

@@ -21,6 +21,15 @@ export interface Submesh {
   center: boolean;
 }
 
+/** How a shape of a world reflects light: roughness and metalness from 0 to 1, and addresses of images. */
+export interface Surface {
+  roughness: number;
+  metalness: number;
+  normal_map: string | null;
+  roughness_map: string | null;
+  metalness_map: string | null;
+}
+
 /** A shape to draw, posed in its link's frame. */
 export interface Shape {
   kind: ShapeKind;
@@ -37,6 +46,7 @@ export interface Shape {
   outlines: number[][];
   heights: Float32Array | null;
   columns: number;
+  surface: Surface | null;
 }
 
 /** A link to draw in the frame of its name. */

@@ -1,17 +1,31 @@
 import {
   Color,
+  DataTexture,
   DoubleSide,
+  EquirectangularReflectionMapping,
   FrontSide,
+  LinearFilter,
   MeshBasicMaterial,
   MeshLambertMaterial,
+  MeshStandardMaterial,
   NoColorSpace,
   RepeatWrapping,
   TextureLoader,
   type BufferAttribute,
   type InterleavedBufferAttribute,
   type Material,
+  type MeshStandardMaterialParameters,
   type Texture,
 } from "three";
+
+/** How a surface reflects lamps: roughness and metalness from 0 to 1, and images of these and of its normals. */
+export interface Surface {
+  readonly roughness: number;
+  readonly metalness: number;
+  readonly normalMap: Texture | null;
+  readonly roughnessMap: Texture | null;
+  readonly metalnessMap: Texture | null;
+}
 
 /** What a surface looks like; equal looks share one material. */
 export interface Look {
@@ -22,6 +36,8 @@ export interface Look {
   doubleSided: boolean;
   /** Lines and marks in the same plane are seen on it. */
   behind?: boolean;
+  /** Only lamps in the scene are reflected: the light of the camera is RViz's. */
+  surface?: Surface | null;
 }
 
 /** RViz's material for what has none: RVIZ/ShadedRed. */
@@ -50,16 +66,19 @@ export const errorMaterial = new MeshBasicMaterial({ color: 0xffffff, side: Doub
 export class MaterialPool {
   /** Whether lights that stand in the scene shine on the surfaces, so that each is to be drawn by itself. */
   isLit = false;
-  private readonly materials = new Map<string, MeshLambertMaterial>();
+  private readonly materials = new Map<string, MeshLambertMaterial | MeshStandardMaterial>();
   private readonly used = new Set<string>();
 
   get(look: Look): Material {
-    const key = [...look.color, look.alpha, look.map?.uuid, look.vertexColors, look.doubleSided, look.behind].join();
+    const surface = (this.isLit && look.surface) || null;
+    const maps = [look.map, surface?.normalMap, surface?.roughnessMap, surface?.metalnessMap].map((map) => map?.uuid);
+    const numbers = [look.alpha, surface?.roughness, surface?.metalness];
+    const key = [...look.color, ...numbers, ...maps, look.vertexColors, look.doubleSided, look.behind].join();
     this.used.add(key);
     let material = this.materials.get(key);
     if (!material) {
       const seeThrough = look.alpha < OPAQUE_FROM;
-      material = new MeshLambertMaterial({
+      const style = {
         color: new Color(...look.color),
         opacity: look.alpha,
         transparent: seeThrough,
@@ -70,7 +89,8 @@ export class MaterialPool {
         polygonOffset: look.behind === true,
         polygonOffsetFactor: 1,
         polygonOffsetUnits: 1,
-      });
+      };
+      material = surface ? reflecting(style, surface) : new MeshLambertMaterial(style);
       this.materials.set(key, material);
     }
     return material;
@@ -91,6 +111,27 @@ export class MaterialPool {
     for (const material of this.materials.values()) material.dispose();
     this.materials.clear();
   }
+}
+
+/** A material that reflects lamps, and as far as it is of metal a grey room. */
+function reflecting(style: MeshStandardMaterialParameters, surface: Surface): MeshStandardMaterial {
+  const envMap = surface.metalness > 0 ? room() : null;
+  const material = new MeshStandardMaterial({ ...style, ...surface, envMap, envMapIntensity: surface.metalness });
+  material.envMapRotation.x = Math.PI / 2; // the picture has y up
+  return material;
+}
+
+let theRoom: DataTexture | null = null;
+
+/** What metal reflects besides lamps, or it would be black: bright above and dark below, the same from all sides. */
+function room(): DataTexture {
+  if (theRoom) return theRoom;
+  const greys = [90, 90, 110, 150, 190, 215, 230, 240];
+  theRoom = new DataTexture(new Uint8Array(greys.flatMap((grey) => [grey, grey, grey, 255])), 1, greys.length);
+  theRoom.mapping = EquirectangularReflectionMapping;
+  theRoom.magFilter = theRoom.minFilter = LinearFilter;
+  theRoom.needsUpdate = true;
+  return theRoom;
 }
 
 /** Loads the texture of a URDF material. */

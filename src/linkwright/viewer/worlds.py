@@ -13,7 +13,7 @@ from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere
 from linkwright.geometry.single import Transform, compose, rotation_from_z
 from linkwright.sdf.frames import Frames, PlacedLink, links_of
 from linkwright.sdf.links import Collision, Visual
-from linkwright.sdf.materials import Material
+from linkwright.sdf.materials import Material, Workflow
 from linkwright.sdf.poses import RawPose
 from linkwright.sdf.scripts import gazebo_look, painted
 from linkwright.sdf.shapes import (
@@ -29,7 +29,7 @@ from linkwright.sdf.shapes import (
 from linkwright.sdf.shapes import Shape as SdfShape
 from linkwright.sdf.worlds import World
 from linkwright.simulation.scene.heights import read_heights
-from linkwright.viewer.protocol.robot import LinkScene, Shape, Submesh
+from linkwright.viewer.protocol.robot import LinkScene, Shape, Submesh, Surface
 from linkwright.viewer.web.files import IMAGE_TYPES, MESH_TYPES, MeshIndex
 
 _UNCOLOURED = [0.7, 0.7, 0.7, 1.0]
@@ -195,6 +195,11 @@ class _Builder:
         shape.color = [red, green, blue, alpha * (1.0 - visual.transparency)]
         if image:
             shape.texture = self._located(link, image, IMAGE_TYPES)
+        workflow = material.pbr.metal if material and material.pbr else None
+        if workflow and _reflects(workflow):
+            maps = (workflow.normal_map, workflow.roughness_map, workflow.metalness_map)
+            urls = [self._located(link, each, IMAGE_TYPES) if each else None for each in maps]
+            shape.surface = Surface(workflow.roughness, workflow.metalness, *urls)
 
     def _located(self, link: str, uri: str, types: dict[str, str]) -> str | None:
         located = self._index.locate(uri, None, types)
@@ -206,6 +211,13 @@ class _Builder:
         problems = self._made.problems.setdefault(link, [])
         if text not in problems:
             problems.append(text)
+
+
+def _reflects(workflow: Workflow) -> bool:
+    """Whether a material says how it reflects light, and not only which image it wears."""
+    usual = Workflow()
+    said = workflow.normal_map or workflow.roughness_map or workflow.metalness_map
+    return bool(said) or (workflow.roughness, workflow.metalness) != (usual.roughness, usual.metalness)
 
 
 def _look(material: Material) -> tuple[Sequence[float] | None, str]:

@@ -233,6 +233,25 @@ async def test_the_heights_of_a_ground_are_sent_as_the_simulation_has_them_and_n
         assert "file:///nowhere.png" in made.status("World")["Files"][1]
 
 
+async def test_how_a_surface_reflects_is_sent_where_its_material_says_so(tmp_path):
+    Image.new("RGB", (2, 2)).save(tmp_path / "bumps.png")
+    bumps = (tmp_path / "bumps.png").as_uri()
+    ball = "<geometry><sphere><radius>1</radius></sphere></geometry>"
+    visual = "<visual name='{}'>" + ball + "<material><pbr><metal>{}</metal></pbr></material></visual>"
+    albedo = f"<albedo_map>{bumps}</albedo_map>"
+    metal = f"<metalness>1</metalness><roughness>0.2</roughness><normal_map>{bumps}</normal_map>"
+    visuals = visual.format("plain", albedo) + visual.format("metal", albedo + metal)
+    text = f"<sdf version='1.9'><model name='ball'><link name='l'>{visuals}</link></model></sdf>"
+    async with world(config("world")) as made:
+        await Simulation(made).describe(text, links=1)
+        (link,) = sent(made, "world_scene").fields["links"]
+        plain, shining = link["visuals"]
+        assert plain["surface"] is None
+        surface = shining["surface"]
+        assert (surface["roughness"], surface["metalness"], surface["roughness_map"]) == (0.2, 1.0, None)
+        assert surface["normal_map"] == shining["texture"] == plain["texture"]
+
+
 async def test_materials_of_gazebo_are_known_by_their_names():
     script = "<material><script><name>Gazebo/Red</name></script></material>"
     visual = f"<visual name='v'><geometry><sphere><radius>1</radius></sphere></geometry>{script}</visual>"

@@ -1,5 +1,6 @@
 import { SERVED, type MeshFiles } from "./mesh-files";
 import type { MeshTemplate } from "./mesh-template";
+import { SharedTextures } from "./shared-textures";
 
 interface Shelf {
   /** What the server said identifies the file's content. */
@@ -11,6 +12,8 @@ interface Shelf {
 export class MeshLibrary {
   private readonly shelves = new Map<string, Shelf>();
   private readonly loading = new Map<string, Promise<MeshTemplate>>();
+
+  readonly textures = new SharedTextures();
 
   constructor(readonly files: MeshFiles = SERVED) {}
 

@@ -1,5 +1,6 @@
 import {
   Mesh,
+  MeshStandardMaterial,
   NoColorSpace,
   type BufferGeometry,
   type Material,
@@ -7,6 +8,7 @@ import {
   type Object3D,
   type Texture,
 } from "three";
+import type { Surface } from "../materials";
 
 /** A material that came with a mesh file. */
 export interface OwnMaterial {
@@ -14,6 +16,8 @@ export interface OwnMaterial {
   opacity: number;
   map: Texture | null;
   vertexColors: boolean;
+  /** How it reflects light, where the file says so. */
+  surface?: Surface | null;
 }
 
 /** One geometry of a mesh, in the mesh's frame; `materials` has one entry, or one for each group of the geometry. */
@@ -66,5 +70,11 @@ function ownMaterial(material: Material): OwnMaterial {
     opacity: material.opacity,
     map,
     vertexColors: material.vertexColors,
+    surface: material instanceof MeshStandardMaterial ? surfaceOf(material) : null,
   };
+}
+
+function surfaceOf({ roughness, metalness, normalMap, roughnessMap, metalnessMap }: MeshStandardMaterial): Surface {
+  for (const map of [normalMap, roughnessMap, metalnessMap]) if (map) map.colorSpace = NoColorSpace;
+  return { roughness, metalness, normalMap, roughnessMap, metalnessMap };
 }

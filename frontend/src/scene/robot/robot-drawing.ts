@@ -36,7 +36,8 @@ export class RobotDrawing {
     const loads: Promise<void>[] = [];
     for (const link of this.links.values()) {
       for (const shape of [...link.visuals, ...link.collisions]) {
-        if (shape.shape.url === null && shape.shape.texture === null) continue;
+        const { url, texture, surface } = shape.shape;
+        if (url === null && texture === null && surface === null) continue;
         loads.push(this.load(link, shape, meshes, report, changed));
       }
     }

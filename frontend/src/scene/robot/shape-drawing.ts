@@ -1,7 +1,7 @@
 import { Box3, Color, Group, Matrix4, Mesh, type BufferGeometry, type Material, type MeshLambertMaterial, type Texture } from "three";
 import type { Shape } from "../../protocol";
 import { TOUCHED } from "../layers";
-import { errorMaterial, loadTexture, OPAQUE_FROM, RVIZ_RED, type Look, type MaterialPool } from "../materials";
+import { errorMaterial, OPAQUE_FROM, RVIZ_RED, type Look, type MaterialPool, type Surface } from "../materials";
 import type { MeshLibrary } from "../meshes/mesh-library";
 import { UNCOLOURED_GREY, type MeshTemplate, type OwnMaterial } from "../meshes/mesh-template";
 import { extrusion, ground, submesh } from "../objects/world-geometries";
@@ -29,7 +29,7 @@ export interface Solid {
 export interface ShapeTold {
   kind: string;
   bounds: { min: number[]; max: number[] } | null;
-  materials: { color: string; opacity: number; textured: boolean }[];
+  materials: { color: string; opacity: number; textured: boolean; reflects?: true }[];
 }
 
 /** One visual or collision of a link. */
@@ -37,6 +37,10 @@ export class ShapeDrawing {
   readonly root = new Group();
   private parts: Part[] = [];
   private texture: Texture | null = null;
+  private surface: Surface | null = null;
+  private library: MeshLibrary | null = null;
+  /** The addresses of what it has of the library's textures. */
+  private readonly worn: string[] = [];
   /** Its own, which it must free. */
   private made: BufferGeometry | null = null;
   private problem: string | null = null;
@@ -73,16 +77,29 @@ export class ShapeDrawing {
    * @throws Error when the mesh cannot be drawn.
    */
   async load(library: MeshLibrary): Promise<string | null> {
-    const { kind, url, format, texture } = this.shape;
+    const { kind, url, format, texture, surface } = this.shape;
     if (kind === "mesh" && url !== null) this.buildMesh(await library.load(url, format ?? ""));
-    const problem = this.problem;
-    if (texture === null) return problem;
-    try {
-      this.texture = await loadTexture(library.files.address(texture));
-      return problem;
-    } catch {
-      return `could not load texture '${decodeURIComponent(texture.split("/").pop() ?? texture)}'`;
+    this.library = library;
+    const problems = this.problem === null ? [] : [this.problem];
+    const wear = async (address: string | null): Promise<Texture | null> => {
+      if (address === null || this.library === null) return null;
+      const url = library.files.address(address);
+      this.worn.push(url);
+      try {
+        return await library.textures.take(url);
+      } catch {
+        problems.push(`could not load texture '${decodeURIComponent(address.split("/").pop() ?? address)}'`);
+        return null;
+      }
+    };
+    this.texture = await wear(texture);
+    if (surface) {
+      const { roughness, metalness, normal_map, roughness_map, metalness_map } = surface;
+      const maps = [wear(normal_map), wear(roughness_map), wear(metalness_map)] as const;
+      const [normalMap, roughnessMap, metalnessMap] = await Promise.all(maps);
+      this.surface = { roughness, metalness, normalMap, roughnessMap, metalnessMap };
     }
+    return problems.length > 0 ? problems.join("; ") : null;
   }
 
   /**
@@ -116,16 +133,18 @@ export class ShapeDrawing {
     return {
       kind: this.shape.kind,
       bounds: box.isEmpty() ? null : { min: box.min.toArray(), max: box.max.toArray() },
-      materials: materials.map(({ color, opacity, map }) => ({
-        color: `#${color.getHexString()}`,
-        opacity,
-        textured: map !== null,
+      materials: materials.map((material) => ({
+        color: `#${material.color.getHexString()}`,
+        opacity: material.opacity,
+        textured: material.map !== null,
+        ...("roughness" in material ? { reflects: true as const } : {}),
       })),
     };
   }
 
   dispose(): void {
-    this.texture?.dispose();
+    for (const url of this.worn) this.library?.textures.giveBack(url);
+    this.library = null;
     this.made?.dispose();
   }
 
@@ -221,13 +240,13 @@ export class ShapeDrawing {
     const doubleSided = kind === "mesh";
     const behind = kind === "plane";
     if (own && !repaints) {
-      const { color, map, vertexColors } = own;
-      return { color, map, vertexColors, alpha: alpha * (this.shape.color?.[3] ?? 1), doubleSided };
+      const { color, map, vertexColors, surface } = own;
+      return { color, map, vertexColors, surface: surface ?? null, alpha: alpha * (this.shape.color?.[3] ?? 1), doubleSided };
     }
     const grey = doubleSided && !this.shape.format?.startsWith("stl");
     const bare: readonly number[] = grey ? [UNCOLOURED_GREY, UNCOLOURED_GREY, UNCOLOURED_GREY] : RVIZ_RED;
     // A texture replaces the colour.
     const [r = 0, g = 0, b = 0, a = 1] = this.texture ? [1, 1, 1, 1] : (this.shape.color ?? bare);
-    return { color: [r, g, b], map: this.texture, vertexColors: false, alpha: alpha * a, doubleSided, behind };
+    return { color: [r, g, b], map: this.texture, vertexColors: false, alpha: alpha * a, doubleSided, behind, surface: this.surface };
   }
 }

@@ -24,6 +24,16 @@ class Submesh(Record):
     center: bool
 
 
+class Surface(Record):
+    """How a shape of a world reflects light: roughness and metalness from 0 to 1, and addresses of images."""
+
+    roughness: float
+    metalness: float
+    normal_map: str | None = None
+    roughness_map: str | None = None
+    metalness_map: str | None = None
+
+
 class Shape(Record):
     """A shape to draw, posed in its link's frame.
 
@@ -52,6 +62,7 @@ class Shape(Record):
     outlines: list[list[float]] = field(default_factory=list)
     heights: Floats | None = None
     columns: int = 0
+    surface: Surface | None = None
 
 
 class LinkScene(Record):

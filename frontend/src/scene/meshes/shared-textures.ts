@@ -1,0 +1,32 @@
+import type { Texture } from "three";
+import { loadTexture } from "../materials";
+
+interface Shared {
+  readonly texture: Promise<Texture>;
+  users: number;
+}
+
+/** Textures by their addresses, each once on the graphics card however many shapes wear it. */
+export class SharedTextures {
+  private readonly shared = new Map<string, Shared>();
+
+  constructor(private readonly load: (url: string) => Promise<Texture> = loadTexture) {}
+
+  /** The texture at `url`; whoever takes it gives it back, also when it cannot be loaded. */
+  take(url: string): Promise<Texture> {
+    let known = this.shared.get(url);
+    if (!known) this.shared.set(url, (known = { texture: this.load(url), users: 0 }));
+    known.users++;
+    return known.texture;
+  }
+
+  giveBack(url: string): void {
+    const known = this.shared.get(url);
+    if (!known || --known.users > 0) return;
+    this.shared.delete(url);
+    known.texture.then(
+      (texture) => texture.dispose(),
+      () => undefined,
+    );
+  }
+}
