@@ -14,6 +14,8 @@ ARGUMENTS = {
     "tf2_echo": ["a", "b"],
     "spawn_entity.py": ["-entity", "a", "-topic", "b"],
     "create": ["-topic", "a"],
+    "delete_entity": ["--name", "a"],
+    "set_entity_pose": ["--name", "a", "--pos", "0", "0", "0"],
     "spawner": ["a"],
     "spawner.py": ["a"],
     "unspawner": ["a"],
@@ -56,7 +58,7 @@ async def test_every_executable_starts_and_ends(stage, executable, terminal):
     options = NodeOptions(
         name="mine",
         namespace="/robot",
-        parameters={"robot_description": robot(joint("a")), "port": 0},  # any, for the bridge
+        parameters={"robot_description": robot(joint("a")), "port": 0, "entity_name": "a"},  # any port, for the bridge
         arguments=ARGUMENTS.get(executable[1], []),
         library=stage.library,
         terminal=terminal,
@@ -74,7 +76,7 @@ async def test_every_executable_starts_and_ends(stage, executable, terminal):
 @pytest.mark.parametrize("executable", EXECUTABLES, ids="/".join)
 async def test_the_name_of_a_node_that_is_given_none_is_known(stage, executable, terminal):
     options = NodeOptions(
-        parameters={"robot_description": robot(joint("a")), "port": 0},  # any, for the bridge
+        parameters={"robot_description": robot(joint("a")), "port": 0, "entity_name": "a"},  # any port, for the bridge
         arguments=ARGUMENTS.get(executable[1], []),
         library=stage.library,
         terminal=terminal,
