@@ -16,6 +16,7 @@ from linkwright.sdf.lights import Light
 from linkwright.sdf.materials import Pbr, Workflow
 from linkwright.sdf.models import Model
 from linkwright.sdf.noise import Noise
+from linkwright.sdf.populations import KINDS, Distribution
 from linkwright.sdf.shapes import Polyline
 from linkwright.sdf.worlds import ModelState, Sdf
 from linkwright.xmltree import Element
@@ -46,6 +47,7 @@ _SPECIAL: dict[tuple[type, str], SearchStrategy[Any]] = {
     (Joint, "type"): st.sampled_from(JOINT_TYPES),
     (Light, "type"): st.sampled_from(("point", "directional", "spot")),
     (Noise, "type"): st.sampled_from(("none", "gaussian", "gaussian_quantized")),
+    (Distribution, "type"): st.sampled_from(KINDS),
     (AxisLimit, "effort"): st.floats(0, 1e12),
     (AxisLimit, "velocity"): st.floats(0, 1e12) | st.just(float("inf")),
     (Sdf, "version"): st.just("1.11"),

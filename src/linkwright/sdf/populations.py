@@ -21,7 +21,8 @@ from linkwright.sdf.values import INTEGER, NUMBER, VECTOR3, choice, made, name_o
 from linkwright.xmltree import Element
 
 _AXES = ("linear-x", "linear-y", "linear-z")
-_KINDS = ("random", "uniform", "grid", *_AXES)
+KINDS = ("random", "uniform", "grid", *_AXES)
+"""How the models of a population may be spread."""
 _MOST = 100_000
 """So many models may come of one population."""
 _GOLDEN_ANGLE = pi * (3 - sqrt(5))
@@ -137,7 +138,7 @@ POPULATION = ElementRule(
             Distribution,
             "distribution",
             "how they are spread",
-            value("type", choice(*_KINDS), "the way", default="random"),
+            value("type", choice(*KINDS), "the way", default="random"),
             value("rows", INTEGER, "rows of a grid", default="1"),
             value("cols", INTEGER, "columns of a grid", default="1", field="columns"),
             value("step", VECTOR3, "from one to the next in a grid", "m", default="0.5 0.5 0"),
