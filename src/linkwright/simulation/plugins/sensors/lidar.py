@@ -14,6 +14,7 @@ from typing import Any, ClassVar, Generic, TypeVar
 import numpy as np
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+from linkwright.geometry.arrays import Array
 from linkwright.graph.qos.profile import SENSOR_DATA_QOS
 from linkwright.messages import get_message
 from linkwright.sdf.sensors import Lidar
@@ -264,8 +265,9 @@ class Velodyne(_OneLidar[VelodyneParameters]):
         said = self.parameters
         message = self.message(_CLOUD, self.classic_frame())
         shape = scan.ranges.shape
-        points = self.points(scan).reshape(*shape, 3).swapaxes(0, 1).reshape(-1, 3)
-        ranges, intensities = scan.ranges.T.ravel(), scan.intensities.T.ravel()
+        points: Array = self.points(scan).reshape(*shape, 3).swapaxes(0, 1).reshape(-1, 3)
+        ranges: Array = scan.ranges.T.ravel()
+        intensities: Array = scan.intensities.T.ravel()
         rings = np.tile(np.arange(shape[0], dtype=np.uint16), shape[1])
         seen = (ranges > said.min_range) & (ranges < said.max_range) & (intensities >= said.min_intensity)
         if said.organize_cloud:
