@@ -196,8 +196,8 @@ def test_a_recording_of_a_type_that_no_package_has_is_played_and_its_bytes_are_e
 
 
 def test_the_doctor_sees_what_runs_outside():
-    publisher = begin("topic", "pub", "/cmd_vel", "geometry_msgs/msg/Twist", "-n", "teleop")
-    other = begin("topic", "echo", "/cmd_vel", "geometry_msgs/msg/TwistStamped")
+    publisher = begin("topic", "pub", "/way", "geometry_msgs/msg/Twist", "-n", "teleop")
+    other = begin("topic", "echo", "/way", "geometry_msgs/msg/TwistStamped")
     try:
         assert publisher.stdout is not None
         publisher.stdout.readline()
