@@ -10,11 +10,12 @@ import sys
 import threading
 import time
 from collections.abc import Callable
-
-from linkwright.graph.executors.work import WorkQueue
+from pathlib import Path
 
 SECONDS = 60.0
 _PAUSE = 0.005
+_EXECUTOR_WAITS = ("_sleep", "work.py")
+"""The function, and its file, in which an executor waits for work."""
 
 
 def wait_until(condition: Callable[[], object], seconds: float = SECONDS, what: object = "") -> None:
@@ -36,9 +37,11 @@ async def eventually(condition: Callable[[], object], seconds: float = SECONDS, 
 def is_waiting(thread: threading.Thread) -> bool:
     """Whether a thread waits for another one (for an event, a condition, the work of an executor)."""
     frame = sys._current_frames().get(thread.ident or 0)
-    return frame is not None and (
-        frame.f_code.co_filename == threading.__file__ or frame.f_code is WorkQueue._sleep.__code__
-    )
+    if frame is None:
+        return False
+    code = frame.f_code
+    # By its name, as programs of the tests also run where there is nothing of ours.
+    return code.co_filename == threading.__file__ or (code.co_name, Path(code.co_filename).name) == _EXECUTOR_WAITS
 
 
 def _said(seconds: float, what: object) -> str:
