@@ -25,6 +25,7 @@ Everything is called in one thread, that of the updates. Names, order and meanin
 
 from __future__ import annotations
 
+from abc import ABC
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -73,7 +74,7 @@ class ControllerPlace:
     robot_description: str = ""
 
 
-class Controller(Generic[P]):
+class Controller(ABC, Generic[P]):
     """A controller.
 
     Args:

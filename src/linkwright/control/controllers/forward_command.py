@@ -6,6 +6,7 @@ ros2_controllers (parameters, topics, texts; velocities and efforts are 0 after 
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
@@ -43,8 +44,9 @@ class GroupParameters:
 class _Forwarding(Controller[P], Generic[P]):
     """Writes the last message of ``~/commands`` to its interfaces."""
 
+    @abstractmethod
     def _names(self) -> Sequence[str]:
-        raise NotImplementedError
+        """The interfaces that are commanded."""
 
     def command_interfaces(self) -> InterfaceNames:
         """Those that are commanded."""

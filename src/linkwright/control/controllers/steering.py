@@ -8,6 +8,7 @@ stops the vehicle.
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import cos, isfinite, nan, pi
@@ -101,9 +102,9 @@ class SteeringController(Controller[P], Generic[P]):
     KIND: ClassVar[str]
     JOINTS: ClassVar[tuple[int, int]]
 
+    @abstractmethod
     def drive(self) -> CarDrive:
         """The sizes of the vehicle; what is not positive is refused."""
-        raise NotImplementedError
 
     def command_interfaces(self) -> InterfaceNames:
         """Velocities of the joints that drive, then angles of those that steer."""

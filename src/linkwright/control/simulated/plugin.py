@@ -36,18 +36,23 @@ class Parameters:
     """Of the plugins."""
 
     parameters: tuple[str, ...] = ()
-    robot_param: str = "robot_description"
-    robot_param_node: str = "robot_state_publisher"
     controller_manager_name: str = "controller_manager"
     hold_joints: bool = True
-    position_proportional_gain: float = 0.1
 
 
 class SimulatedControl(SimulatedPlugin[Parameters]):
     """Runs the controllers of a robot in the world."""
 
     PARAMETERS = Parameters
-    IGNORED = ("e_stop_topic", "control_period", "robot_sim_type", "controller_manager_prefix_node_name")
+    IGNORED = (
+        "robot_param",  # the description comes by its topic
+        "robot_param_node",
+        "position_proportional_gain",  # positions are held by a constraint
+        "e_stop_topic",
+        "control_period",
+        "robot_sim_type",
+        "controller_manager_prefix_node_name",
+    )
 
     def start(self) -> None:
         """Make the manager, and wait for the description."""
