@@ -13,7 +13,7 @@ from linkwright.lint.registry import all_rules
 
 ROOMS = Path(linkwright.__file__).parent
 CODE = re.compile(
-    r'"((?:XML|XAC|URDF|SDF|PKG|KIN|GRAPH|NODE|RVIZ|VIEW|LAUNCH|CLI|LINT|INR|MSG|DOC|DDS|BAG|SHELL|DRIVE|SIM|SWEEP|CTL)[0-9]{3})"'
+    r'"((?:XML|XAC|URDF|SDF|PKG|KIN|GRAPH|NODE|RVIZ|VIEW|LAUNCH|CLI|LINT|INR|MSG|DOC|DDS|BAG|SHELL|DRIVE|SIM|SWEEP|CTL|NAV)[0-9]{3})"'
 )
 
 

@@ -12,6 +12,7 @@ EXTRAS = {
     "diagram": "pygraphviz",
     "image": "PIL",
     "mesh": "trimesh",
+    "navigation": "scipy",
     "parquet": "pyarrow",
     "ray": "ray",
     "sim": "mujoco",

@@ -1,0 +1,1 @@
+"""What a robot does when it is stuck: spin, back up, wait."""

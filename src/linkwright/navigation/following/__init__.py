@@ -1,0 +1,1 @@
+"""Velocities that keep a robot on its path."""

@@ -1,0 +1,1 @@
+"""Occupancy grids: planes of square cells."""

@@ -1,0 +1,85 @@
+"""A grid of square cells that lies in a frame."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import cos, sin
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+FREE: Final = 0
+OCCUPIED: Final = 100
+UNKNOWN: Final = -1
+"""What cells of an occupancy grid say (nav_msgs/OccupancyGrid); between ``FREE`` and ``OCCUPIED`` it is per cent."""
+
+
+@dataclass(eq=False, kw_only=True)
+class Grid:
+    """Square cells in rows, and where they lie.
+
+    Args:
+        cells: their values, of shape (rows, columns): ``cells[row, column]``, rows along y. In messages, files and
+            costmaps they have their own meanings and types (int8 for nav_msgs/OccupancyGrid, uint8 for costs).
+        resolution: side of a cell, in metres.
+        x: of the outer corner of cell (0, 0) in the frame of the grid, in metres.
+        y: of that corner.
+        yaw: by which the rows are turned about that corner, in radians.
+    """
+
+    cells: NDArray[Any]
+    resolution: float
+    x: float = 0.0
+    y: float = 0.0
+    yaw: float = 0.0
+
+    @property
+    def rows(self) -> int:
+        """How many there are."""
+        return int(self.cells.shape[0])
+
+    @property
+    def columns(self) -> int:
+        """How many there are."""
+        return int(self.cells.shape[1])
+
+    def cells_of(self, points: NDArray[np.float64]) -> NDArray[np.int64]:
+        """The cells in which points lie, which may be outside of the grid.
+
+        Args:
+            points: of shape (..., 2), x and y in the frame of the grid, in metres.
+
+        Returns:
+            Rows and columns, of shape (..., 2).
+        """
+        x = points[..., 0] - self.x
+        y = points[..., 1] - self.y
+        if self.yaw:
+            c, s = cos(self.yaw), sin(self.yaw)
+            x, y = c * x + s * y, c * y - s * x
+        indices: NDArray[np.int64] = np.floor(np.stack((y, x), axis=-1) / self.resolution).astype(np.int64)
+        return indices
+
+    def centres_of(self, indices: NDArray[np.integer[Any]]) -> NDArray[np.float64]:
+        """The middles of cells.
+
+        Args:
+            indices: rows and columns, of shape (..., 2).
+
+        Returns:
+            x and y in the frame of the grid, in metres, of shape (..., 2).
+        """
+        y = (indices[..., 0] + 0.5) * self.resolution
+        x = (indices[..., 1] + 0.5) * self.resolution
+        if self.yaw:
+            c, s = cos(self.yaw), sin(self.yaw)
+            x, y = c * x - s * y, s * x + c * y
+        points: NDArray[np.float64] = np.stack((x + self.x, y + self.y), axis=-1)
+        return points
+
+    def has(self, indices: NDArray[np.integer[Any]]) -> NDArray[np.bool_]:
+        """Which cells are inside of the grid, of shape (...) for rows and columns of shape (..., 2)."""
+        rows, columns = indices[..., 0], indices[..., 1]
+        inside: NDArray[np.bool_] = (rows >= 0) & (rows < self.rows) & (columns >= 0) & (columns < self.columns)
+        return inside

@@ -1,0 +1,22 @@
+"""The library SciPy, which the extra ``navigation`` brings."""
+
+from __future__ import annotations
+
+from functools import cache
+from importlib import import_module
+from typing import Any
+
+from linkwright.diagnostics import missing_extra
+
+
+@cache
+def load_scipy(part: str) -> Any:
+    """A part of SciPy, such as ``ndimage``; it has no types.
+
+    Raises:
+        LinkwrightError: NAV101 it is not installed.
+    """
+    try:
+        return import_module(f"scipy.{part}")
+    except ModuleNotFoundError as error:
+        raise missing_extra("NAV101", error) from None

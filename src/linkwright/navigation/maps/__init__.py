@@ -1,0 +1,1 @@
+"""Files of maps: a YAML file and a picture."""
