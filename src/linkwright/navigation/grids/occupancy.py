@@ -1,0 +1,59 @@
+"""Grids as messages: nav_msgs/OccupancyGrid both ways."""
+
+from __future__ import annotations
+
+from array import array
+from typing import Any
+
+import numpy as np
+
+from linkwright.geometry.single import quaternion_from_rpy, rpy_from_quaternion
+from linkwright.messages import get_message
+from linkwright.navigation.grids.grid import Grid
+
+
+class BadGridError(ValueError):
+    """A message that is no grid; the text says why, in the words of what it is made of."""
+
+
+def occupancy_message(grid: Grid, frame: str, stamp: Any) -> Any:
+    """The nav_msgs/OccupancyGrid of a grid.
+
+    Args:
+        grid: cells of per cent, or `UNKNOWN`.
+        frame: what it lies in.
+        stamp: builtin_interfaces/Time of the message, and of when the map was loaded.
+    """
+    message = get_message("nav_msgs/msg/OccupancyGrid")()
+    message.header.frame_id = frame
+    message.header.stamp = stamp
+    message.info.map_load_time = stamp
+    message.info.resolution = grid.resolution
+    message.info.width, message.info.height = grid.columns, grid.rows
+    position, orientation = message.info.origin.position, message.info.origin.orientation
+    position.x, position.y = float(grid.x), float(grid.y)
+    orientation.x, orientation.y, orientation.z, orientation.w = quaternion_from_rpy((0.0, 0.0, float(grid.yaw)))
+    message.data = array("b", np.ascontiguousarray(grid.cells, dtype=np.int8).tobytes())
+    return message
+
+
+def grid_of(message: Any) -> Grid:
+    """The grid of a nav_msgs/OccupancyGrid; its cells are a copy, of type int8.
+
+    Raises:
+        BadGridError: it has no cells, or not as many as it says, or they have no size.
+    """
+    info = message.info
+    cells = np.array(np.frombuffer(message.data, np.int8))
+    if not info.width or not info.height or cells.size != info.width * info.height:
+        raise BadGridError(f"width = {info.width}, height = {info.height}, data size = {cells.size}")
+    if not 0.0 < info.resolution < float("inf"):
+        raise BadGridError(f"resolution = {info.resolution:g}")
+    turned = info.origin.orientation
+    return Grid(
+        cells=cells.reshape(info.height, info.width),
+        resolution=float(str(np.float32(info.resolution))),  # 0.05 comes over the wire as 0.0500000007
+        x=info.origin.position.x,
+        y=info.origin.position.y,
+        yaw=rpy_from_quaternion((turned.x, turned.y, turned.z, turned.w))[2],
+    )

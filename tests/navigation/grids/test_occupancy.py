@@ -1,0 +1,37 @@
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+import pytest
+
+from linkwright.messages import Time
+from linkwright.navigation.grids.grid import Grid
+from linkwright.navigation.grids.occupancy import BadGridError, grid_of, occupancy_message
+
+
+def test_a_grid_becomes_a_message_and_back() -> None:
+    grid = Grid(cells=np.array([[0, 100, -1], [5, 6, 7]], np.int8), resolution=0.05, x=-1.0, y=2.0, yaw=pi / 2)
+    message = occupancy_message(grid, "map", Time(sec=3))
+    assert (message.info.width, message.info.height) == (3, 2)
+    assert list(message.data) == [0, 100, -1, 5, 6, 7]
+    assert (message.header.frame_id, message.header.stamp.sec, message.info.map_load_time.sec) == ("map", 3, 3)
+    again = grid_of(message)
+    assert (again.cells == grid.cells).all()
+    assert again.cells.dtype == np.int8
+    assert (again.x, again.y) == (-1.0, 2.0)
+    assert abs(again.yaw - pi / 2) < 1e-12
+    assert again.resolution == 0.05
+
+
+@pytest.mark.parametrize(
+    ("change", "text"), [("width", "width = 4, height = 2, data size = 6"), ("size", "resolution = 0")]
+)
+def test_a_message_that_is_no_grid_is_refused(change: str, text: str) -> None:
+    message = occupancy_message(Grid(cells=np.zeros((2, 3), np.int8), resolution=0.05), "map", Time())
+    if change == "width":
+        message.info.width = 4
+    else:
+        message.info.resolution = 0.0
+    with pytest.raises(BadGridError, match=text):
+        grid_of(message)

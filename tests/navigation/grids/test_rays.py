@@ -1,0 +1,102 @@
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+
+from linkwright.navigation.grids.distances import distance_field
+from linkwright.navigation.grids.grid import Grid
+from linkwright.navigation.grids.marking import mark, ray_counts
+from linkwright.navigation.grids.rays import cells_on_lines, ranges
+
+_CELL = st.tuples(st.integers(-40, 40), st.integers(-40, 40))
+
+
+def test_lines_are_those_of_bresenham() -> None:
+    cells, line = cells_on_lines(np.array([0, 0]), np.array([[2, 4], [-3, 0], [0, 0]]))
+    assert cells[line == 0].tolist() == [[0, 0], [1, 1], [1, 2], [2, 3], [2, 4]]
+    assert cells[line == 1].tolist() == [[0, 0], [-1, 0], [-2, 0], [-3, 0]]
+    assert cells[line == 2].tolist() == [[0, 0]]
+
+
+def test_no_lines_have_no_cells() -> None:
+    cells, line = cells_on_lines(np.array([0, 0]), np.empty((0, 2), np.int64))
+    assert cells.shape == (0, 2)
+    assert line.shape == (0,)
+
+
+@given(st.lists(st.tuples(_CELL, _CELL), min_size=1, max_size=6))
+def test_lines_are_connected_and_keep_within_half_a_cell(lines: list[tuple[tuple[int, int], tuple[int, int]]]) -> None:
+    starts, ends = np.array([a for a, _ in lines]), np.array([b for _, b in lines])
+    cells, line = cells_on_lines(starts, ends)
+    for number, (start, end) in enumerate(zip(starts, ends, strict=True)):
+        own = cells[line == number]
+        assert (own[0] == start).all()
+        assert (own[-1] == end).all()
+        assert len(own) == np.abs(end - start).max() + 1
+        if len(own) > 1:
+            assert (np.abs(np.diff(own, axis=0)).max(axis=1) == 1).all()
+            exact = start + np.linspace(0, 1, len(own))[:, None] * (end - start)
+            assert np.abs(own - exact).max() <= 0.5 + 1e-9
+
+
+def test_rays_end_at_walls_and_at_the_limit() -> None:
+    walls = np.zeros((100, 100), bool)
+    walls[:, 80] = True
+    field = Grid(cells=distance_field(walls, 0.05), resolution=0.05)
+    measured = ranges(field, np.array([1.0, 2.5]), np.array([0.0, pi / 4, pi, pi / 2]), 10.0)
+    assert abs(measured[0] - 3.0) <= 0.05
+    assert measured[2] == measured[3] == 10.0
+    assert measured[1] == 10.0  # it leaves the grid before it meets the wall
+    assert ranges(field, np.array([1.0, 2.5]), np.array([0.0]), 2.0)[0] == 2.0
+
+
+def test_rays_of_a_turned_grid_are_turned() -> None:
+    walls = np.zeros((100, 100), bool)
+    walls[:, 80] = True
+    field = Grid(cells=distance_field(walls, 0.05), resolution=0.05, x=1.0, y=-2.0, yaw=pi / 2)
+    measured = ranges(field, np.array([[0.0, 0.0], [-1.0, 0.0]]), np.array([pi / 2]), 10.0)
+    assert np.abs(measured - 2.0).max() <= 0.05
+
+
+@given(st.integers(0, 2**32 - 1))
+def test_no_ray_goes_through_a_wall(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    walls = np.zeros((60, 60), bool)
+    walls[[0, -1], :] = walls[:, [0, -1]] = True
+    field = Grid(cells=distance_field(walls, 0.1), resolution=0.1)
+    points = random.uniform(0.3, 5.7, (20, 2))
+    angles = random.uniform(-pi, pi, 20)
+    measured = ranges(field, points, angles, 20.0)
+    along = np.stack((np.cos(angles), np.sin(angles)), axis=-1)
+    with np.errstate(divide="ignore"):
+        exact = np.where(along > 0, (5.95 - points) / along, (0.05 - points) / along).min(axis=1)
+    ends = points + measured[:, None] * along
+    assert (measured < 20.0).all()
+    assert ((ends >= -1e-9) & (ends <= 6.0 + 1e-9)).all()
+    assert (measured <= exact + 0.1 / np.abs(along).max(axis=1)).all()
+
+
+def test_rays_are_counted_where_they_end_and_where_they_pass() -> None:
+    hit, passed = ray_counts(
+        (1, 5), np.array([0, 0]), np.array([[0, 3], [0, 4], [0, 9]]), np.array([True, False, True])
+    )
+    assert hit.tolist() == [[0, 0, 0, 1, 0]]
+    assert passed.tolist() == [[3, 3, 3, 2, 2]]
+
+
+def test_points_are_marked_and_those_outside_passed_over() -> None:
+    grid = Grid(cells=np.zeros((3, 4), np.int8), resolution=0.5, x=-1.0)
+    mark(grid, np.array([[-0.9, 0.1], [0.9, 1.4], [5.0, 5.0], [-1.1, 0.1]]), 100)
+    assert np.argwhere(grid.cells).tolist() == [[0, 0], [2, 3]]
+
+
+def test_distances_are_metres_to_the_nearest_marked_cell() -> None:
+    marked = np.zeros((3, 4), bool)
+    assert (distance_field(marked, 0.1, 2.0) == 2.0).all()
+    marked[0, 0] = True
+    field = distance_field(marked, 0.5, 1.0)
+    assert field[0].tolist() == [0.0, 0.5, 1.0, 1.0]
+    assert field[1, 1] == 0.5 * 2**0.5
