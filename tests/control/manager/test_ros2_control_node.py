@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+import pytest
+
 from linkwright.descriptions import DescriptionLibrary
 from linkwright.graph import DESCRIPTION_QOS
 from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile
@@ -126,4 +128,64 @@ async def test_a_description_that_cannot_be_read_is_told_and_the_next_one_taken(
     publisher.publish(String(CONTROL))
     await graph.settle()
     assert list(running._manager.resources.components) == ["arm"]
+    running.close()
+
+
+def cycles_of(running, during=lambda: None):
+    """The periods in seconds that the manager's cycles are told, from now on; something may happen during each."""
+    periods, cycle = [], running._manager.cycle
+
+    def counted(time_ns, period_s):
+        periods.append(period_s)
+        cycle(time_ns, period_s)
+        during()
+
+    running._manager.cycle = counted
+    return periods
+
+
+OVERRUN = (
+    "Overrun detected! The controller manager missed its desired rate of 100 Hz. The loop took 25.000000 ms "
+    "(missed cycles : 1)."
+)
+
+
+@pytest.mark.parametrize(
+    ("parameters", "then", "told"),
+    [
+        ({}, [0.025, 0.005, 0.01], [OVERRUN]),
+        ({"overruns.print_warnings": False}, [0.025, 0.005, 0.01], []),
+        ({"overruns.manage": False}, [0.025, 0.0, 0.005, 0.01], []),
+    ],
+)
+async def test_updates_that_were_missed_are_left_out_and_told_or_made_up_for(
+    graph, clock, tmp_path, said, parameters, then, told
+):
+    running = start(graph, tmp_path, CONTROL, **parameters)
+    await graph.settle()
+    before = said("WARN")
+    slow = iter([0.0, 0.025])
+    periods = cycles_of(running, lambda: clock._move_to(clock.steady_ns() + round(next(slow, 0.0) * 1e9)))
+    await clock.advance(0.06)
+    assert periods == [0.01, 0.01, *then]
+    assert said("WARN") == before + told
+    running.close()
+
+
+async def test_simulated_time_that_jumps_is_no_overrun_and_none_goes_back(graph, clock, tmp_path, said):
+    running = start(graph, tmp_path, CONTROL, use_sim_time=True)
+    await graph.settle()
+    time = running._node.get_clock()
+    time.override(1_000_000_000)
+    await graph.settle()
+    periods = cycles_of(running)
+    told = len(said("WARN"))
+    for now_ns in (1_010_000_000, 1_050_000_000, 20_000_000, 30_000_000, 40_000_000):
+        time.override(now_ns)
+        await graph.settle()
+    assert periods == [0.01, 0.04, 0.01, 0.01]
+    assert said("WARN")[told:] == []
+    time.set_ros_time_is_active(False)
+    await clock.advance(0.01)
+    assert periods[4:] == [0.01]
     running.close()

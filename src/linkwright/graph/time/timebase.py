@@ -11,7 +11,11 @@ from dataclasses import dataclass, field
 from itertools import count
 from typing import Protocol
 
+from linkwright.graph.time.fine_alarms import fine_alarms
 from linkwright.graph.time.values import NANOSECONDS_PER_SECOND, ClockType, Time
+
+_SHORT_NS = 20_000_000
+"""Waits of up to this length end in time to some microseconds; longer ones may be a millisecond late."""
 
 
 class Alarm(Protocol):
@@ -74,6 +78,10 @@ class SystemClock(Timebase):
 
     def call_at(self, loop: AbstractEventLoop, steady_ns: int, callback: Callable[[], None]) -> Alarm:
         """Call something once on an event loop."""
+        if steady_ns - time.monotonic_ns() <= _SHORT_NS:
+            alarms = fine_alarms(loop)
+            if alarms is not None:
+                return alarms.call_at(steady_ns, callback)
         return loop.call_at(steady_ns / NANOSECONDS_PER_SECOND, callback)
 
 

@@ -1,6 +1,7 @@
 """ros2_control_node of controller_manager: controllers at real time.
 
 It reads, updates and writes at ``update_rate`` on the event loop, so that topics and services need not be handed over.
+Updates that come too late are left out, as ``overruns.manage`` says, or made up for.
 The description comes by the topic ``robot_description`` (Jazzy), by ``~/robot_description``, or as a parameter
 (Humble).
 """
@@ -51,6 +52,9 @@ class Ros2ControlNode(SingleNode):
         logger = self._node.get_logger()
         rate = self._rate()
         logger.info(f"update rate is {rate} Hz")
+        self._manages_overruns = self._is_on("overruns.manage")
+        self._tells_of_overruns = self._manages_overruns and self._is_on("overruns.print_warnings")
+        logger.info(f"Overruns handling is : {'enabled' if self._manages_overruns else 'disabled'}")
         self._manager = ControllerManager(
             self._node,
             DirectExchange(),
@@ -89,6 +93,9 @@ class Ros2ControlNode(SingleNode):
             raise LinkwrightError(Diagnostic("NODE830", message, hint=phrase("write 'update_rate: 100'")))
         return value
 
+    def _is_on(self, parameter: str) -> bool:
+        return self._node.get_parameter_or(parameter).value is not False
+
     def _on_description(self, message: String) -> None:
         logger = self._node.get_logger()
         logger.info("Received robot description from topic.")
@@ -106,11 +113,39 @@ class Ros2ControlNode(SingleNode):
         services = ManagerServices(manager, node)
         self._node.create_timer(1.0, services.publish_diagnostics)
         self._clock = self._node.get_clock()
-        self._last_ns = self._clock.now_ns()
-        self._node.create_timer(1.0 / manager.update_rate, self._update)
+        self._period_ns = round(_NANOSECONDS / manager.update_rate)
+        self._was_simulated = self._clock.ros_time_is_active
+        self._took_ns = 0
+        self._last_ns = self._clock.timer_ns()
+        self._next_ns = self._last_ns + self._period_ns
+        self._timer = self._node.create_timer(1.0 / manager.update_rate, self._update)
 
     def _update(self) -> None:
-        now_ns = self._clock.now_ns()
-        period_s = (now_ns - self._last_ns) / _NANOSECONDS
-        self._last_ns = now_ns
-        self._manager.cycle(now_ns, period_s)
+        before_ns, self._next_ns = self._next_ns, self._clock.timer_ns() + (self._timer.time_until_next_call() or 0)
+        missed = round((self._next_ns - before_ns) / self._period_ns) - 1
+        if missed > 0 and self._clock.ros_time_is_active is self._was_simulated is False:
+            self._missed(missed)
+        self._cycle()
+
+    def _cycle(self) -> None:
+        clock = self._clock
+        timer_ns, simulated = clock.timer_ns(), clock.ros_time_is_active
+        period_ns = timer_ns - self._last_ns
+        if simulated is not self._was_simulated or period_ns < 0:  # the time is another one
+            self._was_simulated, period_ns = simulated, self._period_ns
+        self._last_ns = timer_ns
+        self._manager.cycle(clock.now_ns(), period_ns / _NANOSECONDS)
+        self._took_ns = clock.timer_ns() - timer_ns
+
+    def _missed(self, count: int) -> None:
+        """Updates were missed: they are left out, or made up for. Those that took too long themselves are told."""
+        rate, took_ns = self._manager.update_rate, self._took_ns
+        if self._tells_of_overruns and took_ns > self._period_ns:
+            self._node.get_logger().warning(
+                f"Overrun detected! The controller manager missed its desired rate of {rate:.0f} Hz. The loop took "
+                f"{took_ns / 1e6:f} ms (missed cycles : {count}).",
+                throttle_duration_sec=1.0,
+            )
+        if not self._manages_overruns:
+            for _ in range(min(count, int(rate))):  # those of the last second
+                self._cycle()

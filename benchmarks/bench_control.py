@@ -1,0 +1,181 @@
+"""ros2_control_node at 1 kHz: updates a second, how even they are, and what they cost of one processor.
+
+Run it with ``python -m benchmarks control``. Twelve joints of ``mock_components``, a joint_trajectory_controller that
+holds them and a joint_state_broadcaster, asked for 1,000 updates a second; once nobody listens, once somebody in this
+process listens to ``/joint_states``. "A bare loop" is a Python program that does nothing but sleep until the next beat:
+what the machine allows. All take turns of two seconds, so that they meet the same machine, and the median turn counts.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import gc
+import statistics
+import time
+from dataclasses import dataclass
+from itertools import pairwise
+
+from benchmarks.measure import Row, show
+from linkwright.graph import Graph
+from linkwright.graph.log.levels import LogLevel
+from linkwright.graph.parameters.rules import ParameterRules
+from linkwright.nodes.control.ros2_control_node import Ros2ControlNode
+from linkwright.nodes.options import NodeOptions
+
+JOINTS = [f"joint{number}" for number in range(12)]
+RATE = 1000
+TURNS = 5
+_SECONDS = 2.0
+_CYCLES = 5000
+_TRAJECTORY = "joint_trajectory_controller/JointTrajectoryController"
+_BROADCASTER = "joint_state_broadcaster/JointStateBroadcaster"
+
+
+@dataclass(frozen=True)
+class Beats:
+    """What a turn gave.
+
+    Attributes:
+        rate: updates a second.
+        load: percent of a processor.
+        late_us: how far one period in a hundred, at least, is longer than it should be.
+        longest_us: how far the longest is.
+    """
+
+    rate: float
+    load: float
+    late_us: float
+    longest_us: float
+
+
+def robot() -> str:
+    """A chain of joints with position commands, positions and velocities."""
+    links = '<link name="base"/>' + "".join(f'<link name="{joint}_link"/>' for joint in JOINTS)
+    parents = ["base", *(f"{joint}_link" for joint in JOINTS)]
+    joints = "".join(
+        f'<joint name="{joint}" type="continuous"><parent link="{parent}"/><child link="{joint}_link"/></joint>'
+        for joint, parent in zip(JOINTS, parents, strict=False)
+    )
+    interfaces = "".join(
+        f'<joint name="{joint}"><command_interface name="position"/><state_interface name="position"/>'
+        '<state_interface name="velocity"/></joint>'
+        for joint in JOINTS
+    )
+    return (
+        f'<robot name="chain">{links}{joints}<ros2_control name="mock" type="system"><hardware>'
+        f"<plugin>mock_components/GenericSystem</plugin></hardware>{interfaces}</ros2_control></robot>"
+    )
+
+
+def started(graph: Graph) -> Ros2ControlNode:
+    """The node with both controllers active."""
+    parameters = {
+        "robot_description": robot(),
+        "update_rate": RATE,
+        "broadcaster": {"type": _BROADCASTER},
+        "arm": {"type": _TRAJECTORY},
+    }
+    of_controllers = ParameterRules()
+    for name, value in {
+        "joints": JOINTS,
+        "command_interfaces": ["position"],
+        "state_interfaces": ["position", "velocity"],
+    }.items():
+        of_controllers.set("arm", name, value)
+    graph.levels.set("", LogLevel.ERROR)
+    node = Ros2ControlNode(graph, NodeOptions(parameters=parameters, for_others=of_controllers))
+    manager = node._manager
+    for name in ("broadcaster", "arm"):
+        assert manager.load(name)
+        assert manager.configure(name)
+    assert manager.switch(["broadcaster", "arm"], [], 2)[0]
+    return node
+
+
+async def controlled(*, listened: bool) -> tuple[Beats, float]:
+    """A turn of the node; and the microseconds of a cycle, one after another without pause."""
+    graph = Graph()
+    node = started(graph)
+    if listened:
+        graph.create_node("audience").create_subscription("sensor_msgs/msg/JointState", "/joint_states", nothing, 10)
+    manager, times = node._manager, list[int]()
+    cycle = manager.cycle
+    start = time.process_time()
+    for number in range(_CYCLES):
+        cycle(number * 1_000_000, 0.001)
+        if listened:
+            await asyncio.sleep(0)
+    alone_us = (time.process_time() - start) / _CYCLES * 1e6
+
+    def counted(time_ns: int, period_s: float) -> None:
+        times.append(time.monotonic_ns())
+        cycle(time_ns, period_s)
+
+    manager.cycle = counted  # type: ignore[method-assign]
+    await asyncio.sleep(0.1)
+    times.clear()
+    gc.collect()
+    begun, start = time.monotonic(), time.process_time()
+    await asyncio.sleep(_SECONDS)
+    beats = judged(times, time.process_time() - start, time.monotonic() - begun)
+    node.close()
+    await graph.close()
+    return beats, alone_us
+
+
+def nothing(message: object) -> None:
+    """A callback that does nothing."""
+
+
+def bare() -> Beats:
+    """A turn of a loop that only sleeps."""
+    times = list[int]()
+    begun, start = time.monotonic(), time.process_time()
+    due = begun
+    while due < begun + _SECONDS:
+        due += 1.0 / RATE
+        left = due - time.monotonic()
+        if left > 0.0:
+            time.sleep(left)
+        times.append(time.monotonic_ns())
+    return judged(times, time.process_time() - start, time.monotonic() - begun)
+
+
+def judged(times: list[int], cpu_s: float, real_s: float) -> Beats:
+    """What the points in time of the updates say."""
+    over = sorted((after - before) / 1e3 - 1e6 / RATE for before, after in pairwise(times))
+    return Beats(len(times) / real_s, 100.0 * cpu_s / real_s, over[len(over) * 99 // 100], over[-1])
+
+
+def rows() -> list[Row]:
+    """The table."""
+    turns: dict[str, list[Beats]] = {"nobody": [], "somebody": [], "bare": []}
+    cycles: dict[str, list[float]] = {"nobody": [], "somebody": []}
+    for _ in range(TURNS):
+        for name in ("nobody", "somebody"):
+            beats, alone_us = asyncio.run(controlled(listened=name == "somebody"))
+            turns[name].append(beats)
+            cycles[name].append(alone_us)
+        turns["bare"].append(bare())
+    found = []
+    for name, about in (("nobody", "nobody listens"), ("somebody", "/joint_states is listened to")):
+
+        def row(what: str, field: str, unit: str, target: str = "", name: str = name, about: str = about) -> Row:
+            def middle(which: str) -> float:
+                return float(statistics.median(getattr(each, field) for each in turns[which]))
+
+            peers: dict[str, float | None] = {"bare loop": middle("bare")}
+            return Row(f"12 joints at 1 kHz, {about}: {what}", middle(name), unit, target, peers)
+
+        found += [
+            row("updates", "rate", "/s", "1000"),
+            row("load", "load", "% of a core", "15"),
+            row("99 of 100 periods over by less than", "late_us", "us"),
+            row("longest period over by", "longest_us", "us"),
+            Row(f"12 joints, {about}: a cycle without pause", statistics.median(cycles[name]), "us"),
+        ]
+    return found
+
+
+if __name__ == "__main__":
+    show(rows())

@@ -1,0 +1,112 @@
+"""Alarms of an event loop to some microseconds, where the loop itself waits for whole milliseconds.
+
+asyncio waits with ``epoll_wait`` on Linux, whose time-out is counted in milliseconds and rounded up: a beat of 1 kHz
+would come late each time, and each seventh be missed. A timer of the kernel that the loop watches as a file
+(``timerfd``) wakes it in time. The event loops of other systems need none.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import heapq
+import os
+import sys
+import time
+import weakref
+from asyncio import AbstractEventLoop
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from itertools import count
+
+_CLOCK_MONOTONIC = 1
+_ABSOLUTE = 1
+_NANOSECONDS = 1_000_000_000
+
+
+def fine_alarms(loop: AbstractEventLoop) -> FineAlarms | None:
+    """Those of an event loop; None where there are none, and the loop's own have to do. Asked in the loop's thread."""
+    if loop not in _of_loops:
+        _of_loops[loop] = _made(loop)
+    return _of_loops[loop]
+
+
+def _made(loop: AbstractEventLoop) -> FineAlarms | None:
+    if sys.platform != "linux" or ctypes.sizeof(ctypes.c_long) != 8:  # the layout of times is another one there
+        return None
+    libc = ctypes.PyDLL(None)  # its calls are short: the interpreter's lock is kept meanwhile
+    file = libc.timerfd_create(_CLOCK_MONOTONIC, os.O_NONBLOCK | os.O_CLOEXEC)
+    if file < 0:
+        return None
+    alarms = FineAlarms(libc.timerfd_settime, file)
+    try:
+        loop.add_reader(file, alarms.run)
+    except NotImplementedError:
+        os.close(file)
+        return None
+    weakref.finalize(loop, os.close, file)
+    return alarms
+
+
+@dataclass(slots=True, order=True)
+class _FineAlarm:
+    steady_ns: int
+    number: int
+    callback: Callable[[], None] = field(compare=False)
+    cancelled: bool = field(default=False, compare=False)
+
+    def cancel(self) -> None:
+        self.cancelled = True
+
+
+class FineAlarms:
+    """Calls that are scheduled on one event loop, in the order in which they are due.
+
+    It is set anew after each time it rings, which also makes its file unreadable again: nothing need be read.
+
+    Args:
+        set_time: ``timerfd_settime`` of the C library.
+        file: the timer, of monotonic time.
+    """
+
+    def __init__(self, set_time: Callable[..., int], file: int) -> None:
+        self._set_time = set_time
+        self._file = file
+        self._setting = (ctypes.c_long * 4)()  # period and next time, each seconds and nanoseconds
+        self._alarms: list[_FineAlarm] = []
+        self._numbers = count()
+        self._is_running = False
+
+    def call_at(self, steady_ns: int, callback: Callable[[], None]) -> _FineAlarm:
+        """Schedule a call for a count of ``time.monotonic_ns``; it is never made before this returns."""
+        alarm = _FineAlarm(steady_ns, next(self._numbers), callback)
+        heapq.heappush(self._alarms, alarm)
+        if not self._is_running and self._alarms[0] is alarm:
+            self._set()
+        return alarm
+
+    def run(self) -> None:
+        """Make the calls that are due. Those that they schedule come in another turn of the loop."""
+        alarms, due = self._alarms, []
+        now_ns = time.monotonic_ns()
+        while alarms and alarms[0].steady_ns <= now_ns:
+            due.append(heapq.heappop(alarms))
+        self._is_running = True
+        try:
+            while due:
+                alarm = due.pop(0)
+                if not alarm.cancelled:
+                    alarm.callback()
+        finally:
+            self._is_running = False
+            for alarm in due:
+                heapq.heappush(alarms, alarm)
+            self._set()
+
+    def _set(self) -> None:
+        setting = self._setting
+        # A time of 0 would stop it, as none does; one that has gone by rings at once.
+        setting[2], setting[3] = divmod(self._alarms[0].steady_ns, _NANOSECONDS) if self._alarms else (0, 0)
+        self._set_time(self._file, _ABSOLUTE, setting, None)
+
+
+_of_loops: weakref.WeakKeyDictionary[AbstractEventLoop, FineAlarms | None] = weakref.WeakKeyDictionary()

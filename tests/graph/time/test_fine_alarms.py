@@ -1,0 +1,118 @@
+from __future__ import annotations
+
+import asyncio
+import gc
+import os
+import time
+import weakref
+
+import pytest
+
+from linkwright.graph import SystemClock
+from linkwright.graph.time.fine_alarms import FineAlarms, fine_alarms
+from tests.waiting import eventually
+
+MILLISECOND = 1_000_000
+
+
+async def alarms() -> FineAlarms:
+    found = fine_alarms(asyncio.get_running_loop())
+    if found is None:
+        pytest.skip("event loops of this system wait by the microsecond themselves")
+    return found
+
+
+async def test_calls_come_in_the_order_in_which_they_are_due_and_never_early():
+    fine, now_ns = await alarms(), time.monotonic_ns()
+    made = []
+    for late_ns in (3 * MILLISECOND, 400_000, 0, 400_000, -5):
+        due_ns = now_ns + late_ns
+        fine.call_at(due_ns, lambda due_ns=due_ns: made.append((due_ns, time.monotonic_ns())))
+    assert made == []
+    await eventually(lambda: len(made) == 5)
+    assert [due_ns - now_ns for due_ns, _ in made] == [-5, 0, 400_000, 400_000, 3 * MILLISECOND]
+    assert all(called_ns >= due_ns for due_ns, called_ns in made)
+
+
+async def test_an_alarm_that_is_cancelled_is_not_called_even_by_one_before_it():
+    fine, made, later = await alarms(), [], []
+
+    def cancel():
+        later[0].cancel()
+
+    due_ns = time.monotonic_ns()
+    fine.call_at(due_ns, cancel)
+    later.append(fine.call_at(due_ns, lambda: made.append("second")))
+    fine.call_at(due_ns, lambda: made.append("third"))
+    await eventually(lambda: made)
+    assert made == ["third"]
+
+
+async def test_what_an_alarm_schedules_comes_in_another_turn_of_the_loop():
+    fine, made = await alarms(), []
+
+    def again():
+        made.append("alarm")
+        if len(made) < 9:
+            fine.call_at(time.monotonic_ns(), again)
+            asyncio.get_running_loop().call_soon(made.append, "other")
+
+    fine.call_at(time.monotonic_ns(), again)
+    await eventually(lambda: len(made) == 9)
+    assert made == ["alarm", "other"] * 4 + ["alarm"]
+
+
+async def test_an_interrupted_call_takes_none_of_the_others_with_it():
+    fine, made = await alarms(), []
+
+    def interrupted():
+        raise SystemExit
+
+    due_ns = time.monotonic_ns()
+    fine.call_at(due_ns, interrupted)
+    fine.call_at(due_ns, lambda: made.append("next"))
+    with pytest.raises(SystemExit):
+        fine.run()
+    await eventually(lambda: made)
+
+
+async def test_short_waits_are_fine_and_long_ones_the_loops_own():
+    await alarms()
+    clock, loop = SystemClock(), asyncio.get_running_loop()
+    long = clock.call_at(loop, clock.steady_ns() + 1000 * MILLISECOND, lambda: None)
+    assert isinstance(long, asyncio.TimerHandle)
+    long.cancel()
+    short = clock.call_at(loop, clock.steady_ns() + MILLISECOND, lambda: None)
+    assert not isinstance(short, asyncio.TimerHandle)
+
+
+def test_a_loop_that_watches_no_files_has_its_own_alarms_only():
+    class Blind(asyncio.SelectorEventLoop):
+        def add_reader(self, *_):
+            raise NotImplementedError
+
+    loop, made = Blind(), []
+    try:
+        assert fine_alarms(loop) is None
+        clock = SystemClock()
+        clock.call_at(loop, clock.steady_ns(), lambda: (made.append("called"), loop.stop()))
+        loop.run_forever()
+        assert made == ["called"]
+    finally:
+        loop.close()
+
+
+def test_the_file_ends_with_its_loop(monkeypatch):
+    close, closed = os.close, []
+    monkeypatch.setattr(os, "close", lambda file: (closed.append(file), close(file)))
+    loop = asyncio.new_event_loop()
+    fine = fine_alarms(loop)
+    if fine is None:
+        loop.close()
+        pytest.skip("event loops of this system wait by the microsecond themselves")
+    file, gone = fine._file, weakref.ref(loop)
+    loop.close()
+    del loop, fine
+    gc.collect()
+    assert gone() is None
+    assert file in closed
