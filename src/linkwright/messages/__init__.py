@@ -6,6 +6,7 @@ from linkwright.messages.catalogue import packages as shipped_packages
 from linkwright.messages.cdr import deserialize, serialize
 from linkwright.messages.classes import get_action, get_interface, get_message, get_service
 from linkwright.messages.conversion import to_csv, to_dict
+from linkwright.messages.distribution import is_before_iron
 from linkwright.messages.embedded_definitions import add_definitions
 from linkwright.messages.errors import DefinitionError, FieldValueError, InterfaceNotFoundError, MessageDataError
 from linkwright.messages.field_values import set_fields
@@ -58,6 +59,7 @@ __all__ = [
     "get_message",
     "get_service",
     "interface_names",
+    "is_before_iron",
     "prototype",
     "serialize",
     "set_fields",

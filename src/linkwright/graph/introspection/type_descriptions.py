@@ -9,13 +9,10 @@ from typing import Any
 
 from linkwright.graph.endpoints.base import Endpoint
 from linkwright.graph.loop.node_handle import NodeHandle
-from linkwright.messages import InterfaceNotFoundError, definition_text, get_message
+from linkwright.messages import InterfaceNotFoundError, definition_text, get_message, is_before_iron
 
 PARAMETER = "start_type_description_service"
 """The parameter that says whether a node has the service."""
-
-BEFORE_IRON = ("dashing", "eloquent", "foxy", "galactic", "humble")
-"""The distributions whose nodes do not have it."""
 
 _TYPE = "type_description_interfaces/srv/GetTypeDescription"
 _HASH = re.compile(r"RIHS01_[0-9a-f]{64}")
@@ -23,8 +20,7 @@ _HASH = re.compile(r"RIHS01_[0-9a-f]{64}")
 
 def is_usual(variables: Mapping[str, str] = os.environ) -> bool:
     """Whether nodes of the distribution in ``ROS_DISTRO`` have the service; without one, they are those of Humble."""
-    distribution = variables.get("ROS_DISTRO", "").lower()
-    return bool(distribution) and distribution not in BEFORE_IRON
+    return not is_before_iron(variables)
 
 
 class TypeDescriptions:

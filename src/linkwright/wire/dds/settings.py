@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, phrase
-from linkwright.graph.introspection.type_descriptions import BEFORE_IRON
+from linkwright.messages import is_before_iron
 from linkwright.wire.dds.discovery_info import GID_SIZE, OLD_GID_SIZE
 
 MAX_DOMAIN_ID = 232
@@ -82,13 +82,12 @@ def read_settings(environment: Mapping[str, str] | None = None, *, domain_id: in
     if peers and reach in (Range.OFF, Range.SYSTEM_DEFAULT):
         warnings.append(f"{len(peers)} static peers were specified, but discovery is {reach.value}: they are ignored")
     user = variables.get("CYCLONEDDS_URI", "")
-    distribution = variables.get("ROS_DISTRO", "").lower()
     own = tuple(_fragments(reach, peers))
     return Settings(
         domain_id=_domain(variables, domain_id),
         range=reach,
         configurations=tuple(",".join(part for part in (each, user) if part) for each in own),
-        gid_size=OLD_GID_SIZE if not distribution or distribution in BEFORE_IRON else GID_SIZE,
+        gid_size=OLD_GID_SIZE if is_before_iron(variables) else GID_SIZE,
         warnings=tuple(warnings),
         user_configuration=user,
         own_configurations=own,

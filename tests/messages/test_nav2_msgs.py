@@ -1,0 +1,57 @@
+"""nav2_msgs has the fields of Humble, or those of Jazzy where ROS_DISTRO says so."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.messages import get_interface
+from linkwright.messages.catalogue import texts
+from linkwright.messages.library import Library
+
+
+def names(package: str) -> list[str]:
+    return sorted(texts(package))
+
+
+class TestHumble:
+    @pytest.fixture(autouse=True)
+    def humble(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.setenv("ROS_DISTRO", "humble")
+
+    def test_results_have_no_error_codes(self):
+        assert all("error_code" not in text for text in texts("nav2_msgs").values())
+
+    def test_what_came_later_is_not_there(self):
+        assert "action/DockRobot" not in names("nav2_msgs")
+        assert "goal_checker_id" in texts("nav2_msgs")["action/FollowPath"]
+        assert "progress_checker_id" not in texts("nav2_msgs")["action/FollowPath"]
+
+
+class TestJazzy:
+    @pytest.fixture(autouse=True)
+    def jazzy(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.setenv("ROS_DISTRO", "jazzy")
+
+    def test_results_of_actions_have_error_codes(self):
+        found = texts("nav2_msgs")
+        assert all("error_code" in text for name, text in found.items() if name.startswith("action/"))
+        assert "progress_checker_id" in found["action/FollowPath"]
+
+    def test_what_humble_has_is_there(self):
+        assert {"action/DockRobot", "action/NavigateToPose", "msg/Costmap", "srv/GetCost"} <= set(names("nav2_msgs"))
+
+
+@pytest.mark.parametrize("distribution", ["humble", "jazzy"])
+@pytest.mark.parametrize("package", ["nav2_msgs", "bond"])
+def test_all_are_well_formed(monkeypatch, package, distribution):
+    monkeypatch.setenv("ROS_DISTRO", distribution)
+    library = Library()
+    for name in texts(package):
+        assert library.definition(f"{package}/{name}").type_name == f"{package}/{name}"
+
+
+def test_an_action_is_a_class():
+    action = get_interface("nav2_msgs/action/NavigateToPose")
+    goal = action.Goal()
+    goal.pose.header.frame_id = "map"
+    assert action.Feedback().number_of_recoveries == 0
