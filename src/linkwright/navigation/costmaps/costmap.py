@@ -1,0 +1,86 @@
+"""A costmap: a grid of what it costs to be somewhere, and what a robot's place or footprint in it costs.
+
+Source: nav2_costmap_2d (the values of costs) and its ``FootprintCollisionChecker``.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.navigation.costmaps.footprints import Footprint, outline
+from linkwright.navigation.grids.grid import Grid
+
+FREE: Final = 0
+MAX_PASSABLE: Final = 252
+"""The most that a cell costs in which the centre of a robot can be."""
+INSCRIBED: Final = 253
+"""Closer to an obstacle than the radius of the circle in the footprint: a robot with its centre here touches it."""
+LETHAL: Final = 254
+"""There is an obstacle."""
+UNKNOWN: Final = 255
+"""Nobody has seen what is here."""
+
+_STEPS_PER_CELL = 2.0
+"""Along the rim of a footprint."""
+
+
+class Costmap:
+    """Costs in a grid that lies in a frame, unturned.
+
+    Args:
+        grid: cells of type uint8, from `FREE` to `UNKNOWN`.
+
+    Raises:
+        ValueError: the cells have another type, or the grid is turned.
+
+    Attributes:
+        grid: the cells, which whoever owns the costmap changes.
+    """
+
+    def __init__(self, grid: Grid) -> None:
+        if grid.cells.dtype != np.uint8 or grid.yaw:
+            raise ValueError(f"a costmap has unturned cells of uint8, not {grid.cells.dtype} turned by {grid.yaw:g}")
+        self.grid = grid
+
+    def copy(self) -> Costmap:
+        """One that does not change when this does."""
+        grid = self.grid
+        return Costmap(Grid(cells=grid.cells.copy(), resolution=grid.resolution, x=grid.x, y=grid.y))
+
+    def cost_at(self, points: NDArray[np.float64], outside: int = UNKNOWN) -> NDArray[np.uint8]:
+        """What the cells cost in which points lie.
+
+        Args:
+            points: x and y in the frame of the costmap, in metres, of shape (..., 2).
+            outside: the cost of points that are not in the grid.
+
+        Returns:
+            Costs, of shape (...).
+        """
+        indices = self.grid.cells_of(np.asarray(points, np.float64))
+        inside = self.grid.has(indices)
+        indices = np.where(inside[..., None], indices, 0)
+        costs: NDArray[np.uint8] = np.where(
+            inside, self.grid.cells[indices[..., 0], indices[..., 1]], np.uint8(outside)
+        )
+        return costs
+
+    def footprint_cost(self, poses: NDArray[np.float64] | tuple[float, float, float], footprint: Footprint) -> Any:
+        """The highest cost below the rim of a footprint, for one pose or many.
+
+        Args:
+            poses: x, y (metres) and yaw (radians) in the frame of the costmap, of shape (..., 3).
+            footprint: the corners in the frame of the robot, in metres, of shape (corners, 2).
+
+        Returns:
+            Costs of shape (...), `LETHAL` where a part of the rim is outside of the grid and none is unknown.
+        """
+        poses = np.asarray(poses, np.float64)
+        rim = outline(footprint, self.grid.resolution / _STEPS_PER_CELL)
+        cosine, sine = np.cos(poses[..., 2, None]), np.sin(poses[..., 2, None])
+        x = poses[..., 0, None] + cosine * rim[:, 0] - sine * rim[:, 1]
+        y = poses[..., 1, None] + sine * rim[:, 0] + cosine * rim[:, 1]
+        return self.cost_at(np.stack((x, y), axis=-1), outside=LETHAL).max(axis=-1)

@@ -1,0 +1,47 @@
+"""The layer that takes away obstacles that are only specks.
+
+Source: nav2_costmap_2d ``DenoiseLayer``.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from linkwright.navigation.costmaps.costmap import FREE, LETHAL
+from linkwright.navigation.costmaps.layer import Layer, Moment, Window
+from linkwright.navigation.grids.grid import Grid
+from linkwright.navigation.grids.library import load_scipy
+
+_ALL_NEIGHBOURS = 8
+
+
+class DenoiseLayer(Layer):
+    """Frees the groups of lethal cells that are too small.
+
+    Args:
+        minimal_group_size: so many cells a group has that stays.
+        group_connectivity_type: 8 if cells whose corners touch belong together, else 4.
+    """
+
+    def __init__(self, minimal_group_size: int = 2, group_connectivity_type: int = _ALL_NEIGHBOURS) -> None:
+        self._least = minimal_group_size
+        self._together = np.ones((3, 3), np.bool_)
+        if group_connectivity_type != _ALL_NEIGHBOURS:
+            self._together[[0, 0, 2, 2], [0, 2, 0, 2]] = False
+
+    def changed(self, window: Window, moment: Moment, grid: Grid) -> Window:  # noqa: ARG002
+        """What changed, and as far around it as a small group reaches."""
+        return window.padded(self._least, grid)
+
+    def write(self, grid: Grid, window: Window, moment: Moment) -> None:  # noqa: ARG002
+        """Free small groups; those that the edge of the window cuts are judged by what is around it."""
+        if self._least <= 1:
+            return
+        around = window.padded(self._least, grid)
+        groups, _ = load_scipy("ndimage").label(grid.cells[around.cells] == LETHAL, self._together)
+        sizes = np.bincount(groups.ravel())
+        small = (sizes < self._least)[groups] & (groups > 0)
+        inner = small[
+            window.top - around.top : window.bottom - around.top, window.left - around.left : window.right - around.left
+        ]
+        grid.cells[window.cells][inner] = FREE

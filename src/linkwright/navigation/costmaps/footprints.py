@@ -1,0 +1,91 @@
+"""Footprints: the outline of a robot on the floor, in its frame.
+
+Source: nav2_costmap_2d (``footprint.hpp``).
+"""
+
+from __future__ import annotations
+
+from ast import literal_eval
+from math import ceil, hypot, pi
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Footprint = NDArray[np.float64]
+"""Corners in the frame of the robot, in metres, of shape (corners, 2)."""
+
+_CORNERS_OF_A_CIRCLE = 16
+_LEAST_CORNERS = 3
+
+
+class BadFootprintError(ValueError):
+    """A text that is no footprint; the message says why."""
+
+
+def circle(radius: float) -> Footprint:
+    """The footprint of a round robot: 16 corners at a distance from its centre, in metres."""
+    angles = np.arange(_CORNERS_OF_A_CIRCLE) * (2.0 * pi / _CORNERS_OF_A_CIRCLE)
+    corners: Footprint = radius * np.stack((np.cos(angles), np.sin(angles)), axis=-1)
+    return corners
+
+
+def read_footprint(text: str) -> Footprint:
+    """The footprint that a parameter tells, such as ``[[0.2, 0.1], [0.2, -0.1], [-0.2, 0.0]]``.
+
+    Raises:
+        BadFootprintError: it is no list of three or more points.
+    """
+    try:
+        value: Any = literal_eval(text.strip())
+        corners: Footprint = np.array(value, np.float64)
+    except (TypeError, ValueError, SyntaxError):
+        raise BadFootprintError(f"'{text}' is no list of points such as [[x1, y1], [x2, y2], [x3, y3]]") from None
+    if corners.ndim != 2 or corners.shape[1] != 2 or not np.isfinite(corners).all():
+        raise BadFootprintError(f"'{text}' is no list of points such as [[x1, y1], [x2, y2], [x3, y3]]")
+    if len(corners) < _LEAST_CORNERS:
+        raise BadFootprintError(f"a footprint has three corners or more, and '{text}' has {len(corners)}")
+    return corners
+
+
+def padded(footprint: Footprint, padding: float) -> Footprint:
+    """A footprint whose corners are moved outwards along both axes, in metres."""
+    larger: Footprint = footprint + padding * np.sign(footprint)
+    return larger
+
+
+def radii(footprint: Footprint) -> tuple[float, float]:
+    """The radii of the circles about the robot's origin within a footprint and around it, in metres."""
+    following = np.roll(footprint, -1, axis=0)
+    along = following - footprint
+    length = np.maximum((along**2).sum(axis=1), np.finfo(float).tiny)
+    share = np.clip(-(footprint * along).sum(axis=1) / length, 0.0, 1.0)
+    nearest = footprint + share[:, None] * along
+    inner = float(np.hypot(nearest[:, 0], nearest[:, 1]).min())
+    return inner, float(np.hypot(footprint[:, 0], footprint[:, 1]).max())
+
+
+def outline(footprint: Footprint, spacing: float) -> NDArray[np.float64]:
+    """Points along the rim of a footprint, of shape (points, 2), no farther from each other than the spacing."""
+    parts = []
+    for corner, following in zip(footprint, np.roll(footprint, -1, axis=0), strict=True):
+        steps = max(1, ceil(hypot(*(following - corner)) / spacing))
+        parts.append(corner + (np.arange(steps) / steps)[:, None] * (following - corner))
+    return np.concatenate(parts)
+
+
+def placed(footprint: Footprint, x: float, y: float, yaw: float) -> Footprint:
+    """The corners of a footprint whose robot stands at a pose, in the frame of the pose."""
+    cosine, sine = np.cos(yaw), np.sin(yaw)
+    turned: Footprint = footprint @ np.array([[cosine, sine], [-sine, cosine]]) + (x, y)
+    return turned
+
+
+def cells_within(footprint: Footprint, centres: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Which points lie in a footprint, of shape (...) for x and y of shape (..., 2) in the frame of its corners."""
+    x, y = centres[..., 0], centres[..., 1]
+    inside = np.zeros(x.shape, np.bool_)
+    for (x0, y0), (x1, y1) in zip(footprint, np.roll(footprint, -1, axis=0), strict=True):
+        if y0 != y1:
+            inside ^= ((y0 > y) != (y1 > y)) & (x < (x1 - x0) * (y - y0) / (y1 - y0) + x0)
+    return inside

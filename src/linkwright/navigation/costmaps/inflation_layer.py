@@ -1,0 +1,94 @@
+"""The layer that makes the surroundings of obstacles expensive.
+
+Source: nav2_costmap_2d ``InflationLayer``: up to the inscribed radius a cell costs `INSCRIBED`, from there on
+``252 exp(-cost_scaling_factor (distance - inscribed radius))``, and nothing beyond the inflation radius.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import ceil
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.navigation.costmaps.costmap import FREE, INSCRIBED, LETHAL, MAX_PASSABLE, UNKNOWN
+from linkwright.navigation.costmaps.layer import Costs, Layer, Moment, Window
+from linkwright.navigation.grids.distances import distance_field
+from linkwright.navigation.grids.grid import Grid
+
+
+@dataclass(frozen=True, kw_only=True)
+class Inflation:
+    """How costs fall with the distance from obstacles.
+
+    Attributes:
+        inflation_radius: as far as that places cost something, in metres.
+        cost_scaling_factor: how fast it gets less, per metre.
+        inflate_unknown: whether cells that nobody has seen get costs, too; else only where a robot would touch.
+        inflate_around_unknown: whether there are costs around cells that nobody has seen.
+    """
+
+    inflation_radius: float = 0.55
+    cost_scaling_factor: float = 10.0
+    inflate_unknown: bool = False
+    inflate_around_unknown: bool = False
+
+    def costs(self, distances: NDArray[np.float64], inscribed_radius: float) -> Costs:
+        """Costs at distances from the nearest obstacle, in metres, of the same shape."""
+        beyond = np.maximum(distances - inscribed_radius, 0.0)
+        fading = (MAX_PASSABLE * np.exp(-self.cost_scaling_factor * beyond)).astype(np.uint8)
+        fading = np.where(distances <= inscribed_radius, INSCRIBED, fading).astype(np.uint8)
+        costs: Costs = np.where(distances > 0.0, fading, LETHAL).astype(np.uint8)
+        return costs
+
+
+class InflationLayer(Layer):
+    """Costs around what is lethal below it."""
+
+    def __init__(self, inflation: Inflation) -> None:
+        self._inflation = inflation
+        self._inscribed_radius: float | None = None
+
+    @property
+    def inflation(self) -> Inflation:
+        """How costs fall."""
+        return self._inflation
+
+    @inflation.setter
+    def inflation(self, inflation: Inflation) -> None:
+        self._inflation, self._inscribed_radius = inflation, None
+
+    def changed(self, window: Window, moment: Moment, grid: Grid) -> Window:
+        """The surroundings of what changed; all of it when the robot has another size."""
+        if self._inscribed_radius != moment.inscribed_radius:
+            self._inscribed_radius = moment.inscribed_radius
+            return Window.of(grid)
+        return window.padded(self._reach(grid), grid)
+
+    def write(self, grid: Grid, window: Window, moment: Moment) -> None:
+        """Costs in the window, of obstacles there and around it."""
+        reach = self._reach(grid)
+        if not reach:
+            return
+        around = window.padded(reach, grid)
+        below = grid.cells[around.cells]
+        sources = below == LETHAL
+        if self._inflation.inflate_around_unknown:
+            sources |= below == UNKNOWN
+        if not sources.any():
+            return
+        all_distances = distance_field(sources, grid.resolution)
+        top, left = window.top - around.top, window.left - around.left
+        distances = all_distances[top : top + window.bottom - window.top, left : left + window.right - window.left]
+        costs = self._inflation.costs(distances, moment.inscribed_radius)
+        costs[distances > reach * grid.resolution] = FREE
+        cells = grid.cells[window.cells]
+        unknown = cells == UNKNOWN
+        least = FREE + 1 if self._inflation.inflate_unknown else INSCRIBED
+        np.maximum(cells, costs, out=cells)
+        told = unknown & (costs >= least)
+        cells[told] = costs[told]
+
+    def _reach(self, grid: Grid) -> int:
+        return max(0, ceil(self._inflation.inflation_radius / grid.resolution))

@@ -1,0 +1,208 @@
+"""What layers of a costmap have in common: they say where they changed, and write what they know there."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.navigation.costmaps.costmap import FREE, UNKNOWN
+from linkwright.navigation.costmaps.footprints import Footprint, cells_within
+from linkwright.navigation.grids.grid import Grid
+
+Costs = NDArray[np.uint8]
+
+
+@dataclass(frozen=True, slots=True)
+class Window:
+    """A rectangle of cells: from the first row and column up to, and without, the last ones."""
+
+    top: int = 0
+    left: int = 0
+    bottom: int = 0
+    right: int = 0
+
+    @classmethod
+    def of(cls, grid: Grid) -> Window:
+        """All of a grid."""
+        return cls(0, 0, grid.rows, grid.columns)
+
+    @classmethod
+    def around(cls, indices: NDArray[np.int64], grid: Grid) -> Window:
+        """What holds cells, rows and columns of shape (n, 2), as far as it is in the grid."""
+        if not len(indices):
+            return cls()
+        (top, left), (bottom, right) = indices.min(axis=0), indices.max(axis=0) + 1
+        return cls(int(top), int(left), int(bottom), int(right)).within(grid)
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether it has no cells."""
+        return self.bottom <= self.top or self.right <= self.left
+
+    @property
+    def cells(self) -> tuple[slice, slice]:
+        """The index of an array that gives its cells."""
+        return slice(self.top, self.bottom), slice(self.left, self.right)
+
+    def within(self, grid: Grid) -> Window:
+        """What of it lies in a grid."""
+        inside = Window(max(0, self.top), max(0, self.left), min(grid.rows, self.bottom), min(grid.columns, self.right))
+        return Window() if inside.is_empty else inside
+
+    def padded(self, cells: int, grid: Grid) -> Window:
+        """With so many cells more at each side, as far as they are in the grid; nothing stays nothing."""
+        if self.is_empty:
+            return self
+        larger = Window(self.top - cells, self.left - cells, self.bottom + cells, self.right + cells)
+        return larger.within(grid)
+
+    def joined(self, other: Window) -> Window:
+        """What holds both."""
+        if self.is_empty or other.is_empty:
+            return other if self.is_empty else self
+        return Window(
+            min(self.top, other.top),
+            min(self.left, other.left),
+            max(self.bottom, other.bottom),
+            max(self.right, other.right),
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Moment:
+    """What layers are told when a costmap is updated.
+
+    Attributes:
+        x, y: of the robot, in metres, in the frame of the costmap.
+        footprint: the corners of the robot in that frame, in metres, of shape (corners, 2).
+        inscribed_radius: of the circle in the footprint about the robot, in metres.
+        time_ns: when it is.
+    """
+
+    x: float
+    y: float
+    footprint: Footprint
+    inscribed_radius: float
+    time_ns: int
+
+
+class Layer(ABC):
+    """A layer.
+
+    Attributes:
+        enabled: whether it takes part.
+        is_clearable: whether what it knows goes when somebody clears a region of the costmap.
+    """
+
+    enabled: bool = True
+    is_clearable: bool = False
+
+    def match(self, grid: Grid, default: int) -> None:  # noqa: B027  # most keep nothing
+        """The costmap has another size or lies somewhere else now; `default` is what its cells cost without layers."""
+
+    @abstractmethod
+    def changed(self, window: Window, moment: Moment, grid: Grid) -> Window:
+        """Take in what is new.
+
+        Args:
+            window: what changed in the layers below.
+            moment: now.
+            grid: the costmap.
+
+        Returns:
+            What changes with this layer.
+        """
+
+    @abstractmethod
+    def write(self, grid: Grid, window: Window, moment: Moment) -> None:
+        """Write costs into the costmap, into no other cells than those of the window."""
+
+    def reset(self) -> None:  # noqa: B027  # most keep nothing
+        """Forget what was seen."""
+
+    def clear(self, window: Window, *, outside: bool) -> None:  # noqa: B027  # of those that can be cleared
+        """Forget what was seen in a window, or all the rest."""
+
+    def is_current(self, time_ns: int) -> bool:  # noqa: ARG002  # for those that wait for something
+        """Whether it has what it needs in order to be believed."""
+        return True
+
+
+class SeenLayer(Layer):
+    """A layer with cells of its own: what was seen, which stays until it is seen to be gone.
+
+    Attributes:
+        seen: costs, as large as the costmap.
+    """
+
+    is_clearable = True
+
+    def __init__(self) -> None:
+        self.seen = Grid(cells=np.zeros((0, 0), np.uint8), resolution=1.0)
+        self._default = FREE
+        self._extra = Window()
+
+    def match(self, grid: Grid, default: int) -> None:
+        """Keep what is still in the costmap after it moved."""
+        cells = shifted(self.seen.cells, self.seen, grid, default)
+        self.seen = Grid(cells=cells, resolution=grid.resolution, x=grid.x, y=grid.y)
+        self._default = default
+        self._extra = Window.of(grid)
+
+    def reset(self) -> None:
+        """Forget everything."""
+        self.seen.cells[:] = self._default
+        self._extra = Window.of(self.seen)
+
+    def clear(self, window: Window, *, outside: bool) -> None:
+        """Nothing is known in a window, or in all the rest."""
+        kept = self.seen.cells[window.cells].copy()
+        if outside:
+            self.seen.cells[:] = UNKNOWN
+            self.seen.cells[window.cells] = kept
+        else:
+            self.seen.cells[window.cells] = UNKNOWN
+        self._extra = Window.of(self.seen)
+
+    def take_extra(self) -> Window:
+        """What changed otherwise than by seeing, since it was last asked."""
+        extra, self._extra = self._extra, Window()
+        return extra
+
+
+def shifted(cells: NDArray[Any], old: Grid, new: Grid, fill: int) -> NDArray[Any]:
+    """The cells of a grid that are also in another one, in their places there; `fill` in the others."""
+    moved = np.full((new.rows, new.columns), fill, cells.dtype)
+    if old.resolution != new.resolution:
+        return moved
+    rows, columns = round((new.y - old.y) / new.resolution), round((new.x - old.x) / new.resolution)
+    both = Window(-rows, -columns, old.rows - rows, old.columns - columns).within(new)
+    if not both.is_empty:
+        source = Window(both.top + rows, both.left + columns, both.bottom + rows, both.right + columns)
+        moved[both.cells] = cells[source.cells]
+    return moved
+
+
+def footprint_window(moment: Moment, grid: Grid) -> Window:
+    """The cells around the robot's footprint."""
+    return Window.around(grid.cells_of(moment.footprint), grid)
+
+
+def free_footprint(cells: Costs, moment: Moment, grid: Grid, window: Window) -> None:
+    """Where the robot stands nothing else does."""
+    inside = footprint_window(moment, grid)
+    inside = Window(
+        max(inside.top, window.top),
+        max(inside.left, window.left),
+        min(inside.bottom, window.bottom),
+        min(inside.right, window.right),
+    )
+    if inside.is_empty:
+        return
+    rows, columns = np.mgrid[inside.top : inside.bottom, inside.left : inside.right]
+    centres = grid.centres_of(np.stack((rows, columns), axis=-1))
+    cells[inside.cells][cells_within(moment.footprint, centres)] = FREE

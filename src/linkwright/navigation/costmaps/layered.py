@@ -1,0 +1,147 @@
+"""A costmap made of layers, which stays where it is or moves with the robot.
+
+Source: nav2_costmap_2d ``LayeredCostmap``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from linkwright.navigation.costmaps.costmap import FREE, UNKNOWN, Costmap
+from linkwright.navigation.costmaps.footprints import Footprint, padded, placed, radii
+from linkwright.navigation.costmaps.layer import Layer, Moment, Window
+from linkwright.navigation.grids.grid import Grid
+
+Pose = tuple[float, float, float]
+"""x, y (metres) and yaw (radians) in the frame of a costmap."""
+
+
+class LayeredCostmap:
+    """Costs of several layers, the first at the bottom.
+
+    Args:
+        grid: size and place; the cells are written by the layers.
+        layers: from the bottom to the top.
+        footprint: of the robot; see `Footprint`.
+        rolling: whether it moves so that the robot is in the middle.
+        track_unknown: whether cells that no layer knows are unknown; else they are free.
+        footprint_padding: by which the footprint is enlarged, in metres.
+
+    Attributes:
+        costmap: the costs, as of the last update.
+        layers: see above.
+        changed: what the last update wrote.
+    """
+
+    def __init__(
+        self,
+        grid: Grid,
+        layers: Sequence[Layer],
+        footprint: Footprint,
+        *,
+        rolling: bool = False,
+        track_unknown: bool = False,
+        footprint_padding: float = 0.0,
+    ) -> None:
+        self.layers = list(layers)
+        self.rolling = rolling
+        self._default = UNKNOWN if track_unknown else FREE
+        self._padding = footprint_padding
+        self.changed = Window()
+        self._updated = False
+        self.footprint = footprint
+        self.resize(grid)
+
+    @property
+    def footprint(self) -> Footprint:
+        """Of the robot, with its padding, in the frame of the robot."""
+        return self._footprint
+
+    @footprint.setter
+    def footprint(self, unpadded: Footprint) -> None:
+        self._footprint = padded(unpadded, self._padding)
+        self.inscribed_radius, self.circumscribed_radius = radii(self._footprint)
+
+    def resize(self, grid: Grid) -> None:
+        """Have another size or place; what layers saw stays where it is in both."""
+        cells = np.full((grid.rows, grid.columns), self._default, np.uint8)
+        self.costmap = Costmap(Grid(cells=cells, resolution=grid.resolution, x=grid.x, y=grid.y))
+        for layer in self.layers:
+            layer.match(self.costmap.grid, self._default)
+        self._updated = False
+
+    def update(self, pose: Pose, time_ns: int) -> bool:
+        """Bring the costs up to date with what the layers know.
+
+        Args:
+            pose: of the robot.
+            time_ns: when it is.
+
+        Returns:
+            Whether any cell was written; `changed` has which.
+        """
+        x, y, yaw = pose
+        if self.rolling:
+            self._centre(x, y)
+        grid = self.costmap.grid
+        footprint = placed(self._footprint, x, y, yaw)
+        moment = Moment(x, y, footprint, self.inscribed_radius, time_ns)
+        active = [each for each in self.layers if each.enabled]
+        window = Window() if self._updated and not self.rolling else Window.of(grid)
+        for layer in active:
+            window = layer.changed(window, moment, grid)
+        self.changed = window
+        self._updated = True
+        if window.is_empty:
+            return False
+        grid.cells[window.cells] = self._default
+        for layer in active:
+            layer.write(grid, window, moment)
+        return True
+
+    def touch(self) -> None:
+        """Write everything at the next update."""
+        self._updated = False
+
+    def is_current(self, time_ns: int) -> bool:
+        """Whether it was updated, and all layers have what they need."""
+        return self._updated and all(each.is_current(time_ns) for each in self.layers if each.enabled)
+
+    def clear_entirely(self) -> None:
+        """Forget all that was seen."""
+        self.costmap.grid.cells[:] = self._default
+        for layer in self.layers:
+            layer.reset()
+        self._updated = False
+
+    def clear_around(self, pose: Pose, distance: float, *, except_it: bool = False) -> None:
+        """Forget what was seen in a square, or everywhere else.
+
+        Args:
+            pose: of the middle.
+            distance: side of the square, in metres.
+            except_it: whether the square is what is kept.
+        """
+        corners = np.array([[pose[0], pose[1]]]) + distance / 2.0 * np.array([[-1.0, -1.0], [1.0, 1.0]])
+        window = Window.around(self.costmap.grid.cells_of(corners), self.costmap.grid)
+        for layer in self.layers:
+            if layer.is_clearable:
+                layer.clear(window, outside=except_it)
+        self._updated = False
+
+    def _centre(self, x: float, y: float) -> None:
+        """Move by whole cells, so that a place is in the middle."""
+        grid = self.costmap.grid
+        columns = int((x - grid.columns * grid.resolution / 2.0 - grid.x) / grid.resolution)
+        rows = int((y - grid.rows * grid.resolution / 2.0 - grid.y) / grid.resolution)
+        if rows or columns:
+            self.resize(
+                Grid(
+                    cells=grid.cells,
+                    resolution=grid.resolution,
+                    x=grid.x + columns * grid.resolution,
+                    y=grid.y + rows * grid.resolution,
+                )
+            )

@@ -1,0 +1,103 @@
+"""What sensors saw, as layers of obstacles want it: points in the frame of the costmap, for as long as they count.
+
+Source: nav2_costmap_2d ``ObservationBuffer``.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+_NANOSECONDS = 1e9
+
+
+@dataclass(frozen=True, kw_only=True)
+class Source:
+    """How a sensor is listened to; lengths in metres, times in seconds.
+
+    Attributes:
+        marking: whether its points are obstacles.
+        clearing: whether there is nothing on the way to them.
+        obstacle_max_range: farther points are none.
+        obstacle_min_range: nearer points are none.
+        raytrace_max_range: farther cells are not cleared.
+        raytrace_min_range: nearer cells are not cleared.
+        min_obstacle_height: lower points do not count at all.
+        max_obstacle_height: higher points do not count at all.
+        observation_persistence: how long points count; 0 for until there are others.
+        expected_update_rate: how long it may be silent until the costmap is not to be believed; 0 for ever.
+    """
+
+    marking: bool = True
+    clearing: bool = False
+    obstacle_max_range: float = 2.5
+    obstacle_min_range: float = 0.0
+    raytrace_max_range: float = 3.0
+    raytrace_min_range: float = 0.0
+    min_obstacle_height: float = 0.0
+    max_obstacle_height: float = 0.0
+    observation_persistence: float = 0.0
+    expected_update_rate: float = 0.0
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Observation:
+    """What was seen at once.
+
+    Attributes:
+        origin: of the sensor, x, y and z in the frame of the costmap, in metres.
+        points: of shape (n, 3), likewise.
+        source: whose it is.
+        time_ns: when.
+    """
+
+    origin: NDArray[np.float64]
+    points: NDArray[np.float64]
+    source: Source
+    time_ns: int
+
+    def obstacles(self) -> NDArray[np.float64]:
+        """The points that are near and far enough to be obstacles, of shape (n, 3)."""
+        squares = ((self.points - self.origin) ** 2).sum(axis=1)
+        counts = (squares < self.source.obstacle_max_range**2) & (squares >= self.source.obstacle_min_range**2)
+        near: NDArray[np.float64] = self.points[counts]
+        return near
+
+
+class ObservationBuffer:
+    """What one sensor saw lately."""
+
+    def __init__(self, source: Source) -> None:
+        self.source = source
+        self._kept: deque[Observation] = deque()
+        self._updated_ns: int | None = None
+
+    def take(self, origin: NDArray[np.float64], points: NDArray[np.float64], time_ns: int) -> None:
+        """Something was seen; see `Observation`. Points that are no numbers, or not at a height that counts, go."""
+        height = points[:, 2]
+        counts = np.isfinite(points).all(axis=1)
+        counts &= (height >= self.source.min_obstacle_height) & (height <= self.source.max_obstacle_height)
+        if not self.source.observation_persistence:
+            self._kept.clear()
+        self._kept.append(Observation(origin, points[counts], self.source, time_ns))
+        self._updated_ns = time_ns
+
+    def observations(self, time_ns: int) -> list[Observation]:
+        """What counts at a time."""
+        if self.source.observation_persistence:
+            oldest = time_ns - round(self.source.observation_persistence * _NANOSECONDS)
+            while self._kept and self._kept[0].time_ns < oldest:
+                self._kept.popleft()
+        return list(self._kept)
+
+    def is_current(self, time_ns: int) -> bool:
+        """Whether it was heard lately enough."""
+        if not self.source.expected_update_rate:
+            return True
+        return (
+            self._updated_ns is not None
+            and (time_ns - self._updated_ns) / _NANOSECONDS <= self.source.expected_update_rate
+        )

@@ -1,0 +1,148 @@
+"""The layer of what sensors see: points are obstacles, and on the way to them there is nothing.
+
+Source: nav2_costmap_2d ``ObstacleLayer``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import ceil
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.navigation.costmaps.costmap import FREE, LETHAL, UNKNOWN
+from linkwright.navigation.costmaps.layer import Moment, SeenLayer, Window, footprint_window, free_footprint
+from linkwright.navigation.costmaps.observations import Observation, ObservationBuffer
+from linkwright.navigation.grids.grid import Grid
+from linkwright.navigation.grids.rays import cells_on_lines
+
+OVERWRITE, MAXIMUM, MAXIMUM_OF_KNOWN = 0, 1, 2
+"""How costs come together with those below: instead of them, the higher one, and the higher one where any is known."""
+
+Cells = NDArray[np.int64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Heights:
+    """Which points are obstacles, by their height in metres."""
+
+    min_obstacle_height: float = 0.0
+    max_obstacle_height: float = 2.0
+
+
+class ObstacleLayer(SeenLayer):
+    """Marks and clears.
+
+    Args:
+        buffers: what sensors see.
+        heights: of obstacles.
+        combination_method: `OVERWRITE`, `MAXIMUM` or `MAXIMUM_OF_KNOWN`.
+        footprint_clearing: whether there is nothing where the robot stands.
+    """
+
+    def __init__(
+        self,
+        buffers: list[ObservationBuffer],
+        heights: Heights,
+        *,
+        combination_method: int = MAXIMUM,
+        footprint_clearing: bool = True,
+    ) -> None:
+        super().__init__()
+        self.buffers = buffers
+        self.heights = heights
+        self.combination_method = combination_method
+        self._footprint_clearing = footprint_clearing
+        self._forgotten = False
+
+    def reset(self) -> None:
+        """Forget everything; it is not to be believed before it is updated."""
+        super().reset()
+        self._forgotten = True
+
+    def is_current(self, time_ns: int) -> bool:
+        """Whether all sensors were heard lately enough."""
+        return not self._forgotten and all(each.is_current(time_ns) for each in self.buffers)
+
+    def changed(self, window: Window, moment: Moment, grid: Grid) -> Window:
+        """What rays and points of the last observations touch."""
+        self._forgotten = False
+        window = window.joined(self.take_extra())
+        seen = [(each, buffer.source) for buffer in self.buffers for each in buffer.observations(moment.time_ns)]
+        for observation, source in seen:
+            if source.clearing:
+                window = window.joined(self.clear_rays(observation, grid))
+        for observation, source in seen:
+            if source.marking:
+                window = window.joined(self.mark_points(observation, grid))
+        if self._footprint_clearing:
+            window = window.joined(footprint_window(moment, grid))
+        return window
+
+    def write(self, grid: Grid, window: Window, moment: Moment) -> None:
+        """Put what was seen on what is below."""
+        if self._footprint_clearing:
+            free_footprint(self.seen.cells, moment, self.seen, window)
+        ours, below = self.seen.cells[window.cells], grid.cells[window.cells]
+        known = ours != UNKNOWN
+        if self.combination_method == MAXIMUM:
+            known &= (below == UNKNOWN) | (below < ours)
+        elif self.combination_method == MAXIMUM_OF_KNOWN:
+            known &= (below != UNKNOWN) & (below < ours)
+        below[known] = ours[known]
+
+    def clear_rays(self, observation: Observation, grid: Grid) -> Window:
+        """Free the cells on the way to the points; what it touched."""
+        start, ends, _ = ray_ends(observation, grid)
+        cells, _ = cells_on_lines(start, ends)
+        cells = cells[grid.has(cells) & _far_enough(cells, start, observation, grid)]
+        self.seen.cells[cells[:, 0], cells[:, 1]] = FREE
+        return Window.around(cells, grid)
+
+    def mark_points(self, observation: Observation, grid: Grid) -> Window:
+        """Make the cells of points obstacles; what it touched."""
+        cells = grid.cells_of(self.obstacles(observation)[:, :2])
+        cells = cells[grid.has(cells)]
+        self.seen.cells[cells[:, 0], cells[:, 1]] = LETHAL
+        return Window.around(cells, grid)
+
+    def obstacles(self, observation: Observation) -> NDArray[np.float64]:
+        """The points that are obstacles, of shape (n, 3)."""
+        points = observation.obstacles()
+        height = points[:, 2]
+        high: NDArray[np.float64] = points[
+            (height >= self.heights.min_obstacle_height) & (height <= self.heights.max_obstacle_height)
+        ]
+        return high
+
+
+def ray_ends(observation: Observation, grid: Grid) -> tuple[Cells, Cells, NDArray[np.float64]]:
+    """Where rays begin and end that clear.
+
+    Returns:
+        The cell of the sensor, of shape (2,); those in which rays end that come no farther than they may, each once, of
+        shape (n, 2); and the height at which each ends, in metres, of shape (n,).
+    """
+    origin, points = observation.origin, observation.points
+    offsets = points - origin
+    lengths = np.hypot(offsets[:, 0], offsets[:, 1])
+    share = np.minimum(1.0, observation.source.raytrace_max_range / np.maximum(lengths, np.finfo(float).tiny))
+    ends = origin + share[:, None] * offsets
+    start = grid.cells_of(origin[None, :2])[0]
+    cells = grid.cells_of(ends[:, :2])
+    # Clouds have many points in a cell; a table of the cells around the sensor finds those without sorting.
+    reach = ceil(observation.source.raytrace_max_range / grid.resolution) + 1
+    places = (cells - start + reach) @ np.array([2 * reach + 1, 1])
+    last = np.full((2 * reach + 1) ** 2, -1)
+    last[places] = np.arange(len(places))
+    chosen = last[last >= 0]
+    return start, cells[chosen], ends[chosen, 2]
+
+
+def _far_enough(cells: Cells, start: Cells, observation: Observation, grid: Grid) -> NDArray[np.bool_]:
+    """Which cells of rays are not nearer to the sensor than it clears."""
+    least = observation.source.raytrace_min_range / grid.resolution
+    offsets = cells - start
+    far: NDArray[np.bool_] = (offsets**2).sum(axis=1) >= least**2
+    return far

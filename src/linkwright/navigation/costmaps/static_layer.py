@@ -1,0 +1,135 @@
+"""The layer of a map that somebody made before.
+
+Source: nav2_costmap_2d ``StaticLayer``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwright.navigation.costmaps.costmap import FREE, LETHAL, UNKNOWN
+from linkwright.navigation.costmaps.layer import Costs, Layer, Moment, Window, footprint_window, free_footprint
+from linkwright.navigation.grids.grid import Grid
+
+MapPose = tuple[float, float, float]
+"""x, y (metres) and yaw (radians) of the costmap's frame in that of the map."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Interpretation:
+    """How the numbers of an occupancy grid become costs.
+
+    Attributes:
+        track_unknown_space: whether cells without knowledge stay so; else they are free.
+        unknown_cost_value: the number that means unknown, as a byte: 255 is -1.
+        lethal_threshold: from which number on a cell is an obstacle.
+        trinary: whether the others are free; else they cost in proportion.
+    """
+
+    track_unknown_space: bool = False
+    unknown_cost_value: int = 255
+    lethal_threshold: int = 100
+    trinary: bool = True
+
+    def table(self) -> Costs:
+        """The cost for each byte of an occupancy grid, of shape (256,)."""
+        values = np.arange(256)
+        costs = np.full(256, FREE) if self.trinary else values * LETHAL // max(1, self.lethal_threshold)
+        costs[values >= self.lethal_threshold] = LETHAL
+        costs[self.unknown_cost_value] = UNKNOWN if self.track_unknown_space else FREE
+        table: Costs = costs.astype(np.uint8)
+        return table
+
+
+class StaticLayer(Layer):
+    """A map below everything else.
+
+    Args:
+        interpretation: of its numbers.
+        use_maximum: whether it only makes cells more expensive.
+        footprint_clearing: whether cells below the robot are free, whatever the map says.
+        pose: of the costmap's frame in that of the map; None where that is not known at the moment.
+
+    Attributes:
+        map: costs in the frame of the map; None before there is one.
+    """
+
+    def __init__(
+        self,
+        interpretation: Interpretation,
+        *,
+        use_maximum: bool = False,
+        footprint_clearing: bool = False,
+        pose: Callable[[], MapPose | None] = lambda: (0.0, 0.0, 0.0),
+    ) -> None:
+        self.interpretation = interpretation
+        self.map: Grid | None = None
+        self._use_maximum = use_maximum
+        self._footprint_clearing = footprint_clearing
+        self._pose = pose
+        self._placed: MapPose | None = None
+        self._news = True
+
+    def take(self, occupancy: Grid) -> None:
+        """There is a new map; cells of type int8, in per cent or -1."""
+        costs = self.interpretation.table()[occupancy.cells.astype(np.uint8)]
+        self.map = Grid(cells=costs, resolution=occupancy.resolution, x=occupancy.x, y=occupancy.y, yaw=occupancy.yaw)
+        self._news = True
+
+    def take_part(self, top: int, left: int, occupancy: Costs) -> bool:
+        """A part of the map changed; False, and nothing happens, if it is not within the map."""
+        rows, columns = occupancy.shape
+        known = self.map
+        if known is None or min(top, left) < 0 or top + rows > known.rows or left + columns > known.columns:
+            return False
+        known.cells[top : top + rows, left : left + columns] = self.interpretation.table()[occupancy.astype(np.uint8)]
+        self._news = True
+        return True
+
+    def match(self, grid: Grid, default: int) -> None:  # noqa: ARG002
+        """Everything is to be written again."""
+        self._news = True
+
+    def reset(self) -> None:
+        """Everything is to be written again."""
+        self._news = True
+
+    def is_current(self, time_ns: int) -> bool:  # noqa: ARG002
+        """Whether there is a map, and where it is is known."""
+        return self.map is not None and (self._placed is not None or self._news)
+
+    def changed(self, window: Window, moment: Moment, grid: Grid) -> Window:
+        """All of it when the map is new or lies somewhere else."""
+        if self.map is None:
+            return window
+        pose = self._pose()
+        if pose != self._placed:
+            self._placed, self._news = pose, True
+        if self._footprint_clearing:
+            window = window.joined(footprint_window(moment, grid))
+        if not self._news:
+            return window
+        self._news = False
+        return Window.of(grid)
+
+    def write(self, grid: Grid, window: Window, moment: Moment) -> None:
+        """Copy the map, or what of it is in the window."""
+        if self.map is None or self._placed is None:
+            return
+        rows, columns = np.mgrid[window.top : window.bottom, window.left : window.right]
+        centres = grid.centres_of(np.stack((rows, columns), axis=-1))
+        x, y, yaw = self._placed
+        if (x, y, yaw) != (0.0, 0.0, 0.0):
+            cosine, sine = np.cos(yaw), np.sin(yaw)
+            centres = centres @ np.array([[cosine, sine], [-sine, cosine]]) + (x, y)
+        indices = self.map.cells_of(centres)
+        inside = self.map.has(indices)
+        indices = indices[inside]
+        costs = self.map.cells[indices[:, 0], indices[:, 1]]
+        part = grid.cells[window.cells]
+        part[inside] = np.maximum(part[inside], costs) if self._use_maximum else costs
+        if self._footprint_clearing:
+            free_footprint(grid.cells, moment, grid, window)

@@ -1,0 +1,96 @@
+"""Costs of places and footprints."""
+
+from __future__ import annotations
+
+from math import hypot, pi, sqrt
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from linkwright.navigation.costmaps.costmap import LETHAL, UNKNOWN, Costmap
+from linkwright.navigation.costmaps.footprints import (
+    BadFootprintError,
+    cells_within,
+    circle,
+    outline,
+    padded,
+    placed,
+    radii,
+    read_footprint,
+)
+from linkwright.navigation.grids.grid import Grid
+
+SQUARE = np.array([[0.2, 0.2], [-0.2, 0.2], [-0.2, -0.2], [0.2, -0.2]])
+
+
+def empty(rows: int = 40, columns: int = 60, resolution: float = 0.1) -> Costmap:
+    return Costmap(Grid(cells=np.zeros((rows, columns), np.uint8), resolution=resolution, x=-3.0, y=-2.0))
+
+
+def test_a_costmap_has_unturned_bytes():
+    with pytest.raises(ValueError, match="int8"):
+        Costmap(Grid(cells=np.zeros((2, 2), np.int8), resolution=0.1))
+    with pytest.raises(ValueError, match="turned by"):
+        Costmap(Grid(cells=np.zeros((2, 2), np.uint8), resolution=0.1, yaw=0.5))
+
+
+def test_costs_of_points_in_the_grid_and_outside():
+    costmap = empty()
+    costmap.grid.cells[20, 30] = 77
+    assert costmap.cost_at(np.array([[0.05, 0.05], [0.15, 0.05], [9.0, 0.0]])).tolist() == [77, 0, UNKNOWN]
+    assert costmap.cost_at(np.array([-3.01, 0.0]), outside=LETHAL) == LETHAL
+
+
+def test_the_rim_of_a_footprint_counts_and_what_is_below_it_does_not():
+    costmap = empty()
+    costmap.grid.cells[20, 30] = 200
+    assert costmap.footprint_cost((0.05, 0.05, 0.0), SQUARE) == 0
+    assert costmap.footprint_cost((0.25, 0.05, 0.0), SQUARE) == 200
+
+
+def test_many_poses_are_asked_at_once():
+    costmap = empty()
+    costmap.grid.cells[20, 32] = LETHAL
+    poses = np.array([[[0.0, 0.05, 0.0], [-0.03, 0.05, pi / 4]], [[1.0, 1.0, 0.0], [2.95, 0.0, 0.0]]])
+    costs = costmap.footprint_cost(poses, SQUARE)
+    assert costs.tolist() == [[LETHAL, LETHAL], [0, LETHAL]]  # the last one leaves the grid
+
+
+def test_padding_moves_corners_outwards():
+    assert padded(SQUARE, 0.01) == pytest.approx(SQUARE * 1.05)
+    assert padded(np.array([[0.0, 0.1]]), 0.02) == pytest.approx(np.array([[0.0, 0.12]]))
+
+
+def test_the_circles_in_and_around_a_footprint():
+    assert radii(SQUARE) == pytest.approx((0.2, 0.2 * sqrt(2)))
+    inner, outer = radii(circle(0.3))
+    assert outer == pytest.approx(0.3)
+    assert 0.29 < inner < 0.3
+
+
+@given(x=st.floats(-0.5, 0.5), y=st.floats(-0.5, 0.5))
+def test_points_in_a_footprint(x, y):
+    inside = bool(cells_within(circle(0.3), np.array([x, y])))
+    if hypot(x, y) < radii(circle(0.3))[0]:
+        assert inside
+    elif hypot(x, y) > 0.3:
+        assert not inside
+
+
+def test_a_footprint_is_placed():
+    assert placed(np.array([[0.2, 0.1]]), 1.0, 2.0, pi / 2) == pytest.approx(np.array([[0.9, 2.2]]))
+
+
+def test_the_rim_has_no_gaps():
+    rim = outline(SQUARE, 0.03)
+    gaps = np.hypot(*(np.roll(rim, -1, axis=0) - rim).T)
+    assert gaps.max() <= 0.03 + 1e-12
+
+
+def test_footprints_as_texts():
+    assert read_footprint("[[0.2, 0.2], [-0.2, 0.2], [-0.2,-0.2], [0.2, -0.2] ]").tolist() == SQUARE.tolist()
+    for text, why in (("[]", "no list"), ("[[1, 2], [3, 4]]", "has 2"), ("[[1, 2], 3, 4]", "no list"), ("x", "no")):
+        with pytest.raises(BadFootprintError, match=why):
+            read_footprint(text)

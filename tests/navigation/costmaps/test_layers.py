@@ -1,0 +1,337 @@
+"""Layers of costmaps: the formula of inflation, what rays clear and points mark, maps, levels of height, specks."""
+
+from __future__ import annotations
+
+from math import exp, hypot
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from linkwright.navigation.costmaps.costmap import FREE, INSCRIBED, LETHAL, UNKNOWN
+from linkwright.navigation.costmaps.denoise_layer import DenoiseLayer
+from linkwright.navigation.costmaps.footprints import circle
+from linkwright.navigation.costmaps.inflation_layer import Inflation, InflationLayer
+from linkwright.navigation.costmaps.layered import LayeredCostmap
+from linkwright.navigation.costmaps.observations import ObservationBuffer, Source
+from linkwright.navigation.costmaps.obstacle_layer import Heights, ObstacleLayer
+from linkwright.navigation.costmaps.static_layer import Interpretation, StaticLayer
+from linkwright.navigation.costmaps.voxel_layer import VoxelLayer, Voxels
+from linkwright.navigation.grids.grid import Grid
+
+RADIUS = 0.2
+SECOND = 1_000_000_000
+HERE = (2.05, 2.05, 0.0)
+
+
+def blank(size: float = 4.0, resolution: float = 0.1) -> Grid:
+    cells = round(size / resolution)
+    return Grid(cells=np.zeros((cells, cells), np.uint8), resolution=resolution)
+
+
+def costmap(*layers, size: float = 4.0, **more) -> LayeredCostmap:
+    return LayeredCostmap(blank(size), layers, circle(RADIUS), **more)
+
+
+def occupancy(rows: int = 40, columns: int = 40) -> Grid:
+    return Grid(cells=np.zeros((rows, columns), np.int8), resolution=0.1)
+
+
+class Eye:
+    """A sensor above the middle of the costmap, and what is updated with it."""
+
+    def __init__(self, kind=ObstacleLayer, *more, layers=(), **source) -> None:
+        given = {"clearing": True, "max_obstacle_height": 2.0, **source}
+        self.buffer = ObservationBuffer(Source(**given))
+        self.layer = kind([self.buffer], Heights(), *more, footprint_clearing=False)
+        self.costmap = costmap(self.layer, *layers)
+        self.time_ns = 0
+
+    def see(self, *points, origin=(2.05, 2.05, 0.3)) -> np.ndarray:
+        self.time_ns += SECOND
+        points = np.array([(*each, 0.3)[:3] if len(each) == 2 else each for each in points], float).reshape(-1, 3)
+        self.buffer.take(np.array(origin, float), points, self.time_ns)
+        return self.update()
+
+    def update(self) -> np.ndarray:
+        self.costmap.update(HERE, self.time_ns)
+        return self.costmap.costmap.grid.cells
+
+
+# --- inflation --------------------------------------------------------------------------------------------------------
+
+
+def inflated(*obstacles, **parameters) -> tuple[np.ndarray, float]:
+    layer = StaticLayer(Interpretation())
+    scene = costmap(layer, InflationLayer(Inflation(**parameters)))
+    grid = occupancy()
+    for row, column in obstacles:
+        grid.cells[row, column] = 100
+    layer.take(grid)
+    scene.update(HERE, 0)
+    return scene.costmap.grid.cells, scene.inscribed_radius
+
+
+@settings(max_examples=30, deadline=None)
+@given(
+    obstacles=st.lists(st.tuples(st.integers(0, 39), st.integers(0, 39)), min_size=1, max_size=4),
+    radius=st.floats(0.1, 1.2),
+    factor=st.floats(0.5, 12.0),
+)
+def test_costs_fall_with_the_distance_as_nav2_says(obstacles, radius, factor):
+    cells, inscribed = inflated(*obstacles, inflation_radius=radius, cost_scaling_factor=factor)
+    reach = np.ceil(radius / 0.1) * 0.1
+    for row, column in np.ndindex(cells.shape):
+        distance = 0.1 * min(hypot(row - each[0], column - each[1]) for each in obstacles)
+        if distance == 0.0:
+            expected = LETHAL
+        elif distance > reach + 1e-9:
+            expected = FREE
+        elif distance <= inscribed:
+            expected = INSCRIBED
+        else:
+            expected = int(252 * exp(-factor * (distance - inscribed)))
+        assert abs(int(cells[row, column]) - expected) <= (0 if expected in (FREE, LETHAL, INSCRIBED) else 1)
+
+
+def test_a_part_that_is_updated_is_as_if_all_of_it_were():
+    layer = StaticLayer(Interpretation())
+    scene = costmap(layer, InflationLayer(Inflation(inflation_radius=0.5)))
+    grid = occupancy()
+    grid.cells[5:9, 20] = 100
+    layer.take(grid)
+    scene.update(HERE, 0)
+    eye = Eye(layers=[InflationLayer(Inflation(inflation_radius=0.5))])
+    eye.see((2.55, 3.05), (1.05, 2.05))
+    parts = eye.see((2.55, 3.05)).copy()
+    eye.costmap.touch()
+    assert np.array_equal(parts, eye.update())
+
+
+def test_what_nobody_has_seen_costs_only_where_a_robot_would_touch():
+    for inflate_unknown in (False, True):
+        layer = StaticLayer(Interpretation(track_unknown_space=True))
+        inflation = InflationLayer(Inflation(inflate_unknown=inflate_unknown, cost_scaling_factor=3.0))
+        scene = costmap(layer, inflation, track_unknown=True)
+        grid = occupancy()
+        grid.cells[:] = -1
+        grid.cells[20, 20] = 100
+        layer.take(grid)
+        scene.update(HERE, 0)
+        cells = scene.costmap.grid.cells
+        assert cells[20, 21] == INSCRIBED
+        assert (cells[20, 24] == UNKNOWN) != inflate_unknown
+        assert cells[0, 0] == UNKNOWN
+
+
+# --- rays and points --------------------------------------------------------------------------------------------------
+
+
+def test_an_obstacle_appears_and_goes_when_a_ray_passes():
+    eye = Eye()
+    assert eye.see((2.55, 2.05))[20, 25] == LETHAL
+    assert eye.see((2.95, 2.05))[20].tolist()[20:31] == [0] * 9 + [LETHAL, 0]
+
+
+def test_rays_clear_no_more_than_they_pass():
+    eye = Eye()
+    cells = eye.see((2.55, 2.05), (2.55, 2.55), (1.05, 1.05), (2.05, 3.05))
+    marked = np.argwhere(cells == LETHAL).tolist()
+    assert marked == [[10, 10], [20, 25], [25, 25], [30, 20]]
+    eye.layer.seen.cells[:] = LETHAL
+    eye.see((2.55, 2.05))
+    assert np.argwhere(eye.layer.seen.cells != LETHAL).tolist() == [[20, each] for each in range(20, 25)]
+
+
+def test_what_is_too_far_is_not_marked_and_not_cleared():
+    eye = Eye(obstacle_max_range=1.0, raytrace_max_range=0.5)
+    eye.layer.seen.cells[:] = LETHAL
+    eye.costmap.touch()
+    cells = eye.see((3.55, 2.05))
+    assert np.flatnonzero(cells[20] == FREE).tolist() == [20, 21, 22, 23, 24, 25]
+    eye = Eye(obstacle_max_range=1.0)
+    assert not eye.see((3.55, 2.05)).any()
+
+
+def test_what_is_too_near_is_not_marked_and_not_cleared():
+    eye = Eye(obstacle_min_range=0.3, raytrace_min_range=0.3)
+    eye.layer.seen.cells[20] = LETHAL
+    cells = eye.see((2.25, 2.05), (3.05, 2.05))
+    assert np.flatnonzero(cells[20, 20:] == FREE).tolist() == [3, 4, 5, 6, 7, 8, 9]
+
+
+def test_points_at_heights_that_do_not_count_neither_mark_nor_clear():
+    eye = Eye(max_obstacle_height=1.0)
+    eye.layer.seen.cells[20, 22] = LETHAL
+    eye.costmap.touch()
+    cells = eye.see((2.55, 2.05, 1.5), (np.nan, 2.05, 0.2))
+    assert np.argwhere(cells).tolist() == [[20, 22]]
+
+
+def test_a_ray_that_leaves_the_costmap_clears_up_to_its_rim():
+    eye = Eye(raytrace_max_range=9.0)
+    eye.layer.seen.cells[20] = LETHAL
+    cells = eye.see((9.0, 2.05))
+    assert np.flatnonzero(cells[20] == FREE).tolist() == list(range(20, 40))
+
+
+def test_points_count_as_long_as_they_persist():
+    eye = Eye(observation_persistence=1.5, clearing=False)
+    eye.see((2.55, 2.05))
+    eye.see((3.05, 2.05))
+    eye.layer.seen.cells[:] = FREE
+    assert eye.update()[20, [25, 30]].tolist() == [LETHAL, LETHAL]
+    eye.layer.seen.cells[:] = FREE
+    eye.costmap.touch()
+    assert eye.see()[20, [25, 30]].tolist() == [FREE, LETHAL]
+
+
+def test_a_sensor_that_is_silent_for_too_long_is_told():
+    eye = Eye(expected_update_rate=1.0)
+    assert not eye.costmap.is_current(0)
+    eye.see((2.55, 2.05))
+    assert eye.costmap.is_current(eye.time_ns + SECOND)
+    assert not eye.costmap.is_current(eye.time_ns + 2 * SECOND)
+
+
+def test_there_is_nothing_where_the_robot_stands():
+    buffer = ObservationBuffer(Source(max_obstacle_height=2.0))
+    scene = costmap(ObstacleLayer([buffer], Heights()))
+    buffer.take(np.array([2.05, 2.05, 0.3]), np.array([[2.15, 2.05, 0.3], [2.45, 2.05, 0.3]]), 0)
+    scene.update(HERE, 0)
+    assert np.argwhere(scene.costmap.grid.cells).tolist() == [[20, 24]]
+
+
+# --- levels of height -------------------------------------------------------------------------------------------------
+
+
+def test_a_ray_above_an_obstacle_does_not_clear_it():
+    eye = Eye(VoxelLayer, Voxels())
+    assert eye.see((2.55, 2.05, 0.1), origin=(2.05, 2.05, 0.1))[20, 25] == LETHAL
+    assert eye.see((2.95, 2.05, 0.5), origin=(2.05, 2.05, 0.5))[20, 25] == LETHAL
+    assert eye.see((2.95, 2.05, 0.1), origin=(2.05, 2.05, 0.1))[20, 25] == FREE
+
+
+def test_a_ray_that_falls_clears_the_levels_that_it_passes():
+    eye = Eye(VoxelLayer, Voxels())
+    eye.see((2.55, 2.05, 0.5), (2.85, 2.05, 0.5), origin=(2.05, 2.05, 0.5))
+    cells = eye.see((3.05, 2.05, 0.2), origin=(2.05, 2.05, 0.8))
+    assert cells[20, 25] == FREE  # passed at 0.5 m
+    assert cells[20, 28] == LETHAL  # at 0.32 m
+
+
+def test_columns_of_which_too_little_is_seen_are_unknown():
+    eye = Eye(VoxelLayer, Voxels(unknown_threshold=8))
+    eye.costmap = costmap(eye.layer, track_unknown=True)
+    assert eye.see((2.55, 2.05, 0.1), origin=(2.05, 2.05, 0.1))[20, 22] == UNKNOWN
+    assert eye.see((2.55, 2.05, 0.3), origin=(2.05, 2.05, 0.3))[20, 22] == FREE
+
+
+# --- maps -------------------------------------------------------------------------------------------------------------
+
+
+def test_numbers_of_a_map_become_costs():
+    def costs(**parameters):
+        return Interpretation(**parameters).table()[np.array([0, 50, 99, 100, -1], np.int8).astype(np.uint8)].tolist()
+
+    assert costs() == [FREE, FREE, FREE, LETHAL, FREE]
+    assert costs(track_unknown_space=True, lethal_threshold=50) == [FREE, LETHAL, LETHAL, LETHAL, UNKNOWN]
+    assert costs(trinary=False) == [0, 127, 251, LETHAL, FREE]
+
+
+def test_a_map_lies_turned_in_the_frame_of_the_costmap():
+    layer = StaticLayer(Interpretation(), pose=lambda: (0.0, 4.0, -np.pi / 2))
+    scene = costmap(layer)
+    grid = occupancy()
+    grid.cells[0, 39] = 100  # x 3.95, y 0.05 in the map
+    layer.take(grid)
+    scene.update(HERE, 0)
+    assert np.argwhere(scene.costmap.grid.cells).tolist() == [[39, 39]]
+
+
+def test_a_part_of_a_map_changes():
+    layer = StaticLayer(Interpretation())
+    scene = costmap(layer)
+    assert not layer.take_part(0, 0, np.array([[100]], np.int8))
+    layer.take(occupancy())
+    scene.update(HERE, 0)
+    assert layer.take_part(3, 4, np.array([[100]], np.int8))
+    assert not layer.take_part(39, 39, np.array([[100, 100]], np.int8))
+    scene.update(HERE, 0)
+    assert np.argwhere(scene.costmap.grid.cells).tolist() == [[3, 4]]
+
+
+def test_without_a_map_it_is_not_current():
+    layer = StaticLayer(Interpretation())
+    scene = costmap(layer)
+    scene.update(HERE, 0)
+    assert not scene.is_current(0)
+    layer.take(occupancy())
+    scene.update(HERE, 0)
+    assert scene.is_current(0)
+    assert not scene.update(HERE, 0)
+
+
+# --- specks -----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("connectivity", "left"), [(8, 5), (4, 3)])
+def test_small_groups_go(connectivity, left):
+    layer = StaticLayer(Interpretation())
+    scene = costmap(layer, DenoiseLayer(2, connectivity))
+    grid = occupancy()
+    grid.cells[10, 10] = 100
+    grid.cells[[20, 21], [20, 21]] = 100
+    grid.cells[30, 3:6] = 100
+    layer.take(grid)
+    scene.update(HERE, 0)
+    assert np.count_nonzero(scene.costmap.grid.cells) == left
+
+
+# --- windows that move, and clearing ----------------------------------------------------------------------------------
+
+
+def test_a_window_that_moves_keeps_what_was_seen():
+    buffer = ObservationBuffer(Source(max_obstacle_height=2.0))
+    layer = ObstacleLayer([buffer], Heights(), footprint_clearing=False)
+    scene = costmap(layer, rolling=True, size=2.0)
+    scene.update((0.0, 0.0, 0.0), 0)
+    buffer.take(np.array([0.0, 0.0, 0.3]), np.array([[0.55, 0.25, 0.3]]), 0)
+    scene.update((0.0, 0.0, 0.0), 0)
+    assert scene.costmap.cost_at(np.array([0.55, 0.25])) == LETHAL
+    buffer.take(np.array([0.0, 0.0, 0.3]), np.zeros((0, 3)), 0)
+    scene.update((0.73, -0.31, 0.0), 0)
+    grid = scene.costmap.grid
+    assert scene.costmap.cost_at(np.array([0.55, 0.25])) == LETHAL
+    assert np.count_nonzero(grid.cells) == 1
+    assert abs(grid.x + 1.0 - 0.73) < 0.1 + 1e-9
+    scene.update((9.0, 0.0, 0.0), 0)
+    assert not scene.costmap.grid.cells.any()
+
+
+def test_clearing_around_the_robot_and_everywhere_else():
+    for kind, more in ((ObstacleLayer, ()), (VoxelLayer, (Voxels(),))):
+        eye = Eye(kind, *more)
+        eye.see((2.55, 2.05), (3.55, 2.05))
+        eye.buffer.take(np.array([2.05, 2.05, 0.3]), np.zeros((0, 3)), 0)
+        eye.costmap.clear_around(HERE, 1.4, except_it=True)
+        assert np.argwhere(eye.update() == LETHAL).tolist() == [[20, 25]]
+        eye.costmap.clear_around(HERE, 1.4)
+        assert not (eye.update() == LETHAL).any()
+
+
+def test_clearing_forgets_what_was_seen_and_keeps_the_map():
+    layer = StaticLayer(Interpretation())
+    eye = Eye(layers=[])
+    scene = LayeredCostmap(blank(), [layer, eye.layer], circle(RADIUS))
+    grid = occupancy()
+    grid.cells[3, 3] = 100
+    layer.take(grid)
+    eye.costmap = scene
+    eye.see((2.55, 2.05))
+    eye.buffer.take(np.array([2.05, 2.05, 0.3]), np.zeros((0, 3)), 0)
+    scene.clear_entirely()
+    assert not scene.is_current(0)
+    assert np.argwhere(eye.update()).tolist() == [[3, 3]]
+    assert scene.is_current(0)
