@@ -1,0 +1,172 @@
+"""What nav2's servers are made of: managed nodes with nav2's lines and a bond to whoever manages them."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Protocol, TypeVar
+
+from linkwright.diagnostics import LinkwrightError, render
+from linkwright.graph import Graph, Node
+from linkwright.graph.lifecycle.managed_node import LifecycleNodeMixin
+from linkwright.graph.lifecycle.states import ACTIVE, LifecycleState, TransitionCallbackReturn
+from linkwright.nodes.navigation.bond import PERIOD, Bond
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node_of, starting
+from linkwright.nodes.settings import tell_unknown
+
+_SUCCESS = TransitionCallbackReturn.SUCCESS
+
+
+class _Destroyable(Protocol):
+    def destroy(self) -> Any: ...
+
+
+P = TypeVar("P", bound=_Destroyable)
+
+
+class ManagedNode(LifecycleNodeMixin, Node):
+    """A server of nav2 on the graph.
+
+    Derived classes declare their parameters in `declare` and do their work in `configure`, `activate`, `deactivate`
+    and `cleanup`. A `LinkwrightError` raised there is logged, and the transition fails. What `keep` was given goes when
+    the node is cleaned up.
+    """
+
+    def __init__(self, *arguments: Any, **named: Any) -> None:
+        Node.__init__(self, *arguments, **named)
+        LifecycleNodeMixin.__init__(self)
+        self._kept: list[_Destroyable] = []
+        self._bond: Bond | None = None
+        self._told = False
+        self.get_logger().info("Creating")
+        self._beats: float = self.declare_parameter("bond_heartbeat_period", PERIOD).value
+        self._starts_itself: bool = self.declare_parameter("autostart_node", False).value
+        self.declare()
+
+    def declare(self) -> None:
+        """Declare the parameters; they may also be declared when the node is configured."""
+
+    def configure(self) -> None:
+        """Read the parameters, join the topics."""
+
+    def activate(self) -> None:
+        """Begin to work."""
+
+    def deactivate(self) -> None:
+        """Stop working."""
+
+    def cleanup(self) -> None:
+        """Let go of what `configure` made and `keep` was not given, as far as it got."""
+
+    def keep(self, part: P) -> P:
+        """Have a part of the node destroyed when it is cleaned up, and give it back."""
+        self._kept.append(part)
+        return part
+
+    @property
+    def is_active(self) -> bool:
+        """Whether it is in the state ``active``."""
+        return self.lifecycle_state == ACTIVE
+
+    def start_itself(self) -> None:
+        """Configure and activate it if ``autostart_node`` says so."""
+        if self._starts_itself and self.trigger_configure() == _SUCCESS:
+            self.trigger_activate()
+
+    def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """See `configure`; parameters that the node does not know are named once."""
+        self.get_logger().info("Configuring")
+        try:
+            self.configure()
+        except LinkwrightError as error:
+            self._tell(error)
+            self._let_go()
+            return TransitionCallbackReturn.FAILURE
+        if not self._told:
+            self._told = True
+            tell_unknown(self)
+        return super().on_configure(state)
+
+    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """See `activate`; the bond begins."""
+        self.get_logger().info("Activating")
+        verdict = super().on_activate(state)
+        try:
+            self.activate()
+        except LinkwrightError as error:
+            self._tell(error)
+            super().on_deactivate(state)
+            return TransitionCallbackReturn.FAILURE
+        if self._beats > 0.0:
+            self.get_logger().info(f"Creating bond ({self.get_name()}) to lifecycle manager.")
+            self._bond = Bond(self, self.get_name(), period=self._beats)
+        return verdict
+
+    def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """See `deactivate`; the bond ends."""
+        self.get_logger().info("Deactivating")
+        self.deactivate()
+        self._end_bond()
+        return super().on_deactivate(state)
+
+    def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """See `cleanup`."""
+        self.get_logger().info("Cleaning up")
+        self._let_go()
+        return super().on_cleanup(state)
+
+    def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """As when it is deactivated, if it is active, and cleaned up."""
+        self.get_logger().info("Shutting down")
+        if state == ACTIVE:
+            self.deactivate()
+        self._end_bond()
+        self._let_go()
+        return super().on_shutdown(state)
+
+    def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """A transition had an error: everything is let go, and the node can be configured again."""
+        self._end_bond()
+        self._let_go()
+        return super().on_error(state)
+
+    def leave(self) -> None:
+        """Stop working and tell who manages it; called before it is destroyed."""
+        if self.is_active:
+            self.deactivate()
+        self._end_bond()
+        self._let_go()
+
+    def _let_go(self) -> None:
+        self.cleanup()
+        for part in self._kept:
+            part.destroy()
+        self._kept.clear()
+
+    def _end_bond(self) -> None:
+        if self._bond is not None:
+            self.get_logger().info(f"Destroying bond ({self.get_name()}) to lifecycle manager.")
+            self._bond.end()
+            self._bond = None
+
+    def _tell(self, error: LinkwrightError) -> None:
+        self.get_logger().error("\n".join(render(each) for each in error.diagnostics))
+
+
+class ManagedServer(SingleNode):
+    """The running node of one of nav2's servers.
+
+    Attributes:
+        NODE: what it is on the graph.
+    """
+
+    NODE: ClassVar[type[ManagedNode]]
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        node, _ = create_node_of(self.NODE, graph, options, self.DEFAULT_NAME)
+        self._node: ManagedNode = node
+        with starting(node):
+            node.start_itself()
+
+    def close(self) -> None:
+        """End it; who manages it is told."""
+        self._node.leave()
+        super().close()
