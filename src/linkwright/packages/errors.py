@@ -23,15 +23,16 @@ class PackageNotFoundError(LinkwrightError, KeyError):
 
     Attributes:
         name: the package that was looked for.
+        is_slip: whether a package that there is may be meant.
     """
 
     def __init__(self, name: str, searched: Sequence[str], known: Iterable[str]) -> None:
         notes = tuple(Note(phrase("searched {place}", place=place)) for place in searched)
-        hint = did_you_mean(name, _like(name, known)) or (
-            phrase("go to the workspace that holds it, or source its install/setup.bash")
-        )
+        meant = did_you_mean(name, _like(name, known))
+        hint = meant or (phrase("go to the workspace that holds it, or source its install/setup.bash"))
         super().__init__(Diagnostic("PKG101", phrase("package '{name}' not found", name=name), notes=notes, hint=hint))
         self.name = name
+        self.is_slip = meant is not None
 
 
 def _like(name: str, known: Iterable[str]) -> list[str]:

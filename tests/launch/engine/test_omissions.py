@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
 from launch.actions import DeclareLaunchArgument, ExecuteProcess, IncludeLaunchDescription, LogInfo
 from launch.substitutions import Command, FindExecutable, LaunchConfiguration
-from launch_ros.actions import Node
+from launch_ros.actions import ComposableNodeContainer, Node
+from launch_ros.descriptions import ComposableNode
 from launch_ros.substitutions import FindPackageShare
+
+from linkwright.packages import PackageFinder
+from tests.launch.ending import ends_when, printed
 
 Write = Callable[[str, str], Path]
 SKIP = {"skip_missing": True}
@@ -65,8 +70,80 @@ async def test_other_mistakes_end_the_launch_all_the_same(launch) -> None:
 
 async def test_the_error_offers_the_command(launch) -> None:
     options = {"command_to_skip_missing": "linkwright launch --skip-missing a.launch.py"}
-    done = await launch(Node(package="no_such_package", executable="driver"), session_options=options)
+    done = await launch(Node(package="robot_state_publishr", executable="driver"), session_options=options)
     assert "to run what can run without it: linkwright launch --skip-missing a.launch.py" in done.err
     assert not done.succeeded
     done = await launch(LogInfo(msg=LaunchConfiguration("typo")), session_options=options)
     assert "--skip-missing" not in done.err
+
+
+class TestWithoutTheOption:
+    """What others make and is not here is left out all the same: launch files of robots start much that is."""
+
+    async def test_a_node_of_another_package(self, launch) -> None:
+        done = await launch(
+            Node(package="moveit_ros_move_group", executable="move_group"),
+            Node(package="nav2_route", executable="route_server"),
+            Node(package="robot_localization", executable="estimate_all"),
+            ExecuteProcess(cmd=[sys.executable, "-c", "print('the rest runs')"], output="screen"),
+        )
+        assert "the rest runs" in done.out
+        assert "3 parts of the launch are left out, the rest runs" in done.err
+        assert "test_omissions.py" in done.err
+        assert "error" not in done.err
+        assert done.succeeded
+
+    async def test_a_launch_of_which_nothing_is_left_has_failed(self, launch) -> None:
+        done = await launch(Node(package="moveit_ros_move_group", executable="move_group"))
+        assert "one part of the launch is left out" in done.err
+        assert not done.succeeded
+
+    async def test_includes_from_packages_that_are_not_here(self, launch, write: Write) -> None:
+        asks = "from ament_index_python.packages import get_package_share_directory as share\nshare('zzz_of_others')\n"
+        files = (write("imports.launch.py", "import zzz_config_of_others\n"), write("asks.launch.py", asks))
+        done = await launch(
+            IncludeLaunchDescription([FindPackageShare("zzz_of_others"), "/launch/robot.launch.py"]),
+            IncludeLaunchDescription([FindPackageShare("gazebo_ros"), "/launch/of_another_release.launch.py"]),
+            *(IncludeLaunchDescription(str(each)) for each in files),
+            ExecuteProcess(cmd=[sys.executable, "-c", "print('the rest runs')"], output="screen"),
+        )
+        assert "the rest runs" in done.out
+        assert "4 parts of the launch are left out, the rest runs" in done.err
+        assert done.succeeded
+
+    async def test_a_compiled_node_that_was_not_built(self, launch, tmp_path: Path) -> None:
+        (tmp_path / "package.xml").write_text("<package><name>of_others</name></package>")
+        (tmp_path / "CMakeLists.txt").write_text(
+            "add_executable(driver src/driver.cpp)\ninstall(TARGETS driver DESTINATION lib/${PROJECT_NAME})\n"
+        )
+        finder = PackageFinder(start=tmp_path)
+        for name, is_left_out in (("driver", True), ("drivr", False)):
+            done = await launch(Node(package="of_others", executable=name), LogInfo(msg="rest"), finder=finder)
+            assert (done.messages == ["rest"]) is is_left_out
+            assert ("is left out" in done.err) is is_left_out
+
+    async def test_a_component(self, launch) -> None:
+        done = await launch(
+            ComposableNodeContainer(
+                name="box",
+                namespace="",
+                package="rclcpp_components",
+                executable="component_container",
+                composable_node_descriptions=[ComposableNode(package="zzz_of_others", plugin="zzz::Driver")],
+            ),
+            ends_when(printed("left out")),
+        )
+        assert "one part of the launch is left out, the rest runs" in done.err
+        assert "'zzz::Driver'" in done.err
+        assert done.succeeded
+
+    async def test_what_is_misspelt_ends_the_launch(self, launch, write: Write) -> None:
+        for wrong in (
+            Node(package="robot_state_publishr", executable="robot_state_publisher"),
+            Node(package="robot_state_publisher", executable="robot_state_publishr"),
+            IncludeLaunchDescription(str(write("there.launch.py", "").with_name("ther.launch.py"))),
+        ):
+            done = await launch(wrong, LogInfo(msg="rest"))
+            assert done.messages == []
+            assert "left out" not in done.err
+            assert not done.succeeded

@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Severity, counted, foreign, phrase
+from linkwright.launch.errors.unavailable import is_unavailable
 
 if TYPE_CHECKING:
     from linkwright.hosting.launch_log import LaunchLog
@@ -20,9 +21,12 @@ _CONSEQUENCES = frozenset({"LAUNCH121", "LAUNCH123", "LAUNCH137"})
 class Omissions:
     """Decides what may be left out, and tells it.
 
+    Attributes:
+        any: whether anything was left out.
+
     Args:
         log: of the launch.
-        wanted: whether what cannot run is to be left out.
+        wanted: whether all that cannot run is to be left out; otherwise that which others make and is not here.
         command: the command that launches the same and leaves out what cannot run; None where there is none.
     """
 
@@ -30,15 +34,15 @@ class Omissions:
         self._log = log
         self._wanted = wanted
         self._command = command
-        self._any = False
+        self.any = False
         self._untold: list[Note] = []
 
     def take(self, error: LinkwrightError) -> bool:
-        """Leave out what an error kept from running, if something is missing and that is wanted; whether it was."""
-        consequence = self._any and any(each.code in _CONSEQUENCES for each in error.diagnostics)
-        if not self._wanted or not (consequence or _is_missing(error)):
+        """Leave out what an error kept from running, if something is missing and may be left out; whether it was."""
+        consequence = self.any and any(each.code in _CONSEQUENCES for each in error.diagnostics)
+        if not (consequence or is_unavailable(error) or (self._wanted and _is_missing(error))):
             return False
-        self._any = True
+        self.any = True
         self._untold += [Note(each.message, each.span) for each in error.diagnostics]
         return True
 

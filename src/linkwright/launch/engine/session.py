@@ -96,7 +96,8 @@ class LaunchSession:
             await self._handle_events()
         finally:
             await self._close()
-        return not self._failures
+        nothing_ran = self._omissions.any and not self.options.skip_missing and next(self._process_numbers) == 1
+        return not (self._failures or nothing_ran)
 
     @property
     def visiting(self) -> bool:

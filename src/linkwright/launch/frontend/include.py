@@ -17,6 +17,7 @@ from linkwright.diagnostics import (
     quoted_names,
 )
 from linkwright.launch.errors.places import MarkupPlace, error_at
+from linkwright.launch.errors.unavailable import is_foreign, unavailable
 from linkwright.launch.frontend.sources import AnyLaunchDescriptionSource, LaunchDescriptionSource
 from linkwright.launch.model.action import Action
 from linkwright.launch.model.actions.configurations import (
@@ -32,6 +33,7 @@ from linkwright.launch.model.entity import LaunchDescriptionEntity
 from linkwright.launch.model.markup.entity import Entity
 from linkwright.launch.model.markup.expose import expose_action
 from linkwright.launch.model.substitution import SomeSubstitutionsType, TextSubstitution, perform_substitutions
+from linkwright.packages import is_substitute
 
 if TYPE_CHECKING:
     from linkwright.launch.model.markup.entity import Parser
@@ -115,7 +117,12 @@ class IncludeLaunchDescription(Action):
             RuntimeError: LAUNCH114, an argument that it requires is not given.
             LinkwrightError: what its source raises.
         """
-        description = self._source.get_launch_description(context)
+        try:
+            description = self._source.get_launch_description(context)
+        except LinkwrightError as error:
+            if is_foreign(error) or self._is_of_substitute():
+                unavailable(error)
+            raise
         given = [perform_substitutions(context, name) for name, _ in self._arguments]
         self._check_required(description.get_launch_arguments(), given)
         outer = context.get_locals_as_dict()
@@ -140,6 +147,11 @@ class IncludeLaunchDescription(Action):
                 each if note in each.notes else replace(each, notes=(*each.notes, note)) for each in error.diagnostics
             )
         return error
+
+    def _is_of_substitute(self) -> bool:
+        """Whether the file is one that our own in the place of a package of ROS does not have."""
+        path = self._source.location_path
+        return path is not None and not path.exists() and any(is_substitute(folder) for folder in path.parents)
 
     def _file_values(self) -> dict[str, str]:
         """The values of the moment that tell which file is being visited."""

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.launch.errors.places import error_at, located
+from linkwright.launch.errors.unavailable import is_slip, unavailable
 from linkwright.launch.model import events
 from linkwright.launch.model.action import Action
 from linkwright.launch.model.markup.expose import expose_action
@@ -23,6 +24,7 @@ from linkwright.launch.ros.lifecycle_events import ChangeState
 from linkwright.launch.ros.names import make_namespace_absolute, repeated_name
 from linkwright.launch.ros.node import Node
 from linkwright.launch.ros.parsing import Entities
+from linkwright.packages import is_installed, is_substitute
 
 if TYPE_CHECKING:
     from linkwright.launch.model.context import LaunchContext
@@ -122,8 +124,10 @@ class LoadComposableNodes(Action):
                 container=container,
                 reason=foreign(response.error_message),
             )
-            context.session.fail(description)
-            log.diagnostics(located(LinkwrightError(Diagnostic("LAUNCH139", problem)), description.place).diagnostics)
+            error = located(LinkwrightError(Diagnostic("LAUNCH139", problem)), description.place)
+            if _is_of_others(context.session.finder, request.package_name, request.plugin_name):
+                unavailable(error)
+            context.session.could_not_start(description, error)
             return
         remark = repeated_name(context, name)
         if remark is not None:
@@ -208,6 +212,17 @@ class ComposableNodeContainer(Node):
             )
             self.__real = installed_executable(context.session.finder, package, executable)
         return self.__real
+
+
+def _is_of_others(finder: PackageFinder, package: str, plugin: str) -> bool:
+    """Whether a component is one that others make and that was not built here, and not one of ours, misspelt."""
+    from linkwright.nodes.registry import COMPONENTS
+
+    share = finder.find(package)
+    ours = [f"{owner}/{name}" for owner, name in COMPONENTS]
+    component = f"{package}/{plugin}"
+    was_built = share is not None and is_installed(share) and not is_substitute(share)
+    return not (was_built or component in ours or is_slip(component, ours))
 
 
 def _described(entity: Entity, parser: Parser, optional: bool = False) -> list[ComposableNode]:

@@ -18,11 +18,13 @@ from linkwright.diagnostics import (
     display_path,
     foreign,
     joined,
+    nearest,
     phrase,
 )
 from linkwright.hosting.plans import VIEWER, is_viewer
 from linkwright.launch.errors.exceptions import as_ros_error
-from linkwright.packages import PackageFinder, PackageNotFoundError, install_prefix, is_installed
+from linkwright.launch.errors.unavailable import is_slip, unavailable
+from linkwright.packages import PackageFinder, PackageNotFoundError, install_prefix, is_installed, is_substitute
 from linkwright.packages.programs.child_python import python_command
 
 if TYPE_CHECKING:
@@ -134,7 +136,8 @@ def find_executable(finder: PackageFinder, package: str, name: str) -> Executabl
 
     Raises:
         LinkwrightError: LAUNCH131, with what was looked for and the nearest names; PKG101's PackageNotFoundError in a
-            sense, as launch_ros raises that: the error is a LookupError.
+            sense, as launch_ros raises that: the error is a LookupError. It is marked as `unavailable` where the
+            program is one that others make.
     """
     try:
         present = executables_of(finder, package)
@@ -212,10 +215,13 @@ _NO_EXECUTABLES = phrase(
 
 
 def _no_package(finder: PackageFinder, package: str, name: str, error: PackageNotFoundError) -> LinkwrightError:
-    hint = did_you_mean(package, (*builtin_packages(), *finder.packages())) or error.diagnostics[0].hint
+    ours, theirs = builtin_packages(), finder.packages()
+    hint = did_you_mean(package, (*ours, *theirs)) or error.diagnostics[0].hint
     message = phrase("package '{package}' of node executable '{name}' not found", package=package, name=name)
     diagnostic = Diagnostic("LAUNCH131", message, notes=error.diagnostics[0].notes, hint=hint)
-    return as_ros_error(KeyError(message), diagnostic)
+    missing = as_ros_error(KeyError(message), diagnostic)
+    own = (each for each, share in theirs.items() if not is_substitute(share))
+    return missing if is_slip(package, ours) or nearest(package, own) else unavailable(missing)
 
 
 def _no_executable(finder: PackageFinder, package: str, name: str, present: dict[str, Executable]) -> LinkwrightError:
@@ -223,11 +229,12 @@ def _no_executable(finder: PackageFinder, package: str, name: str, present: dict
     message = phrase("package '{package}' has no executable '{name}'", package=package, name=name)
     notes: tuple[Note, ...] = ()
     hint = did_you_mean(name, present)
-    if share is None:
+    is_ours = share is None or is_substitute(share)
+    if is_ours:
         message = phrase(
             "package '{package}' has no executable '{name}' that runs without ROS", package=package, name=name
         )
-    else:
+    elif share is not None:
         if not is_installed(share):
             return _not_in_sources(package, name, share)
         notes = (
@@ -240,7 +247,8 @@ def _no_executable(finder: PackageFinder, package: str, name: str, present: dict
         )
     if hint is None:
         hint = phrase("it has: {present}", present=joined(present)) if present else _NO_EXECUTABLES
-    return _lookup_error(message, notes, hint)
+    error = _lookup_error(message, notes, hint)
+    return unavailable(error) if is_ours and not is_slip(name, present) else error
 
 
 def _not_in_sources(package: str, name: str, share: Path) -> LinkwrightError:
@@ -258,7 +266,7 @@ def _not_in_sources(package: str, name: str, share: Path) -> LinkwrightError:
             " that needs a C++ compiler and the ROS 2 libraries it uses",
             package=package,
         )
-        return _lookup_error(message, (), advice)
+        return unavailable(_lookup_error(message, (), advice))
     notes = (Note(phrase("read the entry points and installed programs of {share}", share=display_path(share))),)
     hint = did_you_mean(name, programs.names())
     if hint is None and programs.names():

@@ -1,0 +1,39 @@
+"""Errors about what others make and is not on this machine, as opposed to mistakes of the user.
+
+A launch leaves such a part out and goes on: the simulation of a robot is of use without move_group.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from difflib import SequenceMatcher
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.packages import PackageNotFoundError
+
+_MARK = "is_unavailable"
+_SLIP = 0.85
+"""So like are two names of which one is misspelt. ``map_server`` and ``map_saver_server`` are less so."""
+
+
+def unavailable(error: LinkwrightError) -> LinkwrightError:
+    """The error, marked: what it tells of is not here, and nothing says that it is misspelt."""
+    vars(error)[_MARK] = True
+    return error
+
+
+def is_unavailable(error: LinkwrightError) -> bool:
+    """Whether an error was marked, see `unavailable`."""
+    return bool(vars(error).get(_MARK))
+
+
+def is_slip(name: str, names: Iterable[str]) -> bool:
+    """Whether a name is that of something there is, misspelt."""
+    return any(SequenceMatcher(None, name, other).ratio() >= _SLIP for other in names)
+
+
+def is_foreign(error: LinkwrightError) -> bool:
+    """Whether an error, which kept a launch file from being read, is that a package or module of others is missing."""
+    if isinstance(error, PackageNotFoundError):
+        return not error.is_slip
+    return isinstance(error, ModuleNotFoundError) or is_unavailable(error)
