@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 if TYPE_CHECKING:
-    from linkwright.diagnostics import Diagnostic
+    from linkwright.diagnostics import Diagnostic, LinkwrightError
     from linkwright.graph import Graph, Node
     from linkwright.hosting.launch_log import LaunchLog
     from linkwright.hosting.plans import HostedPlan
@@ -104,6 +104,9 @@ class RunningLaunch(Protocol):
 
     def spawn(self, work: Coroutine[Any, Any, None]) -> None:
         """Run something in the background; the launch does not end before it has."""
+
+    def could_not_start(self, what: object, error: LinkwrightError) -> None:
+        """Report why something could not be started; the launch goes on without it."""
 
     def fail(self, what: object) -> None:
         """Record a failure: the launch exits with 1."""
