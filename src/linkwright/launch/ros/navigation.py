@@ -1,0 +1,136 @@
+"""What the launch files of nav2_bringup have in common: servers, alone or composed, and what activates them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from linkwright.launch.model.context import LaunchContext
+from linkwright.launch.ros.components import ComposableNode
+from linkwright.launch.ros.containers import LoadComposableNodes
+from linkwright.launch.ros.node import Node
+from linkwright.launch.ros.parameter_files import ParameterFile
+from linkwright.launch.ros.rewritten_yaml import RewrittenYaml
+
+_TRUE = ("true", "1", "yes", "on")
+_TF = (("/tf", "tf"), ("/tf_static", "tf_static"))
+_RESPAWN_SECONDS = 2.0
+
+ARGUMENTS: Mapping[str, tuple[str, str]] = {
+    "namespace": ("", "Namespace of all nodes"),
+    "use_sim_time": ("false", "Whether time is that of the simulation"),
+    "autostart": ("true", "Whether the servers are activated at once"),
+    "use_composition": ("False", "Whether the servers are composed in a container"),
+    "container_name": ("nav2_container", "The container they are composed in"),
+    "use_respawn": ("False", "Whether a server that dies is started again, where it is not composed"),
+    "log_level": ("info", "How much is told"),
+}
+"""Arguments of launch files that start servers: name -> default, description."""
+
+
+@dataclass(frozen=True)
+class Server:
+    """A managed node of Nav2.
+
+    Attributes:
+        package: the package.
+        executable: its program there, by which it also is known.
+        plugin: its class, where it is composed.
+        name: the node's name, if that is another one than the executable's.
+        remappings: pairs of names.
+    """
+
+    package: str
+    executable: str
+    plugin: str
+    name: str = ""
+    remappings: tuple[tuple[str, str], ...] = ()
+
+    @property
+    def node_name(self) -> str:
+        """The node's name."""
+        return self.name or self.executable
+
+    @property
+    def is_here(self) -> bool:
+        """Whether we have it."""
+        from linkwright.nodes import EXECUTABLES
+
+        return (self.package, self.executable) in EXECUTABLES
+
+
+_MANAGER = Server("nav2_lifecycle_manager", "lifecycle_manager", "nav2_lifecycle_manager::LifecycleManager")
+
+
+def is_true(context: LaunchContext, name: str) -> bool:
+    """Whether a launch configuration says so, in any of the ways in which people write it."""
+    return str(context.launch_configurations.get(name, "")).strip().lower() in _TRUE
+
+
+def configured_parameters(context: LaunchContext) -> ParameterFile:
+    """The file of ``params_file``, with the launch's ``use_sim_time``, for nodes in the launch's ``namespace``."""
+    configurations = context.launch_configurations
+    rewrites = {"use_sim_time": str(is_true(context, "use_sim_time"))}
+    rewritten = RewrittenYaml(
+        configurations["params_file"], rewrites, root_key=configurations["namespace"], convert_types=True
+    )
+    return ParameterFile(rewritten, allow_substs=True)
+
+
+def managed(
+    context: LaunchContext,
+    manager: str,
+    servers: Sequence[Server],
+    parameters: Mapping[str, Mapping[str, Any]] | None = None,
+) -> list[Any]:
+    """Actions that start servers and what activates them, in their order.
+
+    Servers that we do not have are started all the same, so that the launch tells that they are left out; the manager
+    does not wait for them.
+
+    Args:
+        context: its launch configurations are those of `ARGUMENTS`, and ``params_file``.
+        manager: the name of the lifecycle manager.
+        servers: what is managed.
+        parameters: name of a node -> parameters besides those of the file.
+    """
+    sim_time = {"use_sim_time": is_true(context, "use_sim_time")}
+    file = configured_parameters(context)
+    names = [each.node_name for each in servers if each.is_here]
+    own: Mapping[str, Any] = {**sim_time, "autostart": is_true(context, "autostart"), "node_names": names}
+    started = [*servers, replace(_MANAGER, name=manager)]
+    given: dict[str, list[Any]] = {
+        each.node_name: [file, {**sim_time, **(parameters or {}).get(each.node_name, {})}] for each in servers
+    }
+    given[manager] = [own]
+    if is_true(context, "use_composition"):
+        container = f"{context.launch_configurations['namespace']}/{context.launch_configurations['container_name']}"
+        nodes = [_composed(each, given[each.node_name]) for each in started]
+        return [LoadComposableNodes(target_container=container, composable_node_descriptions=nodes)]
+    respawn = is_true(context, "use_respawn")
+    level = ["--ros-args", "--log-level", context.launch_configurations["log_level"]]
+    return [
+        Node(
+            package=each.package,
+            executable=each.executable,
+            name=each.node_name,
+            output="screen",
+            parameters=given[each.node_name],
+            remappings=[*_TF, *each.remappings],
+            arguments=level,
+            respawn=respawn and each.node_name != manager,
+            respawn_delay=_RESPAWN_SECONDS,
+        )
+        for each in started
+    ]
+
+
+def _composed(server: Server, parameters: list[Any]) -> ComposableNode:
+    return ComposableNode(
+        package=server.package,
+        plugin=server.plugin,
+        name=server.node_name,
+        parameters=parameters,
+        remappings=[*_TF, *server.remappings],
+    )

@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Localization or mapping, and navigation, with the arguments of nav2_bringup's file of this name."""
+
+from ament_index_python.packages import get_package_share_path
+from launch.actions import DeclareLaunchArgument, GroupAction, IncludeLaunchDescription, OpaqueFunction
+from launch.launch_description_sources import PythonLaunchDescriptionSource
+from launch_ros.actions import Node, PushRosNamespace
+
+from launch import LaunchDescription
+from linkwright.launch.ros.navigation import ARGUMENTS, configured_parameters, is_true
+
+HERE = get_package_share_path("nav2_bringup")
+DECLARED = {
+    **ARGUMENTS,
+    "use_namespace": ("false", "Whether all nodes are in the namespace"),
+    "use_composition": ("True", "Whether the servers are composed in a container"),
+    "slam": ("False", "Whether a map is made, instead of finding the robot on one"),
+    "map": ("", "The map: path of its YAML file"),
+    "use_localization": ("True", "Whether a map is made or the robot found on one at all"),
+    "params_file": (str(HERE / "params" / "nav2_params.yaml"), "Parameters: path"),
+    "graph": ("", "Not used"),
+    "keepout_mask": ("", "Not used"),
+    "speed_mask": ("", "Not used"),
+    "use_keepout_zones": ("False", "Not used"),
+    "use_speed_zones": ("False", "Not used"),
+}
+
+
+def included(context, file, *names):
+    """Return one of the launch files beside this one, which is given values of ours."""
+    given = context.launch_configurations
+    source = PythonLaunchDescriptionSource(str(HERE / "launch" / file))
+    return IncludeLaunchDescription(source, launch_arguments=[(name, given[name]) for name in names])
+
+
+def start(context):
+    """Return the container where there is one, and what is included."""
+    level = context.launch_configurations["log_level"]
+    container = Node(
+        package="rclcpp_components",
+        executable="component_container_isolated",
+        name=context.launch_configurations["container_name"],
+        parameters=[configured_parameters(context), {"autostart": is_true(context, "autostart")}],
+        arguments=["--ros-args", "--log-level", level],
+        remappings=[("/tf", "tf"), ("/tf_static", "tf_static")],
+        output="screen",
+    )
+    common = ("namespace", "use_sim_time", "autostart", "params_file", "use_respawn")
+    composed = (*common, "use_composition", "container_name")
+    where = []
+    if is_true(context, "use_localization"):
+        mapping = included(context, "slam_launch.py", *common)
+        where = [mapping if is_true(context, "slam") else included(context, "localization_launch.py", "map", *composed)]
+    return [
+        GroupAction(
+            [
+                PushRosNamespace(context.launch_configurations["namespace"]),
+                *([container] if is_true(context, "use_composition") else []),
+                *where,
+                included(context, "navigation_launch.py", *composed),
+            ]
+        )
+    ]
+
+
+def generate_launch_description():
+    """Return the arguments, and the rest once they are known."""
+    arguments = [
+        DeclareLaunchArgument(name, default_value=default, description=description)
+        for name, (default, description) in DECLARED.items()
+    ]
+    return LaunchDescription([*arguments, OpaqueFunction(function=start)])

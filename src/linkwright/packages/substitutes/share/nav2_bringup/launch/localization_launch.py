@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A map and where the robot is on it, with the arguments of nav2_bringup's file of this name."""
+
+from ament_index_python.packages import get_package_share_path
+from launch.actions import DeclareLaunchArgument, OpaqueFunction, SetEnvironmentVariable
+
+from launch import LaunchDescription
+from linkwright.launch.ros.navigation import ARGUMENTS, Server, managed
+
+SERVERS = (
+    Server("nav2_map_server", "map_server", "nav2_map_server::MapServer"),
+    Server("nav2_amcl", "amcl", "nav2_amcl::AmclNode"),
+)
+
+
+def start(context):
+    """Return the servers; a map that is given goes before that of the parameters."""
+    file = context.launch_configurations["map"]
+    return managed(
+        context, "lifecycle_manager_localization", SERVERS, {"map_server": {"yaml_filename": file}} if file else {}
+    )
+
+
+def generate_launch_description():
+    """Return the arguments, and the servers once they are known."""
+    parameters = get_package_share_path("nav2_bringup") / "params" / "nav2_params.yaml"
+    declared = {
+        **ARGUMENTS,
+        "map": ("", "The map: path of its YAML file"),
+        "params_file": (str(parameters), "Parameters: path"),
+    }
+    arguments = [
+        DeclareLaunchArgument(name, default_value=default, description=description)
+        for name, (default, description) in declared.items()
+    ]
+    buffered = SetEnvironmentVariable("RCUTILS_LOGGING_BUFFERED_STREAM", "1")
+    return LaunchDescription([buffered, *arguments, OpaqueFunction(function=start)])

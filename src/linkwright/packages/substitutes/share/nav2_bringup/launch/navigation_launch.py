@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Planning and following paths, with the arguments of nav2_bringup's file of this name."""
+
+from ament_index_python.packages import get_package_share_path
+from launch.actions import DeclareLaunchArgument, OpaqueFunction, SetEnvironmentVariable
+from nav2_common.launch import HasNodeParams
+
+from launch import LaunchDescription
+from linkwright.launch.ros.navigation import ARGUMENTS, Server, managed
+
+COMMANDED = ("cmd_vel", "cmd_vel_nav")
+MONITOR = Server("nav2_collision_monitor", "collision_monitor", "nav2_collision_monitor::CollisionMonitor")
+
+
+def servers(*, is_monitored):
+    """Return what is started; velocities pass the smoother, and the collision monitor where there is one."""
+    smoothed = () if is_monitored else (("cmd_vel_smoothed", "cmd_vel"),)
+    return [
+        Server("nav2_controller", "controller_server", "nav2_controller::ControllerServer", remappings=(COMMANDED,)),
+        Server("nav2_smoother", "smoother_server", "nav2_smoother::SmootherServer"),
+        Server("nav2_planner", "planner_server", "nav2_planner::PlannerServer"),
+        Server("nav2_behaviors", "behavior_server", "behavior_server::BehaviorServer", remappings=(COMMANDED,)),
+        Server("nav2_bt_navigator", "bt_navigator", "nav2_bt_navigator::BtNavigator"),
+        Server("nav2_waypoint_follower", "waypoint_follower", "nav2_waypoint_follower::WaypointFollower"),
+        Server(
+            "nav2_velocity_smoother",
+            "velocity_smoother",
+            "nav2_velocity_smoother::VelocitySmoother",
+            remappings=(COMMANDED, *smoothed),
+        ),
+        *([MONITOR] if is_monitored else []),
+    ]
+
+
+def start(context):
+    """Return the servers; there is a collision monitor where the parameters have one."""
+    has_parameters = HasNodeParams(context.launch_configurations["params_file"], "collision_monitor")
+    is_monitored = MONITOR.is_here and has_parameters.perform(context) == "True"
+    return managed(context, "lifecycle_manager_navigation", servers(is_monitored=is_monitored))
+
+
+def generate_launch_description():
+    """Return the arguments, and the servers once they are known."""
+    parameters = get_package_share_path("nav2_bringup") / "params" / "nav2_params.yaml"
+    declared = {
+        **ARGUMENTS,
+        "params_file": (str(parameters), "Parameters: path"),
+        "graph": ("", "Not used"),
+    }
+    arguments = [
+        DeclareLaunchArgument(name, default_value=default, description=description)
+        for name, (default, description) in declared.items()
+    ]
+    buffered = SetEnvironmentVariable("RCUTILS_LOGGING_BUFFERED_STREAM", "1")
+    return LaunchDescription([buffered, *arguments, OpaqueFunction(function=start)])

@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: Apache-2.0
+"""RViz with a view for navigation, with the arguments of nav2_bringup's file of this name."""
+
+from ament_index_python.packages import get_package_share_path
+from launch.actions import DeclareLaunchArgument, OpaqueFunction, Shutdown
+from launch_ros.actions import Node
+from nav2_common.launch import ReplaceString
+
+from launch import LaunchDescription
+from linkwright.launch.ros.navigation import is_true
+
+ARGUMENTS = {
+    "namespace": ("navigation", "Put where the view has <robot_namespace>"),
+    "use_namespace": ("false", "Whether RViz is in the namespace"),
+    "use_sim_time": ("false", "Whether time is that of the simulation"),
+}
+NAMES = ("tf", "tf_static", "goal_pose", "clicked_point", "initialpose")
+
+
+def start(context):
+    """Return RViz, with whose end all ends."""
+    given = context.launch_configurations
+    config, namespace, remappings = given["rviz_config"], "", []
+    if is_true(context, "use_namespace"):
+        namespace = given["namespace"]
+        config = ReplaceString(config, {"<robot_namespace>": f"/{namespace.strip('/')}"}).perform(context)
+        remappings = [(f"/{name}", name) for name in NAMES]
+    return [
+        Node(
+            package="rviz2",
+            executable="rviz2",
+            namespace=namespace,
+            arguments=["-d", config],
+            parameters=[{"use_sim_time": is_true(context, "use_sim_time")}],
+            remappings=remappings,
+            output="screen",
+            on_exit=[Shutdown(reason="rviz exited")],
+        )
+    ]
+
+
+def generate_launch_description():
+    """Return the arguments, and RViz once they are known."""
+    view = get_package_share_path("nav2_bringup") / "rviz" / "nav2_default_view.rviz"
+    declared = {**ARGUMENTS, "rviz_config": (str(view), "The view: path")}
+    arguments = [
+        DeclareLaunchArgument(name, default_value=default, description=description)
+        for name, (default, description) in declared.items()
+    ]
+    return LaunchDescription([*arguments, OpaqueFunction(function=start)])

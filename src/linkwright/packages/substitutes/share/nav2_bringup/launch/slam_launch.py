@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Making a map, with the arguments of nav2_bringup's file of this name."""
+
+from ament_index_python.packages import get_package_share_path
+from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription, OpaqueFunction
+from launch.launch_description_sources import PythonLaunchDescriptionSource
+from nav2_common.launch import HasNodeParams
+
+from launch import LaunchDescription
+from linkwright.launch.ros.navigation import Server, managed
+
+SERVERS = (Server("nav2_map_server", "map_saver_server", "nav2_map_server::MapSaver", "map_saver"),)
+ARGUMENTS = {
+    "namespace": ("", "Namespace of all nodes"),
+    "use_sim_time": ("True", "Whether time is that of the simulation"),
+    "autostart": ("True", "Whether what saves maps is activated at once"),
+    "use_respawn": ("False", "Whether what saves maps is started again if it dies"),
+    "log_level": ("info", "How much is told"),
+}
+
+
+def start(context):
+    """Return what saves maps and what makes them, with the parameters for it where the file has some."""
+    given = context.launch_configurations
+    arguments = {"use_sim_time": given["use_sim_time"]}
+    if HasNodeParams(given["params_file"], "slam_toolbox").perform(context) == "True":
+        arguments["slam_params_file"] = given["params_file"]
+    path = get_package_share_path("slam_toolbox") / "launch" / "online_sync_launch.py"
+    mapping = IncludeLaunchDescription(PythonLaunchDescriptionSource(str(path)), launch_arguments=arguments.items())
+    given["use_composition"] = "False"
+    return [*managed(context, "lifecycle_manager_slam", SERVERS), mapping]
+
+
+def generate_launch_description():
+    """Return the arguments, and the nodes once they are known."""
+    parameters = get_package_share_path("nav2_bringup") / "params" / "nav2_params.yaml"
+    declared = {**ARGUMENTS, "params_file": (str(parameters), "Parameters: path")}
+    arguments = [
+        DeclareLaunchArgument(name, default_value=default, description=description)
+        for name, (default, description) in declared.items()
+    ]
+    return LaunchDescription([*arguments, OpaqueFunction(function=start)])

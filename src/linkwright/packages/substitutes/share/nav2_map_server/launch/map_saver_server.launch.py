@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What saves maps when a service asks for it, and its manager, as nav2_map_server's file of this name."""
+
+from launch_ros.actions import Node
+
+from launch import LaunchDescription
+
+
+def generate_launch_description():
+    """Return both nodes."""
+    return LaunchDescription(
+        [
+            Node(
+                package="nav2_map_server",
+                executable="map_saver_server",
+                output="screen",
+                parameters=[
+                    {"save_map_timeout": 2.0, "free_thresh_default": 0.25, "occupied_thresh_default": 0.65},
+                ],
+            ),
+            Node(
+                package="nav2_lifecycle_manager",
+                executable="lifecycle_manager",
+                name="lifecycle_manager",
+                output="screen",
+                parameters=[{"use_sim_time": True, "autostart": True, "node_names": ["map_saver"]}],
+            ),
+        ]
+    )

@@ -1,0 +1,223 @@
+"""The launch files of nav2_bringup, slam_toolbox and nav2_map_server that stand in for those that are not installed."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+from launch_ros.actions import Node
+
+from linkwright.graph import Graph
+from linkwright.launch.frontend.include import IncludeLaunchDescription
+from linkwright.launch.ros.navigation import Server
+from linkwright.nodes import EXECUTABLES, NodeOptions
+from linkwright.nodes.options import SingleNode, create_node
+from linkwright.packages import PackageFinder, is_substitute
+from linkwright.viewer.config.rviz_config import RvizConfig
+
+Launch = Callable[..., Any]
+LOCALIZATION = [("nav2_map_server", "map_server"), ("nav2_amcl", "amcl")]
+NAVIGATION = [
+    ("nav2_controller", "controller_server"),
+    ("nav2_smoother", "smoother_server"),
+    ("nav2_planner", "planner_server"),
+    ("nav2_behaviors", "behavior_server"),
+    ("nav2_bt_navigator", "bt_navigator"),
+    ("nav2_waypoint_follower", "waypoint_follower"),
+    ("nav2_velocity_smoother", "velocity_smoother"),
+]
+MANAGER = ("nav2_lifecycle_manager", "lifecycle_manager")
+SLAM = [(f"slam_toolbox/{kind}_slam_toolbox_node").split("/") for kind in ("async", "sync", "localization")]
+
+
+def share(package: str) -> Path:
+    return PackageFinder(start=Path("/"), environment={}).share(package)
+
+
+def include(package: str, name: str, **arguments: str) -> IncludeLaunchDescription:
+    return IncludeLaunchDescription(str(share(package) / "launch" / name), launch_arguments=arguments.items())
+
+
+class Started:
+    """The nodes that a launch started: executable -> name, parameters and remappings of each."""
+
+    def __init__(self) -> None:
+        self.nodes: dict[str, list[tuple[str, dict[str, Any], list[tuple[str, str]]]]] = {}
+
+    def entry_point(self, executable: str) -> Any:
+        class Ending(SingleNode):
+            DEFAULT_NAME = executable
+
+            def __init__(ending, graph: Graph, options: NodeOptions) -> None:  # noqa: N805 - self is taken
+                ending._node, _ = create_node(graph, options, executable)
+                ending.finished = asyncio.get_running_loop().create_future()
+                ending.finished.set_result(0)
+                name = ending._node.get_fully_qualified_name()
+                self.nodes.setdefault(executable, []).append((name, options.parameters, list(options.remappings)))
+
+        return type("EntryPoint", (), {"load": staticmethod(lambda: Ending), "distribution": "test"})()
+
+    @property
+    def names(self) -> set[str]:
+        return {name for nodes in self.nodes.values() for name, _, _ in nodes}
+
+    def one(self, executable: str) -> tuple[str, dict[str, Any], list[tuple[str, str]]]:
+        (node,) = self.nodes[executable]
+        return node
+
+
+@pytest.fixture
+def started(monkeypatch: pytest.MonkeyPatch) -> Started:
+    started = Started()
+    for package, executable in (*LOCALIZATION, *NAVIGATION, MANAGER, *SLAM, ("nav2_map_server", "map_saver_server")):
+        monkeypatch.setitem(EXECUTABLES.entry_points, (package, executable), started.entry_point(executable))
+    monkeypatch.delitem(EXECUTABLES.entry_points, ("nav2_collision_monitor", "collision_monitor"), raising=False)
+    return started
+
+
+@pytest.mark.parametrize("package", ["nav2_bringup", "slam_toolbox", "nav2_map_server"])
+def test_a_package_that_is_there_comes_before_ours(package: str, tmp_path: Path) -> None:
+    assert is_substitute(share(package))
+    (tmp_path / "src" / package).mkdir(parents=True)
+    (tmp_path / "src" / package / "package.xml").write_text(f"<package><name>{package}</name></package>")
+    assert PackageFinder(start=tmp_path, environment={}).share(package) == tmp_path / "src" / package
+
+
+async def test_localization(launch: Launch, started: Started, tmp_path: Path) -> None:
+    place = tmp_path / "house.yaml"
+    launched = await launch(include("nav2_bringup", "localization_launch.py", map=str(place), use_sim_time="True"))
+    assert launched.succeeded, launched.err
+    assert started.names == {"/map_server", "/amcl", "/lifecycle_manager_localization"}
+    _, parameters, remappings = started.one("map_server")
+    assert parameters["yaml_filename"] == str(place)
+    assert parameters["use_sim_time"] is True
+    assert ("/tf", "tf") in remappings
+    assert started.one("amcl")[1]["max_particles"] == 2000
+    assert started.one("lifecycle_manager")[1] == {
+        "use_sim_time": True,
+        "autostart": True,
+        "node_names": ["map_server", "amcl"],
+    }
+
+
+async def test_navigation(launch: Launch, started: Started) -> None:
+    launched = await launch(include("nav2_bringup", "navigation_launch.py", autostart="false"))
+    assert launched.succeeded, launched.err
+    assert started.names == {*(f"/{name}" for _, name in NAVIGATION), "/lifecycle_manager_navigation"}
+    manager = started.one("lifecycle_manager")[1]
+    assert manager["node_names"] == [name for _, name in NAVIGATION]
+    assert manager["autostart"] is False
+    assert ("cmd_vel", "cmd_vel_nav") in started.one("controller_server")[2]
+    smoothed = started.one("velocity_smoother")[2]
+    assert [each for each in smoothed if "cmd_vel" in each[0]] == [
+        ("cmd_vel", "cmd_vel_nav"),
+        ("cmd_vel_smoothed", "cmd_vel"),
+    ]
+
+
+async def test_what_is_not_here_is_left_out_and_not_waited_for(
+    launch: Launch, started: Started, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delitem(EXECUTABLES.entry_points, ("nav2_smoother", "smoother_server"))
+    launched = await launch(include("nav2_bringup", "navigation_launch.py"))
+    assert launched.succeeded
+    assert "one part of the launch is left out" in launched.err
+    assert "smoother_server" in launched.err
+    assert "smoother_server" not in started.one("lifecycle_manager")[1]["node_names"]
+
+
+async def test_bringup_in_a_namespace(launch: Launch, started: Started) -> None:
+    launched = await launch(
+        include("nav2_bringup", "bringup_launch.py", namespace="red", use_namespace="true", use_composition="False")
+    )
+    assert launched.succeeded, launched.err
+    assert {f"/red/{name}" for _, name in (*LOCALIZATION, *NAVIGATION)} <= started.names
+    assert {"/red/lifecycle_manager_localization", "/red/lifecycle_manager_navigation"} <= started.names
+    assert started.one("planner_server")[1]["planner_plugins"] == ["GridBased"]
+
+
+async def test_bringup_makes_a_map(launch: Launch, started: Started, tmp_path: Path) -> None:
+    file = tmp_path / "params.yaml"
+    file.write_text("slam_toolbox:\n  ros__parameters:\n    resolution: 0.02\n")
+    launched = await launch(
+        include("nav2_bringup", "bringup_launch.py", slam="True", use_composition="False", params_file=str(file))
+    )
+    assert launched.succeeded, launched.err
+    assert "/map_saver" in started.names
+    assert "/slam_toolbox" in started.names
+    assert "amcl" not in started.nodes
+    assert started.one("sync_slam_toolbox_node")[1]["resolution"] == 0.02
+
+
+async def test_a_parameter_file_without_slam_toolbox_leaves_it_its_own(
+    launch: Launch, started: Started, tmp_path: Path
+) -> None:
+    file = tmp_path / "params.yaml"
+    file.write_text("amcl:\n  ros__parameters:\n    max_beams: 30\n")
+    launched = await launch(include("nav2_bringup", "slam_launch.py", params_file=str(file)))
+    assert launched.succeeded, launched.err
+    parameters = started.one("sync_slam_toolbox_node")[1]
+    assert (parameters["resolution"], parameters["use_sim_time"]) == (0.05, True)
+
+
+@pytest.mark.parametrize(
+    ("file", "executable"),
+    [
+        ("online_async_launch.py", "async_slam_toolbox_node"),
+        ("online_sync_launch.py", "sync_slam_toolbox_node"),
+        ("offline_launch.py", "sync_slam_toolbox_node"),
+        ("localization_launch.py", "localization_slam_toolbox_node"),
+    ],
+)
+async def test_slam_toolbox(launch: Launch, started: Started, file: str, executable: str) -> None:
+    launched = await launch(include("slam_toolbox", file, use_sim_time="false"))
+    assert launched.succeeded, launched.err
+    name, parameters, _ = started.one(executable)
+    assert name == "/slam_toolbox"
+    assert parameters["use_sim_time"] is False
+    assert parameters["base_frame"] == "base_footprint"
+
+
+async def test_map_saver(launch: Launch, started: Started) -> None:
+    launched = await launch(include("nav2_map_server", "map_saver_server.launch.py"))
+    assert launched.succeeded, launched.err
+    assert started.one("lifecycle_manager")[1]["node_names"] == ["map_saver"]
+
+
+async def test_composed_servers_get_their_parameters(launch: Launch, monkeypatch: pytest.MonkeyPatch) -> None:
+    from linkwright.launch.ros import navigation
+
+    composed: list[Any] = []
+
+    def load(**words: Any) -> Node:
+        composed.append(words)
+        return Node(executable="true")
+
+    monkeypatch.setattr(navigation, "LoadComposableNodes", load)
+    launched = await launch(include("nav2_bringup", "localization_launch.py", use_composition="True", namespace="red"))
+    assert launched.succeeded, launched.err
+    (words,) = composed
+    assert words["target_container"] == "red/nav2_container"
+    plugins = [each.node_plugin[0].text for each in words["composable_node_descriptions"]]
+    assert plugins == ["nav2_map_server::MapServer", "nav2_amcl::AmclNode", "nav2_lifecycle_manager::LifecycleManager"]
+
+
+def test_a_server_is_known_by_its_executable() -> None:
+    assert Server("nav2_amcl", "amcl", "nav2_amcl::AmclNode").node_name == "amcl"
+    assert not Server("nav2_docking", "docking_server", "").is_here
+
+
+def test_the_view_is_read_whole() -> None:
+    config = RvizConfig.load(share("nav2_bringup") / "rviz" / "nav2_default_view.rviz")
+    assert not config.warnings
+
+
+def test_parameters_are_for_the_nodes_that_are_started() -> None:
+    content = yaml.safe_load((share("nav2_bringup") / "params" / "nav2_params.yaml").read_text())
+    nodes = {name for _, name in (*LOCALIZATION, *NAVIGATION)}
+    assert nodes <= {*content}
+    assert {*content} - nodes == {"map_saver", "local_costmap", "global_costmap"}
