@@ -77,7 +77,7 @@ class ManagedNode(LifecycleNodeMixin, Node):
         try:
             self.configure()
         except LinkwrightError as error:
-            self._tell(error)
+            self.tell(error)
             self._let_go()
             return TransitionCallbackReturn.FAILURE
         if not self._told:
@@ -92,7 +92,7 @@ class ManagedNode(LifecycleNodeMixin, Node):
         try:
             self.activate()
         except LinkwrightError as error:
-            self._tell(error)
+            self.tell(error)
             super().on_deactivate(state)
             return TransitionCallbackReturn.FAILURE
         if self._beats > 0.0:
@@ -147,7 +147,8 @@ class ManagedNode(LifecycleNodeMixin, Node):
             self._bond.end()
             self._bond = None
 
-    def _tell(self, error: LinkwrightError) -> None:
+    def tell(self, error: LinkwrightError) -> None:
+        """Log a finding, with its place and hint."""
         self.get_logger().error("\n".join(render(each) for each in error.diagnostics))
 
 

@@ -1,0 +1,135 @@
+"""The images of maps: PGM, which is read and written here, and what Pillow reads and writes (PNG, BMP, ...)."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.diagnostics import (
+    Diagnostic,
+    LinkwrightError,
+    Phrase,
+    display_path,
+    foreign,
+    missing_extra,
+    missing_file_hint,
+    phrase,
+)
+from linkwright.input_files import read_file
+
+MOST_PIXELS = 1 << 28
+"""No map with more pixels is read: a small file can claim any size."""
+_LARGEST_FILE = 1 << 30
+_PGM = re.compile(rb"P([25])" + rb"(?:\s|#[^\n]*\n)+(\d{1,9})" * 3 + rb"\s")
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """Pixels from the top row down, each between 0 and 1.
+
+    Attributes:
+        shade: how bright they are, the mean of the colours, of shape (rows, columns).
+        opacity: 1 where they are opaque, of the same shape; None where the image knows no transparency.
+    """
+
+    shade: NDArray[np.float64]
+    opacity: NDArray[np.float64] | None = None
+
+
+def read_picture(path: Path) -> Picture:
+    """Read an image.
+
+    Raises:
+        LinkwrightError: NAV203, it is not there, is none, or is broken; NAV204, it is no PGM, and Pillow, which reads
+            others, is not installed.
+    """
+    try:
+        data = read_file(path, _LARGEST_FILE)
+    except FileNotFoundError:
+        message = phrase("the image '{path}' of the map does not exist", path=display_path(path))
+        raise LinkwrightError(Diagnostic("NAV203", message, hint=missing_file_hint(path))) from None
+    except OSError as error:
+        raise _unreadable(path, foreign(error.strerror or error)) from None
+    header = _PGM.match(data)
+    return _pgm(path, data, header) if header else _by_pillow(path, data)
+
+
+def pgm_bytes(pixels: NDArray[np.uint8]) -> bytes:
+    """The file of grey pixels, of shape (rows, columns), as ImageMagick and nav2 write it: binary PGM."""
+    rows, columns = pixels.shape
+    return b"P5\n%d %d\n255\n" % (columns, rows) + np.ascontiguousarray(pixels).tobytes()
+
+
+def pillow_bytes(pixels: NDArray[np.uint8], kind: str) -> bytes:
+    """The file of grey pixels (rows, columns), or of grey and opacity (rows, columns, 2), in a format of Pillow.
+
+    Raises:
+        LinkwrightError: NAV204, Pillow is not installed.
+        ValueError: Pillow writes no such format, or not such pixels.
+    """
+    image = _pillow().fromarray(pixels) if pixels.ndim == 2 else _grey_with_opacity(pixels)
+    file = BytesIO()
+    try:
+        image.save(file, format=kind)
+    except (KeyError, OSError) as error:
+        raise ValueError(str(error)) from None
+    return file.getvalue()
+
+
+def _grey_with_opacity(pixels: NDArray[np.uint8]) -> Any:
+    grey = pixels[..., 0]
+    return _pillow().fromarray(np.stack((grey, grey, grey, pixels[..., 1]), axis=-1))
+
+
+def _pgm(path: Path, data: bytes, header: re.Match[bytes]) -> Picture:
+    columns, rows, most = (int(each) for each in header.groups()[1:])
+    if not 0 < rows * columns <= MOST_PIXELS or not 0 < most < 1 << 16:
+        raise _unreadable(path, phrase("its header says {size}", size=f"{columns} x {rows}, {most}"))
+    rest = data[header.end() :]
+    if header[1] == b"2":
+        try:
+            values = np.array(rest.split()[: rows * columns], np.float64)
+        except ValueError:
+            raise _unreadable(path, phrase("its pixels are no numbers")) from None
+    else:
+        values = np.frombuffer(rest, ">u2" if most > 255 else np.uint8, -1 if most < 256 else len(rest) // 2)
+    if values.size < rows * columns:
+        reason = phrase("it has {count} of {size} pixels", count=values.size, size=rows * columns)
+        raise _unreadable(path, reason)
+    return Picture(np.minimum(values[: rows * columns].reshape(rows, columns) / most, 1.0))
+
+
+def _by_pillow(path: Path, data: bytes) -> Picture:
+    pillow = _pillow()
+    try:
+        with pillow.open(BytesIO(data)) as file:
+            if file.width * file.height > MOST_PIXELS:
+                raise _unreadable(path, phrase("it has more than {most} pixels", most=MOST_PIXELS))
+            wide = file.mode.startswith("I")
+            clear = file.mode in ("LA", "PA", "RGBA", "La", "RGBa") or "transparency" in file.info
+            values = np.asarray(file if wide else file.convert("RGBA" if clear else "RGB"), np.float64)
+    except (OSError, ValueError, SyntaxError, pillow.DecompressionBombError) as error:
+        raise _unreadable(path, foreign(str(error).replace(repr(BytesIO), "it"))) from None
+    if wide:
+        return Picture(values / 65535.0)
+    values = values / 255.0
+    return Picture(values[..., :3].mean(axis=-1), values[..., 3] if clear else None)
+
+
+def _pillow() -> Any:
+    try:
+        from PIL import Image  # not above: an extra
+    except ModuleNotFoundError as error:
+        raise missing_extra("NAV204", error) from None
+    return Image
+
+
+def _unreadable(path: Path, reason: Phrase) -> LinkwrightError:
+    message = phrase("the image '{path}' of the map cannot be read: {reason}", path=display_path(path), reason=reason)
+    return LinkwrightError(Diagnostic("NAV203", message))

@@ -1,0 +1,138 @@
+"""Maps as files: the YAML and the image beside it, read and written as nav2_map_server does."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import floor, log10
+from pathlib import Path
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, display_path, foreign, phrase
+from linkwright.navigation.grids.grid import Grid
+from linkwright.navigation.maps.images import pgm_bytes, pillow_bytes, read_picture
+from linkwright.navigation.maps.map_yaml import MapMode, read_map_yaml
+from linkwright.navigation.maps.pixels import UNKNOWN_DARKNESS, cells_of_picture, pixels_of_cells
+from linkwright.whole_files import write_whole_file
+
+OCCUPIED_THRESH = 0.65
+FREE_THRESH = 0.25
+"""What nav2's map saver has where nothing else is said."""
+_FORMATS = ("bmp", "pgm", "png")
+_WITHOUT_OPACITY = ("pgm", "jpg", "jpeg", "bmp")
+
+
+def _unheard(_line: str) -> None:
+    """Nobody reads the warnings."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SavedAs:
+    """How a map is written.
+
+    Attributes:
+        name: of the files, with their folder but without an ending.
+        occupied_thresh: 0 to 1; cells of so much or more are occupied.
+        free_thresh: cells of so much or less are free.
+        image_format: ending of the image; "" for what goes with the mode.
+        mode: what the pixels tell.
+    """
+
+    name: str
+    occupied_thresh: float = OCCUPIED_THRESH
+    free_thresh: float = FREE_THRESH
+    image_format: str = ""
+    mode: MapMode = MapMode.TRINARY
+
+
+def load_map(path: str | Path) -> Grid:
+    """The grid that a map's YAML and image describe, in the frame of the map.
+
+    Raises:
+        LinkwrightError: NAV201 or NAV202, see `read_map_yaml`; NAV203 or NAV204, see `read_picture`.
+    """
+    said = read_map_yaml(path)
+    cells = cells_of_picture(read_picture(said.image), said)
+    x, y, yaw = said.origin
+    return Grid(cells=cells, resolution=said.resolution, x=x, y=y, yaw=yaw)
+
+
+def save_map(grid: Grid, saved: SavedAs, warn: Callable[[str], object] = _unheard) -> tuple[Path, Path]:
+    """Write a map.
+
+    Args:
+        grid: per cent or unknown.
+        saved: under which name and how.
+        warn: is told what the reader of the files should know.
+
+    Returns:
+        The image and the YAML.
+
+    Raises:
+        LinkwrightError: NAV205, the thresholds make no sense; NAV206, a file cannot be written; NAV204, Pillow is
+            needed and not installed.
+    """
+    _check(saved)
+    kind = (saved.image_format or ("png" if saved.mode is MapMode.SCALE else "pgm")).lower()
+    if kind not in _FORMATS:
+        hint = did_you_mean(kind, _FORMATS)
+        warn(
+            f"Requested image format '{kind}' is not one of the recommended formats: 'bmp', 'pgm', 'png'"
+            + (f"; {hint}" if hint else "")
+        )
+    if saved.mode is MapMode.SCALE and kind in _WITHOUT_OPACITY:
+        warn(
+            f"Map mode 'scale' requires transparency, but format '{kind}' does not support it. "
+            "Consider switching image format to 'png'."
+        )
+    if saved.mode is MapMode.TRINARY and saved.free_thresh > UNKNOWN_DARKNESS and bool((grid.cells < 0).any()):
+        warn(
+            f"Unknown cells are read back as free with a free threshold of {saved.free_thresh:g}, in nav2 as here. "
+            "With 0.196 they stay unknown."
+        )
+    pixels = pixels_of_cells(grid.cells, saved.mode, saved.occupied_thresh, saved.free_thresh)
+    if kind in _WITHOUT_OPACITY and pixels.ndim == 3:
+        pixels = pixels[..., 0]
+    try:
+        data = pgm_bytes(pixels) if kind == "pgm" else pillow_bytes(pixels, kind)
+    except ValueError as error:
+        warn(f"Format '{kind}' is not usable. Using 'png' instead: {error}")
+        kind, data = "png", pillow_bytes(pixels, "png")
+    image, text = Path(f"{saved.name}.{kind}"), Path(f"{saved.name}.yaml")
+    _write(image, data)
+    _write(text, _yaml(grid, saved, image.name).encode())
+    return image, text
+
+
+def _check(saved: SavedAs) -> None:
+    problem = None
+    if saved.occupied_thresh > 1.0:
+        problem = phrase("Threshold_occupied must be 1.0 or less")
+    elif saved.free_thresh < 0.0:
+        problem = phrase("Free threshold must be 0.0 or greater")
+    elif saved.occupied_thresh <= saved.free_thresh:
+        problem = phrase("Threshold_free must be smaller than threshold_occupied")
+    if problem is not None:
+        raise LinkwrightError(Diagnostic("NAV205", problem))
+
+
+def _write(path: Path, data: bytes) -> None:
+    try:
+        write_whole_file(path, data)
+    except OSError as error:
+        reason = foreign(error.strerror or error)
+        message = phrase("'{path}' cannot be written: {reason}", path=display_path(path), reason=reason)
+        raise LinkwrightError(Diagnostic("NAV206", message)) from None
+
+
+def _yaml(grid: Grid, saved: SavedAs, image: str) -> str:
+    origin = ", ".join(_number(each) for each in (grid.x, grid.y, grid.yaw))
+    return (
+        f"image: {image}\nmode: {saved.mode.value}\nresolution: {_number(grid.resolution)}\norigin: [{origin}]\n"
+        f"negate: 0\noccupied_thresh: {_number(saved.occupied_thresh)}\nfree_thresh: {_number(saved.free_thresh)}"
+    )
+
+
+def _number(value: float) -> str:
+    """A number with three digits as nav2 writes it, and with as many more as a millimetre needs."""
+    digits = 3 if value == 0.0 else max(3, floor(log10(abs(value))) + 4)
+    return f"{value:.{digits}g}"

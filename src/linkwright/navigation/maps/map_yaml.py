@@ -1,0 +1,206 @@
+"""The YAML of a map: which image it is, how large its cells are, where it lies, and how its pixels are read.
+
+Keys, their meanings and which must be there are those of nav2_map_server. What is wrong is told with its place.
+Stricter than nav2: a resolution must be more than 0, and thresholds lie between 0 and 1.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from linkwright.diagnostics import (
+    Diagnostic,
+    LinkwrightError,
+    Phrase,
+    SourceText,
+    Span,
+    did_you_mean,
+    display_path,
+    foreign,
+    missing_file_hint,
+    phrase,
+)
+from linkwright.input_files import read_text
+
+_REQUIRED = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh")
+_TRUE = frozenset({"true", "yes", "on", "y"})
+_FALSE = frozenset({"false", "no", "off", "n"})
+_LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+_DEEPEST = 50
+
+
+class MapMode(Enum):
+    """How pixels and cells become each other."""
+
+    TRINARY = "trinary"
+    SCALE = "scale"
+    RAW = "raw"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MapYaml:
+    """What the YAML of a map says.
+
+    Attributes:
+        image: the file of the pixels.
+        resolution: side of a cell, in metres.
+        origin: x and y of the lower left corner in the frame of the map, in metres, and yaw, in radians.
+        negate: whether white is occupied and black is free.
+        occupied_thresh: darkness, 0 to 1, above which a pixel is occupied.
+        free_thresh: darkness below which it is free.
+        mode: how pixels become cells.
+    """
+
+    image: Path
+    resolution: float
+    origin: tuple[float, float, float]
+    negate: bool
+    occupied_thresh: float
+    free_thresh: float
+    mode: MapMode = MapMode.TRINARY
+
+
+def read_map_yaml(path: str | Path) -> MapYaml:
+    """Read the YAML of a map; the image is looked for beside it.
+
+    Raises:
+        LinkwrightError: NAV201, it cannot be read; NAV202, something in it is wrong.
+    """
+    if not str(path):
+        raise LinkwrightError(Diagnostic("NAV201", phrase("YAML file name is empty, can't load!")))
+    path = Path(path)
+    shown = display_path(path)
+    try:
+        text = read_text(path)
+    except FileNotFoundError:
+        message = phrase("map file '{shown}' does not exist", shown=shown)
+        raise LinkwrightError(Diagnostic("NAV201", message, hint=missing_file_hint(path))) from None
+    except (OSError, UnicodeDecodeError) as error:
+        reason = foreign(getattr(error, "strerror", None) or error)
+        message = phrase("map file '{shown}' cannot be read: {reason}", shown=shown, reason=reason)
+        raise LinkwrightError(Diagnostic("NAV201", message)) from None
+    return _Reader(SourceText(str(path), text)).read(path)
+
+
+class _Reader:
+    """Reads one text."""
+
+    def __init__(self, source: SourceText) -> None:
+        self._source = source
+        self._nodes: dict[str, yaml.Node] = {}
+
+    def read(self, path: Path) -> MapYaml:
+        self._compose()
+        missing = [key for key in _REQUIRED if key not in self._nodes]
+        if missing:
+            hint = did_you_mean(missing[0], [key for key in self._nodes if key not in _REQUIRED])
+            raise self._error(phrase("'{key}' is missing in the map", key=missing[0]), None, hint)
+        origin = self._origin()
+        return MapYaml(
+            image=path.parent / self._text("image"),
+            resolution=self._resolution(),
+            origin=(origin[0], origin[1], origin[2]),
+            negate=self._negate(),
+            occupied_thresh=self._threshold("occupied_thresh"),
+            free_thresh=self._threshold("free_thresh"),
+            mode=self._mode(),
+        )
+
+    def _compose(self) -> None:
+        try:
+            depth = 0
+            for event in yaml.parse(self._source.text, Loader=_LOADER):
+                depth += isinstance(event, yaml.CollectionStartEvent) - isinstance(event, yaml.CollectionEndEvent)
+                if depth > _DEEPEST:
+                    raise self._error(phrase("a map is no such nested YAML"), None)
+            root = yaml.compose(self._source.text, Loader=_LOADER)
+        except yaml.YAMLError as error:
+            raise self._not_yaml(error) from None
+        if not isinstance(root, yaml.MappingNode):
+            message = phrase("the YAML of a map must have keys and values: {names}", names=", ".join(_REQUIRED))
+            raise self._error(message, root)
+        for key, value in root.value:
+            if isinstance(key, yaml.ScalarNode):
+                self._nodes.setdefault(key.value, value)
+
+    def _text(self, key: str) -> str:
+        node = self._nodes[key]
+        if not isinstance(node, yaml.ScalarNode) or not node.value:
+            raise self._error(phrase("'{key}' must be a file name", key=key), node)
+        return str(node.value)
+
+    def _number(self, node: yaml.Node, key: str) -> float:
+        try:
+            value = float(node.value) if isinstance(node, yaml.ScalarNode) else None
+        except ValueError:
+            value = None
+        if value is None or not isfinite(value):
+            raise self._error(phrase("'{key}' must be a number", key=key), node)
+        return value
+
+    def _resolution(self) -> float:
+        node = self._nodes["resolution"]
+        value = self._number(node, "resolution")
+        if not value > 0.0:
+            raise self._error(phrase("'resolution' must be more than 0: it is metres for each pixel"), node)
+        return value
+
+    def _origin(self) -> list[float]:
+        node = self._nodes["origin"]
+        if not isinstance(node, yaml.SequenceNode):
+            raise self._error(phrase("'origin' must be a list of x, y and yaw"), node)
+        if len(node.value) != 3:
+            message = phrase("'origin' must have 3 values (x, y, yaw) and has {count}", count=len(node.value))
+            raise self._error(message, node)
+        return [self._number(each, "origin") for each in node.value]
+
+    def _threshold(self, key: str) -> float:
+        node = self._nodes[key]
+        value = self._number(node, key)
+        if not 0.0 <= value <= 1.0:
+            hint = phrase("65 per cent is 0.65") if value > 1.0 else None
+            raise self._error(phrase("'{key}' must be between 0 and 1", key=key), node, hint)
+        return value
+
+    def _negate(self) -> bool:
+        node = self._nodes["negate"]
+        text = str(node.value).lower() if isinstance(node, yaml.ScalarNode) else ""
+        if text in _TRUE or text in _FALSE:
+            return text in _TRUE
+        try:
+            return int(text) != 0
+        except ValueError:
+            raise self._error(phrase("'negate' must be 0 or 1"), node) from None
+
+    def _mode(self) -> MapMode:
+        node = self._nodes.get("mode")
+        if node is None:
+            return MapMode.TRINARY
+        text = str(node.value) if isinstance(node, yaml.ScalarNode) else ""
+        known = [each.value for each in MapMode]
+        if text not in known:
+            message = phrase("'mode' must be one of {known}", known=", ".join(known))
+            raise self._error(message, node, did_you_mean(text, known))
+        return MapMode(text)
+
+    def _error(self, message: Phrase, node: yaml.Node | None, hint: Phrase | None = None) -> LinkwrightError:
+        return LinkwrightError(Diagnostic("NAV202", message, self._span(node), hint=hint, source=self._source))
+
+    def _span(self, node: yaml.Node | None) -> Span:
+        if node is None or node.start_mark is None or node.end_mark is None:
+            return self._source.span(0, 0)
+        start, end = node.start_mark, node.end_mark
+        return Span(self._source.name, start.line + 1, start.column + 1, end.line + 1, end.column + 1)
+
+    def _not_yaml(self, error: yaml.YAMLError) -> LinkwrightError:
+        mark = getattr(error, "problem_mark", None)
+        problem = getattr(error, "problem", None) or getattr(error, "reason", None) or str(error)
+        span = None if mark is None else self._source.span(self._source.offset(mark.line + 1, mark.column + 1))
+        message = phrase("not valid YAML: {problem}", problem=foreign(problem))
+        return LinkwrightError(Diagnostic("NAV202", message, span, source=self._source))

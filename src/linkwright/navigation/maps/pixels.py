@@ -1,0 +1,70 @@
+"""How bright pixels become cells of an occupancy grid, and cells become pixels, as nav2_map_server has it."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.navigation.grids.grid import FREE, OCCUPIED, UNKNOWN
+from linkwright.navigation.maps.images import Picture
+from linkwright.navigation.maps.map_yaml import MapMode, MapYaml
+
+_FREE_GREY, _UNKNOWN_GREY = 254, 205
+UNKNOWN_DARKNESS = 1.0 - _UNKNOWN_GREY / 255.0
+"""Of the pixels that stand for unknown cells in the mode ``trinary``: a ``free_thresh`` above it reads them as free."""
+_OPAQUE = 255
+
+
+def cells_of_picture(picture: Picture, said: MapYaml) -> NDArray[np.int8]:
+    """The cells that pixels stand for.
+
+    Args:
+        picture: the pixels, from the top row down.
+        said: thresholds, mode and whether black is free.
+
+    Returns:
+        Per cent or `UNKNOWN`, from the lowest row up, of the picture's shape.
+    """
+    shade, opacity = picture.shade[::-1], None if picture.opacity is None else picture.opacity[::-1]
+    if said.mode is MapMode.RAW:
+        value = np.floor(shade * 255.0 + 0.5)
+        return np.where(value <= OCCUPIED, value, UNKNOWN).astype(np.int8)
+    if said.mode is MapMode.TRINARY and opacity is not None:
+        shade = (shade * 3.0 + opacity) / 4.0  # opacity counts as a fourth colour there
+    dark = shade if said.negate else 1.0 - shade
+    if said.mode is MapMode.SCALE:
+        span = said.occupied_thresh - said.free_thresh
+        between = np.rint((dark - said.free_thresh) / span * 100.0) if span > 0.0 else np.zeros_like(dark)
+    else:
+        between = np.full_like(dark, UNKNOWN)
+    cells = np.where(dark > said.occupied_thresh, OCCUPIED, np.where(dark < said.free_thresh, FREE, between))
+    if said.mode is MapMode.SCALE and opacity is not None:
+        cells = np.where(opacity < 1.0, UNKNOWN, cells)
+    return cells.astype(np.int8)
+
+
+def pixels_of_cells(
+    cells: NDArray[np.int8], mode: MapMode, occupied_thresh: float, free_thresh: float
+) -> NDArray[np.uint8]:
+    """The pixels that stand for cells, from the top row down.
+
+    Args:
+        cells: per cent or `UNKNOWN`, from the lowest row up.
+        mode: what the pixels tell.
+        occupied_thresh: 0 to 1, from which on cells are occupied in the mode ``trinary``.
+        free_thresh: up to which they are free.
+
+    Returns:
+        Grey, of the shape of the cells; with ``scale`` grey and opacity, of shape (rows, columns, 2).
+    """
+    turned = cells[::-1].astype(np.int16)
+    known = (turned >= 0) & (turned <= 100)
+    if mode is MapMode.RAW:
+        return np.where(known, turned, 255).astype(np.uint8)
+    if mode is MapMode.SCALE:
+        grey = np.where(known, np.rint((100 - turned) / 100.0 * 255.0), 128)
+        return np.stack((grey, np.where(known, _OPAQUE, 0)), axis=-1).astype(np.uint8)
+    free = known & (turned <= round(free_thresh * 100.0))
+    occupied = known & (turned >= round(occupied_thresh * 100.0))
+    grey = np.where(free, _FREE_GREY, np.where(occupied, 0, _UNKNOWN_GREY))
+    return grey.astype(np.uint8)

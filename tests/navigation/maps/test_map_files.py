@@ -1,0 +1,182 @@
+"""Maps as images: what pixels mean in each mode, and that what is written is read again."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+from numpy.typing import NDArray
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.navigation.grids.grid import Grid
+from linkwright.navigation.maps.images import Picture, read_picture
+from linkwright.navigation.maps.map_files import SavedAs, load_map, save_map
+from linkwright.navigation.maps.map_yaml import MapMode, MapYaml
+from linkwright.navigation.maps.pixels import cells_of_picture, pixels_of_cells
+
+_CELLS = arrays(np.int8, st.tuples(st.integers(1, 6), st.integers(1, 6)), elements=st.integers(-1, 100))
+
+
+def _said(mode: MapMode, *, negate: bool = False, occupied: float = 0.65, free: float = 0.196) -> MapYaml:
+    return MapYaml(
+        image=Path("x"),
+        resolution=0.05,
+        origin=(0.0, 0.0, 0.0),
+        negate=negate,
+        occupied_thresh=occupied,
+        free_thresh=free,
+        mode=mode,
+    )
+
+
+def _row(*values: float) -> Picture:
+    return Picture(np.array([values]) / 255.0)
+
+
+@pytest.mark.parametrize(
+    ("mode", "negate", "pixels", "cells"),
+    [
+        (MapMode.TRINARY, False, (0, 89, 90, 205, 206, 254, 255), (100, 100, -1, -1, 0, 0, 0)),
+        (MapMode.TRINARY, True, (0, 49, 50, 165, 166, 255), (0, 0, -1, -1, 100, 100)),
+        (MapMode.SCALE, False, (0, 90, 127, 205, 254), (100, 99, 67, 0, 0)),
+        (MapMode.RAW, False, (0, 1, 100, 101, 255), (0, 1, 100, -1, -1)),
+        (MapMode.RAW, True, (0, 1, 100, 101, 255), (0, 1, 100, -1, -1)),
+    ],
+)
+def test_pixels_mean_what_they_mean_in_nav2(
+    mode: MapMode, negate: bool, pixels: tuple[float, ...], cells: tuple[int, ...]
+) -> None:
+    assert cells_of_picture(_row(*pixels), _said(mode, negate=negate)).tolist() == [list(cells)]
+
+
+def test_opacity_is_a_fourth_colour_with_trinary_and_unknown_with_scale() -> None:
+    picture = Picture(np.array([[0.0, 0.0, 1.0]]), np.array([[1.0, 0.0, 0.0]]))
+    # (0 + 0 + 0 + 1) / 4 is a darkness of 0.75
+    assert cells_of_picture(picture, _said(MapMode.TRINARY)).tolist() == [[100, 100, -1]]
+    assert cells_of_picture(picture, _said(MapMode.TRINARY, occupied=0.8)).tolist() == [[-1, 100, -1]]
+    assert cells_of_picture(picture, _said(MapMode.SCALE)).tolist() == [[100, -1, -1]]
+
+
+def test_equal_thresholds_leave_no_scale() -> None:
+    said = _said(MapMode.SCALE, occupied=0.5, free=0.5)
+    assert cells_of_picture(Picture(np.array([[0.0, 0.5, 1.0]])), said).tolist() == [[100, 0, 0]]
+
+
+def test_cells_become_the_pixels_of_nav2() -> None:
+    cells = np.array([[0, 25, 26, 64, 65, 100, -1]], np.int8)
+    assert pixels_of_cells(cells, MapMode.TRINARY, 0.65, 0.25).tolist() == [[254, 254, 205, 205, 0, 0, 205]]
+    assert pixels_of_cells(cells, MapMode.RAW, 0.65, 0.25).tolist() == [[0, 25, 26, 64, 65, 100, 255]]
+    assert pixels_of_cells(cells, MapMode.SCALE, 0.65, 0.25)[0, [0, 5, 6]].tolist() == [[255, 255], [0, 255], [128, 0]]
+
+
+@given(_CELLS, st.sampled_from(["pgm", "png", "bmp"]))
+def test_raw_maps_come_back_as_they_were(
+    tmp_path_factory: pytest.TempPathFactory, cells: NDArray[np.int8], kind: str
+) -> None:
+    folder = tmp_path_factory.mktemp("maps")
+    grid = Grid(cells=cells, resolution=0.025, x=-12.345, y=3.0, yaw=0.5)
+    image, text = save_map(grid, SavedAs(name=str(folder / "a"), image_format=kind, mode=MapMode.RAW))
+    assert (image.name, text.name) == (f"a.{kind}", "a.yaml")
+    again = load_map(text)
+    assert again.cells.tolist() == cells.tolist()
+    assert (again.resolution, again.x, again.y, again.yaw) == (0.025, -12.345, 3.0, 0.5)
+
+
+@given(_CELLS)
+def test_trinary_maps_come_back_as_free_occupied_and_unknown(
+    tmp_path_factory: pytest.TempPathFactory, cells: NDArray[np.int8]
+) -> None:
+    name = str(tmp_path_factory.mktemp("maps") / "a")
+    _, text = save_map(Grid(cells=cells, resolution=0.05), SavedAs(name=name, free_thresh=0.196))
+    known = np.where(cells >= 65, 100, np.where((cells >= 0) & (cells <= 20), 0, -1))
+    assert load_map(text).cells.tolist() == known.tolist()
+
+
+@given(_CELLS)
+def test_scaled_maps_keep_what_is_unknown_by_opacity(
+    tmp_path_factory: pytest.TempPathFactory, cells: NDArray[np.int8]
+) -> None:
+    name = str(tmp_path_factory.mktemp("maps") / "a")
+    image, text = save_map(Grid(cells=cells, resolution=0.05), SavedAs(name=name, mode=MapMode.SCALE))
+    assert image.suffix == ".png"
+    again = load_map(text).cells
+    assert ((again == -1) == (cells == -1)).all()
+    assert (again[cells >= 66] == 100).all()
+
+
+def test_nav2_s_own_words_for_a_map(tmp_path: Path) -> None:
+    save_map(Grid(cells=np.zeros((1, 2), np.int8), resolution=0.05, x=-10.0), SavedAs(name=str(tmp_path / "map")))
+    assert (tmp_path / "map.pgm").read_bytes() == b"P5\n2 1\n255\n\xfe\xfe"
+    assert (tmp_path / "map.yaml").read_text() == (
+        "image: map.pgm\nmode: trinary\nresolution: 0.05\norigin: [-10, 0, 0]\nnegate: 0\n"
+        "occupied_thresh: 0.65\nfree_thresh: 0.25"
+    )
+
+
+def test_who_saves_is_told_what_will_be_read_otherwise(tmp_path: Path) -> None:
+    said: list[str] = []
+    grid = Grid(cells=np.array([[0, -1]], np.int8), resolution=0.05)
+    save_map(grid, SavedAs(name=str(tmp_path / "a")), said.append)
+    assert len(said) == 1
+    assert "Unknown cells are read back as free with a free threshold of 0.25" in said[0]
+    assert load_map(tmp_path / "a.yaml").cells.tolist() == [[0, 0]]
+    said.clear()
+    save_map(grid, SavedAs(name=str(tmp_path / "b"), free_thresh=0.196), said.append)
+    assert said == []
+    save_map(grid, SavedAs(name=str(tmp_path / "c"), image_format="xyz", mode=MapMode.RAW), said.append)
+    assert "'xyz' is not one of the recommended formats" in said[0]
+    assert "Using 'png' instead" in said[1]
+    assert (tmp_path / "c.png").is_file()
+
+
+@pytest.mark.parametrize(
+    ("data", "reason"),
+    [
+        (b"P5\n2 2\n255\n\x00\x01\x02", "it has 3 of 4 pixels"),
+        (b"P5\n99999 99999\n255\n", "its header says 99999 x 99999, 255"),
+        (b"P2\n2 1\n255\n1 x", "its pixels are no numbers"),
+        (b"no image", "cannot be read"),
+        (b"", "cannot be read"),
+    ],
+)
+def test_broken_images_are_told(tmp_path: Path, data: bytes, reason: str) -> None:
+    path = tmp_path / "a.pgm"
+    path.write_bytes(data)
+    with pytest.raises(LinkwrightError, match=reason) as raised:
+        read_picture(path)
+    assert raised.value.diagnostics[0].code == "NAV203"
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        b"P5\n# by a painter\n3 1\n255\n\x00\x7f\xff",
+        b"P2 3 1 255 0 127 255",
+        b"P5 3 1 65535\n\x00\x00\x7f\x7f\xff\xff",
+    ],
+)
+def test_every_kind_of_pgm_is_read(tmp_path: Path, data: bytes) -> None:
+    path = tmp_path / "a.pgm"
+    path.write_bytes(data)
+    assert np.round(read_picture(path).shade * 255.0).tolist() == [[0, 127, 255]]
+
+
+@pytest.mark.parametrize(
+    ("occupied", "free", "message"),
+    [(1.5, 0.2, "1.0 or less"), (0.5, -0.1, "0.0 or greater"), (0.2, 0.3, "smaller than threshold_occupied")],
+)
+def test_thresholds_must_make_sense(tmp_path: Path, occupied: float, free: float, message: str) -> None:
+    saved = SavedAs(name=str(tmp_path / "a"), occupied_thresh=occupied, free_thresh=free)
+    with pytest.raises(LinkwrightError, match=message):
+        save_map(Grid(cells=np.zeros((1, 1), np.int8), resolution=0.05), saved)
+
+
+def test_a_folder_that_is_not_there_is_told(tmp_path: Path) -> None:
+    saved = SavedAs(name=str(tmp_path / "no" / "a"))
+    with pytest.raises(LinkwrightError) as raised:
+        save_map(Grid(cells=np.zeros((1, 1), np.int8), resolution=0.05), saved)
+    assert raised.value.diagnostics[0].code == "NAV206"

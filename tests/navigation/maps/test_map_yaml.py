@@ -1,0 +1,94 @@
+"""The YAML of maps: what nav2 reads is read, and mistakes are told with their place."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.navigation.maps.map_yaml import MapMode, read_map_yaml
+
+_GOOD = """image: house.pgm
+mode: trinary
+resolution: 0.05
+origin: [-1.5, 2, 0]
+negate: 0
+occupied_thresh: 0.65
+free_thresh: 0.196
+"""
+
+
+def _file(folder: Path, text: str) -> Path:
+    path = folder / "house.yaml"
+    path.write_text(text)
+    return path
+
+
+def test_a_map_is_read(tmp_path: Path) -> None:
+    said = read_map_yaml(_file(tmp_path, _GOOD))
+    assert said.image == tmp_path / "house.pgm"
+    assert (said.resolution, said.origin, said.negate) == (0.05, (-1.5, 2.0, 0.0), False)
+    assert (said.occupied_thresh, said.free_thresh, said.mode) == (0.65, 0.196, MapMode.TRINARY)
+
+
+@pytest.mark.parametrize(("text", "value"), [("1", True), ("true", True), ("false", False), ("No", False), ("2", True)])
+def test_negate_is_a_number_or_a_word(tmp_path: Path, text: str, value: bool) -> None:
+    assert read_map_yaml(_file(tmp_path, _GOOD.replace("negate: 0", f"negate: {text}"))).negate is value
+
+
+def test_without_a_mode_it_is_trinary_and_other_keys_do_not_matter(tmp_path: Path) -> None:
+    text = _GOOD.replace("mode: trinary", "comment: {who: me}").replace("house.pgm", "/maps/house.png")
+    said = read_map_yaml(_file(tmp_path, text))
+    assert said.mode is MapMode.TRINARY
+    assert said.image == Path("/maps/house.png")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line", "column", "message"),
+    [
+        ("negate: 0\n", "", 1, 1, "'negate' is missing in the map"),
+        ("image: house.pgm", "image:", 1, 7, "'image' must be a file name"),
+        ("0.05", "five", 3, 13, "'resolution' must be a number"),
+        ("0.05", "0", 3, 13, "'resolution' must be more than 0: it is metres for each pixel"),
+        ("0.05", ".inf", 3, 13, "'resolution' must be a number"),
+        ("[-1.5, 2, 0]", "[-1.5, 2]", 4, 9, "'origin' must have 3 values (x, y, yaw) and has 2"),
+        ("[-1.5, 2, 0]", "[-1.5, up, 0]", 4, 16, "'origin' must be a number"),
+        ("[-1.5, 2, 0]", "0", 4, 9, "'origin' must be a list of x, y and yaw"),
+        ("negate: 0", "negate: maybe", 5, 9, "'negate' must be 0 or 1"),
+        ("0.65", "65", 6, 18, "'occupied_thresh' must be between 0 and 1"),
+        ("mode: trinary", "mode: trinity", 2, 7, "'mode' must be one of trinary, scale, raw"),
+    ],
+)
+def test_mistakes_are_told_with_their_place(
+    tmp_path: Path, old: str, new: str, line: int, column: int, message: str
+) -> None:
+    with pytest.raises(LinkwrightError) as raised:
+        read_map_yaml(_file(tmp_path, _GOOD.replace(old, new)))
+    finding = raised.value.diagnostics[0]
+    assert finding.code == "NAV202"
+    assert str(finding.message).startswith(message)
+    assert finding.span is not None
+    assert (finding.span.line, finding.span.column) == (line, column)
+
+
+def test_what_is_no_yaml_is_told_with_its_place(tmp_path: Path) -> None:
+    with pytest.raises(LinkwrightError, match="not valid YAML") as raised:
+        read_map_yaml(_file(tmp_path, _GOOD.replace("trinary", "[")))
+    assert raised.value.diagnostics[0].span is not None
+
+
+@pytest.mark.parametrize("text", ["", "- a\n- b\n", "just words", "[" * 200])
+def test_what_is_no_map_at_all_is_refused(tmp_path: Path, text: str) -> None:
+    with pytest.raises(LinkwrightError) as raised:
+        read_map_yaml(_file(tmp_path, text))
+    assert raised.value.diagnostics[0].code == "NAV202"
+
+
+def test_a_file_that_is_not_there_is_named_and_those_beside_it(tmp_path: Path) -> None:
+    _file(tmp_path, _GOOD)
+    with pytest.raises(LinkwrightError) as raised:
+        read_map_yaml(tmp_path / "hose.yaml")
+    finding = raised.value.diagnostics[0]
+    assert finding.code == "NAV201"
+    assert "house.yaml" in str(finding.hint)
