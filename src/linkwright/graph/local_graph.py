@@ -10,6 +10,7 @@ from collections.abc import Callable
 from linkwright.graph.endpoints.base import Endpoint
 from linkwright.graph.endpoints.bus import Bus
 from linkwright.graph.endpoints.client import Client
+from linkwright.graph.endpoints.info import EndpointInfo
 from linkwright.graph.endpoints.publisher import Publisher
 from linkwright.graph.endpoints.service import Service
 from linkwright.graph.endpoints.subscription import Subscription
@@ -67,6 +68,7 @@ class LocalGraph(GraphQueries):
         self._watchers: dict[Callable[[], object], None] = {}
         self._namesakes = Namesakes(on_namesakes)
         self._closed = False
+        self._watches_lost = False
         loop = None if threads else asyncio._get_running_loop()
         self._dispatcher = None if loop is None else LoopDispatcher(self.timebase, loop)
 
@@ -150,6 +152,8 @@ class LocalGraph(GraphQueries):
                 transport.open_node(node.identity)
             for endpoint in self.bus.endpoints():
                 _open(transport, endpoint)
+            if self._watches_lost:
+                transport.watch_lost(self._lost_outside)
         transport.watch(self._outside_changed)
         self._outside_changed()
 
@@ -178,6 +182,14 @@ class LocalGraph(GraphQueries):
             if self._transport is not None:
                 _close(self._transport, endpoint)
         self.notify_change()
+
+    def watch_lost(self) -> None:
+        """Tell subscriptions from now on of publishers of their topics that are lost (`Subscription.watch_lost`)."""
+        with self._lock:
+            if not self._watches_lost:
+                self._watches_lost = True
+                if self._transport is not None:
+                    self._transport.watch_lost(self._lost_outside)
 
     def forget(self, node: NodeHandle) -> None:
         """Take a node away that is destroyed."""
@@ -222,6 +234,10 @@ class LocalGraph(GraphQueries):
         if transport is not None:
             self._namesakes.review(self.nodes(), transport.remote_nodes())
         self.notify_change()
+
+    def _lost_outside(self, publisher: EndpointInfo) -> None:
+        for subscription in self.bus.subscriptions(publisher.name):
+            subscription.publisher_lost(publisher)
 
     def _end(self) -> Transport | None:
         for node in tuple(self._nodes):

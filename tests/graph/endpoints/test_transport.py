@@ -24,6 +24,7 @@ class FakeTransport:
         self.nodes, self.endpoints = [], []
         self.closed = False
         self.tell = None
+        self.lose = None
 
     def _known(self, endpoint):
         return endpoint.name not in OWN and "parameter" not in endpoint.name
@@ -53,6 +54,10 @@ class FakeTransport:
 
     def watch(self, changed):
         self.tell = changed
+
+    def watch_lost(self, lost):
+        assert self.lose is None, "it is asked for once"
+        self.lose = lost
 
     def close(self):
         self.closed = True

@@ -56,7 +56,8 @@ class _Forwarding(Controller[P], Generic[P]):
         """Listen for commands."""
         self._names()
         self._wanted: Sequence[float] | None = None
-        self.node.subscribe("std_msgs/msg/Float64MultiArray", "~/commands", self._on_command)
+        commander = self.node.commander(self._rest)
+        self.node.subscribe("std_msgs/msg/Float64MultiArray", "~/commands", self._on_command, commander=commander)
 
     def on_activate(self) -> None:
         """Forget commands that came before."""
@@ -73,6 +74,15 @@ class _Forwarding(Controller[P], Generic[P]):
             return
         for command, value in zip(self.commands, wanted, strict=True):
             command.value = value
+
+    def _rest(self) -> bool:
+        """Command no velocities any more; positions and efforts are held. Whether anything was to move."""
+        if self._wanted is None:
+            return False
+        is_velocity = [name.endswith(f"/{VELOCITY}") for name in self._names()]
+        before = self._wanted
+        self._wanted = [0.0 if moves else value for moves, value in zip(is_velocity, before, strict=True)]
+        return self._wanted != before
 
     def _on_command(self, message: Any) -> None:
         wanted, count = list(message.data), len(self.commands)

@@ -41,10 +41,11 @@ class VelocityInput:
         self._timeout = round(timeout_s * _NANOSECONDS)
         self._is_open = False
         self.forget()
+        commander = node.commander(self._lose)
         if topic != unstamped:
-            node.subscribe("geometry_msgs/msg/TwistStamped", topic, self._take_stamped, qos)
+            node.subscribe("geometry_msgs/msg/TwistStamped", topic, self._take_stamped, qos, commander=commander)
         if unstamped:
-            node.subscribe("geometry_msgs/msg/Twist", unstamped, self._take, qos)
+            node.subscribe("geometry_msgs/msg/Twist", unstamped, self._take, qos, commander=commander)
 
     def open(self) -> None:
         """Take commands from now on."""
@@ -60,6 +61,12 @@ class VelocityInput:
         """Be as if no command had come."""
         self._come: tuple[Velocity, int] | None = None
         self._command: tuple[Velocity, int] | None = None
+
+    def _lose(self) -> bool:
+        """Forget the command of who is lost; whether it still held, and moved anything."""
+        velocity, _ = self._come or self._command or ((0.0,), 0)
+        self.forget()
+        return any(velocity)
 
     def velocity(self, time_ns: int) -> Velocity | None:
         """The command that holds at a time in nanoseconds; None if there is none, or the last one is too old."""

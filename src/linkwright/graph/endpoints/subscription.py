@@ -15,7 +15,7 @@ from linkwright.graph.endpoints.base import TopicEndpoint
 from linkwright.graph.endpoints.content_filter import ContentFilter, ContentFilterOptions
 from linkwright.graph.endpoints.endpoint_events import SubscriptionEvents
 from linkwright.graph.endpoints.event_types import EventHandler, SubscriptionEventCallbacks
-from linkwright.graph.endpoints.info import EndpointKind, MessageInfo
+from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind, MessageInfo
 from linkwright.graph.loop.callback_groups import CallbackGroup
 from linkwright.graph.loop.entity import Entity, accepts
 from linkwright.graph.loop.node_handle import Dispatcher, NodeHandle
@@ -83,6 +83,8 @@ class Subscription(TopicEndpoint[M], Entity):
             self.events = SubscriptionEvents(self, event_callbacks)
         self._publishers: dict[TopicEndpoint[Any], None] = {}
         self._filter: ContentFilter | None = None
+        self._on_lost: Callable[[EndpointInfo], object] | None = None
+        self._lost: deque[EndpointInfo] = deque()
 
     @property
     def what(self) -> str:
@@ -147,6 +149,20 @@ class Subscription(TopicEndpoint[M], Entity):
         options = ContentFilterOptions(filter_expression, list(expression_parameters))
         self._filter = ContentFilter(options, self.msg_type) if filter_expression.strip() else None
 
+    def watch_lost(self, lost: Callable[[EndpointInfo], object]) -> None:
+        """Have something called, as the callback is, for each publisher outside that is gone without having left.
+
+        Its process was killed or has crashed, or it is out of reach; what it had sent is given to the callback before.
+        """
+        self._on_lost = lost
+        self.node.graph.watch_lost()
+
+    def publisher_lost(self, publisher: EndpointInfo) -> None:
+        """Called by the graph, from any thread: a publisher outside is gone without having left."""
+        if self._on_lost is not None:
+            self._lost.append(publisher)
+            self.announce()
+
     def lost_outside(self, count: int) -> None:
         """Called by the transport: messages from other processes were lost."""
         if self.events is not None:
@@ -203,17 +219,17 @@ class Subscription(TopicEndpoint[M], Entity):
 
     def has_work(self) -> bool:
         """Whether messages wait."""
-        return bool(self._waiting)
+        return bool(self._waiting or self._lost)
 
     def take(self) -> Callable[[], object] | None:
-        """The call of the callback with the oldest message."""
+        """The call of the callback with the oldest message; after the last one that of a publisher that is lost."""
         self._announced = False
         waiting = self._waiting
         try:
             message = waiting.popleft()
         except IndexError:
-            return None
-        if waiting:
+            return self._next_lost()
+        if waiting or self._lost:
             self.announce()
         if type(message) is self._as_it_is:
             return partial(self._callback, message)
@@ -228,6 +244,7 @@ class Subscription(TopicEndpoint[M], Entity):
     def discard(self) -> None:
         """Drop the messages in the queue."""
         self._waiting.clear()
+        self._lost.clear()
 
     def retire(self) -> None:
         """Never call back again."""
@@ -235,6 +252,10 @@ class Subscription(TopicEndpoint[M], Entity):
         self.discard()
         if self.events is not None:
             self.events.retire()
+
+    def _next_lost(self) -> Callable[[], object] | None:
+        publisher = self._next_of(self._lost)
+        return None if publisher is None or self._on_lost is None else partial(self._on_lost, publisher)
 
     def _prepared(self, item: Any) -> Callable[[], object] | None:
         """The call for CDR bytes, or for a message with metadata."""

@@ -69,5 +69,12 @@ class Transport(Protocol):
     def watch(self, changed: Callable[[], None]) -> None:
         """Have something called, from any thread, whenever nodes or endpoints outside come or go."""
 
+    def watch_lost(self, lost: Callable[[EndpointInfo], None]) -> None:
+        """Have something called, from any thread, with each publisher outside that is gone without having left.
+
+        Its process was killed or has crashed, or it has not been heard of for longer than it promised. It is called for
+        the first time when a subscription wants to know (`Subscription.watch_lost`).
+        """
+
     def close(self) -> None:
         """Leave the network; nothing of the transport (no thread, no socket) outlives this."""

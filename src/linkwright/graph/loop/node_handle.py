@@ -102,6 +102,9 @@ class HomeGraph(Protocol):
     def wait_until(self, holds: Callable[[], bool], timeout_sec: float | None = None) -> bool:
         """Block the calling thread until something of the graph holds; whether it does."""
 
+    def watch_lost(self) -> None:
+        """Tell subscriptions from now on of publishers of their topics that are lost."""
+
 
 class Part(Handled):
     """What a node owns: an endpoint, a timer, ...; at the end of a ``with`` block it is destroyed.

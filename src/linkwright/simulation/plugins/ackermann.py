@@ -80,7 +80,8 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
         variances = planar_variances(said.covariance_x, said.covariance_y, said.covariance_yaw)
         self._topics = OdometryTopics(said.odometry_frame, said.robot_base_frame, odometry, transforms, variances)
         self._way = node.publisher("std_msgs/msg/Float32", "distance", 1) if said.publish_distance else None
-        node.subscribe("geometry_msgs/msg/Twist", "cmd_vel", self._commanded, 1)
+        commander = node.commander(self._rest)
+        node.subscribe("geometry_msgs/msg/Twist", "cmd_vel", self._commanded, 1, commander=commander)
         self._begin()
         self.every(said.update_rate, self._update)
 
@@ -127,6 +128,11 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
         self._speed = min(max(float(twist.linear.x), -said.max_speed), said.max_speed)
         angle = float(twist.angular.z) * copysign(1.0, self._speed)
         self._angle = min(max(angle, -said.max_steer), said.max_steer)
+
+    def _rest(self) -> bool:
+        """Stand still, with the wheels steered as they are; whether it was to move."""
+        before, self._speed = self._speed, 0.0
+        return before != 0.0
 
     def _update(self) -> None:
         now = self.simulation.time

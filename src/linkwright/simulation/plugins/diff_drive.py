@@ -126,6 +126,11 @@ class _DiffDrive(SimulatedPlugin[P], Generic[P]):
     def _commanded(self, twist: Any) -> None:
         self._wanted = (float(twist.linear.x), float(twist.angular.z))
 
+    def _rest(self) -> bool:
+        """Come to rest; whether it was to move."""
+        before, self._wanted = self._wanted, (0.0, 0.0)
+        return before != self._wanted
+
     def _turn_wheels(self) -> None:
         forward, turning = self._now
         for pair in self._pairs:
@@ -173,7 +178,8 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
         variances = planar_variances(said.covariance_x, said.covariance_y, said.covariance_yaw)
         self._topics = OdometryTopics(said.odometry_frame, said.robot_base_frame, odometry, transforms, variances)
         self._sees_world = said.odometry_source.strip().lower() in (str(_WORLD), "world")
-        node.subscribe("geometry_msgs/msg/Twist", said.command_topic, self._commanded, 1)
+        commander = node.commander(self._rest)
+        node.subscribe("geometry_msgs/msg/Twist", said.command_topic, self._commanded, 1, commander=commander)
         self.every(said.update_rate, self._update)
         if said.publish_wheel_tf:
             self.every(said.update_rate, partial(self._publish_wheels, transforms or transforms_topic(node)))

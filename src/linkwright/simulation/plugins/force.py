@@ -47,7 +47,8 @@ class ClassicForce(SimulatedPlugin[ForceParameters]):
             )
         self.simulation.keep_awake(self._link)
         self._wrench = _STILL
-        self.node.subscribe("geometry_msgs/msg/Wrench", said.topic_name, self._told)
+        commander = self.node.commander(self._rest)
+        self.node.subscribe("geometry_msgs/msg/Wrench", said.topic_name, self._told, commander=commander)
         self.every(0.0, self._push)
 
     def reset(self) -> None:
@@ -58,6 +59,12 @@ class ClassicForce(SimulatedPlugin[ForceParameters]):
     def _told(self, message: Any) -> None:
         self._wrench = (numbers(message.force), numbers(message.torque))
         self._push()
+
+    def _rest(self) -> bool:
+        """Push nothing any more; whether there was a push."""
+        before = self._wrench
+        self.reset()
+        return before != _STILL
 
     def _push(self) -> None:
         force, torque = self._wrench

@@ -63,11 +63,16 @@ class DriveCommands:
         if self.is_enabled:
             self._wanted = (float(twist.linear.x), float(twist.linear.y), float(twist.angular.z))
 
+    def rest(self) -> bool:
+        """Come to rest; whether it was to move."""
+        before, self._wanted = self._wanted, (0.0, 0.0, 0.0)
+        return before != self._wanted
+
     def enable(self, message: Any) -> None:
         """Listen or come to rest, as ``std_msgs/msg/Bool`` says."""
         self.is_enabled = bool(message.data)
         if not self.is_enabled:
-            self._wanted = (0.0, 0.0, 0.0)
+            self.rest()
 
     def follow(self) -> tuple[float, float, float]:
         """The velocity that it is to have now, which is asked for `GZ_RATE` times a second."""
@@ -84,5 +89,6 @@ def connected(plugin: SimulatedPlugin[Any], said: GzDriveParameters, commands: D
     odometry = node.publisher("nav_msgs/msg/Odometry", said.odom_topic or f"/model/{model}/odometry", usual="/odom")
     transforms = transforms_topic(node, said.tf_topic or f"/model/{model}/tf", "/tf")
     topic = said.topic or f"/model/{model}/cmd_vel"
-    node.subscribe("geometry_msgs/msg/Twist", topic, commands.take, usual="/cmd_vel")
+    commander = node.commander(commands.rest)
+    node.subscribe("geometry_msgs/msg/Twist", topic, commands.take, usual="/cmd_vel", commander=commander)
     return OdometryTopics(frame, child, odometry, transforms)

@@ -101,11 +101,16 @@ class _JointController(SimulatedPlugin[P], Generic[P]):
         """Take commands: from the topic that is said, or from one of the first joint with a leaf."""
         said = self.parameters
         topic = said.topic or f"/model/{self.place.path}/{said.sub_topic or f'joint/{said.joint_name[0]}/{leaf}'}"
-        self.node.subscribe("std_msgs/msg/Float64", topic, self._commanded)
+        commander = self.node.commander(self._rest)
+        self.node.subscribe("std_msgs/msg/Float64", topic, self._commanded, commander=commander)
         self._begin()
 
     def _commanded(self, message: Any) -> None:
         self._wanted = float(message.data)
+
+    def _rest(self) -> bool:
+        """Stop what the last command moves for ever; whether there is anything. A position is held."""
+        return False
 
     def _push(self, derivative: int) -> None:
         """Push the joints for a step by how far they are from what is wanted: 0 for positions, 1 for velocities."""
@@ -179,6 +184,11 @@ class GzJointVelocity(_JointController[VelocityParameters]):
 
     def _commanded(self, message: Any) -> None:
         self._turn(float(message.data))
+
+    def _rest(self) -> bool:
+        moved = self._wanted != 0.0
+        self._turn(0.0)
+        return moved
 
     def _turn(self, velocity: float) -> None:
         self._wanted = velocity

@@ -7,8 +7,11 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
 
+from linkwright.diagnostics import phrase
 from linkwright.graph import Logger, Node
 from linkwright.graph.endpoints.base import Endpoint
+from linkwright.graph.endpoints.commander import Commander, who_was_lost
+from linkwright.graph.endpoints.info import EndpointInfo
 from linkwright.graph.endpoints.publisher import Publisher
 from linkwright.graph.qos.profile import QoSProfile
 from linkwright.messages import get_service
@@ -117,12 +120,34 @@ class PluginNode:
         qos: QoSProfile | int = 10,
         *,
         usual: str = "",
+        commander: Commander | None = None,
     ) -> None:
-        """Have a function called with each message of a topic; the arguments are those of `publisher`."""
+        """Have a function called with each message of a topic.
+
+        The arguments are those of `publisher`; for commands that hold until the next one, ``commander`` is one that
+        the method of this name gave.
+        """
+        received: Callable[..., object] = partial(self._received, callback)
+        if commander is not None:
+            received = commander.taking(received)
         for name in self._both(topic, usual):
             profile = self._profile(name, "subscriber", qos)
-            received = partial(self._received, callback)
-            self._endpoints.append(self._node.create_subscription(msg_type, name, received, profile))
+            subscription = self._node.create_subscription(msg_type, name, received, profile)
+            self._endpoints.append(subscription)
+            if commander is not None:
+                commander.watch(subscription)
+
+    def commander(self, rest: Callable[[], bool]) -> Commander:
+        """For topics of commands that hold until the next one: takes that of a publisher back that is lost.
+
+        Args:
+            rest: ends what the last command has set in motion; says whether there was anything to end, which is logged.
+        """
+
+        def lost(publisher: EndpointInfo) -> None:
+            self._exchange.post(partial(self._rest, rest, publisher))
+
+        return Commander(lost)
 
     def service(self, srv_type: str, name: str, callback: Callable[[Any, Any], Any]) -> None:
         """Answer a service: a function of a request and an empty response gives the response."""
@@ -162,6 +187,10 @@ class PluginNode:
         profile = QoSProfile.of(qos)
         override = self._qos.get((self._node.handle.resolve_topic_name(topic), side))
         return profile if override is None else overridden(profile, override)
+
+    def _rest(self, rest: Callable[[], bool], publisher: EndpointInfo) -> None:
+        if rest():
+            self.logger.warning(phrase("{who}: what it moved is stopped", who=who_was_lost(publisher)))
 
     def _received(self, callback: Callable[[Any], object], message: Any) -> None:
         self._exchange.post(partial(callback, message))

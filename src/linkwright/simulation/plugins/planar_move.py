@@ -83,13 +83,18 @@ class PlanarMove(PlanarDrive[PlanarMoveParameters]):
         transforms = transforms_topic(node) if said.publish_odom_tf else None
         variances = planar_variances(said.covariance_x, said.covariance_y, said.covariance_yaw)
         self._topics = OdometryTopics(said.odometry_frame, said.robot_base_frame, odometry, transforms, variances)
-        node.subscribe("geometry_msgs/msg/Twist", said.command_topic, self._commanded, 1)
+        commander = node.commander(self._rest)
+        node.subscribe("geometry_msgs/msg/Twist", said.command_topic, self._commanded, 1, commander=commander)
         self.every(0.0, self._move)
         if odometry is not None or transforms is not None:
             self.every(said.publish_rate, self._publish)
 
     def _commanded(self, twist: Any) -> None:
         self._wanted = (float(twist.linear.x), float(twist.linear.y), float(twist.angular.z))
+
+    def _rest(self) -> bool:
+        before, self._wanted = self._wanted, (0.0, 0.0, 0.0)
+        return before != self._wanted
 
     def _move(self) -> None:
         self.hold(*self._wanted)
@@ -102,4 +107,4 @@ class PlanarMove(PlanarDrive[PlanarMoveParameters]):
 
     def reset(self) -> None:
         """Stand still."""
-        self._wanted = (0.0, 0.0, 0.0)
+        self._rest()

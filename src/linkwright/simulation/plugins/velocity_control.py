@@ -39,7 +39,8 @@ class GzVelocityControl(PlanarDrive[VelocityControlParameters]):
         self.be_free()
         self.reset()
         topic = self.parameters.topic or f"/model/{self.place.path}/cmd_vel"
-        self.node.subscribe("geometry_msgs/msg/Twist", topic, self._told, usual="/cmd_vel")
+        commander = self.node.commander(self._rest)
+        self.node.subscribe("geometry_msgs/msg/Twist", topic, self._told, usual="/cmd_vel", commander=commander)
         self.every(0.0, self._move)
 
     def reset(self) -> None:
@@ -51,6 +52,11 @@ class GzVelocityControl(PlanarDrive[VelocityControlParameters]):
 
     def _told(self, twist: Any) -> None:
         self._wanted = (numbers(twist.linear), numbers(twist.angular))
+
+    def _rest(self) -> bool:
+        still = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+        before, self._wanted = self._wanted, still
+        return before != still
 
     def _move(self) -> None:
         if self._wanted is None:

@@ -113,6 +113,7 @@ _QUICK: dict[str, tuple[Any, tuple[Any, ...]]] = {
     "dds_qget_liveliness": (c.c_bool, (_QOS, c.POINTER(c.c_int), c.POINTER(c.c_int64))),
     "dds_qget_userdata": (c.c_bool, (_QOS, c.POINTER(c.c_void_p), c.POINTER(c.c_size_t))),
     "dds_qget_entity_name": (c.c_bool, (_QOS, c.POINTER(c.c_void_p))),
+    "dds_qget_prop": (c.c_bool, (_QOS, c.c_char_p, c.POINTER(c.c_void_p))),
     "dds_get_guid": (c.c_int32, (_ENTITY, c.c_char_p)),
     "dds_get_entity_sertype": (c.c_int32, (_ENTITY, c.POINTER(c.c_void_p))),
     "ddsi_sertype_ref": (c.c_void_p, (c.c_void_p,)),
@@ -231,7 +232,16 @@ class Cyclone:
     def entity_name(self, qos: int) -> str:
         """The name that a participant gave itself; empty when it did not."""
         value = c.c_void_p()
-        if not self.dds_qget_entity_name(qos, c.byref(value)) or not value.value:
+        return self._text(value) if self.dds_qget_entity_name(qos, c.byref(value)) else ""
+
+    def property(self, qos: int, name: str) -> str:
+        """What a participant tells of itself under a name; empty where it tells nothing."""
+        value = c.c_void_p()
+        return self._text(value) if self.dds_qget_prop(qos, name.encode(), c.byref(value)) else ""
+
+    def _text(self, value: c.c_void_p) -> str:
+        """A text that Cyclone has given, which is freed."""
+        if not value.value:
             return ""
         try:
             return c.string_at(value.value).decode(errors="replace")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import socket
 import time
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -26,15 +27,20 @@ from linkwright.wire.dds.discovery_info import (
     encode,
 )
 from linkwright.wire.dds.names import DISCOVERY_TOPIC, parse_user_data
-from linkwright.wire.dds.participant import Participant
+from linkwright.wire.dds.participant import Participant, process_namespace
 from linkwright.wire.dds.qos import endpoint_qos, profile_of
-from linkwright.wire.dds.remote import RemoteEndpoint, RemoteGraph, RemoteParticipant
+from linkwright.wire.dds.remote import RemoteEndpoint, RemoteGraph, RemoteParticipant, runs
 from linkwright.wire.dds.type_descriptions import WireTypes
 from linkwright.wire.dds.waiting import WaitingThread
 
 DISCOVERY_TYPE_HASH = "RIHS01_91a0593bacdcc50ea9bdcf849a938b128412cc1ea821245c663bcd26f83c295e"
 """Of ``rmw_dds_common/msg/ParticipantEntitiesInfo``, Iron and later."""
 
+_PROCESS_PROPERTIES = (
+    ("fastdds.physical_data.host", "fastdds.physical_data.process"),
+    ("__Hostname", "__Pid"),
+)
+_HOST = socket.gethostname()
 _AT_ONCE = 256
 _WRITER_QOS = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _READER_QOS = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL, history=HistoryPolicy.KEEP_ALL)
@@ -122,7 +128,21 @@ class Discovery:
             self._forget_evidence(guid)
             return
         facts = parse_user_data(self._dds.user_data(qos))
-        self._remote.participant_came(RemoteParticipant(guid, facts.get("enclave", "/"), self._dds.entity_name(qos)))
+        name, process = self._dds.entity_name(qos), self._process_of(qos)
+        self._remote.participant_came(RemoteParticipant(guid, facts.get("enclave", "/"), name, process))
+
+    def _process_of(self, qos: int) -> int | None:
+        """The process of a participant, as Fast DDS and Cyclone tell it; None unless it runs on this machine.
+
+        One in a container may have the name of this machine and a number that is another process here, or none.
+        """
+        if not process_namespace():
+            return None
+        for host, process in _PROCESS_PROPERTIES:
+            where, number = self._dds.property(qos, host), self._dds.property(qos, process)
+            if where.partition(":")[0] == _HOST and number.isdecimal() and runs(int(number)):
+                return int(number)
+        return None
 
     def _endpoint_sample(
         self, guid: bytes, owner: bytes, topic: str, type_name: str, qos: int, info: Any, is_writer: bool

@@ -15,6 +15,7 @@ from typing import Any
 from linkwright.graph.log.logger import Logger
 from linkwright.graph.names.identity import NodeIdentity
 from linkwright.wire.dds.cyclone import CycloneError
+from linkwright.wire.dds.departures import Departures, ends_by_error
 from linkwright.wire.dds.discovery import Discovery
 from linkwright.wire.dds.discovery_info import NodeEntities
 from linkwright.wire.dds.domain import Domain
@@ -48,6 +49,7 @@ class Engine:
     Args:
         settings: the domain and how to join it.
         remote: the tables to fill.
+        departures: judges how publishers outside went.
         work: what there is to do, called with the engine; others append to it and `wake`.
         logger: for what there is to tell.
 
@@ -56,9 +58,15 @@ class Engine:
     """
 
     def __init__(
-        self, settings: Settings, remote: RemoteGraph, work: deque[Callable[[Engine], None]], logger: Logger
+        self,
+        settings: Settings,
+        remote: RemoteGraph,
+        departures: Departures,
+        work: deque[Callable[[Engine], None]],
+        logger: Logger,
     ) -> None:
         self._remote = remote
+        self._departures = departures
         self._work = work
         self._logger = logger
         self._participant = Participant(settings)
@@ -90,12 +98,17 @@ class Engine:
         self._control.wake()
 
     def close(self) -> None:
-        """End: what was sent reliably is acknowledged first, or a second has passed."""
+        """End: what was sent reliably is acknowledged first, or a second has passed.
+
+        Others are told that our nodes leave, unless the process ends because of an error (`departures`).
+        """
         self._control.stop(CLOSING_TIME)
         self._reception.stop(CLOSING_TIME)
         while self._work:
             self._do(self._work.popleft())
         self.abandon()
+        if not ends_by_error():
+            self._discovery.publish([])
         deadline = time.monotonic() + CLOSING_TIME
         for topic in (*self._outgoing.values(), *self._leaving):
             if not topic.acknowledged(max(0, int((deadline - time.monotonic()) * 1e9))):
@@ -189,10 +202,12 @@ class Engine:
         late = self._review_replies()
         self._tell_mismatches()
         self._tell()
-        asking = self._discovery.ask_silent()
+        asking, departing = self._discovery.ask_silent(), self._departures.review()
         if self._work:
             return 0.0
-        return _LOOK_AGAIN if self._leaving or self._mismatched or late else asking
+        if self._leaving or self._mismatched or late:
+            return _LOOK_AGAIN
+        return min((each for each in (asking, departing) if each is not None), default=None)
 
     def _work_for(self, seconds: float) -> None:
         until = time.monotonic() + seconds

@@ -6,7 +6,9 @@ import os
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from pathlib import Path
 from threading import Lock
+from typing import TYPE_CHECKING
 
 from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
 from linkwright.graph.names.identity import NodeIdentity
@@ -21,6 +23,9 @@ from linkwright.wire.dds.names import (
     ros_type,
 )
 from linkwright.wire.dds.participant import NAME, process_namespace
+
+if TYPE_CHECKING:
+    from linkwright.wire.dds.departures import Departures
 
 _FAST_DDS = b"\x01\x0f"
 """How the GUIDs of its entities begin."""
@@ -40,12 +45,14 @@ class RemoteParticipant:
         guid: 16 bytes.
         enclave: from its USER_DATA.
         entity_name: what it calls itself.
+        peer_process: of one that is not ours, the id of its process, where that is one of this machine.
         entities: what it said in ``ros_discovery_info``; None as long as it has not.
     """
 
     guid: bytes
     enclave: str = "/"
     entity_name: str = ""
+    peer_process: int | None = None
     entities: ParticipantEntities | None = None
     came_at: float = field(default_factory=time.monotonic)
     """When it was heard of first, by the steady clock."""
@@ -61,25 +68,18 @@ class RemoteParticipant:
 
     @property
     def process(self) -> int | None:
-        """The id of its process; None unless it is one of ours on this machine."""
-        kind, _, rest = self.entity_name.partition("/")
+        """The id of its process; None unless that is known to be one of this machine."""
+        if not self.is_ours:
+            return self.peer_process
+        _, _, rest = self.entity_name.partition("/")
         namespace, _, process = rest.partition("/")
-        if kind != NAME or not namespace or namespace != process_namespace() or not process.isdecimal():
+        if not namespace or namespace != process_namespace() or not process.isdecimal():
             return None
         return int(process)
 
     def has_died(self) -> bool:
-        """Whether its process is gone though its lease still runs; known of ours on this machine alone."""
-        process = self.process
-        if process is None:
-            return False
-        try:
-            os.kill(process, 0)
-        except ProcessLookupError:
-            return True
-        except OSError:
-            pass
-        return False
+        """Whether its process is gone though its lease still runs; known on this machine alone."""
+        return self.process is not None and not runs(self.process)
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,6 +116,27 @@ class RemoteEndpoint:
         """Whether it belongs to a participant of Fast DDS (RTPS vendor 1.15)."""
         return is_fast(self.guid)
 
+    def described(self, node: NodeIdentity | None) -> EndpointInfo | None:
+        """In ROS's terms; None for what is not ROS's, and for the second half of services and clients.
+
+        Args:
+            node: whose it is, where that is known.
+        """
+        name = self.name
+        if name is None:
+            return None
+        if name.role is Role.TOPIC:
+            kind = EndpointKind.PUBLISHER if self.is_writer else EndpointKind.SUBSCRIPTION
+            type_name = ros_type(self.type_name)
+        elif name.role is Role.REQUEST:
+            kind = EndpointKind.CLIENT if self.is_writer else EndpointKind.SERVICE
+            type_name = ros_service_type(self.type_name)
+        else:
+            return None
+        if type_name is None:
+            return None
+        return EndpointInfo(kind, node, name.name, type_name, self.qos, self.guid, self.facts.get("typehash", ""))
+
 
 class RemoteGraph:
     """What discovery found; written by one thread, read by any."""
@@ -130,6 +151,8 @@ class RemoteGraph:
         self._watchers: list[Callable[[], None]] = []
         self.changed_at = time.monotonic()
         """When something changed last, by the steady clock."""
+        self.departures: Departures | None = None
+        """What is told of endpoints that are gone."""
 
     # --- from discovery -----------------------------------------------------------------------------------------
 
@@ -139,16 +162,17 @@ class RemoteGraph:
             known = self._participants.get(participant.guid)
             said = self._early.pop(participant.guid, None)
             participant.entities = known.entities if known else said
-            participant.came_at = known.came_at if known else participant.came_at
+            if known is not None:
+                participant.came_at, participant.peer_process = known.came_at, known.peer_process
             self._participants[participant.guid] = participant
 
     def participant_went(self, guid: bytes) -> None:
         """Remove a participant and its endpoints."""
         with self._lock:
-            self._participants.pop(guid, None)
-            self._early.pop(guid, None)
             for endpoint in [each for each in self._endpoints.values() if each.participant == guid]:
                 self._forget(endpoint)
+            self._participants.pop(guid, None)
+            self._early.pop(guid, None)
 
     def endpoint_came(self, endpoint: RemoteEndpoint) -> None:
         """Record a reader or writer."""
@@ -171,6 +195,8 @@ class RemoteGraph:
                 self._early[entities.participant] = entities
             else:
                 participant.entities = entities
+            if self.departures is not None:
+                self.departures.announced(entities.participant, {gid for node in entities.nodes for gid in _gids(node)})
 
     def announce(self) -> None:
         """Notify the watchers that something has changed."""
@@ -183,6 +209,8 @@ class RemoteGraph:
         self._watchers.append(changed)
 
     def _forget(self, endpoint: RemoteEndpoint) -> None:
+        if self.departures is not None:
+            self.departures.endpoint_went(endpoint, self._owner_of(endpoint))
         self._endpoints.pop(endpoint.guid, None)
         self._by_handle.pop(endpoint.handle, None)
 
@@ -234,7 +262,8 @@ class RemoteGraph:
 
     def our_processes(self) -> set[int]:
         """The ids of Linkwright's processes on this machine, as far as they are known and alive."""
-        return {each.process for each in self.participants() if each.process is not None and not each.has_died()}
+        ours = [each for each in self.participants() if each.is_ours and not each.has_died()]
+        return {each.process for each in ours if each.process is not None}
 
     def nodes(self) -> list[NodeIdentity]:
         """The nodes of other processes, one entry for each, in the order of their participants."""
@@ -256,14 +285,29 @@ class RemoteGraph:
                 info
                 for endpoint in self._endpoints.values()
                 if endpoint.participant not in dead
-                and (info := _described(endpoint, owners.get(endpoint.guid))) is not None
+                and (info := endpoint.described(owners.get(endpoint.guid))) is not None
             ]
 
     def node_name(self, endpoint: RemoteEndpoint) -> str:
         """The full name of the node that an endpoint belongs to; empty as long as it has not been told."""
         with self._lock:
-            owner = self._owners().get(endpoint.guid)
-        return f"{owner.namespace.rstrip('/')}/{owner.name}" if owner else ""
+            owner = self._owner_of(endpoint)
+        return owner.full_name if owner else ""
+
+    def _owner_of(self, endpoint: RemoteEndpoint) -> NodeIdentity | None:
+        participant = self._participants.get(endpoint.participant)
+        if participant is None or participant.entities is None:
+            return None
+        for node in participant.entities.nodes:
+            if endpoint.guid in _gids(node):
+                return NodeIdentity(node.name, node.namespace, participant.enclave)
+        return None
+
+    def writers_of(self, participant: bytes) -> list[tuple[RemoteEndpoint, NodeIdentity | None]]:
+        """The writers of a participant, and the node of each where it has been told."""
+        with self._lock:
+            writers = [each for each in self._endpoints.values() if each.participant == participant and each.is_writer]
+            return [(each, self._owner_of(each)) for each in writers]
 
     def _owners(self) -> dict[bytes, NodeIdentity]:
         return {
@@ -275,13 +319,33 @@ class RemoteGraph:
         }
 
     def _dead_participants(self) -> frozenset[bytes]:
-        """Participants of ours whose process was killed; looked up again after a moment."""
+        """Participants whose process was killed; looked up again after a moment."""
         now = time.monotonic()
         looked_at, dead = self._dead
         if now - looked_at > 0.25:
             dead = frozenset(each.guid for each in self.participants() if each.has_died())
             self._dead = (now, dead)
         return dead
+
+
+def runs(process: int) -> bool:
+    """Whether there is a process of an id on this machine that has not ended."""
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except OSError:
+        return True
+    return not _is_zombie(process)
+
+
+def _is_zombie(process: int) -> bool:
+    """Whether a process has ended, and who started it has not asked how; that is known on Linux."""
+    try:
+        stat = Path(f"/proc/{process}/stat").read_bytes()
+    except OSError:
+        return False
+    return stat.rpartition(b")")[2].split()[0] in (b"Z", b"X")
 
 
 def is_fast(guid: bytes) -> bool:
@@ -292,23 +356,3 @@ def is_fast(guid: bytes) -> bool:
 def _gids(node: NodeEntities) -> Iterator[bytes]:
     yield from node.readers
     yield from node.writers
-
-
-def _described(endpoint: RemoteEndpoint, node: NodeIdentity | None) -> EndpointInfo | None:
-    """An endpoint in ROS's terms; None for what is not ROS's, and for the second half of services and clients."""
-    name = endpoint.name
-    if name is None:
-        return None
-    if name.role is Role.TOPIC:
-        kind = EndpointKind.PUBLISHER if endpoint.is_writer else EndpointKind.SUBSCRIPTION
-        type_name = ros_type(endpoint.type_name)
-    elif name.role is Role.REQUEST:
-        kind = EndpointKind.CLIENT if endpoint.is_writer else EndpointKind.SERVICE
-        type_name = ros_service_type(endpoint.type_name)
-    else:
-        return None
-    if type_name is None:
-        return None
-    return EndpointInfo(
-        kind, node, name.name, type_name, endpoint.qos, endpoint.guid, endpoint.facts.get("typehash", "")
-    )

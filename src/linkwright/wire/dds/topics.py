@@ -236,8 +236,11 @@ class IncomingTopic(_MirroredTopic):
         return len(samples) == AT_ONCE
 
     def _gid_of(self, handle: int) -> bytes:
+        """The publisher's identifier, which the reader may know before discovery's tables have it."""
         endpoint = self._remote.endpoint(handle)
-        return endpoint.guid if endpoint is not None else bytes(16)
+        if endpoint is not None:
+            return endpoint.guid
+        return self._dds.writer_guid(self.entity, handle) or bytes(16)
 
     def _on_change(self, changed: int) -> None:
         if changed & SUBSCRIPTION_MATCHED:

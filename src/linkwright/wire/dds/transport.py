@@ -15,6 +15,7 @@ from linkwright.diagnostics import LinkwrightError, render
 from linkwright.graph.endpoints.info import EndpointInfo
 from linkwright.graph.log.logger import Logger
 from linkwright.graph.names.identity import NodeIdentity
+from linkwright.wire.dds.departures import Departures
 from linkwright.wire.dds.local_sockets import other_processes
 from linkwright.wire.dds.remote import RemoteGraph
 from linkwright.wire.dds.settings import Range, Settings
@@ -58,6 +59,7 @@ class DdsTransport:
         self._only_looks = only_looks
         self._logger = logger
         self._remote = RemoteGraph()
+        self._departures = Departures(self._remote)
         self._engine: Engine | None = None
         self._work: deque[Callable[[Engine], None]] = deque()
         self._decided = threading.Event()
@@ -185,6 +187,11 @@ class DdsTransport:
         """Have something called, from any thread, whenever nodes or endpoints outside come or go."""
         self._remote.watch(changed)
 
+    def watch_lost(self, lost: Callable[[EndpointInfo], None]) -> None:
+        """Have something called, from any thread, with each publisher outside that is gone without having left."""
+        self._departures.watch(lost)
+        self._do(lambda _: None)  # processes are looked at from now on
+
     def close(self) -> None:
         """Leave the domain once what was sent reliably is acknowledged, or a second has passed."""
         if self._closed:
@@ -228,7 +235,7 @@ class DdsTransport:
             # Imported in this thread because loading Cyclone takes 0.15 s.
             from linkwright.wire.dds.engine import Engine
 
-            engine = Engine(self._settings, self._remote, self._work, self._logger)
+            engine = Engine(self._settings, self._remote, self._departures, self._work, self._logger)
             with self._joining:
                 if not self._has_left:
                     self._engine = engine

@@ -1,0 +1,58 @@
+"""Who gave the command that holds, for what goes on with it until the next one: a drive, for one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from linkwright.diagnostics import phrase
+from linkwright.graph.endpoints.info import EndpointInfo, MessageInfo
+
+if TYPE_CHECKING:
+    from linkwright.graph.endpoints.subscription import Subscription
+
+
+class Commander:
+    """Notes whose command holds, and takes it back when that publisher is lost.
+
+    A publisher that leaves has ended, and its last command holds. One that is lost was killed, has crashed or is out of
+    reach: nobody is there who could give another command. What others command holds whatever becomes of it.
+
+    Args:
+        take_back: called with the publisher that is lost, after the last of its commands, as callbacks of its
+            subscription are.
+    """
+
+    def __init__(self, take_back: Callable[[EndpointInfo], object]) -> None:
+        self._take_back = take_back
+        self._gid: bytes | None = None
+
+    def taking(self, take: Callable[[Any], object]) -> Callable[[Any, MessageInfo], object]:
+        """A callback for a subscription that commands come by, which calls another one with the message alone."""
+        return partial(self._taken, take)
+
+    def watch(self, subscription: Subscription[Any]) -> None:
+        """Hear of publishers of a topic that are lost; its callback is one of `taking`."""
+        subscription.watch_lost(self._lost)
+
+    def _taken(self, take: Callable[[Any], object], message: Any, info: MessageInfo) -> None:
+        self._gid = info.publisher_gid
+        take(message)
+
+    def _lost(self, publisher: EndpointInfo) -> None:
+        if publisher.gid == self._gid:
+            self._gid = None
+            self._take_back(publisher)
+
+
+def who_was_lost(publisher: EndpointInfo) -> Any:
+    """A publisher that was lost, for the log: its node, and its topic."""
+    node = publisher.node.full_name if publisher.node is not None else ""
+    if not node:
+        return phrase("who commanded by '{topic}' was lost (killed, crashed or out of reach)", topic=publisher.name)
+    return phrase(
+        "'{node}', which commanded by '{topic}', was lost (killed, crashed or out of reach)",
+        node=node,
+        topic=publisher.name,
+    )

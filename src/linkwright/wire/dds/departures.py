@@ -1,0 +1,122 @@
+"""Publishers that are lost, told from those that left.
+
+Who leaves says so: ROS 2 withdraws an endpoint from ``ros_discovery_info`` before it takes it out of the domain
+(rmw_dds_common), and so do we. An endpoint that is gone and was not withdrawn is lost: its participant was not heard of
+for as long as its lease is, or was taken out of the domain at the end of a process that failed. Where a participant
+tells which process of this machine it is, nobody waits for the lease: the process is gone, and the participant is not.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Collection
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
+from linkwright.graph.faults import ExternalShutdownException
+from linkwright.graph.names.identity import NodeIdentity
+
+if TYPE_CHECKING:
+    from linkwright.wire.dds.remote import RemoteEndpoint, RemoteGraph
+
+GRACE = 0.3
+"""Seconds within which a word of farewell that was sent is heard, whatever came before it."""
+
+LOOK_AGAIN = 0.1
+"""Seconds after which processes are looked at again."""
+
+
+@dataclass(slots=True)
+class _Gone:
+    """A writer that is gone, which was not withdrawn by then.
+
+    Attributes:
+        endpoint: the writer.
+        node: whose it was.
+        due: when it counts as lost, by the steady clock; None until all that had come by then was taken.
+    """
+
+    endpoint: RemoteEndpoint
+    node: NodeIdentity
+    due: float | None = None
+
+
+def ends_by_error() -> bool:
+    """Whether this program has ended with an exception that nobody caught; Ctrl-C is none of these."""
+    error = getattr(sys, "last_value", None)
+    is_interactive = hasattr(sys, "ps1")
+    return isinstance(error, Exception) and not isinstance(error, ExternalShutdownException) and not is_interactive
+
+
+class Departures:
+    """Judges how publishers went; everything but `watch` happens in the thread of discovery.
+
+    Args:
+        remote: what there is outside; it tells `endpoint_went` and `announced`.
+        now: the steady clock, in seconds.
+    """
+
+    def __init__(self, remote: RemoteGraph, now: Callable[[], float] = time.monotonic) -> None:
+        self._remote = remote
+        self._now = now
+        self._watchers: list[Callable[[EndpointInfo], None]] = []
+        self._gone: list[_Gone] = []
+        self._dead_since: dict[bytes, float] = {}
+        self._told: set[bytes] = set()
+        remote.departures = self
+
+    def watch(self, lost: Callable[[EndpointInfo], None]) -> None:
+        """Have something called, in the thread of discovery, with each publisher that is lost."""
+        self._watchers.append(lost)
+
+    def endpoint_went(self, endpoint: RemoteEndpoint, node: NodeIdentity | None) -> None:
+        """Take note of an endpoint that is gone, and of the node whose it still is by the last announcement."""
+        if self._watchers and endpoint.is_writer and node is not None and endpoint.participant not in self._told:
+            self._gone.append(_Gone(endpoint, node))
+
+    def announced(self, participant: bytes, endpoints: Collection[bytes]) -> None:
+        """Take note of what the nodes of a participant have now: what is gone and not there any more was withdrawn."""
+        self._gone = [
+            each for each in self._gone if each.endpoint.participant != participant or each.endpoint.guid in endpoints
+        ]
+
+    def review(self) -> float | None:
+        """Tell of those that are lost by now; seconds after which to call this again, or None."""
+        if not self._watchers:
+            return None
+        self._review_gone()
+        processes = self._review_processes()
+        return LOOK_AGAIN if self._gone or processes else None
+
+    def _review_gone(self) -> None:
+        now, waiting = self._now(), []
+        for each in self._gone:
+            if each.due is None:
+                each.due = now + GRACE
+            if now < each.due:
+                waiting.append(each)
+            else:
+                self._tell(each.endpoint, each.node)
+        self._gone = waiting
+
+    def _review_processes(self) -> bool:
+        """Look at the processes of participants; whether there are any."""
+        now = self._now()
+        here = [each for each in self._remote.participants() if each.process is not None]
+        dead = {each.guid for each in here if each.has_died()}
+        self._dead_since = {guid: self._dead_since.get(guid, now) for guid in dead}
+        self._told &= dead | {each.endpoint.participant for each in self._gone}
+        for guid, since in self._dead_since.items():
+            if now - since >= GRACE and guid not in self._told:
+                self._told.add(guid)
+                for endpoint, node in self._remote.writers_of(guid):
+                    self._tell(endpoint, node)
+        return bool(here)
+
+    def _tell(self, endpoint: RemoteEndpoint, node: NodeIdentity | None) -> None:
+        info = endpoint.described(node)
+        if info is not None and info.kind is EndpointKind.PUBLISHER:
+            for lost in self._watchers:
+                lost(info)

@@ -1,0 +1,60 @@
+"""A robot that is driven by another process: it stops when that is killed, and goes on when that has left."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from tests.reliability.running import Machine
+
+LAUNCH_FILE = Path(__file__).parents[2] / "robots/my_robot_gazebo/launch/load_mbot_into_gazebo.launch.py"
+DRIVER = """
+from geometry_msgs.msg import Twist
+
+class Program(Node):
+    def __init__(self):
+        super().__init__("driver")
+        self.publisher = self.create_publisher(Twist, "cmd_vel", 10)
+        self.create_timer(0.05, self.tick)
+
+    def tick(self):
+        twist = Twist()
+        twist.linear.x = 0.3
+        self.publisher.publish(twist)
+"""
+AUDIENCE = """
+from nav_msgs.msg import Odometry
+
+class Program(Node):
+    def __init__(self):
+        super().__init__("audience")
+        self.state, self.way = "", 0
+        self.create_subscription(Odometry, "odom", self.hear, 10)
+
+    def hear(self, message):
+        speed = message.twist.twist.linear.x
+        state = "stands" if speed < 0.01 else "moves" if speed > 0.25 else self.state
+        if state != self.state:
+            self.state = state
+            say(state)
+        way = int(message.pose.pose.position.x / 0.3)
+        if way != self.way:
+            self.way = way
+            say("way", way)
+"""
+
+
+def test_a_robot_stops_whose_driver_is_killed_and_goes_on_after_one_that_has_left(machine: Machine) -> None:
+    launch = machine.launch(LAUNCH_FILE)
+    audience = machine.program(AUDIENCE)
+    audience.wait_for("stands")
+    driver = machine.program(DRIVER)
+    audience.wait_for("moves")
+    driver.kill()
+    audience.wait_for("stands", times=2)
+    launch.wait_for("'/driver', which commanded by '/cmd_vel', was lost")
+    machine.verb("topic", "pub", "--once", "/cmd_vel", "geometry_msgs/msg/Twist", "{linear: {x: 0.3}}")
+    audience.wait_for("moves", times=2)
+    audience.wait_for("way", times=audience.count("way") + 3)
+    assert audience.count("stands") == 2, audience.text
+    assert launch.count("was lost") == 1, launch.text
+    assert launch.interrupt() == 130

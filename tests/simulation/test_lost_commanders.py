@@ -1,0 +1,125 @@
+"""Drives whose commander is gone: they stop where it was lost, and go on where it has left."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.graph.log.levels import LogLevel
+from linkwright.messages import get_message
+from linkwright.simulation.server.server import ServerOptions
+from tests.outside import Outside, Stranger
+from tests.simulation.test_ackermann import car, plugin
+from tests.simulation.test_diff_drive import classic, gz
+from tests.simulation.test_movers import moving_box, planar
+from tests.simulation.test_plugins import SECOND, robot, served
+from tests.simulation.worlds import GROUND
+
+Twist = get_message("geometry_msgs/msg/Twist")
+VELOCITY_CONTROL = (
+    '<plugin name="gz::sim::systems::VelocityControl" filename="gz-sim-velocity-control-system">'
+    "<topic>cmd_vel</topic></plugin>"
+)
+SKID = (
+    '<plugin name="skid" filename="libgazebo_ros_skid_steer_drive.so"><leftFrontJoint>left_joint</leftFrontJoint>'
+    "<leftRearJoint>left_joint</leftRearJoint><rightFrontJoint>right_joint</rightFrontJoint>"
+    "<rightRearJoint>right_joint</rightRearJoint><wheelSeparation>0.38</wheelSeparation>"
+    "<wheelDiameter>0.12</wheelDiameter></plugin>"
+)
+LOST = "'/driver', which commanded by '/cmd_vel', was lost (killed, crashed or out of reach)"
+DRIVES = {
+    "classic diff drive": robot(classic()),
+    "gz diff drive": robot(gz()),
+    "planar move": moving_box(planar()),
+    "skid steer": robot(SKID),
+    "velocity control": moving_box(VELOCITY_CONTROL),
+    "classic ackermann": car(plugin()).replace('name="car"', 'name="mbot"', 1),
+}
+
+
+def forward(speed: float):
+    """A command."""
+    twist = Twist()
+    twist.linear.x = speed
+    return twist
+
+
+def warnings(log) -> list[str]:
+    """What was warned of."""
+    return [each.text for each in log if each.level >= LogLevel.WARN]
+
+
+@pytest.mark.parametrize("model", DRIVES.values(), ids=DRIVES.keys())
+async def test_a_drive_stops_when_its_commander_is_lost_and_says_so_once(model: str) -> None:
+    async with served(GROUND, model) as (server, graph, log):
+        driver = Stranger(Outside(graph), "/cmd_vel")
+        driver.send(forward(0.3))
+        await advance(server, graph, 1.5)
+        assert speed(server) == pytest.approx(0.3, abs=0.02)
+        driver.be_lost()
+        await advance(server, graph, 1.5)
+        assert speed(server) == pytest.approx(0.0, abs=0.01)
+        assert warnings(log) == [f"{LOST}: what it moved is stopped"]
+
+
+async def test_a_drive_goes_on_whose_last_command_is_that_of_another() -> None:
+    async with served(GROUND, robot(classic())) as (server, graph, log):
+        outside = Outside(graph)
+        lost, other = Stranger(outside, "/cmd_vel", "lost"), Stranger(outside, "/cmd_vel", "other")
+        lost.send(forward(0.1))
+        other.send(forward(0.3))
+        lost.be_lost()
+        await advance(server, graph, 1.5)
+        assert speed(server) == pytest.approx(0.3, abs=0.02)
+        assert not warnings(log)
+
+
+async def test_who_is_lost_is_told_after_its_last_command() -> None:
+    async with served(GROUND, robot(classic())) as (server, graph, log):
+        driver = Stranger(Outside(graph), "/cmd_vel")
+        driver.send(forward(0.3))
+        driver.be_lost()  # before the command was taken
+        await advance(server, graph, 1.0)
+        assert speed(server) == pytest.approx(0.0, abs=0.01)
+        assert len(warnings(log)) == 1
+
+
+async def test_nothing_is_said_where_the_robot_stands_already() -> None:
+    async with served(GROUND, robot(classic())) as (server, graph, log):
+        driver = Stranger(Outside(graph), "/cmd_vel")
+        driver.send(forward(0.3))
+        driver.send(forward(0.0))
+        await advance(server, graph, 0.5)
+        driver.be_lost()
+        await advance(server, graph, 0.1)
+        assert not warnings(log)
+
+
+async def test_a_drive_with_two_names_of_its_topic_knows_which_command_holds() -> None:
+    plugin = gz().replace("<topic>cmd_vel</topic>", "")
+    async with served(GROUND, robot(plugin), options=ServerOptions(usual_names=True)) as (server, graph, log):
+        outside = Outside(graph)
+        mine, usual = Stranger(outside, "/model/mbot/cmd_vel", "mine"), Stranger(outside, "/cmd_vel", "usual")
+        mine.send(forward(0.1))
+        await graph.settle()
+        usual.send(forward(0.3))
+        await graph.settle()
+        mine.be_lost()
+        await advance(server, graph, 1.5)
+        assert speed(server) == pytest.approx(0.3, abs=0.02)
+        usual.be_lost()
+        await advance(server, graph, 1.5)
+        assert speed(server) == pytest.approx(0.0, abs=0.01)
+        assert len(warnings(log)) == 1
+
+
+async def advance(server, graph, seconds: float) -> None:
+    """Let time pass."""
+    await graph.settle()
+    server.advance(round(seconds * SECOND))
+    await graph.settle()
+
+
+def speed(server) -> float:
+    """How fast the robot moves, in m/s."""
+    linear, _ = server.simulation.link_velocity(server.simulation.scene.models["mbot"].structure.links[0].link.name)
+    return float(linear[0] ** 2 + linear[1] ** 2) ** 0.5

@@ -1,0 +1,117 @@
+"""Publishers that are lost, told from those that left."""
+
+from __future__ import annotations
+
+from linkwright.graph import EndpointInfo, NodeIdentity, QoSProfile
+from linkwright.messages import String
+from linkwright.wire.dds import departures
+from linkwright.wire.dds.departures import GRACE, Departures
+from linkwright.wire.dds.discovery_info import NodeEntities, ParticipantEntities
+from linkwright.wire.dds.remote import RemoteEndpoint, RemoteGraph, RemoteParticipant
+
+PARTICIPANT, WRITER, OTHER = b"p" * 16, b"w" * 16, b"o" * 16
+
+
+class Scene:
+    """A participant with a writer, as discovery tells of it, and who is told to be lost."""
+
+    def __init__(self, participant: RemoteParticipant | None = None, *, watched: bool = True) -> None:
+        self.time = 0.0
+        self.remote = RemoteGraph()
+        self.departures = Departures(self.remote, lambda: self.time)
+        self.lost: list[EndpointInfo] = []
+        if watched:
+            self.departures.watch(self.lost.append)
+        self.remote.participant_came(participant or RemoteParticipant(PARTICIPANT))
+        for guid in (WRITER, OTHER):
+            topic = "rt/chatter" if guid == WRITER else "rr/flipReply"
+            endpoint = RemoteEndpoint(guid, 1, PARTICIPANT, True, topic, "std_msgs::msg::dds_::String_", QoSProfile(1))
+            self.remote.endpoint_came(endpoint)
+        self.announce(WRITER, OTHER)
+
+    def announce(self, *writers: bytes) -> None:
+        nodes = [NodeEntities("/far", "talker", writers=writers)] if writers else []
+        self.remote.entities_announced(ParticipantEntities(PARTICIPANT, nodes))
+
+    def after(self, seconds: float) -> float | None:
+        self.time += seconds
+        return self.departures.review()
+
+
+def test_who_withdraws_a_publisher_before_it_goes_has_left():
+    scene = Scene()
+    scene.announce(OTHER)
+    scene.remote.endpoint_went(WRITER)
+    assert scene.after(0.0) is None
+    assert scene.after(2 * GRACE) is None
+    assert not scene.lost
+
+
+def test_a_farewell_may_be_heard_after_the_participant_has_gone():
+    scene = Scene()
+    scene.remote.participant_went(PARTICIPANT)
+    assert scene.after(10.0) is not None
+    scene.announce()
+    scene.after(GRACE)
+    assert not scene.lost
+
+
+def test_a_participant_that_goes_without_a_farewell_is_lost_with_its_publishers():
+    scene = Scene()
+    scene.remote.participant_went(PARTICIPANT)
+    scene.after(10.0)  # what had come by then was not taken before
+    assert not scene.lost
+    scene.after(GRACE)
+    (lost,) = scene.lost
+    assert (lost.name, lost.node, lost.gid) == ("/chatter", NodeIdentity("talker", "/far"), WRITER)
+    assert scene.after(GRACE) is None
+    assert len(scene.lost) == 1
+
+
+def test_a_participant_whose_process_is_gone_is_lost_before_its_lease_is_over(monkeypatch):
+    running = True
+    monkeypatch.setattr("linkwright.wire.dds.remote.runs", lambda _: running)
+    scene = Scene(RemoteParticipant(PARTICIPANT, peer_process=7))
+    assert scene.after(0.0) == departures.LOOK_AGAIN
+    running = False
+    scene.after(1.0)
+    assert not scene.lost
+    scene.after(GRACE)
+    assert [each.name for each in scene.lost] == ["/chatter"]
+    scene.remote.participant_went(PARTICIPANT)
+    assert scene.after(2 * GRACE) is None
+    assert len(scene.lost) == 1
+
+
+def test_a_process_that_ends_after_it_has_left_is_not_lost(monkeypatch):
+    monkeypatch.setattr("linkwright.wire.dds.remote.runs", lambda _: False)
+    scene = Scene(RemoteParticipant(PARTICIPANT, peer_process=7))
+    scene.after(0.0)
+    scene.announce()
+    scene.remote.participant_went(PARTICIPANT)
+    scene.after(2 * GRACE)
+    assert not scene.lost
+
+
+def test_nothing_is_looked_at_before_somebody_asks():
+    scene = Scene(RemoteParticipant(PARTICIPANT, peer_process=7), watched=False)
+    assert scene.after(0.0) is None
+
+
+def test_a_publisher_that_is_destroyed_and_a_process_that_leaves_are_not_lost(processes, programs):
+    us = processes("ours")
+    lost: list[EndpointInfo] = []
+    us.node.create_subscription(String, "/other", lambda _: None, 10).watch_lost(lost.append)
+    them, marker = processes("theirs"), programs("our_program", "marker")
+    publisher = them.node.create_publisher(String, "/other", 10)
+    them.node.create_publisher(String, "/other", 10)
+    us.spin_until(lambda: us.node.count_publishers("/other") == 2)
+    publisher.destroy()
+    us.spin_until(lambda: us.node.count_publishers("/other") == 1)
+    them.close()
+    us.spin_until(lambda: us.node.count_publishers("/other") == 0)
+    us.node.create_subscription("rcl_interfaces/msg/Log", "/rosout", lambda _: None, 10).watch_lost(lost.append)
+    us.spin_until(lambda: us.node.count_publishers("/rosout") == 2)
+    marker.kill()
+    us.spin_until(lambda: lost)  # after those that left, if these were told, too
+    assert {each.node.name for each in lost} == {"marker"}, lost
