@@ -12,6 +12,7 @@ from linkwright.graph import DurabilityPolicy, QoSProfile
 from linkwright.messages import get_message
 from linkwright.nodes import NodeOptions
 from linkwright.nodes.gazebo.bridge import BridgedTopic, ImageBridge, ParameterBridge, topic_of_word, topics_of_file
+from tests.outside import Outside, Stranger
 from tests.places import GAZEBO_PACKAGE
 
 SCAN = "/scan@sensor_msgs/msg/LaserScan[gz.msgs.LaserScan"
@@ -256,3 +257,18 @@ def test_settings_of_a_topic_that_are_none(more, message, tmp_path: Path):
     path.write_text(f"- topic_name: a\n  ros_type_name: b/msg/C\n  gz_type_name: c\n  {more}\n", encoding="utf-8")
     with pytest.raises(LinkwrightError, match=message):
         topics_of_file(str(path))
+
+
+@pytest.mark.parametrize("ros_type", ["geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"])
+async def test_the_drive_behind_a_bridge_is_stopped_when_who_drives_is_lost(stage, ros_type):
+    word = f"/cmd_vel@{ros_type}]gz.msgs.Twist"
+    bridge = ParameterBridge(stage.graph, NodeOptions(arguments=[word, "--ros-args", "-r", "/cmd_vel:=/drive"]))
+    driven = heard(stage, "geometry_msgs/msg/Twist", "/cmd_vel")
+    driver = Stranger(Outside(stage.graph), "/drive", msg_type=ros_type)
+    message = get_message(ros_type)()
+    getattr(message, "twist", message).linear.x = 0.3
+    driver.send(message)
+    driver.be_lost()
+    await stage.graph.settle()
+    assert [each.linear.x for each in driven] == [0.3, 0.0]
+    bridge.close()

@@ -8,6 +8,7 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.messages import get_message
 from linkwright.nodes import NodeOptions
 from linkwright.nodes.teleop.twist_mux import TwistMux
+from tests.outside import Outside, Stranger
 
 TWIST, BOOL = get_message("geometry_msgs/msg/Twist"), get_message("std_msgs/msg/Bool")
 PARAMETERS = {
@@ -132,3 +133,22 @@ async def test_what_is_not_whole_is_refused(stage, topics, named):
 async def test_without_topics_it_says_so_and_runs(stage, said):
     TwistMux(stage.graph, NodeOptions())
     assert said("WARN") == ["no topics.NAME.topic is given, so nothing goes through"]
+
+
+async def test_a_stop_goes_out_when_who_sent_the_last_velocity_is_lost(traffic):
+    mux(traffic.stage)
+    outside = Outside(traffic.stage.graph)
+    tablet, joystick = (Stranger(outside, topic, topic[1:]) for topic in ("/tab_vel", "/joy_vel"))
+    for source, speed in ((tablet, 0.1), (joystick, 0.3)):
+        message = TWIST()
+        message.linear.x = speed
+        source.send(message)
+    await traffic.stage.graph.settle()
+    tablet.be_lost()
+    await traffic.stage.graph.settle()
+    assert [each.linear.x for each in traffic.out] == [0.1, 0.3]
+    joystick.be_lost()
+    await traffic.stage.graph.settle()
+    assert [each.linear.x for each in traffic.out] == [0.1, 0.3, 0.0]
+    (told,) = [each.text for each in traffic.stage.log if "was lost" in each.text]
+    assert told.endswith("a stop is sent to '/cmd_vel_out'")

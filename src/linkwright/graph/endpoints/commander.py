@@ -32,12 +32,16 @@ class Commander:
         """A callback for a subscription that commands come by, which calls another one with the message alone."""
         return partial(self._taken, take)
 
+    def obey(self, info: MessageInfo) -> None:
+        """The command of a message holds from now on, for callbacks that are none of `taking`."""
+        self._gid = info.publisher_gid
+
     def watch(self, subscription: Subscription[Any]) -> None:
-        """Hear of publishers of a topic that are lost; its callback is one of `taking`."""
+        """Hear of publishers of a topic that are lost; its callback is one of `taking`, or calls `obey`."""
         subscription.watch_lost(self._lost)
 
     def _taken(self, take: Callable[[Any], object], message: Any, info: MessageInfo) -> None:
-        self._gid = info.publisher_gid
+        self.obey(info)
         take(message)
 
     def _lost(self, publisher: EndpointInfo) -> None:

@@ -14,6 +14,7 @@ import yaml
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.graph import Graph, MessageInfo, Node, Publisher, QoSProfile, ReliabilityPolicy, Subscription
+from linkwright.graph.endpoints.commander import Commander
 from linkwright.graph.endpoints.event_types import PublisherEventCallbacks, QoSMatchedInfo
 from linkwright.graph.names.rules import join
 from linkwright.graph.parameters.qos_overrides import QoSOverridingOptions
@@ -23,6 +24,7 @@ from linkwright.messages import get_message
 from linkwright.nodes.gazebo.compressed import compressed
 from linkwright.nodes.gazebo.conversions import TYPES_OF_GZ, conversion
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.teleop.standstill import VELOCITIES, send_stop
 
 _DIRECTIONS = {"[": "GZ_TO_ROS", "]": "ROS_TO_GZ", "@": "BIDIRECTIONAL"}
 _IMAGE = ("sensor_msgs/msg/Image", "gz.msgs.Image")
@@ -129,15 +131,23 @@ class _Bridge(SingleNode):
             return
         lazy = self._lazy if topic.lazy is None else topic.lazy
         publishers: list[Publisher[Any]] = []
+        commander = None
+        if target_type in VELOCITIES:
+            commander = Commander(lambda lost: send_stop(self._node, publishers[0], lost))
 
         def take(message: Any, info: MessageInfo) -> None:
             # What was sent by the bridge comes back where messages go both ways.
             if all(info.publisher_gid != each.gid for each in self._publishers):
+                if commander is not None:
+                    commander.obey(info)
                 publishers[0].publish(convert(message))
 
         def listen() -> Subscription[Any]:
             profile = QoSProfile(topic.subscriber_queue, reliability=ReliabilityPolicy.BEST_EFFORT)
-            return listening.create_subscription(source_type, source_topic, take, profile)
+            subscription: Subscription[Any] = listening.create_subscription(source_type, source_topic, take, profile)
+            if commander is not None:
+                commander.watch(subscription)
+            return subscription
 
         way = _Way(listen, lazy=lazy)
         events = PublisherEventCallbacks(matched=way.matched) if lazy else None

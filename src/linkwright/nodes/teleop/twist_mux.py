@@ -2,7 +2,8 @@
 
 Parameters, rules and diagnostics are those of the ROS node. A topic counts until its ``timeout`` has passed since its
 last message; a lock that is on, or not heard of for its ``timeout``, shuts out all topics of lower priority. Different
-on purpose: a topic without a time-out shuts out others only once it was heard.
+on purpose: a topic without a time-out shuts out others only once it was heard, and a stop goes out when who sent the
+last velocity is lost.
 """
 
 from __future__ import annotations
@@ -14,9 +15,11 @@ from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, phrase
 from linkwright.diagnostics.translation import localized
-from linkwright.graph import Graph, Node, Publisher
+from linkwright.graph import Graph, MessageInfo, Node, Publisher, Subscription
+from linkwright.graph.endpoints.commander import Commander
 from linkwright.messages import get_message
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.teleop.standstill import send_stop
 from linkwright.nodes.teleop.velocity_topic import TWIST, TWIST_STAMPED
 
 _DEPTH = 10
@@ -81,8 +84,12 @@ class TwistMux(SingleNode):
         if not self._topics:
             node.get_logger().warning(localized(phrase("no topics.NAME.topic is given, so nothing goes through")))
         self._publisher: Publisher[Any] = node.create_publisher(kind, "cmd_vel_out", _DEPTH)
+        self._commander = Commander(partial(send_stop, node, self._publisher))
         for source in self._topics:
-            node.create_subscription(kind, source.topic, partial(self._velocity, source), _DEPTH)
+            velocities: Subscription[Any] = node.create_subscription(
+                kind, source.topic, partial(self._velocity, source), _DEPTH
+            )
+            self._commander.watch(velocities)
         for source in self._locks:
             node.create_subscription("std_msgs/msg/Bool", source.topic, partial(self._lock, source), _DEPTH)
         for source in (*self._topics, *self._locks):
@@ -100,12 +107,13 @@ class TwistMux(SingleNode):
     def _now_ns(self) -> int:
         return self._node.get_clock().now().nanoseconds
 
-    def _velocity(self, source: _Source, message: Any) -> None:
+    def _velocity(self, source: _Source, message: Any, info: MessageInfo) -> None:
         now = self._now_ns()
         source.hear(now)
         lock = self._lock_priority(now)
         open_ones = [each for each in self._topics if each.priority and not self._masked(each, lock, now)]
         if open_ones and max(open_ones, key=lambda each: each.priority) is source:
+            self._commander.obey(info)
             self._publisher.publish(message)
 
     def _lock(self, source: _Source, message: Any) -> None:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from threading import Lock
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
 from linkwright.graph.names.identity import NodeIdentity
@@ -23,9 +23,6 @@ from linkwright.wire.dds.names import (
     ros_type,
 )
 from linkwright.wire.dds.participant import NAME, process_namespace
-
-if TYPE_CHECKING:
-    from linkwright.wire.dds.departures import Departures
 
 _FAST_DDS = b"\x01\x0f"
 """How the GUIDs of its entities begin."""
@@ -138,6 +135,16 @@ class RemoteEndpoint:
         return EndpointInfo(kind, node, name.name, type_name, self.qos, self.guid, self.facts.get("typehash", ""))
 
 
+class DepartureWatch(Protocol):
+    """What is told of endpoints that are gone; see `linkwright.wire.dds.departures.Departures`."""
+
+    def endpoint_went(self, endpoint: RemoteEndpoint, node: NodeIdentity | None) -> None:
+        """Take note of an endpoint that is gone, and of the node whose it still is by the last announcement."""
+
+    def announced(self, participant: bytes, endpoints: Collection[bytes]) -> None:
+        """Take note of what the nodes of a participant have now."""
+
+
 class RemoteGraph:
     """What discovery found; written by one thread, read by any."""
 
@@ -151,7 +158,7 @@ class RemoteGraph:
         self._watchers: list[Callable[[], None]] = []
         self.changed_at = time.monotonic()
         """When something changed last, by the steady clock."""
-        self.departures: Departures | None = None
+        self.departures: DepartureWatch | None = None
         """What is told of endpoints that are gone."""
 
     # --- from discovery -----------------------------------------------------------------------------------------

@@ -1,0 +1,31 @@
+"""A stop for who obeys velocities that a node hands on, when who sent the last of them is lost (`Commander`)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from linkwright.diagnostics import phrase
+from linkwright.graph import Node, Publisher
+from linkwright.graph.endpoints.commander import who_was_lost
+from linkwright.graph.endpoints.info import EndpointInfo
+from linkwright.nodes.teleop.velocity_topic import TWIST, TWIST_STAMPED
+
+VELOCITIES = (TWIST, TWIST_STAMPED)
+"""The types of messages that `send_stop` can publish."""
+
+
+def send_stop(node: Node, publisher: Publisher[Any], lost: EndpointInfo) -> None:
+    """Publish a velocity of zero, and log why.
+
+    Args:
+        node: who hands velocities on.
+        publisher: where to.
+        lost: who sent the last one that was handed on.
+    """
+    message = publisher.msg_type()
+    if publisher.type_name == TWIST_STAMPED:
+        message.header.stamp = node.get_clock().now().to_msg()
+    publisher.publish(message)
+    node.get_logger().warning(
+        phrase("{who}: a stop is sent to '{topic}'", who=who_was_lost(lost), topic=publisher.name)
+    )
