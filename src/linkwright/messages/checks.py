@@ -98,7 +98,7 @@ def check_values(name: str, value: Any, kind: FieldType, cls: type) -> Any:
     if not (
         _is_collection(value)
         and _length_fits(value, kind)
-        and all(isinstance(each, cls) for each in value)
+        and (set(map(type, value)) <= {cls} or all(isinstance(each, cls) for each in value))
         and (kind.string_bound is None or all(len(each) <= kind.string_bound for each in value))
     ):
         raise AssertionError(f"The '{name}' field must be {_wanted(kind, cls)}")
@@ -183,7 +183,9 @@ def ndarray_class() -> type[NDArray[Any]] | None:
 
 
 def _is_collection(value: Any) -> bool:
-    return isinstance(value, (Sequence, AbstractSet, UserList)) and not isinstance(value, (str, UserString))
+    return value.__class__ is list or (
+        isinstance(value, (Sequence, AbstractSet, UserList)) and not isinstance(value, (str, UserString))
+    )
 
 
 def _length_fits(value: Any, kind: FieldType) -> bool:

@@ -6,9 +6,9 @@ which the hardware has them.
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import nan
 
 from linkwright.control.controllers.controller import Controller, InterfaceNames
 from linkwright.control.controllers.parameters import parameter
@@ -69,8 +69,13 @@ class JointStateBroadcaster(Controller[Parameters]):
             self._of.setdefault(state.component, {})[state.kind] = state
             if state.kind in fields and (known is None or state.component in known):
                 joints.setdefault(state.component, [None, None, None])[fields[state.kind]] = state
-        self._joints = joints
         self._extra = [each for each in self.parameters.extra_joints if each not in joints]
+        self._names = [*joints, *self._extra]
+        unknown, none = StateInterface("", ""), StateInterface("", "", 0.0)
+        self._columns = [
+            [*(of_joint[place] or unknown for of_joint in joints.values()), *(none for _ in self._extra)]
+            for place in range(3)
+        ]
 
     def update(self, time_ns: int, period_s: float) -> None:  # noqa: ARG002
         """Publish, as far as anybody listens."""
@@ -88,14 +93,9 @@ class JointStateBroadcaster(Controller[Parameters]):
         return Header(stamp=Time(*divmod(time_ns, _NANOSECONDS)), frame_id=self.parameters.frame_id)
 
     def _joint_states(self, header: Header) -> JointState:
-        more = [0.0] * len(self._extra)
-        columns = [
-            [nan if state is None else state.value for state in column]
-            for column in zip(*self._joints.values(), strict=True)
-        ] or [[], [], []]
-        message = JointState(header=header, name=[*self._joints, *self._extra])
-        message.position, message.velocity, message.effort = (column + more for column in columns)
-        return message
+        # Arrays are taken as they are; the elements of lists would be looked at one by one.
+        position, velocity, effort = (array("d", [state.value for state in column]) for column in self._columns)
+        return JointState(header=header, name=[*self._names], position=position, velocity=velocity, effort=effort)
 
     def _dynamic_states(self, header: Header) -> object:
         values = get_message("control_msgs/msg/InterfaceValue")

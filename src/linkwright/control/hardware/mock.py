@@ -40,11 +40,6 @@ class _Joint:
             self.values[each.kind] = each.value
         self.commands: dict[str, CommandInterface] = {}
 
-    def show(self) -> None:
-        values = self.values
-        for each in self.shown:
-            each.value = values[each.kind]
-
 
 class GenericSystem(Hardware):
     """Hardware that does at once what it is told."""
@@ -79,6 +74,14 @@ class GenericSystem(Hardware):
             (self._joints[state.component], state)
             for state in self.states
             if self._offset_interface and state.kind == self._offset_interface and state.component in self._joints
+        ]
+        # Without a joint between: this is done a thousand times a second.
+        joints = self._joints.values()
+        self._shown = [(state, joint.values, state.kind) for joint in joints for state in joint.shown]
+        self._repeated = [
+            (command, joint.values, kind, self._own_offset if kind == POSITION else 0.0)
+            for joint in joints
+            for kind, command in joint.commands.items()
         ]
         self._read: Callable[[float], None] = self._integrate if self._dynamic else self._repeat
 
@@ -124,8 +127,8 @@ class GenericSystem(Hardware):
             joint.values[POSITION] = mimic.multiplier * followed.values[POSITION] + mimic.offset
             for kind in (VELOCITY, ACCELERATION, EFFORT):
                 joint.values[kind] = mimic.multiplier * followed.values[kind]
-        for joint in self._joints.values():
-            joint.show()
+        for state, values, kind in self._shown:
+            state.value = values[kind]
         for command, state in self._mirrored:
             if command.value == command.value:
                 state.value = command.value
@@ -139,12 +142,10 @@ class GenericSystem(Hardware):
         return 0.0 if self._offset_interface else self._offset
 
     def _repeat(self, _: float) -> None:
-        offset = self._own_offset
-        for joint in self._joints.values():
-            for kind, command in joint.commands.items():
-                value = command.value
-                if value == value:
-                    joint.values[kind] = value + offset if kind == POSITION else value
+        for command, values, kind, offset in self._repeated:
+            value = command.value
+            if value == value:
+                values[kind] = value + offset
 
     def _integrate(self, period_s: float) -> None:
         for joint in self._joints.values():
