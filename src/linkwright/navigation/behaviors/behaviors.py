@@ -1,0 +1,177 @@
+"""What a robot does when it cannot go on, and what else it can be asked for: turn, drive straight, stand still.
+
+Source: nav2_behaviors.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum
+from math import copysign, hypot, sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.navigation.following.follower import STILL, Pose, Velocity, motions, wrapped
+
+IsFree = Callable[[NDArray[np.float64]], bool]
+"""Whether the robot touches nothing at all of some poses, of shape (poses, 3)."""
+
+
+class Outcome(Enum):
+    """How far a behaviour is."""
+
+    RUNNING = "running"
+    DONE = "done"
+    COLLISION = "there is an obstacle ahead"
+    TIMEOUT = "it took longer than was allowed"
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """What a behaviour does in a cycle.
+
+    Attributes:
+        outcome: whether it goes on.
+        velocity: for the robot; zero once it has ended.
+        traveled: how far it has come, in metres or radians.
+    """
+
+    outcome: Outcome
+    velocity: Velocity = STILL
+    traveled: float = 0.0
+
+
+class Behavior(ABC):
+    """A behaviour while it runs.
+
+    Args:
+        allowance: how long it may take, in seconds; 0 for ever.
+    """
+
+    def __init__(self, allowance: float) -> None:
+        self._allowance = allowance
+
+    def step(self, pose: Pose, elapsed: float, is_free: IsFree) -> Step:
+        """The next cycle.
+
+        Args:
+            pose: of the robot.
+            elapsed: since the behaviour began, in seconds.
+            is_free: see `IsFree`; poses are in the frame of `pose`.
+        """
+        step = self._step(pose, elapsed, is_free)
+        if step.outcome is Outcome.RUNNING and 0.0 < self._allowance < elapsed:
+            return Step(Outcome.TIMEOUT, traveled=step.traveled)
+        return step
+
+    @abstractmethod
+    def _step(self, pose: Pose, elapsed: float, is_free: IsFree) -> Step:
+        """As `step`, without the time that is allowed."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class SpinParameters:
+    """Parameters of `Spin`, under nav2's names and with its defaults; rad/s, rad/s^2, seconds."""
+
+    max_rotational_vel: float = 1.0
+    min_rotational_vel: float = 0.4
+    rotational_acc_lim: float = 3.2
+    simulate_ahead_time: float = 2.0
+
+
+class Spin(Behavior):
+    """Turn on the spot by an angle (radians), which may be more than a whole turn."""
+
+    def __init__(self, angle: float, allowance: float, parameters: SpinParameters, start: Pose) -> None:
+        super().__init__(allowance)
+        self._angle = angle
+        self._told = parameters
+        self._before = start[2]
+        self._turned = 0.0
+
+    def _step(self, pose: Pose, elapsed: float, is_free: IsFree) -> Step:  # noqa: ARG002 - the base's
+        self._turned += wrapped(pose[2] - self._before)
+        self._before = pose[2]
+        left = abs(self._angle) - copysign(self._turned, self._turned * self._angle)
+        if left <= _ENOUGH:
+            return Step(Outcome.DONE, traveled=self._turned)
+        told = self._told
+        speed = min(max(sqrt(2.0 * told.rotational_acc_lim * left), told.min_rotational_vel), told.max_rotational_vel)
+        velocity = Velocity(yaw=copysign(speed, self._angle))
+        ahead = _ahead(pose, velocity, min(told.simulate_ahead_time, left / speed))
+        if not is_free(ahead):
+            return Step(Outcome.COLLISION, traveled=self._turned)
+        return Step(Outcome.RUNNING, velocity, self._turned)
+
+
+class DriveStraight(Behavior):
+    """Drive straight on or back.
+
+    Args:
+        distance: how far, in metres; back where it is negative.
+        speed: in m/s.
+        allowance: see `Behavior`.
+        look_ahead: for how long the way is looked at, in seconds.
+        start: where the robot is.
+    """
+
+    def __init__(self, distance: float, speed: float, allowance: float, look_ahead: float, start: Pose) -> None:
+        super().__init__(allowance)
+        self._distance = distance
+        self._speed = copysign(speed, distance)
+        self._look_ahead = look_ahead
+        self._start = start
+
+    def _step(self, pose: Pose, elapsed: float, is_free: IsFree) -> Step:  # noqa: ARG002 - the base's
+        traveled = hypot(pose[0] - self._start[0], pose[1] - self._start[1])
+        left = abs(self._distance) - traveled
+        if left <= 0.0:
+            return Step(Outcome.DONE, traveled=traveled)
+        velocity = Velocity(self._speed)
+        if not is_free(_ahead(pose, velocity, min(self._look_ahead, left / abs(self._speed)))):
+            return Step(Outcome.COLLISION, traveled=traveled)
+        return Step(Outcome.RUNNING, velocity, traveled)
+
+
+class Wait(Behavior):
+    """Stand still for a time, in seconds."""
+
+    def __init__(self, seconds: float) -> None:
+        super().__init__(0.0)
+        self._seconds = seconds
+
+    def _step(self, pose: Pose, elapsed: float, is_free: IsFree) -> Step:  # noqa: ARG002 - the base's
+        return Step(Outcome.DONE if elapsed >= self._seconds else Outcome.RUNNING)
+
+
+def slowed(pose: Pose, velocity: Velocity, seconds: float, is_free: IsFree) -> Velocity:
+    """A velocity that somebody asks for, slower the sooner it leads into an obstacle (nav2's assisted teleoperation).
+
+    Args:
+        pose: of the robot.
+        velocity: which is asked for.
+        seconds: how far ahead obstacles count.
+        is_free: see `IsFree`.
+    """
+    ahead = _ahead(pose, velocity, seconds)
+    for index in range(len(ahead)):
+        if not is_free(ahead[index : index + 1]):
+            share = index / len(ahead)
+            return Velocity(velocity.x * share, velocity.y * share, velocity.yaw * share)
+    return velocity
+
+
+def _ahead(pose: Pose, velocity: Velocity, seconds: float) -> NDArray[np.float64]:
+    """Where a velocity leads, of shape (poses, 3)."""
+    count = max(2, round(seconds / _LOOKS) + 1)
+    ahead: NDArray[np.float64] = motions(pose, np.array([velocity]), np.linspace(0.0, seconds, count)[1:])[0]
+    return ahead
+
+
+_ENOUGH = 1e-3
+"""Radians that need not be turned."""
+_LOOKS = 0.1
+"""Seconds between two poses at which obstacles are looked for."""

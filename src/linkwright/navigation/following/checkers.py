@@ -1,0 +1,123 @@
+"""Whether a robot has reached its goal, and whether it gets on.
+
+Source: nav2_controller's goal checkers and progress checkers, with their parameters.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from math import hypot
+
+from linkwright.navigation.following.follower import Pose, Velocity, wrapped
+
+
+class GoalChecker(ABC):
+    """Says when a goal is reached."""
+
+    xy_tolerance: float = 0.25
+    """In metres."""
+
+    @abstractmethod
+    def is_reached(self, pose: Pose, goal: Pose, velocity: Velocity) -> bool:
+        """Whether the goal is reached; all in one frame."""
+
+    def begin(self) -> None:  # noqa: B027 - not all keep something
+        """There is another goal."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class SimpleGoalParameters:
+    """Parameters of `SimpleGoalChecker`; metres and radians."""
+
+    xy_goal_tolerance: float = 0.25
+    yaw_goal_tolerance: float = 0.25
+    stateful: bool = True
+
+
+class SimpleGoalChecker(GoalChecker):
+    """Place and heading within tolerances; once the place was reached, the heading alone counts (`stateful`)."""
+
+    def __init__(self, parameters: SimpleGoalParameters | None = None) -> None:
+        self._told = parameters or SimpleGoalParameters()
+        self.xy_tolerance = self._told.xy_goal_tolerance
+        self._is_there = False
+
+    def begin(self) -> None:
+        """There is another goal."""
+        self._is_there = False
+
+    def is_reached(self, pose: Pose, goal: Pose, velocity: Velocity) -> bool:  # noqa: ARG002 - the base's
+        """Whether the goal is reached."""
+        if not self._is_there:
+            if hypot(pose[0] - goal[0], pose[1] - goal[1]) > self._told.xy_goal_tolerance:
+                return False
+            self._is_there = self._told.stateful
+        return abs(wrapped(pose[2] - goal[2])) <= self._told.yaw_goal_tolerance
+
+
+@dataclass(frozen=True, kw_only=True)
+class StoppedGoalParameters(SimpleGoalParameters):
+    """Parameters of `StoppedGoalChecker`; metres, radians, seconds."""
+
+    trans_stopped_velocity: float = 0.25
+    rot_stopped_velocity: float = 0.25
+
+
+class StoppedGoalChecker(SimpleGoalChecker):
+    """As `SimpleGoalChecker`, and the robot stands still."""
+
+    def __init__(self, parameters: StoppedGoalParameters | None = None) -> None:
+        self._still = parameters or StoppedGoalParameters()
+        super().__init__(self._still)
+
+    def is_reached(self, pose: Pose, goal: Pose, velocity: Velocity) -> bool:
+        """Whether the goal is reached."""
+        return (
+            super().is_reached(pose, goal, velocity)
+            and hypot(velocity.x, velocity.y) <= self._still.trans_stopped_velocity
+            and abs(velocity.yaw) <= self._still.rot_stopped_velocity
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class ProgressParameters:
+    """Parameters of `ProgressChecker`, nav2's SimpleProgressChecker; metres and seconds."""
+
+    required_movement_radius: float = 0.5
+    movement_time_allowance: float = 10.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class PoseProgressParameters(ProgressParameters):
+    """Parameters of nav2's PoseProgressChecker: turning is getting on, too; radians."""
+
+    required_movement_angle: float = 0.5
+
+
+class ProgressChecker:
+    """Says when a robot does not get on: it must come so far, or turn so much, within a time."""
+
+    def __init__(self, parameters: ProgressParameters | None = None) -> None:
+        self._told = parameters or ProgressParameters()
+        self._from: Pose | None = None
+        self._since_ns = 0
+
+    def begin(self) -> None:
+        """There is another goal."""
+        self._from = None
+
+    def gets_on(self, pose: Pose, time_ns: int) -> bool:
+        """Whether the robot has moved lately."""
+        if self._from is None or self._has_moved(self._from, pose):
+            self._from, self._since_ns = pose, time_ns
+            return True
+        return time_ns - self._since_ns <= self._told.movement_time_allowance * 1e9
+
+    def _has_moved(self, before: Pose, now: Pose) -> bool:
+        told = self._told
+        if hypot(now[0] - before[0], now[1] - before[1]) > told.required_movement_radius:
+            return True
+        return (
+            isinstance(told, PoseProgressParameters) and abs(wrapped(now[2] - before[2])) > told.required_movement_angle
+        )

@@ -1,0 +1,223 @@
+"""Regulated pure pursuit: drive along the arc that leads to a point of the path ahead, slower where that is wise.
+
+Source: Macenski et al., "Regulated Pure Pursuit for Robot Path Tracking" (2023), and the parameters of
+nav2_regulated_pure_pursuit_controller.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import atan2, copysign, hypot, log, sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.navigation.costmaps.costmap import FREE, INSCRIBED, LETHAL, UNKNOWN, Costmap
+from linkwright.navigation.costmaps.footprints import Footprint, radii
+from linkwright.navigation.following.follower import (
+    Follower,
+    FollowingError,
+    Pose,
+    Situation,
+    Velocity,
+    in_frame_of,
+    lengths_along,
+    limited,
+    motions,
+    wrapped,
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class PurePursuitParameters:
+    """The parameters, under nav2's names and with its defaults; metres, seconds, radians."""
+
+    desired_linear_vel: float = 0.5
+    lookahead_dist: float = 0.6
+    min_lookahead_dist: float = 0.3
+    max_lookahead_dist: float = 0.9
+    lookahead_time: float = 1.5
+    use_velocity_scaled_lookahead_dist: bool = False
+    min_approach_linear_velocity: float = 0.05
+    approach_velocity_scaling_dist: float = 0.6
+    use_collision_detection: bool = True
+    max_allowed_time_to_collision_up_to_carrot: float = 1.0
+    use_regulated_linear_velocity_scaling: bool = True
+    regulated_linear_scaling_min_radius: float = 0.9
+    regulated_linear_scaling_min_speed: float = 0.25
+    use_cost_regulated_linear_velocity_scaling: bool = True
+    cost_scaling_dist: float = 0.6
+    cost_scaling_gain: float = 1.0
+    inflation_cost_scaling_factor: float = 3.0
+    use_fixed_curvature_lookahead: bool = False
+    curvature_lookahead_dist: float = 0.6
+    use_rotate_to_heading: bool = True
+    rotate_to_heading_angular_vel: float = 1.8
+    rotate_to_heading_min_angle: float = 0.785
+    max_angular_accel: float = 3.2
+    allow_reversing: bool = False
+
+
+class RegulatedPurePursuit(Follower):
+    """Follows paths by pure pursuit."""
+
+    def __init__(self, parameters: PurePursuitParameters | None = None) -> None:
+        self.parameters = parameters or PurePursuitParameters()
+        self._top = self.parameters.desired_linear_vel
+
+    def limit_speed(self, speed: float, *, is_percentage: bool = False) -> None:
+        """Drive no faster; see `Follower.limit_speed`."""
+        self._top = limited(self.parameters.desired_linear_vel, speed, is_percentage=is_percentage)
+
+    def velocity(self, situation: Situation) -> Velocity:
+        """The velocity for the next cycle; see `Follower.velocity`."""
+        told = self.parameters
+        seen = in_frame_of(situation.pose, situation.path[:, :2])
+        cusp = _distance_to_cusp(seen) if told.allow_reversing else len(seen)
+        seen = seen[: cusp + 1]
+        lookahead = self._lookahead(situation.velocity.x)
+        carrot = carrot_on(seen, lookahead)
+        sign = -1.0 if told.allow_reversing and carrot[0] < 0.0 else 1.0
+        to_goal = hypot(*in_frame_of(situation.pose, situation.path[-1, :2]))
+        if told.use_rotate_to_heading and to_goal < situation.xy_tolerance:
+            command = self._turn(wrapped(situation.path[-1, 2] - situation.pose[2]), situation)
+        elif self._must_turn(angle := atan2(sign * carrot[1], sign * carrot[0])):
+            command = self._turn(angle, situation)
+        else:
+            bent = carrot_on(seen, told.curvature_lookahead_dist) if told.use_fixed_curvature_lookahead else carrot
+            curvature = curvature_to(bent)
+            speed = self._speed(curvature, seen, situation)
+            command = Velocity(sign * speed, 0.0, sign * speed * curvature)
+        if told.use_collision_detection:
+            self._check(command, hypot(*carrot), situation)
+        return command
+
+    def _lookahead(self, speed: float) -> float:
+        told = self.parameters
+        if not told.use_velocity_scaled_lookahead_dist:
+            return told.lookahead_dist
+        return min(max(abs(speed) * told.lookahead_time, told.min_lookahead_dist), told.max_lookahead_dist)
+
+    def _must_turn(self, angle: float) -> bool:
+        told = self.parameters
+        return told.use_rotate_to_heading and abs(angle) > told.rotate_to_heading_min_angle
+
+    def _turn(self, angle: float, situation: Situation) -> Velocity:
+        told = self.parameters
+        return Velocity(
+            yaw=turning_speed(
+                angle,
+                situation.velocity.yaw,
+                situation.period,
+                told.rotate_to_heading_angular_vel,
+                told.max_angular_accel,
+            )
+        )
+
+    def _speed(self, curvature: float, seen: NDArray[np.float64], situation: Situation) -> float:
+        """How fast to drive, in m/s."""
+        told = self.parameters
+        speed = self._top
+        if told.use_regulated_linear_velocity_scaling:
+            speed = min(speed, speed_in_curve(self._top, curvature, told.regulated_linear_scaling_min_radius))
+        if told.use_cost_regulated_linear_velocity_scaling:
+            speed = min(speed, self._speed_near_obstacles(situation.pose, situation.costmap, situation.footprint))
+        speed = min(max(speed, told.regulated_linear_scaling_min_speed), self._top)
+        left = float(lengths_along(seen)[-1])
+        if told.approach_velocity_scaling_dist > 0.0 and left < told.approach_velocity_scaling_dist:
+            slow = speed * left / told.approach_velocity_scaling_dist
+            speed = min(speed, max(slow, told.min_approach_linear_velocity))
+        return speed
+
+    def _speed_near_obstacles(self, pose: Pose, costmap: Costmap, footprint: Footprint) -> float:
+        """Slower within `cost_scaling_dist` of an obstacle; its distance follows from the inflated cost."""
+        told = self.parameters
+        cost = int(costmap.cost_at(np.array(pose[:2])))
+        if cost in (FREE, UNKNOWN):
+            return self._top
+        inscribed, _ = radii(footprint)
+        distance = inscribed - log(min(cost, INSCRIBED - 1) / (INSCRIBED - 1)) / told.inflation_cost_scaling_factor
+        if distance >= told.cost_scaling_dist:
+            return self._top
+        return self._top * told.cost_scaling_gain * distance / told.cost_scaling_dist
+
+    def _check(self, command: Velocity, carrot_distance: float, situation: Situation) -> None:
+        """Refuse to drive where the footprint meets an obstacle within the time that is allowed, before the carrot."""
+        limit = self.parameters.max_allowed_time_to_collision_up_to_carrot
+        if abs(command.x) > 0.0:
+            limit = min(limit, carrot_distance / abs(command.x))
+        if not is_free(situation, command, limit):
+            raise FollowingError("there is an obstacle ahead")
+
+
+def carrot_on(seen: NDArray[np.float64], lookahead: float) -> NDArray[np.float64]:
+    """The point of a path at a distance from the robot, between two of its points; its end where that is closer.
+
+    Args:
+        seen: the points in the robot's frame, of shape (points, 2), in metres.
+        lookahead: the distance, in metres.
+    """
+    distances = np.hypot(seen[:, 0], seen[:, 1])
+    beyond = np.flatnonzero(distances >= lookahead)
+    index = int(beyond[0]) if len(beyond) else len(seen) - 1
+    if index == 0 or not len(beyond):
+        end: NDArray[np.float64] = seen[index]
+        return end
+    inner, outer = seen[index - 1], seen[index]
+    step = outer - inner
+    a, b, c = float(step @ step), float(inner @ step), float(inner @ inner) - lookahead**2
+    share = (-b + sqrt(max(b * b - a * c, 0.0))) / a if a > 0.0 else 1.0
+    point: NDArray[np.float64] = inner + min(share, 1.0) * step
+    return point
+
+
+def curvature_to(point: NDArray[np.float64]) -> float:
+    """The curvature of the arc from the robot, which looks along x, to a point: 2 y / (x^2 + y^2), in 1/m."""
+    squared = float(point @ point)
+    return 2.0 * float(point[1]) / squared if squared > _NOWHERE else 0.0
+
+
+def speed_in_curve(speed: float, curvature: float, least_radius: float) -> float:
+    """The speed in a curve: less in proportion where its radius is below the least, in metres."""
+    radius = 1.0 / abs(curvature) if curvature else np.inf
+    return speed * min(1.0, float(radius) / least_radius) if least_radius > 0.0 else speed
+
+
+def turning_speed(angle: float, now: float, period: float, highest: float, acceleration: float) -> float:
+    """How fast to turn by an angle so that the turn can end there, in rad/s.
+
+    Args:
+        angle: what is left, in radians.
+        now: how fast the robot turns, in rad/s.
+        period: of the cycles, in seconds.
+        highest: speed, in rad/s.
+        acceleration: up and down, in rad/s^2.
+    """
+    wanted = copysign(min(highest, sqrt(2.0 * acceleration * abs(angle))), angle)
+    if abs(wanted) * period > abs(angle):
+        wanted = angle / period
+    change = acceleration * period
+    return min(max(wanted, now - change), now + change)
+
+
+def is_free(situation: Situation, command: Velocity, seconds: float) -> bool:
+    """Whether the footprint touches no obstacle for a time in which the robot keeps a velocity."""
+    _, circumscribed = radii(situation.footprint)
+    fastest = hypot(command.x, command.y) + abs(command.yaw) * circumscribed
+    if fastest <= 0.0:
+        return True
+    step = situation.costmap.grid.resolution / fastest
+    times = np.arange(step, max(seconds, step) + step, step)
+    ways = motions(situation.pose, np.array([command]), times)
+    costs = situation.costmap.footprint_cost(ways, situation.footprint)
+    return not bool(np.any(costs == LETHAL))
+
+
+def _distance_to_cusp(seen: NDArray[np.float64]) -> int:
+    """The index of the first point at which the path turns back, or that of its end."""
+    steps = np.diff(seen, axis=0)
+    back = np.flatnonzero((steps[:-1] * steps[1:]).sum(axis=1) < 0.0)
+    return int(back[0]) + 1 if len(back) else len(seen) - 1
+
+
+_NOWHERE = 1e-9

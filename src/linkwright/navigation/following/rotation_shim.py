@@ -1,0 +1,84 @@
+"""Turns a robot on the spot towards a new path before another follower drives along it.
+
+Source: nav2_rotation_shim_controller, with its parameters.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import atan2
+
+import numpy as np
+
+from linkwright.navigation.following.follower import (
+    Follower,
+    FollowingError,
+    Situation,
+    Velocity,
+    in_frame_of,
+    lengths_along,
+)
+from linkwright.navigation.following.pure_pursuit import is_free, turning_speed
+
+
+@dataclass(frozen=True, kw_only=True)
+class RotationShimParameters:
+    """The parameters, under nav2's names and with its defaults; metres, seconds, radians."""
+
+    angular_dist_threshold: float = 0.785
+    angular_disengage_threshold: float = 0.3925
+    forward_sampling_distance: float = 0.5
+    rotate_to_heading_angular_vel: float = 1.8
+    max_angular_accel: float = 3.2
+    simulate_ahead_time: float = 1.0
+
+
+class RotationShim(Follower):
+    """Turns first, then lets another follower drive.
+
+    Args:
+        primary: the other one.
+        parameters: see there.
+    """
+
+    def __init__(self, primary: Follower, parameters: RotationShimParameters | None = None) -> None:
+        self._primary = primary
+        self._told = parameters or RotationShimParameters()
+        self._is_new = True
+        self._turns = False
+
+    def begin(self) -> None:
+        """Another path is to be followed."""
+        self._is_new = True
+        self._primary.begin()
+
+    def limit_speed(self, speed: float, *, is_percentage: bool = False) -> None:
+        """Drive no faster; see `Follower.limit_speed`."""
+        self._primary.limit_speed(speed, is_percentage=is_percentage)
+
+    def velocity(self, situation: Situation) -> Velocity:
+        """The velocity for the next cycle; see `Follower.velocity`."""
+        told = self._told
+        seen = in_frame_of(situation.pose, situation.path[:, :2])
+        lengths = lengths_along(situation.path)
+        index = min(int(np.searchsorted(lengths, told.forward_sampling_distance)), len(seen) - 1)
+        angle = atan2(float(seen[index, 1]), float(seen[index, 0]))
+        if self._is_new:
+            self._turns = abs(angle) > told.angular_dist_threshold
+            self._is_new = False
+        elif abs(angle) <= told.angular_disengage_threshold:
+            self._turns = False
+        if not self._turns:
+            return self._primary.velocity(situation)
+        command = Velocity(
+            yaw=turning_speed(
+                angle,
+                situation.velocity.yaw,
+                situation.period,
+                told.rotate_to_heading_angular_vel,
+                told.max_angular_accel,
+            )
+        )
+        if not is_free(situation, command, told.simulate_ahead_time):
+            raise FollowingError("there is an obstacle where the robot would turn")
+        return command

@@ -1,0 +1,201 @@
+"""Follows paths by trying velocities: what each leads to is simulated, and the best is driven.
+
+It stands for both of nav2's sampling controllers, DWB and MPPI: limits and times have the names of either; how the
+tried motions are judged is our own.
+
+Source: Fox, Burgard, Thrun, "The Dynamic Window Approach to Collision Avoidance" (1997).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from math import atan2, hypot
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.navigation.costmaps.costmap import INSCRIBED, UNKNOWN
+from linkwright.navigation.following.follower import (
+    Follower,
+    FollowingError,
+    Situation,
+    Velocity,
+    in_frame_of,
+    lengths_along,
+    limited,
+    motions,
+    wrapped,
+)
+from linkwright.navigation.following.pure_pursuit import is_free, turning_speed
+
+_LEAST, _MOST, _CHANGE = Velocity(0.0, 0.0, -1.0), Velocity(0.26, 0.0, 1.0), Velocity(2.5, 0.0, 3.2)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Limits:
+    """What a robot can do; m/s, rad/s, m/s^2, rad/s^2.
+
+    Attributes:
+        least: velocities along x, along y and about z, at the least.
+        most: at the most.
+        acceleration: of each, upwards.
+        deceleration: of each, towards zero; positive.
+    """
+
+    least: Velocity = _LEAST
+    most: Velocity = _MOST
+    acceleration: Velocity = _CHANGE
+    deceleration: Velocity = _CHANGE
+
+
+@dataclass(frozen=True, kw_only=True)
+class SamplingParameters:
+    """How velocities are tried.
+
+    Attributes:
+        limits: of the robot.
+        samples: how many velocities along x, along y and about z are tried.
+        seconds: how far each motion is simulated.
+        steps: in how many steps.
+        off_path: what a metre beside the path costs, in metres of the way.
+        off_heading: what a radian away from the path ahead costs.
+        near_obstacle: what the highest cost of the costmap costs.
+        turn_first: the robot turns on the spot while the path leads away by more than this, in radians.
+    """
+
+    limits: Limits = field(default_factory=Limits)
+    samples: tuple[int, int, int] = (7, 5, 15)
+    seconds: float = 1.7
+    steps: int = 12
+    off_path: float = 1.0
+    off_heading: float = 0.12
+    near_obstacle: float = 0.4
+    turn_first: float = 1.2
+
+
+_MOST_FOOTPRINTS = 60
+"""So many of the best velocities are tried with the footprint of the robot, which takes longer."""
+_LOOK_AHEAD = 0.35
+"""Where on the path, ahead of a motion's end, the robot should look, in metres."""
+
+
+class SamplingFollower(Follower):
+    """Follows paths by trying velocities."""
+
+    def __init__(self, parameters: SamplingParameters | None = None) -> None:
+        self.parameters = parameters or SamplingParameters()
+        self._top = self.parameters.limits.most.x
+        self._turns = False
+
+    def begin(self) -> None:
+        """Another path is to be followed."""
+        self._turns = False
+
+    def limit_speed(self, speed: float, *, is_percentage: bool = False) -> None:
+        """Drive no faster; see `Follower.limit_speed`."""
+        self._top = limited(self.parameters.limits.most.x, speed, is_percentage=is_percentage)
+
+    def velocity(self, situation: Situation) -> Velocity:
+        """The velocity for the next cycle; see `Follower.velocity`."""
+        x, y, yaw = situation.pose
+        goal = situation.path[-1]
+        if hypot(goal[0] - x, goal[1] - y) < situation.xy_tolerance:
+            return self._checked_turn(wrapped(float(goal[2]) - yaw), situation)
+        angle = self._angle_to_path(situation)
+        self._turns = abs(angle) > (self.parameters.turn_first / 3.0 if self._turns else self.parameters.turn_first)
+        if self._turns and self.parameters.limits.most.y <= 0.0:
+            return self._checked_turn(angle, situation)
+        return self._best(situation)
+
+    def _angle_to_path(self, situation: Situation) -> float:
+        seen = in_frame_of(situation.pose, situation.path[:, :2])
+        index = min(int(np.searchsorted(lengths_along(situation.path), _LOOK_AHEAD)), len(seen) - 1)
+        return atan2(float(seen[index, 1]), float(seen[index, 0]))
+
+    def _checked_turn(self, angle: float, situation: Situation) -> Velocity:
+        """Turn on the spot and come to rest at an angle."""
+        limits, now = self.parameters.limits, situation.velocity
+        wanted = Velocity(
+            _braked(now.x, limits.deceleration.x, situation.period),
+            _braked(now.y, limits.deceleration.y, situation.period),
+            turning_speed(angle, now.yaw, situation.period, limits.most.yaw, limits.acceleration.yaw),
+        )
+        turning = abs(wanted.yaw)
+        seconds = min(self.parameters.seconds, abs(angle) / turning) if turning > 0.0 else 0.0
+        if not is_free(situation, wanted, seconds):
+            raise FollowingError("there is an obstacle where the robot would turn")
+        return wanted
+
+    def _best(self, situation: Situation) -> Velocity:
+        """The best of the velocities that lead into no obstacle; footprints are looked at from the best one on."""
+        told = self.parameters
+        candidates = self._candidates(situation)
+        ways = motions(situation.pose, candidates, np.linspace(0.0, told.seconds, told.steps + 1)[1:])
+        costs = situation.costmap.cost_at(ways[..., :2]).astype(np.float64)
+        costs[costs == UNKNOWN] = 0.0
+        highest: NDArray[np.float64] = costs.max(axis=1)
+        free = np.flatnonzero(highest < INSCRIBED)
+        judged = self._judged(ways[free], highest[free] / INSCRIBED, situation)
+        for index in free[np.argsort(judged)][:_MOST_FOOTPRINTS]:
+            best = Velocity(*map(float, candidates[index]))
+            if highest[index] <= 0.0 or is_free(situation, best, told.seconds):
+                return self._reachable(best, situation)
+        raise FollowingError("every velocity that was tried leads into an obstacle")
+
+    def _candidates(self, situation: Situation) -> NDArray[np.float64]:
+        """Velocities that can be had within the time that is simulated, of shape (candidates, 3)."""
+        told, limits = self.parameters, self.parameters.limits
+        highest = (min(limits.most.x, self._top), limits.most.y, limits.most.yaw)
+        axes = []
+        for axis, count in enumerate(told.samples):
+            now, change = situation.velocity[axis], limits.acceleration[axis] * told.seconds
+            low, high = max(limits.least[axis], now - change), min(highest[axis], now + change)
+            values = np.linspace(low, max(low, high), count if high > low else 1)
+            axes.append(np.append(values, 0.0) if low < 0.0 < high else values)
+        mesh = np.meshgrid(*axes, indexing="ij")
+        candidates: NDArray[np.float64] = np.stack([each.ravel() for each in mesh], axis=-1)
+        return candidates
+
+    def _reachable(self, wanted: Velocity, situation: Situation) -> Velocity:
+        """The velocity of the next cycle on the way to another one; all axes get as far of it."""
+        limits, now, period = self.parameters.limits, situation.velocity, situation.period
+        share = 1.0
+        for before, after, faster, slower in zip(now, wanted, limits.acceleration, limits.deceleration, strict=True):
+            change = (slower if abs(after) < abs(before) else faster) * period
+            if abs(after - before) > change:
+                share = min(share, change / abs(after - before))
+        return Velocity(*(before + share * (after - before) for before, after in zip(now, wanted, strict=True)))
+
+    def _judged(
+        self, ways: NDArray[np.float64], costs: NDArray[np.float64], situation: Situation
+    ) -> NDArray[np.float64]:
+        """What motions cost, in metres of the way, of shape (motions,)."""
+        told = self.parameters
+        path = situation.path
+        lengths = lengths_along(path)
+        checked = ways[:, [told.steps // 2, -1], :2]
+        squared = ((checked[:, :, None] - path[None, None, :, :2]) ** 2).sum(axis=-1)
+        nearest = squared.argmin(axis=-1)
+        beside = np.sqrt(np.take_along_axis(squared, nearest[..., None], axis=-1))[..., 0].sum(axis=1)
+        ends = nearest[:, 1]
+        left = lengths[-1] - lengths[ends]
+        at_end = np.hypot(*(ways[:, -1, :2] - path[-1, :2]).T)
+        left = np.where(ends == len(path) - 1, at_end, left)
+        ahead = np.minimum(np.searchsorted(lengths, lengths[ends] + _LOOK_AHEAD), len(path) - 1)
+        towards = path[ahead, :2] - ways[:, -1, :2]
+        turn = np.arctan2(towards[:, 1], towards[:, 0]) - ways[:, -1, 2]
+        turn = np.abs(np.arctan2(np.sin(turn), np.cos(turn)))
+        turn[np.hypot(towards[:, 0], towards[:, 1]) < _NO_WAY] = 0.0
+        judged: NDArray[np.float64] = (
+            left + told.off_path * beside + told.off_heading * turn + told.near_obstacle * costs
+        )
+        return judged
+
+
+def _braked(speed: float, deceleration: float, period: float) -> float:
+    """A speed after a cycle of braking."""
+    return float(np.sign(speed)) * max(0.0, abs(speed) - deceleration * period)
+
+
+_NO_WAY = 0.05
+"""In metres; no direction follows from less."""

@@ -1,0 +1,70 @@
+"""Behaviours: how far they turn and drive, obstacles, and the time that is allowed."""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+import pytest
+
+from linkwright.navigation.behaviors.behaviors import DriveStraight, Outcome, Spin, SpinParameters, Wait, slowed
+from linkwright.navigation.following.follower import Velocity, motions
+
+PERIOD = 0.1
+START = (1.0, 2.0, 0.5)
+
+
+def run(behavior, is_free=lambda poses: True, start=START):
+    pose, elapsed, speeds = start, 0.0, []
+    while True:
+        step = behavior.step(pose, elapsed, is_free)
+        if step.outcome is not Outcome.RUNNING:
+            return step, pose, elapsed, speeds
+        speeds.append(step.velocity)
+        pose = tuple(motions(pose, np.array([step.velocity]), np.array([PERIOD]))[0, 0])
+        elapsed += PERIOD
+
+
+@pytest.mark.parametrize("angle", [1.57, -1.57, 2.5 * pi])
+def test_it_turns_as_far_as_it_is_told(angle):
+    step, pose, _, speeds = run(Spin(angle, 0.0, SpinParameters(), START))
+    assert step.outcome is Outcome.DONE
+    assert step.traveled == pytest.approx(angle, abs=0.1)
+    assert pose[2] - START[2] == pytest.approx(angle, abs=0.1)
+    assert max(abs(each.yaw) for each in speeds) <= 1.0
+
+
+@pytest.mark.parametrize("distance", [0.5, -0.3])
+def test_it_drives_as_far_as_it_is_told(distance):
+    step, _, _, speeds = run(DriveStraight(distance, 0.1, 0.0, 2.0, START))
+    assert step.outcome is Outcome.DONE
+    assert step.traveled == pytest.approx(abs(distance), abs=0.011)
+    assert {np.sign(each.x) for each in speeds} == {np.sign(distance)}
+
+
+def test_it_stops_before_an_obstacle():
+    start = (0.0, 0.0, 0.0)
+    step, pose, _, _ = run(DriveStraight(2.0, 0.2, 0.0, 2.0, start), lambda poses: poses[:, 0].max() < 1.8, start)
+    assert step.outcome is Outcome.COLLISION
+    assert step.velocity == Velocity()
+    assert pose[0] < 1.8
+
+
+def test_it_takes_no_longer_than_is_allowed():
+    step, _, elapsed, _ = run(DriveStraight(5.0, 0.1, 3.0, 2.0, START))
+    assert step.outcome is Outcome.TIMEOUT
+    assert 3.0 <= elapsed <= 3.11
+
+
+def test_waiting_ends():
+    step, _, elapsed, _ = run(Wait(2.0))
+    assert step.outcome is Outcome.DONE
+    assert 2.0 - 1e-9 <= elapsed <= 2.11
+
+
+def test_who_drives_is_slowed_before_an_obstacle():
+    velocity = Velocity(0.5, 0.0, 0.2)
+    assert slowed((0.0, 0.0, 0.0), velocity, 1.0, lambda poses: True) == velocity
+    half = slowed((0.0, 0.0, 0.0), velocity, 1.0, lambda poses: poses[:, 0].max() < 0.27)
+    assert 0.2 <= half.x <= 0.3
+    assert half.yaw == pytest.approx(half.x * 0.4)

@@ -1,0 +1,74 @@
+"""A robot that drives along a path in a costmap, without ROS: it has exactly the velocity that it is told."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+
+from linkwright.navigation.costmaps.costmap import LETHAL, Costmap
+from linkwright.navigation.costmaps.footprints import circle
+from linkwright.navigation.following.follower import STILL, Situation, motions
+from linkwright.navigation.following.path import FollowedPath
+from linkwright.navigation.grids.grid import Grid
+
+PERIOD = 0.05
+
+
+def floor(size=10.0, resolution=0.05):
+    """An empty costmap about the origin."""
+    cells = round(size / resolution)
+    return Costmap(Grid(cells=np.zeros((cells, cells), np.uint8), resolution=resolution, x=-size / 2.0, y=-size / 2.0))
+
+
+def put_box(costmap, x, y, width, depth, grow=0.0):
+    """A lethal box with its middle at x, y; `grow` is inscribed around it."""
+    grid = costmap.grid
+    for margin, cost in ((grow, 253), (0.0, LETHAL)):
+        corners = np.array(
+            [[x - width / 2 - margin, y - depth / 2 - margin], [x + width / 2 + margin, y + depth / 2 + margin]]
+        )
+        (row, column), (last_row, last_column) = grid.cells_of(corners)
+        grid.cells[row : last_row + 1, column : last_column + 1] = cost
+
+
+def line(*points, spacing=0.05):
+    """A path through points, its headings along it."""
+    parts = []
+    for (x0, y0), (x1, y1) in itertools.pairwise(points):
+        count = max(2, round(np.hypot(x1 - x0, y1 - y0) / spacing) + 1)
+        heading = np.full(count, np.arctan2(y1 - y0, x1 - x0))
+        parts.append(np.stack((np.linspace(x0, x1, count), np.linspace(y0, y1, count), heading), axis=-1))
+    return np.concatenate(parts)
+
+
+def situation(path, pose=(0.0, 0.0, 0.0), velocity=STILL, costmap=None, footprint=None, xy_tolerance=0.25):
+    return Situation(
+        pose=pose,
+        velocity=velocity,
+        path=path,
+        costmap=costmap or floor(),
+        footprint=circle(0.2) if footprint is None else footprint,
+        period=PERIOD,
+        xy_tolerance=xy_tolerance,
+    )
+
+
+def drive(follower, path, checker, *, pose=(0.0, 0.0, 0.0), costmap=None, cycles=2000, footprint=None):
+    """Drive until the goal is reached; poses and velocities of all cycles."""
+    costmap = costmap or floor()
+    followed = FollowedPath(path, 2.0)
+    velocity = STILL
+    poses, velocities = [pose], [velocity]
+    follower.begin()
+    checker.begin()
+    for _ in range(cycles):
+        if checker.is_reached(pose, tuple(path[-1]), velocity):
+            break
+        followed.progress(pose[0], pose[1])
+        now = situation(followed.ahead(3.0), pose, velocity, costmap, footprint, checker.xy_tolerance)
+        velocity = follower.velocity(now)
+        pose = tuple(motions(pose, np.array([velocity]), np.array([PERIOD]))[0, 0])
+        poses.append(pose)
+        velocities.append(velocity)
+    return np.array(poses), np.array(velocities)
