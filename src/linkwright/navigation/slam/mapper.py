@@ -1,0 +1,313 @@
+"""A map and where the robot is in it, from laser scans and odometry.
+
+As in Karto, which slam_toolbox uses, some of the scans become nodes of a graph of poses: each is matched against the
+last ones, linked with those of earlier passes near by, and tried against those further away, to close a loop.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from linkwright.navigation.slam.contradiction import contradiction
+from linkwright.navigation.slam.matching import Match, match
+from linkwright.navigation.slam.occupancy import OccupancyMap
+from linkwright.navigation.slam.pose_graph import PoseGraph
+from linkwright.navigation.slam.poses import Floats, between, compose, wrapped
+from linkwright.navigation.slam.reference import Reference
+from linkwright.navigation.slam.scan import PlanarScan
+from linkwright.navigation.slam.search import Search
+from linkwright.navigation.slam.settings import MapperSettings
+from linkwright.navigation.slam.steps import Steps
+
+_TOLERANCE = 0.8
+"""A scan is taken a little before the minimum travel distance is reached, for odometry may be wrong."""
+_FEWEST_ON_WALLS = 0.25
+_LEAST_INLIERS = 0.4
+"""The parts of the points that must lie on what was seen before, for any match and for one with an earlier pass."""
+_MOST_CONTRADICTION = 0.15
+_WELL_KNOWN = 0.01
+"""The variance of a position below which a link with an earlier pass leaves no loop open, metres squared."""
+_LOOPS_TRIED = 3
+_REDRAWN = 0.2
+"""A scan is drawn anew where its pose moved by more than this part of a cell, or its points at 5 m did."""
+_FAR_POINT = 5.0
+_NOTHING = 1e-3
+"""The information about what was not measured: an inverse needs some."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Outcome:
+    """What came of a scan.
+
+    Attributes:
+        pose: of the robot in the map, of shape (3,).
+        covariance: of it, of shape (3, 3), in the frame of the robot.
+        matched: whether the scan told where the robot is; else that is odometry's.
+        response: of the match, 0 to 1.
+        links: how many earlier passes it was linked with.
+        loops: how many loops were closed.
+    """
+
+    pose: Floats
+    covariance: Floats
+    matched: bool
+    response: float
+    links: int = 0
+    loops: int = 0
+
+
+class Mapper:
+    """See the module.
+
+    Args:
+        settings: how it works.
+        occupancy: the map that is drawn.
+
+    Attributes:
+        settings: how it works.
+        occupancy: the map that is drawn.
+        graph: the poses of the scans that were taken, and what was measured between them.
+        scans: these scans.
+        odometry: where odometry said that the robot was then, (3,) each.
+    """
+
+    def __init__(self, settings: MapperSettings, occupancy: OccupancyMap) -> None:
+        self.settings = settings
+        self.occupancy = occupancy
+        self.graph = PoseGraph()
+        self.scans: list[PlanarScan] = []
+        self.odometry: list[Floats] = []
+        self._last: tuple[Floats, int] | None = None
+        self._in_map: Floats | None = None
+        self._session = 0
+
+    def begin_session(self, pose: Floats | None) -> None:
+        """Go on with the map from elsewhere: the next scan is searched around a pose of shape (3,), or the first one's.
+
+        Scans before do not count as the last ones any more.
+        """
+        self._session = len(self.scans)
+        self._last = None
+        self._in_map = None
+        if pose is not None:
+            self._in_map = pose.copy()
+        elif len(self.graph.poses):
+            self._in_map = self.graph.poses[0].copy()
+
+    def wants(self, odometry: Floats, stamp_ns: int) -> bool:
+        """Whether a scan at a pose of odometry is taken: the robot went far enough since the last one that was."""
+        if self._last is None:
+            return True
+        pose, before_ns = self._last
+        if stamp_ns - before_ns < self.settings.minimum_time_interval * 1e9:
+            return False
+        moved = between(pose, odometry)
+        return bool(
+            np.hypot(moved[0], moved[1]) >= _TOLERANCE * self.settings.minimum_travel_distance
+            or abs(moved[2]) >= self.settings.minimum_travel_heading
+        )
+
+    def expected(self, odometry: Floats) -> Floats:
+        """Where the robot is in the map by odometry since the last scan that was taken, of shape (3,)."""
+        if self._in_map is None:
+            return odometry
+        return self._in_map if self._last is None else compose(self._in_map, between(self._last[0], odometry))
+
+    def process(self, scan: PlanarScan, odometry: Floats) -> Steps[Outcome]:
+        """Put a scan into the map, in steps.
+
+        Args:
+            scan: it.
+            odometry: the pose of the robot that odometry gives, of shape (3,).
+        """
+        searched = self._last is None and self._in_map is not None
+        guess, moved = self.expected(odometry), None
+        if self._last is not None:
+            moved = between(self._last[0], odometry)
+        self._last = odometry, scan.stamp_ns
+        if searched and self.scans:
+            return (yield from self._join(scan, guess, odometry))
+        uncertain = _odometric_information(moved if moved is not None else np.zeros(3))
+        found = None
+        buffer = self._buffer(guess)
+        if moved is not None and buffer and self.settings.use_scan_matching:
+            found = yield from self._match(buffer, scan, guess, self.settings.matching)
+        pose = guess if found is None else found.pose
+        number = self._add(scan, odometry, pose)
+        information = uncertain if found is None else uncertain + found.information
+        if moved is not None:
+            self.graph.add_edge(number - 1, number, between(self.graph.poses[number - 1], pose), information)
+        links = loops = 0
+        if self.settings.use_scan_matching and moved is not None:
+            links, loops = yield from self._link(number)
+        if links or loops:
+            yield from self.graph.solve()
+        self._in_map = self.graph.poses[number].copy()
+        yield from self.redraw()
+        return _outcome(self._in_map, information, found, links, loops)
+
+    def localize(self, scan: PlanarScan, odometry: Floats) -> Steps[Outcome]:
+        """Find out where a scan was taken, in steps; the map stays as it is. Arguments are those of `process`."""
+        searched = self._last is None
+        guess = self.expected(odometry)
+        moved = np.zeros(3) if self._last is None else between(self._last[0], odometry)
+        self._last = odometry, scan.stamp_ns
+        window = self.settings.loop if searched else self.settings.matching
+        found = yield from self._match(self._around(guess), scan, guess, window)
+        self._in_map = guess if found is None else found.pose
+        information = _odometric_information(moved)
+        if found is not None:
+            information = information + found.information
+        return _outcome(self._in_map, information, found)
+
+    def redraw(self) -> Steps[None]:
+        """Draw the scans that are not in the map, or are where they are not any more; a step for each."""
+        tolerance = _REDRAWN * self.occupancy.resolution
+        for number, scan in enumerate(self.scans):
+            pose, drawn = self.graph.poses[number], self.occupancy.drawn_at(number)
+            if drawn is not None:
+                away = between(drawn, pose)
+                if np.hypot(away[0], away[1]) + _FAR_POINT * abs(away[2]) < tolerance:
+                    continue
+            self.occupancy.draw(number, scan, pose)
+            yield
+
+    def _add(self, scan: PlanarScan, odometry: Floats, pose: Floats) -> int:
+        self.scans.append(scan)
+        self.odometry.append(odometry)
+        return self.graph.add_node(pose)
+
+    def _join(self, scan: PlanarScan, guess: Floats, odometry: Floats) -> Steps[Outcome]:
+        """The first scan of another session: it is searched among those of earlier ones."""
+        nodes = self._around(guess)
+        found = yield from self._match(nodes, scan, guess, self.settings.loop)
+        pose = guess if found is None else found.pose
+        number = self._add(scan, odometry, pose)
+        information = _odometric_information(np.zeros(3))
+        if found is not None:
+            information = information + found.information
+        nearest = self._nearest(nodes, pose) if nodes else number - 1
+        self.graph.add_edge(nearest, number, between(self.graph.poses[nearest], pose), information)
+        self._in_map = pose.copy()
+        yield from self.redraw()
+        return _outcome(pose, information, found)
+
+    def _buffer(self, pose: Floats) -> list[int]:
+        """The last scans of this session, as far as they are near."""
+        begin = max(self._session, len(self.scans) - self.settings.scan_buffer_size)
+        near = self._distances(pose) <= self.settings.scan_buffer_maximum_scan_distance
+        return [number for number in range(begin, len(self.scans)) if near[number]]
+
+    def _around(self, pose: Floats) -> list[int]:
+        """The nearest scans of all."""
+        order = np.argsort(self._distances(pose), kind="stable")
+        return [int(each) for each in order[: 2 * self.settings.scan_buffer_size]]
+
+    def _distances(self, pose: Floats) -> Floats:
+        away = self.graph.poses[:, :2] - pose[:2]
+        result: Floats = np.hypot(away[:, 0], away[:, 1])
+        return result
+
+    def _nearest(self, nodes: list[int], pose: Floats) -> int:
+        return nodes[int(np.argmin(self._distances(pose)[nodes]))]
+
+    def _match(self, nodes: list[int], scan: PlanarScan, guess: Floats, search: Search) -> Steps[Match | None]:
+        """Match against the scans of some nodes; None where that tells nothing."""
+        reference = Reference([self.scans[each] for each in nodes], self.graph.poses[nodes])
+        yield
+        found = yield from match(reference, scan, guess, search, expand=self.settings.use_response_expansion)
+        if found is None or found.response < self.settings.link_match_minimum_response_fine:
+            return None
+        away = np.abs(found.pose - guess)[:2].max()
+        return found if found.inliers > _FEWEST_ON_WALLS and away <= search.dimension else None
+
+    def _link(self, number: int) -> Steps[tuple[int, int]]:
+        """Link a new node with those of earlier passes, and close loops.
+
+        Returns:
+            How many links there are, and how many loops.
+        """
+        settings, links, loops = self.settings, 0, 0
+        linked: set[int] = set()
+        for chain in self._chains(number, settings.link_scan_maximum_distance):
+            least = settings.link_match_minimum_response_fine
+            found = yield from self._connect(number, chain, settings.matching, least)
+            if found is not None:
+                links += 1
+                if _worst_variance(found) < _WELL_KNOWN:  # along a corridor a loop may be open all the same
+                    linked.update(chain)
+        if not settings.do_loop_closing:
+            return links, 0
+        candidates = [
+            chain
+            for chain in self._chains(number, settings.loop_search_maximum_distance)
+            if len(chain) >= settings.loop_match_minimum_chain_size and linked.isdisjoint(chain)
+        ]
+        for chain in candidates[:_LOOPS_TRIED]:
+            if (yield from self._close(number, chain)):
+                loops += 1
+        return links, loops
+
+    def _chains(self, number: int, distance: float) -> list[list[int]]:
+        """Nodes in a row that are near a node and not of its last ones; the nearest chain comes first."""
+        away = self._distances(self.graph.poses[number])
+        last = number - self.settings.scan_buffer_size
+        chains: list[list[int]] = []
+        for each in np.flatnonzero(away[: max(last, 0)] <= distance).tolist():
+            if chains and chains[-1][-1] == each - 1:
+                chains[-1].append(each)
+            else:
+                chains.append([each])
+        return sorted(chains, key=lambda chain: (float(away[chain].min()), chain[0]))
+
+    def _close(self, number: int, chain: list[int]) -> Steps[bool]:
+        """Try to close a loop with a chain."""
+        settings = self.settings
+        guess = self.graph.poses[number]
+        found = yield from self._match(chain, self.scans[number], guess, settings.loop)
+        if found is None or found.response < settings.loop_match_minimum_response_coarse:
+            return False
+        if _worst_variance(found) > settings.loop_match_maximum_variance_coarse:
+            return False
+        least = settings.loop_match_minimum_response_fine
+        return (yield from self._connect(number, chain, settings.matching, least, around=found.pose)) is not None
+
+    def _connect(
+        self, number: int, chain: list[int], search: Search, least: float, *, around: Floats | None = None
+    ) -> Steps[Match | None]:
+        """Match a node against a chain, and add an edge if that is beyond doubt; None if it is not."""
+        scan = self.scans[number]
+        guess = self.graph.poses[number] if around is None else around
+        nodes = sorted(chain, key=lambda each: float(self._distances(guess)[each]))[: self.settings.scan_buffer_size]
+        found = yield from self._match(nodes, scan, guess, search)
+        if found is None or found.response < least or found.inliers < _LEAST_INLIERS:
+            return None
+        nearest = self._nearest(nodes, found.pose)
+        pose = self.graph.poses[nearest]
+        if contradiction(self.scans[nearest], pose, scan, found.pose) > _MOST_CONTRADICTION:
+            return None
+        information = found.information + _NOTHING * np.eye(3)
+        self.graph.add_edge(nearest, number, between(pose, found.pose), information, doubtful=True)
+        return found
+
+
+def _worst_variance(found: Match) -> float:
+    """Of the position, metres squared."""
+    return float(np.linalg.inv(found.information + _NOTHING * np.eye(3)).diagonal()[:2].max())
+
+
+def _outcome(pose: Floats, information: Floats, found: Match | None, links: int = 0, loops: int = 0) -> Outcome:
+    covariance: Floats = np.asarray(np.linalg.inv(information), dtype=np.float64)
+    response = 0.0 if found is None else found.response
+    return Outcome(pose.copy(), covariance, found is not None, response, links, loops)
+
+
+def _odometric_information(moved: Floats) -> Floats:
+    """The inverse of the covariance that is taken for odometry over a way of shape (3,): about a tenth of it."""
+    turned = abs(float(wrapped(moved)[2]))
+    along = 0.03 + 0.1 * float(np.hypot(moved[0], moved[1])) + 0.03 * turned
+    around = 0.02 + 0.1 * turned + 0.05 * float(np.hypot(moved[0], moved[1]))
+    result: Floats = np.diag((along**-2, along**-2, around**-2))
+    return result

@@ -1,0 +1,141 @@
+"""The occupancy grid that scans make: how often rays passed a cell, and how often they ended in it.
+
+Source: Karto's occupancy grid, with its parameters ``min_pass_through`` and ``occupancy_threshold``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.navigation.grids.grid import FREE, OCCUPIED, UNKNOWN, Grid
+from linkwright.navigation.slam.poses import Floats, placed
+from linkwright.navigation.slam.scan import PlanarScan
+
+_MARGIN = 64
+"""By how many cells the counts grow besides what is needed."""
+
+Cells = NDArray[np.int64]
+
+
+@dataclass(slots=True, eq=False)
+class _Trace:
+    """What one scan counts: cells (row, column), each once, and how often it was passed and hit."""
+
+    pose: Floats
+    cells: Cells
+    passes: NDArray[np.int32]
+    hits: NDArray[np.int32]
+
+
+class OccupancyMap:
+    """Counts of many scans. A scan whose pose is corrected is taken out and put in anew, and no other is touched.
+
+    Args:
+        resolution: side of a cell, metres.
+        min_pass_through: a cell is known where more rays than this came to it.
+        occupancy_threshold: a cell is occupied where a larger part of them than this ended in it.
+
+    Attributes:
+        resolution: side of a cell, metres.
+    """
+
+    def __init__(self, resolution: float, min_pass_through: int = 2, occupancy_threshold: float = 0.1) -> None:
+        self.resolution = resolution
+        self._min_pass_through = min_pass_through
+        self._threshold = occupancy_threshold
+        self._corner: Cells = np.zeros(2, dtype=np.int64)
+        self._passes: NDArray[np.int32] = np.zeros((0, 0), dtype=np.int32)
+        self._hits: NDArray[np.int32] = np.zeros((0, 0), dtype=np.int32)
+        self._traces: dict[int, _Trace] = {}
+
+    def draw(self, number: int, scan: PlanarScan, pose: Floats) -> None:
+        """Put a scan in, seen from a pose of the robot of shape (3,); one of that number that is in it goes."""
+        self.erase(number)
+        trace = self._traced(scan, pose)
+        if not len(trace.cells):
+            return
+        self._grow(trace.cells)
+        self._traces[number] = trace
+        self._count(trace, 1)
+
+    def erase(self, number: int) -> None:
+        """Take a scan out, if it is in."""
+        trace = self._traces.pop(number, None)
+        if trace is not None:
+            self._count(trace, -1)
+
+    def drawn_at(self, number: int) -> Floats | None:
+        """The pose from which a scan was put in; None where it is not."""
+        trace = self._traces.get(number)
+        return None if trace is None else trace.pose
+
+    def grid(self) -> Grid | None:
+        """The map, as small as it can be, of int8: FREE, OCCUPIED, UNKNOWN; None while nothing is known."""
+        seen = self._passes > 0
+        rows, columns = np.flatnonzero(seen.any(axis=1)), np.flatnonzero(seen.any(axis=0))
+        if not len(rows):
+            return None
+        part = np.s_[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
+        passes, hits = self._passes[part], self._hits[part]
+        cells = np.full(passes.shape, UNKNOWN, dtype=np.int8)
+        known = passes > self._min_pass_through
+        cells[known] = FREE
+        cells[known & (hits > self._threshold * passes)] = OCCUPIED
+        y, x = (int(self._corner[0] + rows[0]), int(self._corner[1] + columns[0]))
+        return Grid(cells=cells, resolution=self.resolution, x=x * self.resolution, y=y * self.resolution)
+
+    def _count(self, trace: _Trace, sign: int) -> None:
+        rows, columns = (trace.cells - self._corner).T
+        self._passes[rows, columns] += sign * trace.passes
+        self._hits[rows, columns] += sign * trace.hits
+
+    def _grow(self, cells: Cells) -> None:
+        low, high = cells.min(axis=0), cells.max(axis=0) + 1
+        size = np.array(self._passes.shape)
+        if size.all() and (low >= self._corner).all() and (high <= self._corner + size).all():
+            return
+        if size.all():
+            low, high = np.minimum(low, self._corner), np.maximum(high, self._corner + size)
+        low, high = low - _MARGIN, high + _MARGIN
+        before = self._corner - low
+        for name in ("_passes", "_hits"):
+            larger = np.zeros(tuple(high - low), dtype=np.int32)
+            larger[before[0] : before[0] + size[0], before[1] : before[1] + size[1]] = getattr(self, name)
+            setattr(self, name, larger)
+        self._corner = low
+
+    def _traced(self, scan: PlanarScan, pose: Floats) -> _Trace:
+        """Walk along all rays at once."""
+        ends = placed(pose, np.concatenate((scan.points, scan.passed)))
+        origin = placed(pose, scan.origin[None])[0] / self.resolution
+        away = ends / self.resolution - origin
+        counts = np.maximum(np.ceil(np.abs(away).max(axis=1)).astype(np.int64), 1)
+        first = np.cumsum(counts) - counts
+        ray = np.repeat(np.arange(len(ends)), counts)
+        part = (np.arange(len(ray)) - first[ray]) / counts[ray]
+        walked = np.floor(origin + away[ray] * part[:, None]).astype(np.int64)[:, ::-1]
+        last = np.floor(ends / self.resolution).astype(np.int64)[:, ::-1]
+        # A ray passes each cell once, and the last cell is counted with the end.
+        same = np.zeros(len(walked), dtype=bool)
+        same[1:] = (walked[1:] == walked[:-1]).all(axis=1) & (ray[1:] == ray[:-1])
+        walked = walked[~same & (walked != last[ray]).any(axis=1)]
+        hit = last[: len(scan.points)]
+        every = np.concatenate((walked, last))
+        if not len(every):
+            return _Trace(pose.copy(), np.zeros((0, 2), np.int64), np.zeros(0, np.int32), np.zeros(0, np.int32))
+        low = every.min(axis=0)
+        height, width = every.max(axis=0) - low + 1
+
+        def counts_of(cells: Cells) -> NDArray[np.int64]:
+            flat = (cells[:, 0] - low[0]) * width + cells[:, 1] - low[1]
+            result: NDArray[np.int64] = np.bincount(flat, minlength=int(height * width))
+            return result
+
+        passes = counts_of(every)
+        touched = np.flatnonzero(passes)
+        cells = np.column_stack((touched // width + low[0], touched % width + low[1]))
+        hits = counts_of(hit)[touched] if len(hit) else np.zeros(len(touched), np.int64)
+        return _Trace(pose.copy(), cells, passes[touched].astype(np.int32), hits.astype(np.int32))

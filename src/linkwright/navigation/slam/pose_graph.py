@@ -1,0 +1,131 @@
+"""A graph of poses in the plane, and the poses that fit all its edges best."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from linkwright.navigation.grids.library import load_scipy
+from linkwright.navigation.slam.poses import Floats, wrapped
+from linkwright.navigation.slam.steps import Steps
+
+_ROUNDS = 20
+_CONVERGED = 1e-5
+_KERNEL = 9.0
+"""Edges that may be wrong count less where their error is more than this, in squared standard deviations."""
+
+
+@dataclass(slots=True)
+class PoseGraph:
+    """Poses, and what was measured between them.
+
+    The first pose stays where it is. Solved by Gauss and Newton on sparse matrices (Grisetti et al., "A Tutorial on
+    Graph-Based SLAM", 2010). Edges of loops may be wrong: once all edges have been followed, they have Cauchy's kernel.
+
+    Attributes:
+        poses: of the nodes, of shape (n, 3).
+        first: from which node each edge goes.
+        second: to which one.
+        measured: the pose of the second node in the first, (3,) each.
+        information: the inverse of its covariance in the frame of the second node, (3, 3) each.
+        doubtful: whether the edge may be wrong.
+    """
+
+    poses: Floats = field(default_factory=lambda: np.zeros((0, 3)))
+    first: list[int] = field(default_factory=list)
+    second: list[int] = field(default_factory=list)
+    measured: list[Floats] = field(default_factory=list)
+    information: list[Floats] = field(default_factory=list)
+    doubtful: list[bool] = field(default_factory=list)
+
+    def add_node(self, pose: Floats) -> int:
+        """Add a node at a pose of shape (3,).
+
+        Returns:
+            Its number.
+        """
+        self.poses = np.concatenate((self.poses, pose[None]))
+        return len(self.poses) - 1
+
+    def add_edge(
+        self, first: int, second: int, measured: Floats, information: Floats, *, doubtful: bool = False
+    ) -> None:
+        """Add what was measured between two nodes; see the attributes."""
+        self.first.append(first)
+        self.second.append(second)
+        self.measured.append(measured)
+        self.information.append(information)
+        self.doubtful.append(doubtful)
+
+    def solve(self) -> Steps[float]:
+        """Move the nodes to where all edges fit best, in steps.
+
+        Returns:
+            The furthest that a node moved, metres.
+        """
+        before = self.poses.copy()
+        if self.first and len(self.poses) > 1:
+            for robust in (False, True) if any(self.doubtful) else (False,):
+                for _ in range(_ROUNDS):
+                    step = self._step(robust=robust)
+                    yield
+                    if step < _CONVERGED:
+                        break
+        return float(np.hypot(*(self.poses - before)[:, :2].T).max(initial=0.0))
+
+    def errors(self) -> Floats:
+        """How far each edge is from what was measured, in squared standard deviations, of shape (m,)."""
+        if not self.first:
+            return np.zeros(0)
+        residuals, _, _ = self._linearized()
+        result: Floats = np.einsum("ni,nij,nj->n", residuals, np.array(self.information), residuals)
+        return result
+
+    def _step(self, *, robust: bool) -> float:
+        residuals, of_first, of_second = self._linearized()
+        information = np.array(self.information)
+        if robust:
+            errors = np.einsum("ni,nij,nj->n", residuals, information, residuals)
+            weights = np.where(self.doubtful, 1 / (1 + errors / _KERNEL), 1.0)
+            information = information * weights[:, None, None]
+        sparse, linalg = load_scipy("sparse"), load_scipy("sparse.linalg")
+        size = 3 * len(self.poses)
+        edges, within = np.arange(3 * len(self.first)), np.arange(3)
+        rows = np.broadcast_to(edges.reshape(-1, 3, 1), (len(self.first), 3, 3)).ravel()
+
+        def block(values: Floats, nodes: list[int]) -> object:
+            columns = np.broadcast_to((3 * np.array(nodes)[:, None] + within)[:, None, :], values.shape)
+            return sparse.csr_matrix((values.ravel(), (rows, columns.ravel())), shape=(len(edges), size))
+
+        jacobian = block(of_first, self.first) + block(of_second, self.second)  # type: ignore[operator]
+        columns = np.broadcast_to(edges.reshape(-1, 1, 3), information.shape).ravel()
+        weight = sparse.csr_matrix((information.ravel(), (rows, columns)), shape=(len(edges), len(edges)))
+        weighted = jacobian.T @ weight
+        matrix = (weighted @ jacobian)[3:, 3:] + 1e-9 * sparse.identity(size - 3)
+        step: Floats = np.asarray(linalg.spsolve(matrix.tocsc(), -(weighted @ residuals.ravel())[3:])).reshape(-1, 3)
+        self.poses[1:] += step
+        self.poses[:, 2] = wrapped(self.poses[:, 2])
+        return float(np.abs(step).max())
+
+    def _linearized(self) -> tuple[Floats, Floats, Floats]:
+        """For each edge what is left, (m, 3), and how it changes with the first and with the second pose, (m, 3, 3)."""
+        start, end = self.poses[self.first], self.poses[self.second]
+        measured = np.array(self.measured)
+        yaw = start[:, 2] + measured[:, 2]
+        cos, sin = np.cos(yaw), np.sin(yaw)
+        to_second = np.stack((np.stack((cos, sin), -1), np.stack((-sin, cos), -1)), axis=1)  # rotates world vectors
+        away = end[:, :2] - start[:, :2]
+        residuals = np.zeros((len(start), 3))
+        cos_m, sin_m = np.cos(measured[:, 2]), np.sin(measured[:, 2])
+        x, y = measured[:, 0], measured[:, 1]
+        residuals[:, :2] = np.einsum("nij,nj->ni", to_second, away)
+        residuals[:, :2] -= np.stack((cos_m * x + sin_m * y, cos_m * y - sin_m * x), axis=-1)
+        residuals[:, 2] = wrapped(end[:, 2] - yaw)
+        of_second = np.zeros((len(start), 3, 3))
+        of_second[:, :2, :2] = to_second
+        of_second[:, 2, 2] = 1.0
+        of_first = -of_second
+        turned = np.stack((away[:, 1], -away[:, 0]), axis=-1)  # the derivative of R(-yaw) v is R(-yaw) (v_y, -v_x)
+        of_first[:, :2, 2] = np.einsum("nij,nj->ni", to_second, turned)
+        return residuals, of_first, of_second

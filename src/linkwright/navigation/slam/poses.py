@@ -1,0 +1,45 @@
+"""Poses in the plane: arrays (x, y, yaw) in metres and radians, one of shape (3,) or many of shape (..., 3)."""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+
+def wrapped(angles: Floats) -> Floats:
+    """Angles between -pi and pi."""
+    result: Floats = (angles + pi) % (2 * pi) - pi
+    return result
+
+
+def compose(b_in_a: Floats, c_in_b: Floats) -> Floats:
+    """The pose of c in a, of shape (..., 3)."""
+    cos, sin = np.cos(b_in_a[..., 2]), np.sin(b_in_a[..., 2])
+    x, y = c_in_b[..., 0], c_in_b[..., 1]
+    yaw = wrapped(b_in_a[..., 2] + c_in_b[..., 2])
+    result: Floats = np.stack((b_in_a[..., 0] + cos * x - sin * y, b_in_a[..., 1] + sin * x + cos * y, yaw), axis=-1)
+    return result
+
+
+def inverse(b_in_a: Floats) -> Floats:
+    """The pose of a in b, of shape (..., 3)."""
+    cos, sin = np.cos(b_in_a[..., 2]), np.sin(b_in_a[..., 2])
+    x, y = b_in_a[..., 0], b_in_a[..., 1]
+    result: Floats = np.stack((-cos * x - sin * y, sin * x - cos * y, -b_in_a[..., 2]), axis=-1)
+    return result
+
+
+def between(b_in_a: Floats, c_in_a: Floats) -> Floats:
+    """The pose of c in b, of shape (..., 3)."""
+    return compose(inverse(b_in_a), c_in_a)
+
+
+def placed(pose: Floats, points: Floats) -> Floats:
+    """Points of a frame, of shape (n, 2), in the frame in which `pose` is that frame's, of shape (3,)."""
+    cos, sin = np.cos(pose[2]), np.sin(pose[2])
+    result: Floats = points @ np.array(((cos, sin), (-sin, cos))) + pose[:2]
+    return result

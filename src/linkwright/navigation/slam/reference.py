@@ -1,0 +1,123 @@
+"""What was seen before, made ready to match scans against it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.navigation.grids.library import load_scipy
+from linkwright.navigation.slam.poses import Floats, placed
+from linkwright.navigation.slam.scan import PlanarScan
+
+_THINNING = 0.05
+_NEIGHBOURS = 6
+_SPREAD = 0.5
+"""Points whose neighbours lie further from here than this, in metres, tell no direction of a wall."""
+_LEAST = 0.01
+
+
+class Reference:
+    """Points of scans, where they are likely to be seen, and which way the walls run that they lie on.
+
+    Points that are nearer than 5 cm to each other become their mean, which is where the wall is more exactly than one
+    reading says.
+
+    Args:
+        scans: what was seen.
+        poses: from where, of shape (n, 3), in the frame of the reference.
+    """
+
+    def __init__(self, scans: Sequence[PlanarScan], poses: Floats) -> None:
+        pairs = [(scan, pose) for scan, pose in zip(scans, poses, strict=True) if len(scan.points)]
+        self.points: Floats = np.zeros((0, 2))
+        self._seen_from: Floats = np.zeros((0, 2))
+        if pairs:
+            points = np.concatenate([placed(pose, scan.points) for scan, pose in pairs])
+            views = np.concatenate(
+                [np.broadcast_to(placed(pose, scan.origin[None]), scan.points.shape) for scan, pose in pairs]
+            )
+            self._thin(points, views)
+
+    def _thin(self, points: Floats, views: Floats) -> None:
+        cells = np.floor((points - points.min(axis=0)) / _THINNING).astype(np.int64)
+        _, index = np.unique(cells[:, 0] * (cells[:, 1].max() + 1) + cells[:, 1], return_inverse=True)
+        counts = np.bincount(index)
+
+        def mean(values: Floats) -> Floats:
+            sums = [np.bincount(index, weights=values[:, axis]) for axis in (0, 1)]
+            result: Floats = np.stack(sums, axis=-1) / counts[:, None]
+            return result
+
+        self.points, self._seen_from = mean(points), mean(views)
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+    def find_lines(self) -> None:
+        """Make ready for `nearest`: which way walls run, from each point's neighbours."""
+        self._tree = load_scipy("spatial").cKDTree(self.points)
+        count = min(_NEIGHBOURS, len(self.points))
+        distances, indices = self._tree.query(self.points, k=count)
+        near = self.points[indices.reshape(-1, count)]
+        offsets = near - near.mean(axis=1, keepdims=True)
+        x, y = offsets[..., 0], offsets[..., 1]
+        xx, yy, xy = (x * x).sum(axis=1), (y * y).sum(axis=1), (x * y).sum(axis=1)
+        along = 0.5 * np.arctan2(2 * xy, xx - yy)
+        normals = np.stack((-np.sin(along), np.cos(along)), axis=-1)
+        away = np.einsum("ni,ni->n", normals, self._seen_from - self.points) < 0
+        normals[away] *= -1
+        root = np.sqrt((xx - yy) ** 2 + 4 * xy**2)
+        total = np.maximum(xx + yy, 1e-12)
+        flatness = root / total  # 1 for a line, 0 for points all around
+        flatness[distances.reshape(-1, count)[:, -1] > _SPREAD] = 0.0
+        self._normals: Floats = normals
+        self._flatness: Floats = flatness if count >= 3 else np.zeros(len(self.points))
+
+    def nearest(self, points: Floats) -> tuple[Floats, NDArray[np.int64], Floats, Floats, Floats]:
+        """For points of shape (n, 2) what is nearest to each.
+
+        Returns:
+            Distances (n,), indices (n,), places (n, 2), normals (n, 2) towards where they were seen from, and how
+            straight the wall is there (n,), 0 to 1.
+        """
+        distances, indices = self._tree.query(points)
+        return distances, indices, self.points[indices], self._normals[indices], self._flatness[indices]
+
+
+class Likelihood:
+    """How likely something is seen at the cells of a grid, and the most of 2x2, 4x4, ... cells from each on.
+
+    Args:
+        points: where something is, of shape (n, 2), metres.
+        resolution: side of a cell, metres.
+        smear_deviation: how far from there one may still see it, metres.
+    """
+
+    def __init__(self, points: Floats, resolution: float, smear_deviation: float) -> None:
+        self.resolution = resolution
+        deviation = max(smear_deviation, resolution / 2)
+        margin = 3.1 * deviation + resolution  # so that the outermost cells are 0
+        self.corner: Floats = points.min(axis=0) - margin
+        size = np.ceil((points.max(axis=0) + margin - self.corner) / resolution).astype(int) + 1
+        empty = np.ones((size[1], size[0]), dtype=bool)
+        cells = np.floor((points - self.corner) / resolution).astype(int)
+        empty[cells[:, 1], cells[:, 0]] = False
+        distance = load_scipy("ndimage").distance_transform_edt(empty, sampling=resolution)
+        finest = np.exp(-0.5 * (distance / deviation) ** 2).astype(np.float32)
+        finest[finest < _LEAST] = 0.0
+        self._levels: list[NDArray[np.float32]] = [finest]
+
+    def level(self, number: int) -> tuple[NDArray[np.float32], int]:
+        """The grid whose cell (row + n, column + n) has the most of 2^number x 2^number cells from (row, column) on.
+
+        Returns:
+            The grid, and n.
+        """
+        while len(self._levels) <= number:
+            finer, step = self._levels[-1], 1 << (len(self._levels) - 1)
+            rows = np.maximum(np.pad(finer, ((step, 0), (0, 0))), np.pad(finer, ((0, step), (0, 0))))
+            coarser = np.maximum(np.pad(rows, ((0, 0), (step, 0))), np.pad(rows, ((0, 0), (0, step))))
+            self._levels.append(np.ascontiguousarray(coarser))
+        return self._levels[number], (1 << number) - 1

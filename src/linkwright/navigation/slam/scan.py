@@ -1,0 +1,61 @@
+"""A laser scan as the mapper takes it: points around the robot."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.navigation.slam.poses import Floats
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PlanarScan:
+    """What a laser measured at a moment, in the frame of the robot's base. The robot is taken to stand still meanwhile.
+
+    Attributes:
+        points: where rays ended on something, of shape (n, 2), metres.
+        passed: where rays were cut off that went further than what counts, of shape (m, 2): all before is free.
+        origin: of the rays, of shape (2,).
+        stamp_ns: when, nanoseconds.
+    """
+
+    points: Floats
+    passed: Floats
+    origin: Floats
+    stamp_ns: int
+
+
+def planar_scan(
+    ranges: NDArray[np.floating],
+    angles: Floats,
+    limits: tuple[float, float],
+    cut_off: tuple[float, float],
+    laser: tuple[Floats, Floats],
+    stamp_ns: int,
+) -> PlanarScan:
+    """A scan from what a laser publishes.
+
+    As in Karto a range that is not measured (NaN, infinite, 0, outside of the laser's own limits) tells nothing, and
+    one longer than the mapper wants tells that the way until there is free.
+
+    Args:
+        ranges: metres, of shape (n,).
+        angles: of the rays in the frame of the laser, about its z axis, of shape (n,), radians.
+        limits: the least and the most that the laser measures, metres.
+        cut_off: the least and the most that the mapper wants, metres.
+        laser: rotation matrix, of shape (3, 3), and position, of shape (3,), of the laser in the frame of the base; it
+            may be mounted upside down.
+        stamp_ns: when it was measured, nanoseconds.
+    """
+    with np.errstate(invalid="ignore"):
+        counts = np.isfinite(ranges) & (ranges > max(limits[0], cut_off[0], 0.0)) & (ranges < limits[1])
+    distances = np.asarray(ranges[counts], dtype=np.float64)
+    kept = angles[counts]
+    within = np.minimum(distances, cut_off[1])
+    rotation, position = laser
+    local = np.stack((within * np.cos(kept), within * np.sin(kept)), axis=-1)
+    points: Floats = local @ rotation[:2, :2].T + position[:2]
+    ended = distances < cut_off[1]
+    return PlanarScan(points[ended], points[~ended], np.asarray(position[:2], dtype=np.float64), stamp_ns)

@@ -1,0 +1,29 @@
+"""Work that is done step by step, so that a node does other things between two of them.
+
+A function that takes long is a generator: it yields after some milliseconds, and returns its result. Who has the time
+calls `finish`; others call ``next`` when it suits them, or ``yield from`` it in work of their own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from typing import TypeVar
+
+T = TypeVar("T")
+
+Steps = Generator[None, None, T]
+"""Work in steps with a result."""
+
+
+def finish(work: Steps[T]) -> T:
+    """Do all steps of some work.
+
+    Returns:
+        Its result.
+    """
+    try:
+        while True:
+            next(work)
+    except StopIteration as done:
+        result: T = done.value
+        return result

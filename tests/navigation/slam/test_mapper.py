@@ -1,0 +1,136 @@
+"""Mapping simulated flats with odometry that drifts."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from linkwright.navigation.slam.mapper import Mapper
+from linkwright.navigation.slam.occupancy import OccupancyMap
+from linkwright.navigation.slam.poses import between, compose
+from linkwright.navigation.slam.scan import PlanarScan
+from linkwright.navigation.slam.settings import MapperSettings
+from linkwright.navigation.slam.steps import finish
+from tests.navigation.slam.scenes import along, box, drifting, house, scan_at
+
+HALF_A_SECOND = 500_000_000
+AROUND = [(-4, -3), (4, -3), (4, 3), (-4, 3), (-4, -3), (1, -3)]
+AROUND_IT = along(AROUND, step=0.25, turn=0.25)
+
+
+def mapped(walls, path, odometry, settings=None, farthest=12.0, count=180):
+    """A mapper that was shown a path, what came of its scans, and where they were really taken."""
+    mapper = Mapper(settings or MapperSettings(), OccupancyMap(0.05))
+    rng = np.random.default_rng(9)
+    outcomes, taken = [], []
+    for number, (pose, told) in enumerate(zip(path, odometry, strict=True)):
+        stamp_ns = number * HALF_A_SECOND
+        if mapper.wants(told, stamp_ns):
+            scan = scan_at(walls, pose, stamp_ns, rng, count, farthest)
+            outcomes.append(finish(mapper.process(scan, told)))
+            taken.append(pose)
+    return mapper, outcomes, np.array(taken)
+
+
+def furthest(errors):
+    return float(np.hypot(errors[:, 0], errors[:, 1]).max())
+
+
+@pytest.mark.parametrize("yaw_per_metre", [0.0, 0.03, 0.08])
+def test_a_flat_is_mapped_whatever_odometry_says(yaw_per_metre):
+    path = AROUND_IT
+    odometry = drifting(path, 1.03, yaw_per_metre, 0.02, np.random.default_rng(1))
+    mapper, outcomes, taken = mapped(house(), path, odometry)
+    errors = between(taken, mapper.graph.poses)
+    assert furthest(errors) < 0.02
+    assert np.abs(errors[:, 2]).max() < 0.004
+    assert all(outcome.matched for outcome in outcomes[1:])
+    assert outcomes[-1].pose == pytest.approx(mapper.graph.poses[-1])
+
+
+def test_a_loop_is_closed_where_odometry_slipped_in_a_corridor_without_marks():
+    walls = np.array([wall for each in (box(0, 0, 18, 12), box(0, 0, 13, 7)) for wall in each], dtype=float)
+    path = along([(-7, -4.8), (7.6, -4.8), (7.7, 4.8), (-7.7, 4.8), (-7.7, -4.8), (-4, -4.8)], step=0.2, turn=0.2)
+    odometry = [path[0]]
+    for before, after in pairwise(path):
+        step = between(before, after)
+        step[0] *= 1.1 if before[1] > 4.7 and abs(step[2]) < 0.01 else 1.0  # along the second long side
+        odometry.append(compose(odometry[-1], step))
+    odometry = np.array(odometry)
+    _, without, _ = mapped(walls, path, odometry, MapperSettings(do_loop_closing=False), farthest=4.0)
+    mapper, outcomes, taken = mapped(
+        walls, path, odometry, MapperSettings(loop_match_minimum_chain_size=5), farthest=4.0
+    )
+    assert sum(outcome.loops for outcome in outcomes) >= 1
+    count = len(taken)
+    first = int(np.argmin(np.hypot(*(taken[: count // 2] - taken[-1])[:, :2].T)))
+    true = between(taken[first], taken[-1])
+    told = between(mapper.graph.poses[first], mapper.graph.poses[-1])
+    assert told == pytest.approx(true, abs=0.06)
+    assert not any(outcome.loops for outcome in without)
+    assert furthest((without[-1].pose - taken[-1])[None]) > 0.8
+
+
+def test_scans_are_taken_after_a_way_or_a_turn_and_not_too_often():
+    mapper = Mapper(MapperSettings(), OccupancyMap(0.05))
+    here = np.zeros(3)
+    assert mapper.wants(here, 0)
+    finish(mapper.process(scan_at(house(), np.array([-4.0, -3.0, 0.0])), here))
+    second = 1_000_000_000
+    assert not mapper.wants(here, 10 * second)
+    assert not mapper.wants(np.array([0.3, 0.0, 0.0]), second)
+    assert mapper.wants(np.array([0.5, 0.0, 0.0]), second)
+    assert not mapper.wants(np.array([0.5, 0.0, 0.0]), second // 10)
+    assert mapper.wants(np.array([0.0, 0.0, -0.6]), second)
+
+
+def test_in_an_empty_world_odometry_is_believed_and_nothing_is_drawn():
+    empty = PlanarScan(np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(2), 0)
+    mapper = Mapper(MapperSettings(), OccupancyMap(0.05))
+    poses = np.array([[0.5 * each, 0.1 * each, 0.2 * each] for each in range(30)])
+    for pose in poses:
+        outcome = finish(mapper.process(empty, pose))
+        assert not outcome.matched
+    assert between(poses, mapper.graph.poses) == pytest.approx(np.zeros((30, 3)), abs=1e-9)
+    assert mapper.occupancy.grid() is None
+    assert outcome.links == outcome.loops == 0
+
+
+def test_without_scan_matching_the_map_is_where_odometry_is():
+    path = along([(-4, -3), (4, -3), (4, 3)])
+    odometry = drifting(path, 1.05, 0.02)
+    mapper, _, _ = mapped(house(), path, odometry, MapperSettings(use_scan_matching=False))
+    assert mapper.graph.poses[-1] == pytest.approx(mapper.odometry[-1])
+
+
+def test_a_robot_finds_itself_in_a_map_that_stays():
+    mapper, _, _ = mapped(house(), AROUND_IT, AROUND_IT)
+    count, walls = len(mapper.scans), house()
+    mapper.begin_session(np.array([3.2, -2.2, 1.3]))
+    path = along([(4, -3), (4, 3), (-4, 3)])
+    odometry = drifting(between(path[0], path), 1.05, 0.05)
+    rng = np.random.default_rng(4)
+    for number, (pose, told) in enumerate(zip(path, odometry, strict=True)):
+        if mapper.wants(told, number * HALF_A_SECOND):
+            outcome = finish(mapper.localize(scan_at(walls, pose, number * HALF_A_SECOND, rng, 180), told))
+            assert outcome.matched
+            assert between(pose, outcome.pose) == pytest.approx([0, 0, 0], abs=0.03)
+    assert len(mapper.scans) == count
+
+
+def test_another_session_goes_on_with_the_map():
+    walls = house()
+    mapper, _, _ = mapped(walls, along(AROUND[:3]), along(AROUND[:3]))
+    count = len(mapper.scans)
+    mapper.begin_session(np.array([3.8, 2.2, 1.8]))
+    path = along([(4, 2.5), (4, 3), (-4, 3), (-4, -3)])
+    odometry = drifting(between(path[0], path), 1.02, 0.03)
+    rng = np.random.default_rng(4)
+    taken = []
+    for number, (pose, told) in enumerate(zip(path, odometry, strict=True)):
+        if mapper.wants(told, number * HALF_A_SECOND):
+            finish(mapper.process(scan_at(walls, pose, number * HALF_A_SECOND, rng, 180), told))
+            taken.append(pose)
+    assert furthest(between(np.array(taken), mapper.graph.poses[count:])) < 0.03

@@ -1,0 +1,124 @@
+"""Matching scans of known places."""
+
+from __future__ import annotations
+
+from itertools import product
+from math import inf
+
+import numpy as np
+import pytest
+
+from linkwright.navigation.slam.contradiction import contradiction
+from linkwright.navigation.slam.matching import match
+from linkwright.navigation.slam.poses import between, compose
+from linkwright.navigation.slam.reference import Likelihood, Reference
+from linkwright.navigation.slam.scan import PlanarScan
+from linkwright.navigation.slam.search import Search, best_pose
+from linkwright.navigation.slam.steps import finish
+from tests.navigation.slam.scenes import box, house, scan_at
+
+WALLS = house()
+EVERYWHERE = Search(
+    dimension=8.0, resolution=0.05, smear_deviation=0.03, distance_variance_penalty=inf, angle_variance_penalty=inf
+)
+
+
+@pytest.fixture(scope="module")
+def reference():
+    rng = np.random.default_rng(3)
+    poses = np.array([[-4.0 + 0.4 * each, -3.0, 0.02 * each] for each in range(10)])
+    return Reference([scan_at(WALLS, pose, rng=rng) for pose in poses], poses)
+
+
+@pytest.mark.parametrize(
+    "away", [(0, 0, 0), (0.2, -0.2, 0.3), (-0.24, 0.1, -0.3), (0.05, 0.24, 0.1), (0.0, -0.1, -0.34)]
+)
+def test_a_scan_is_found_to_millimetres(reference, away):
+    true = np.array([-1.8, -2.9, 0.4])
+    scan = scan_at(WALLS, true, rng=np.random.default_rng(5))
+    found = finish(match(reference, scan, true + away, Search()))
+    error = between(true, found.pose)
+    assert np.hypot(error[0], error[1]) < 0.005
+    assert abs(error[2]) < 0.002
+    assert found.response > 0.7
+    assert found.inliers > 0.8
+    deviations = np.sqrt(np.diag(np.linalg.inv(found.information)))
+    assert (np.abs(error) < 4 * deviations).all()
+    assert deviations.max() < 0.02
+
+
+def test_the_search_for_a_loop_finds_a_robot_that_is_metres_off(reference):
+    true = np.array([-1.8, -2.9, 0.4])
+    scan = scan_at(WALLS, true, rng=np.random.default_rng(6))
+    found = finish(match(reference, scan, true + np.array([1.9, 1.2, -0.3]), EVERYWHERE))
+    assert between(true, found.pose) == pytest.approx([0, 0, 0], abs=0.006)
+
+
+def test_branch_and_bound_finds_what_trying_everything_finds(reference):
+    scan = scan_at(WALLS, np.array([-2.0, -3.1, 0.2]), count=60)
+    search = Search(dimension=0.6, resolution=0.05, smear_deviation=0.1, angle_offset=0.2, angle_resolution=0.02)
+    guess = np.array([-1.9, -3.0, 0.1])
+    likelihood = Likelihood(reference.points, search.cell, search.smear_deviation)
+    pose, response = finish(best_pose(likelihood, scan.points, guess, search))
+    grid, _ = likelihood.level(0)
+    step = min(search.angle_resolution, 1.5 * 0.05 / np.quantile(np.hypot(*scan.points.T), 0.8))
+    count = int(np.ceil(search.angle_offset / step - 1e-9))
+    best = 0.0
+    for turn, row, column in product(range(-count, count + 1), range(-6, 7), range(-6, 7)):
+        yaw = guess[2] + turn * step
+        x = np.cos(yaw) * scan.points[:, 0] - np.sin(yaw) * scan.points[:, 1] + guess[0] - likelihood.corner[0]
+        y = np.sin(yaw) * scan.points[:, 0] + np.cos(yaw) * scan.points[:, 1] + guess[1] - likelihood.corner[1]
+        cells = np.floor(np.stack((y, x)) / search.cell).astype(int) + np.array([[row], [column]])
+        inside = (cells >= 0).all(axis=0) & (cells[0] < grid.shape[0]) & (cells[1] < grid.shape[1])
+        seen = np.where(inside, grid[np.where(inside, cells[0], 0), np.where(inside, cells[1], 0)], 0).mean()
+        distance = max(1 - 0.2 * (row**2 + column**2) * 0.05**2 / 0.5, 0.5)
+        best = max(best, seen * distance * max(1 - 0.2 * (turn * step) ** 2, 0.9))
+    assert response == pytest.approx(best, abs=1e-6)
+    assert np.abs(between(np.array([-2.0, -3.1, 0.2]), pose))[:2].max() < 0.05
+
+
+def test_along_a_corridor_a_scan_tells_nothing_and_odometry_stays():
+    walls = np.array([[(-50, -1), (50, -1)], [(-50, 1), (50, 1)]], dtype=float)
+    rng = np.random.default_rng(2)
+    poses = np.array([[0.2 * each, 0.0, 0.0] for each in range(5)])
+    reference = Reference([scan_at(walls, pose, rng=rng, farthest=6) for pose in poses], poses)
+    true, guess = np.array([1.3, 0.1, 0.05]), np.array([1.1, 0.0, 0.0])
+    found = finish(match(reference, scan_at(walls, true, rng=rng, farthest=6), guess, Search()))
+    assert found.pose[0] == pytest.approx(guess[0], abs=0.01)
+    assert found.pose[1:] == pytest.approx(true[1:], abs=0.005)
+    assert found.information[0, 0] < 1e-2 * found.information[1, 1]
+
+
+def test_with_nothing_to_see_nothing_is_matched(reference):
+    nothing = PlanarScan(np.zeros((3, 2)), np.zeros((0, 2)), np.zeros(2), 0)
+    assert finish(match(reference, nothing, np.zeros(3), Search())) is None
+    empty = Reference([nothing], np.zeros((1, 3)))
+    assert finish(match(empty, scan_at(WALLS, np.array([-4.0, -3.0, 0.0])), np.zeros(3), Search())) is None
+
+
+def test_the_other_side_of_a_thin_wall_does_not_pull():
+    thin, rest = box(0, 1.05, 6, 0.1), box(0, 1, 8, 7)
+    walls = np.array([*thin, *rest], dtype=float)
+    seen = np.array([[-0.5, 2.0, 0.0], [0.5, 2.0, 0.0]])  # from above the wall
+    reference = Reference([scan_at(walls, pose) for pose in seen], seen)
+    scan = scan_at(walls, np.array([0.0, 0.0, 0.0]))  # from below it
+    found = finish(match(reference, scan, np.zeros(3), Search(dimension=0.2)))
+    assert found.pose == pytest.approx([0, 0, 0], abs=0.01)
+
+
+def test_a_turned_scan_is_found_where_larger_turns_are_tried(reference):
+    search = Search(dimension=0.1, angle_offset=0.01, smear_deviation=0.02)
+    true = np.array([-1.8, -2.9, 0.0])
+    far = PlanarScan(
+        compose(np.array([100.0, 0, 0]), np.zeros(3))[None, :2].repeat(20, 0), np.zeros((0, 2)), np.zeros(2), 0
+    )
+    assert finish(match(reference, far, true, search, expand=True)).response == 0
+    assert finish(match(reference, scan_at(WALLS, true), true, search, expand=True)).response > 0.5
+
+
+def test_scans_of_one_room_do_not_contradict_each_other_and_those_of_two_do():
+    here, there = np.array([-4.0, -3.0, 0.3]), np.array([-3.2, -2.8, 1.0])
+    first, second = scan_at(WALLS, here), scan_at(WALLS, there)
+    assert contradiction(first, here, second, there) < 0.05
+    other = scan_at(WALLS, np.array([4.5, 0.0, 0.0]))
+    assert contradiction(first, here, other, there) > 0.2

@@ -1,0 +1,82 @@
+"""The occupancy grid of known scans."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from linkwright.navigation.grids.grid import FREE, OCCUPIED, UNKNOWN
+from linkwright.navigation.slam.occupancy import OccupancyMap
+from linkwright.navigation.slam.scan import PlanarScan
+from tests.navigation.slam.scenes import house, scan_at
+
+
+def ray(*points, passed=()):
+    return PlanarScan(np.array(points).reshape(-1, 2), np.array(passed).reshape(-1, 2), np.zeros(2), 0)
+
+
+def test_a_cell_is_known_where_enough_rays_came_to_it():
+    occupancy = OccupancyMap(1.0)
+    pose = np.array([0.5, 0.5, 0.0])
+    for number in range(3):
+        assert occupancy.grid() is None or (occupancy.grid().cells == UNKNOWN).all()
+        occupancy.draw(number, ray((3.0, 0.0)), pose)
+    grid = occupancy.grid()
+    assert grid.cells.tolist() == [[FREE, FREE, FREE, OCCUPIED]]
+    assert (grid.x, grid.y, grid.resolution) == (0.0, 0.0, 1.0)
+
+
+def test_a_cell_that_most_rays_pass_is_free():
+    occupancy = OccupancyMap(1.0)
+    pose = np.array([0.5, 0.5, 0.0])
+    for number in range(9):
+        occupancy.draw(number, ray((3.0, 0.0)), pose)
+    occupancy.draw(9, ray((1.0, 0.0)), pose)
+    assert occupancy.grid().cells.tolist() == [[FREE, FREE, FREE, OCCUPIED]]  # 1 of 10 is not more than 0.1
+    occupancy.draw(10, ray((1.0, 0.0)), pose)
+    assert occupancy.grid().cells.tolist() == [[FREE, OCCUPIED, FREE, OCCUPIED]]
+
+
+def test_a_ray_that_was_cut_off_frees_its_way_and_ends_on_nothing():
+    occupancy = OccupancyMap(1.0, min_pass_through=0)
+    occupancy.draw(0, ray(passed=(0.0, -3.0)), np.array([0.5, 0.5, 0.0]))
+    assert occupancy.grid().cells.tolist() == [[FREE]] * 4
+    assert occupancy.grid().y == -3.0
+
+
+def test_a_scan_that_is_drawn_anew_leaves_no_trace_of_where_it_was():
+    rng = np.random.default_rng(0)
+    walls, moved = house(), OccupancyMap(0.05)
+    poses = np.array([[-4.0, -3.0, 0.1], [4.0, -3.0, 1.0], [4.0, 3.0, 2.0]])
+    scans = [scan_at(walls, pose, rng=rng) for pose in poses]
+    for number, scan in enumerate(scans):
+        moved.draw(number, scan, poses[number] + (0.4, -0.3, 0.2))
+    for number in (1, 0, 2):
+        moved.draw(number, scans[number], poses[number])
+    still = OccupancyMap(0.05)
+    for number, scan in enumerate(scans):
+        still.draw(number, scan, poses[number])
+    assert (moved.grid().cells == still.grid().cells).all()
+    assert (moved.grid().x, moved.grid().y) == (still.grid().x, still.grid().y)
+    for number in range(3):
+        moved.erase(number)
+    assert moved.grid() is None
+    assert moved.drawn_at(0) is None
+
+
+def test_the_map_of_a_flat_is_that_flat():
+    walls, occupancy = house(), OccupancyMap(0.05)
+    poses = [(-4, -3), (0, -3), (4, -3), (4, 0), (4, 3), (0, 3), (-4, 3), (-4, 0), (-3.2, -3.4), (3.4, 3.4)]
+    for number, (x, y) in enumerate(poses):
+        pose = np.array([x, y, 0.3 * number])
+        occupancy.draw(number, scan_at(walls, pose, count=720), pose)
+    grid = occupancy.grid()
+    occupied = grid.centres_of(np.argwhere(grid.cells == OCCUPIED))
+    start, along = walls[:, 0], walls[:, 1] - walls[:, 0]
+    away = occupied[:, None] - start
+    part = np.clip((away * along).sum(axis=2) / (along**2).sum(axis=1), 0, 1)
+    distances = np.linalg.norm(away - part[..., None] * along, axis=2).min(axis=1)
+    assert len(occupied) > 500
+    assert distances.max() < 0.05 * 0.7072  # half the diagonal of a cell
+    free = grid.cells == FREE
+    assert free.sum() * 0.05**2 == pytest.approx(12 * 9 - 5 * 3.4, rel=0.1)

@@ -1,0 +1,94 @@
+"""Graphs of poses whose best poses are known."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from linkwright.navigation.grids.library import load_scipy
+from linkwright.navigation.slam.pose_graph import PoseGraph
+from linkwright.navigation.slam.poses import between, compose, wrapped
+from linkwright.navigation.slam.steps import finish
+
+
+def square(noise=0.0, seed=0, side=10):
+    """Poses around a square, and a graph whose chain of edges drifts away from it."""
+    rng = np.random.default_rng(seed)
+    steps = [(1.0, 0.0, 0.0)] * side + [(0.0, 0.0, np.pi / 2)]
+    true = [np.zeros(3)]
+    for step in steps * 4:
+        true.append(compose(true[-1], np.array(step)))
+    graph = PoseGraph()
+    graph.add_node(true[0])
+    for number, (before, after) in enumerate(pairwise(true)):
+        measured = between(before, after) + rng.normal(0, noise, 3)
+        graph.add_node(compose(graph.poses[number], measured))
+        graph.add_edge(number, number + 1, measured, np.diag([1e2, 1e2, 1e3]))
+    return np.array(true), graph
+
+
+def test_a_chain_without_a_loop_stays_as_it_is():
+    _, graph = square(noise=0.02)
+    before = graph.poses.copy()
+    finish(graph.solve())
+    assert graph.poses == pytest.approx(before, abs=1e-6)
+    assert graph.errors() == pytest.approx(np.zeros(len(before) - 1), abs=1e-6)
+
+
+def test_along_a_line_a_loop_is_shared_out_by_the_information():
+    """Three steps of 1 m with information 1, 2 and 4, and a measurement of 3.7 m: each gives as its variance says."""
+    graph = PoseGraph()
+    graph.add_node(np.zeros(3))
+    for number, information in enumerate((1.0, 2.0, 4.0)):
+        graph.add_node(np.array([number + 1.0, 0, 0]))
+        graph.add_edge(number, number + 1, np.array([1.0, 0, 0]), information * np.eye(3))
+    graph.add_edge(0, 3, np.array([3.7, 0, 0]), 1.0 * np.eye(3))
+    finish(graph.solve())
+    variances = np.array([1, 1 / 2, 1 / 4, 1])
+    shares = 0.7 * variances / variances.sum()
+    assert np.diff(graph.poses[:, 0]) == pytest.approx(1 + shares[:3], abs=1e-6)
+    assert graph.poses[:, 1:] == pytest.approx(np.zeros((4, 2)), abs=1e-6)
+
+
+def test_a_closed_loop_is_what_a_batch_of_least_squares_gives():
+    _, graph = square(noise=0.03, seed=4, side=3)
+    last = len(graph.poses) - 1
+    graph.add_edge(0, last, np.zeros(3), np.diag([1e4, 1e4, 1e4]))
+    start = graph.poses.copy()
+    finish(graph.solve())
+
+    def residuals(flat):
+        poses = np.concatenate((start[:1], flat.reshape(-1, 3)))
+        left = between(np.array(graph.measured), between(poses[graph.first], poses[graph.second]))
+        left[:, 2] = wrapped(left[:, 2])
+        return (left * np.sqrt([np.diag(each) for each in graph.information])).ravel()
+
+    batch = load_scipy("optimize").least_squares(residuals, start[1:].ravel(), xtol=1e-14, ftol=1e-14, gtol=1e-14)
+    assert (graph.errors().sum()) == pytest.approx(2 * batch.cost, rel=1e-6)
+    away = between(batch.x.reshape(-1, 3), graph.poses[1:])
+    assert away == pytest.approx(np.zeros(away.shape), abs=1e-4)
+
+
+def test_a_loop_brings_a_drifting_square_back():
+    true, graph = square(noise=0.01, seed=2)
+    last = len(true) - 1
+    before = np.hypot(*(graph.poses - true)[:, :2].T).max()
+    graph.add_edge(0, last, np.zeros(3), np.eye(3) * 1e6)
+    finish(graph.solve())
+    after = np.hypot(*(graph.poses - true)[:, :2].T).max()
+    assert graph.poses[last] == pytest.approx(true[0], abs=1e-3)
+    assert after < before / 2
+
+
+def test_a_wrong_edge_among_right_ones_is_overruled():
+    true, graph = square(noise=0.005, seed=3)
+    last = len(true) - 1
+    for first, second in ((0, last), (1, last - 1), (3, last), (0, 41), (2, last)):
+        measured = between(true[first], true[second])
+        graph.add_edge(first, second, measured, np.eye(3) * 1e4, doubtful=True)
+    graph.add_edge(5, 25, np.array([1.0, 1.0, 0.0]), np.eye(3) * 1e4, doubtful=True)
+    finish(graph.solve())
+    assert np.hypot(*(graph.poses - true)[:, :2].T).max() < 0.2
+    assert graph.errors()[-1] > 1e4
