@@ -32,6 +32,7 @@ class LayeredCostmap:
     Attributes:
         costmap: the costs, as of the last update.
         layers: see above.
+        padding: by which the next footprint is enlarged, in metres.
         changed: what the last update wrote.
     """
 
@@ -48,7 +49,7 @@ class LayeredCostmap:
         self.layers = list(layers)
         self.rolling = rolling
         self._default = UNKNOWN if track_unknown else FREE
-        self._padding = footprint_padding
+        self.padding = footprint_padding
         self.changed = Window()
         self._updated = False
         self.footprint = footprint
@@ -61,7 +62,7 @@ class LayeredCostmap:
 
     @footprint.setter
     def footprint(self, unpadded: Footprint) -> None:
-        self._footprint = padded(unpadded, self._padding)
+        self._footprint = padded(unpadded, self.padding)
         self.inscribed_radius, self.circumscribed_radius = radii(self._footprint)
 
     def resize(self, grid: Grid) -> None:

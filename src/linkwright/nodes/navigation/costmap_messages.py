@@ -1,0 +1,123 @@
+"""Costmaps on topics: as an occupancy grid for displays, and as they are for other nodes.
+
+Source: nav2_costmap_2d ``Costmap2DPublisher``.
+"""
+
+from __future__ import annotations
+
+from array import array
+from typing import Any
+
+import numpy as np
+
+from linkwright.graph import DESCRIPTION_QOS, Node
+from linkwright.messages import get_message, is_before_iron
+from linkwright.navigation.costmaps.costmap import INSCRIBED, LETHAL, UNKNOWN, Costmap
+from linkwright.navigation.costmaps.layer import Costs, Window
+from linkwright.navigation.costmaps.layered import LayeredCostmap
+from linkwright.navigation.grids.grid import Grid
+from linkwright.navigation.grids.occupancy import occupancy_message
+
+_QOS = DESCRIPTION_QOS
+"""Kept for those who come later: reliable, transient local, one message."""
+
+
+def _percentages() -> Costs:
+    costs = np.arange(256)
+    table = 1 + 97 * (costs - 1) // 251
+    table[0], table[INSCRIBED], table[LETHAL], table[UNKNOWN] = 0, 99, 100, 255
+    percentages: Costs = table.astype(np.uint8)
+    return percentages
+
+
+PERCENTAGES = _percentages()
+"""What an occupancy grid tells for each cost, as a byte: 255 is -1."""
+
+
+def raw_message(costmap: Costmap, frame: str, stamp: Any) -> Any:
+    """The nav2_msgs/Costmap of a costmap."""
+    message, grid = get_message("nav2_msgs/msg/Costmap")(), costmap.grid
+    message.header.frame_id, message.header.stamp = frame, stamp
+    metadata = message.metadata
+    metadata.layer, metadata.map_load_time, metadata.update_time = "master", stamp, stamp
+    metadata.resolution, metadata.size_x, metadata.size_y = grid.resolution, grid.columns, grid.rows
+    metadata.origin.position.x, metadata.origin.position.y = grid.x, grid.y
+    metadata.origin.orientation.w = 1.0
+    message.data = array("B", grid.cells.tobytes())
+    return message
+
+
+class CostmapPublisher:
+    """Publishes a costmap on ``costmap``, ``costmap_raw``, and what changes of it on ``costmap_updates``.
+
+    Args:
+        node: of the costmap.
+        costmap: what is published.
+        frame: in which it lies.
+        always_full: whether all of it is sent however little changed.
+    """
+
+    def __init__(self, node: Node, costmap: LayeredCostmap, frame: str, *, always_full: bool) -> None:
+        self._node, self._costmap, self._frame = node, costmap, frame
+        self._always_full = always_full
+        self._pending = Window()
+        self._sent: tuple[float, float, int, int] | None = None
+        self._listeners = 0
+        self._full = node.create_publisher(get_message("nav_msgs/msg/OccupancyGrid"), "costmap", _QOS)
+        self._raw = node.create_publisher(get_message("nav2_msgs/msg/Costmap"), "costmap_raw", _QOS)
+        update = get_message("map_msgs/msg/OccupancyGridUpdate")
+        self._updates = node.create_publisher(update, "costmap_updates", _QOS)
+        self._raw_updates: Any = None
+        if not is_before_iron():
+            self._raw_updates = node.create_publisher(
+                get_message("nav2_msgs/msg/CostmapUpdate"), "costmap_raw_updates", _QOS
+            )
+
+    def destroy(self) -> None:
+        """Leave the topics."""
+        for each in (self._full, self._raw, self._updates, self._raw_updates):
+            if each is not None:
+                each.destroy()
+
+    def note(self, window: Window) -> None:
+        """A part changed."""
+        self._pending = self._pending.joined(window)
+
+    def publish(self) -> None:
+        """Send what changed since it was last sent; all of it to those who listen since then, and when it moved."""
+        grid = self._costmap.costmap.grid
+        place = (grid.x, grid.y, grid.rows, grid.columns)
+        listeners = self._full.get_subscription_count() + self._raw.get_subscription_count()
+        whole = self._always_full or place != self._sent or listeners > self._listeners
+        window, self._pending = self._pending.within(grid), Window()
+        self._listeners = listeners
+        if not listeners:
+            self._sent = None
+            return
+        self._sent = place
+        stamp = self._node.get_clock().now().to_msg()
+        if whole:
+            told = Grid(cells=PERCENTAGES[grid.cells].view(np.int8), resolution=grid.resolution, x=grid.x, y=grid.y)
+            self._full.publish(occupancy_message(told, self._frame, stamp))
+        elif not window.is_empty:
+            cells = PERCENTAGES[grid.cells[window.cells]].tobytes()
+            message = self._update("map_msgs/msg/OccupancyGridUpdate", array("b", cells), window, stamp)
+            message.width, message.height = window.right - window.left, window.bottom - window.top
+            self._updates.publish(message)
+        if self._raw.get_subscription_count() and (whole or not window.is_empty):
+            self._publish_raw(window, stamp, whole=whole)
+
+    def _publish_raw(self, window: Window, stamp: Any, *, whole: bool) -> None:
+        if whole or self._raw_updates is None:
+            self._raw.publish(raw_message(self._costmap.costmap, self._frame, stamp))
+            return
+        cells = array("B", self._costmap.costmap.grid.cells[window.cells].tobytes())
+        message = self._update("nav2_msgs/msg/CostmapUpdate", cells, window, stamp)
+        message.size_x, message.size_y = window.right - window.left, window.bottom - window.top
+        self._raw_updates.publish(message)
+
+    def _update(self, kind: str, cells: Any, window: Window, stamp: Any) -> Any:
+        message = get_message(kind)()
+        message.header.frame_id, message.header.stamp = self._frame, stamp
+        message.x, message.y, message.data = window.left, window.top, cells
+        return message

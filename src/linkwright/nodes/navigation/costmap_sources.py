@@ -1,0 +1,174 @@
+"""What the layers of a costmap listen to: laser scans and clouds, and maps.
+
+Source: nav2_costmap_2d ``ObservationBuffer``, ``StaticLayer``. Scans wait until their place is known, and are taken in
+when the costmap is updated: of a sensor whose points count only until there are others, the last one that has a place.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.control.filters.scans.projection import points_of_scan
+from linkwright.geometry.arrays import rotation_matrix
+from linkwright.geometry.single import Transform
+from linkwright.graph import (
+    DESCRIPTION_QOS,
+    SENSOR_DATA_QOS,
+    DurabilityPolicy,
+    Node,
+    QoSProfile,
+    TransformException,
+)
+from linkwright.graph.transforms.core import BufferCore
+from linkwright.messages import get_message
+from linkwright.navigation.costmaps.observations import ObservationBuffer
+from linkwright.navigation.costmaps.static_layer import StaticLayer
+from linkwright.navigation.grids.grid import Grid
+from linkwright.navigation.grids.occupancy import BadGridError, grid_of
+from linkwright.nodes.laser_filters import scan_of
+from linkwright.nodes.pointcloud_to_laserscan import points_of
+
+_WAITING = 50
+_LITTLE = 1e-4
+"""By which a ray that met nothing ends before the range of its sensor, in metres."""
+
+
+class SensorTopic:
+    """A topic of scans or clouds, for a layer of obstacles.
+
+    Args:
+        node: listens.
+        topic: its name.
+        kind: ``LaserScan`` or ``PointCloud2``.
+        buffer: takes what was seen.
+        transforms: where sensors are.
+        frame: of the costmap.
+        sensor_frame: of the sensor; that of its messages where it is empty.
+        inf_is_valid: whether a ray that met nothing clears all of its way.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        topic: str,
+        kind: str,
+        buffer: ObservationBuffer,
+        transforms: BufferCore,
+        frame: str,
+        *,
+        sensor_frame: str = "",
+        inf_is_valid: bool = False,
+    ) -> None:
+        self.buffer = buffer
+        self._transforms, self._frame = transforms, frame
+        self._sensor_frame = sensor_frame
+        self._inf_is_valid = inf_is_valid
+        self._points: Callable[[Any], NDArray[np.float64] | None] = self._of_scan if kind == "LaserScan" else points_of
+        self._waiting: deque[Any] = deque(maxlen=_WAITING)
+        message = get_message(f"sensor_msgs/msg/{kind}")
+        self._subscription = node.create_subscription(message, topic, self._hear, SENSOR_DATA_QOS)
+
+    def destroy(self) -> None:
+        """Leave the topic."""
+        self._subscription.destroy()
+
+    def take_in(self) -> None:
+        """Give the buffer what came and has a place."""
+        waiting = list(self._waiting)
+        placed = [(message, pose) for message in waiting if (pose := self._pose(message)) is not None]
+        if not placed:
+            return
+        later = waiting[waiting.index(placed[-1][0]) + 1 :]
+        self._waiting.clear()
+        self._waiting.extend(later)
+        for message, pose in placed if self.buffer.source.observation_persistence else placed[-1:]:
+            self._observe(message, pose)
+
+    def _hear(self, message: Any) -> None:
+        self._waiting.append(message)
+
+    def _pose(self, message: Any) -> Transform | None:
+        header = message.header
+        try:
+            return self._transforms.lookup(self._frame, header.frame_id, header.stamp.nanoseconds)[0]
+        except TransformException:
+            return None
+
+    def _observe(self, message: Any, pose: Transform) -> None:
+        points = self._points(message)
+        if points is None:
+            return
+        origin = np.array(pose[:3])
+        if self._sensor_frame and self._sensor_frame != message.header.frame_id:
+            stamp = message.header.stamp.nanoseconds
+            try:
+                origin = np.array(self._transforms.lookup(self._frame, self._sensor_frame, stamp)[0][:3])
+            except TransformException:
+                return
+        placed = points @ rotation_matrix(pose[3:]).T + np.array(pose[:3])
+        self.buffer.take(origin, placed, message.header.stamp.nanoseconds)
+
+    def _of_scan(self, message: Any) -> NDArray[np.float64]:
+        scan = scan_of(message)
+        if self._inf_is_valid:
+            scan.ranges[np.isposinf(scan.ranges)] = scan.range_max - _LITTLE
+        return points_of_scan(scan)[0].astype(np.float64)
+
+
+class MapTopic:
+    """The topic of a map, for a static layer.
+
+    Args:
+        node: listens.
+        topic: its name.
+        layer: takes the map.
+        transient_local: whether the map is had that was sent before.
+        updates: whether to listen to parts of it that change, on the same topic with ``_updates`` behind it.
+        on_map: told of each whole map and its frame.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        topic: str,
+        layer: StaticLayer,
+        *,
+        transient_local: bool,
+        updates: bool,
+        on_map: Callable[[Grid, str], None],
+    ) -> None:
+        self.frame: str | None = None
+        self._node, self._layer, self._on_map = node, layer, on_map
+        qos = DESCRIPTION_QOS if transient_local else QoSProfile(10, durability=DurabilityPolicy.VOLATILE)
+        message = get_message("nav_msgs/msg/OccupancyGrid")
+        self._subscriptions = [node.create_subscription(message, topic, self._take, qos)]
+        if updates:
+            message = get_message("map_msgs/msg/OccupancyGridUpdate")
+            self._subscriptions.append(node.create_subscription(message, f"{topic}_updates", self._take_part, 10))
+
+    def destroy(self) -> None:
+        """Leave the topics."""
+        for each in self._subscriptions:
+            each.destroy()
+
+    def _take(self, message: Any) -> None:
+        try:
+            grid = grid_of(message)
+        except BadGridError as error:
+            self._node.get_logger().error(f"Received map message is malformed. Rejecting: {error}")
+            return
+        self.frame = message.header.frame_id
+        self._layer.take(grid)
+        self._on_map(grid, message.header.frame_id)
+
+    def _take_part(self, message: Any) -> None:
+        cells = np.frombuffer(message.data, np.uint8)
+        if cells.size != message.width * message.height or not self._layer.take_part(
+            message.y, message.x, cells.reshape(message.height, message.width)
+        ):
+            self._node.get_logger().warning("an update of the map does not fit into it and is left out")
