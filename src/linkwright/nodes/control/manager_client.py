@@ -11,8 +11,9 @@ from collections.abc import Callable, Coroutine, Sequence
 from typing import Any, NoReturn
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
-from linkwright.graph import Clock, ClockType, Node, Parameter
+from linkwright.graph import Node, Parameter
 from linkwright.messages import get_message, get_service
+from linkwright.nodes.answers import answered, is_served
 from linkwright.nodes.options import SingleNode
 
 _LOOK_AGAIN = 10.0
@@ -39,7 +40,6 @@ class ManagerClient:
         self.manager = manager if manager.startswith("/") else f"{namespace}/{manager}"
         self._node = node
         self._timeout, self._call_timeout = timeout, call_timeout
-        self._clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=node.get_clock().timebase)
 
     async def ask(self, service: str, **fields: Any) -> Any:
         """Call one of the manager's own services, ``list_controllers``.
@@ -76,7 +76,7 @@ class ManagerClient:
             await self._wait_for(client, name)
             for attempt in range(1, _ATTEMPTS + 1):
                 future = client.call_async(made.Request(**fields))
-                if await self._done(future, self._call_timeout):
+                if await answered(self._node, future, self._call_timeout):
                     return future.result()
                 client.remove_pending_request(future)
                 self._node.get_logger().warning(
@@ -92,43 +92,11 @@ class ManagerClient:
         logger = self._node.get_logger()
         while not client.service_is_ready():
             logger.info(f"waiting for service {name} to become available...")
-            come: asyncio.Future[None] = asyncio.get_running_loop().create_future()
-
-            def look(come: asyncio.Future[None] = come) -> None:
-                if not come.done() and client.service_is_ready():
-                    come.set_result(None)
-
-            graph, loop = self._node.graph, asyncio.get_running_loop()
-
-            def changed(loop: asyncio.AbstractEventLoop = loop, look: Callable[[], None] = look) -> None:
-                loop.call_soon_threadsafe(look)
-
-            graph.watch(changed)
-            try:
-                ready = client.service_is_ready() or await self._done(come, self._timeout or _LOOK_AGAIN)
-            finally:
-                graph.unwatch(changed)
-                come.cancel()  # what was called meanwhile looks no more
-            if ready:
+            if await is_served(self._node, client, self._timeout or _LOOK_AGAIN):
                 return
             if self._timeout:
                 raise NoManagerError(f"Could not contact service {name}")
             logger.warning(f"Could not contact service {name}")
-
-    async def _done(self, future: Any, seconds: float) -> bool:
-        """Wait for a future; whether it came in time, on the clock of the graph."""
-        over: asyncio.Future[bool] = asyncio.get_running_loop().create_future()
-
-        def tell(came: bool) -> None:
-            if not over.done():
-                over.set_result(came)
-
-        timer = self._node.create_timer(seconds, lambda: tell(False), clock=self._clock)
-        future.add_done_callback(lambda _: tell(True))
-        try:
-            return await over
-        finally:
-            self._node.destroy_timer(timer)
 
 
 class ManagerProgram(SingleNode):

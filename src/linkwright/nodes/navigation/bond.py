@@ -87,6 +87,7 @@ class Bond:
                 self._break()
         elif not self.formed:
             self.formed = True
+            self._send(active=True)  # the other side need not wait for the next heartbeat
             self._on_formed()
 
     def _break(self) -> None:

@@ -6,13 +6,14 @@ import asyncio
 from typing import Any
 
 from linkwright.diagnostics import LinkwrightError, render
-from linkwright.graph import Clock, ClockType, Graph, Logger, Node, QoSProfile
+from linkwright.graph import Graph, Logger, Node, QoSProfile
 from linkwright.graph.command_line.ros_arguments import remove_ros_arguments
 from linkwright.graph.loop.callback_groups import ReentrantCallbackGroup
 from linkwright.messages import get_message, get_service
 from linkwright.navigation.grids.occupancy import BadGridError, grid_of
 from linkwright.navigation.maps.map_files import FREE_THRESH, OCCUPIED_THRESH, SavedAs, save_map
 from linkwright.navigation.maps.map_yaml import MapMode
+from linkwright.nodes.answers import answered
 from linkwright.nodes.navigation.managed import ManagedNode, ManagedServer
 from linkwright.nodes.navigation.map_server import MAP_QOS
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
@@ -108,14 +109,11 @@ class _Saving:
                 come.set_result(message)
 
         qos = MAP_QOS if self._latched else QoSProfile(depth=10)
-        clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=node.get_clock().timebase)
         group = ReentrantCallbackGroup()  # the service that waits for the map holds the group of the node
         kind = get_message("nav_msgs/msg/OccupancyGrid")
         subscription = node.create_subscription(kind, topic, take, qos, callback_group=group)
-        timer = node.create_timer(self._timeout, lambda: take(None), callback_group=group, clock=clock)
         try:
-            message = await come
-            if message is None:
+            if not await answered(node, come, self._timeout):
                 senders = node.count_publishers(topic)
                 why = (
                     f"nobody publishes on '{subscription.name}'"
@@ -125,10 +123,10 @@ class _Saving:
                 node.get_logger().error(
                     f"Failed to spin map subscription: no map came within {self._timeout:g} s; {why}"
                 )
-            return message
+                return None
+            return come.result()
         finally:
             subscription.destroy()
-            timer.destroy()
 
 
 class MapSaver(SingleNode):

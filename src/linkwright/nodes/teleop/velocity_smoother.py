@@ -1,8 +1,8 @@
 """velocity_smoother of nav2: velocities from ``cmd_vel`` within limits, on ``cmd_vel_smoothed``.
 
 A managed node; parameters, defaults and rules are those of nav2. Different on purpose: unless
-``enable_stamped_cmd_vel`` is set it takes Twist and TwistStamped, and publishes what the subscribers take; it stops the
-robot when it is deactivated; and there is no bond.
+``enable_stamped_cmd_vel`` is set it takes Twist and TwistStamped, and publishes what the subscribers take; and it stops
+the robot when it is deactivated.
 """
 
 from __future__ import annotations
@@ -13,11 +13,10 @@ from math import isfinite
 from typing import Any
 
 from linkwright.diagnostics import Phrase, joined, phrase
-from linkwright.graph import Graph, Node, Parameter, ParameterType, SetParametersResult
-from linkwright.graph.lifecycle.managed_node import LifecycleNodeMixin
+from linkwright.graph import Parameter, ParameterType, SetParametersResult
 from linkwright.graph.lifecycle.states import LifecycleState, TransitionCallbackReturn
 from linkwright.messages import get_message
-from linkwright.nodes.options import NodeOptions, SingleNode, create_node_of
+from linkwright.nodes.navigation.managed import ManagedNode, ManagedServer
 from linkwright.nodes.teleop.smoothing import Limits, smoothed
 from linkwright.nodes.teleop.velocity_topic import TWIST, TWIST_STAMPED, VelocityTopic
 
@@ -35,14 +34,12 @@ _LIMITS = {
 }
 
 
-class _ManagedSmoother(LifecycleNodeMixin, Node):
+class _ManagedSmoother(ManagedNode):
     """The node of the graph."""
 
-    def __init__(self, *arguments: Any, **named: Any) -> None:
-        Node.__init__(self, *arguments, **named)
-        LifecycleNodeMixin.__init__(self)
+    def declare(self) -> None:
+        """Declare the parameters of nav2."""
         self._output: VelocityTopic | None = None
-        self._parts: list[Any] = []
         self._timer: Any = None
         self._command: list[float] | None = None
         self._commanded_ns = 0
@@ -59,54 +56,46 @@ class _ManagedSmoother(LifecycleNodeMixin, Node):
         self.declare_parameter("velocity_timeout", 1.0)
         self.declare_parameter("use_realtime_priority", False)
         self._stamped: bool | None = self.declare_parameter("enable_stamped_cmd_vel", ParameterType.BOOL).value
-        self.declare_parameter("autostart_node", False)
         self.add_on_set_parameters_callback(self._check)
         self.add_post_set_parameters_callback(lambda _: self._follow())
 
-    def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:  # noqa: ARG002
-        """Read the parameters and join the topics."""
+    def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Configure it unless its parameters do not go together."""
         problem = self._problem({})
         if problem is not None:
             self.get_logger().error(str(problem))
             return TransitionCallbackReturn.FAILURE
+        return super().on_configure(state)
+
+    def configure(self) -> None:
+        """Read the parameters and join the topics."""
         self._read()
         stamped = self._stamped
         kinds = (TWIST, TWIST_STAMPED) if stamped is None else (TWIST_STAMPED if stamped else TWIST,)
         self._output = VelocityTopic(self, "cmd_vel_smoothed", stamped)
         for kind in kinds:
-            self._parts.append(self.create_subscription(kind, "cmd_vel", self._heard, _DEPTH))
+            self.keep(self.create_subscription(kind, "cmd_vel", self._heard, _DEPTH))
         if self._value("feedback") == "CLOSED_LOOP":
             odometry = get_message("nav_msgs/msg/Odometry")
-            self._parts.append(self.create_subscription(odometry, self._value("odom_topic"), self._on_odometry, _DEPTH))
-        return TransitionCallbackReturn.SUCCESS
+            self.keep(self.create_subscription(odometry, self._value("odom_topic"), self._on_odometry, _DEPTH))
 
-    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:  # noqa: ARG002
+    def activate(self) -> None:
         """Begin to publish."""
         self._start_timer()
-        return TransitionCallbackReturn.SUCCESS
 
-    def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:  # noqa: ARG002
+    def deactivate(self) -> None:
         """Stop, and publish nothing more."""
         self._end_timer()
         if self._output is not None and any(self._last):
             self._output.stop()
         self._last, self._command = [0.0] * len(_AXES), None
-        return TransitionCallbackReturn.SUCCESS
 
-    def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:  # noqa: ARG002
+    def cleanup(self) -> None:
         """Leave the topics."""
         self._end_timer()
-        for part in self._parts:
-            self.destroy_subscription(part)
-        self._parts.clear()
         if self._output is not None:
             self._output.close()
             self._output = None
-        return TransitionCallbackReturn.SUCCESS
-
-    def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """As when it is cleaned up."""
-        return self.on_cleanup(state)
 
     def _start_timer(self) -> None:
         self._end_timer()
@@ -206,16 +195,11 @@ class _ManagedSmoother(LifecycleNodeMixin, Node):
         self._output.publish(quiet[:3], quiet[3:])
 
 
-class VelocitySmoother(SingleNode):
+class VelocitySmoother(ManagedServer):
     """The running node; ``autostart_node`` has it configure and activate itself, where no lifecycle manager does."""
 
+    NODE = _ManagedSmoother
     DEFAULT_NAME = "velocity_smoother"
-
-    def __init__(self, graph: Graph, options: NodeOptions) -> None:
-        node, _ = create_node_of(_ManagedSmoother, graph, options, self.DEFAULT_NAME)
-        self._node = node
-        if node.get_parameter("autostart_node").value and node.trigger_configure() == TransitionCallbackReturn.SUCCESS:
-            node.trigger_activate()
 
 
 def _values(twist: Any) -> list[float]:
