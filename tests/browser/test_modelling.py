@@ -16,6 +16,7 @@ YARD = """\
 <?xml version="1.0"?>
 <sdf version="1.9">
   <world name="yard">
+    <gui><camera name="user"><pose>-3.5 -3.5 5 0 0.7903 0.785398</pose></camera></gui>
     <!-- A crate, and nothing else. -->
     <model name="crate">
       <pose>4 0 0.5 0 0 0</pose>

@@ -69,6 +69,8 @@ export interface WorldScene {
   shadows: boolean;
   lidars: LidarScene[];
   cameras: CameraScene[];
+  robots: string[];
+  camera: number[] | null;
   daylight: number | null;
   fog: FogScene | null;
   kind: "world_scene";

@@ -10,6 +10,7 @@ import { RobotModelDrawing } from "./displays/robot-model";
 import { WorldDrawing } from "./displays/world";
 import { Flash } from "./flash";
 import { FocalShape } from "./focal-shape";
+import { lookFirst } from "./first-look";
 import { FINEST, FrameLoop, type Detail } from "./frame-loop";
 import { InspectLayer } from "./inspect/inspect-layer";
 import { SERVED, type MeshFiles } from "./meshes/mesh-files";
@@ -228,10 +229,16 @@ export class Stage {
     this.drawElsewhere();
   }
 
-  /** Puts the camera that nobody has put anywhere before the robot, as far as that is there. */
+  /** Puts the camera that nobody has put anywhere before the robot, as far as that is there, or into the world. */
   private fitFirst(): void {
     const { view } = this.session;
     const robots = this.robots();
+    const [world] = this.worlds();
+    if (robots.length === 0 && world?.isInPlace) {
+      lookFirst(world, view, this.viewport.size);
+      this.viewport.aim(view);
+      return;
+    }
     const posed = robots.reduce((sum, robot) => sum + robot.linksPosed, 0);
     if (!view.awaitsFit(posed)) return;
     const box = this.boundsOfRobots();

@@ -24,7 +24,7 @@ export class ViewState {
   private view: View = { cls: ORBIT, name: CURRENT_NAME, values: controllerOf(ORBIT).zero() };
   private configured: View | null = null;
   private showsWholeRobot = false;
-  /** Links of the robot that were seen when the camera was last put where it shows all of it; null: it is not put. */
+  /** How much, such as links of the robot, was seen when the camera was last put where it shows all of it; null: it is not put. */
   private linksSeen: number | null = null;
   private revision: number | null = null;
   private lastTarget: Target = FIXED;
@@ -96,8 +96,13 @@ export class ViewState {
 
   /** As `fit`, for a camera that nobody has put anywhere; it waits for the robot's other links. */
   fitFirst(box: Span, size: ViewSize, posed: number, links: number): void {
-    this.fit(box, size);
-    if (posed < links) this.linksSeen = posed;
+    this.propose(fitted(this.view.values, box, size), posed, posed >= links);
+  }
+
+  /** Looks as values say with a camera that nobody has put anywhere; it waits for more to be seen, unless `isLast`. */
+  propose(values: ViewValues, posed: number, isLast: boolean): void {
+    this.update(values);
+    if (!isLast) this.linksSeen = posed;
   }
 
   /** Takes values, each within the bounds of its property. */

@@ -9,7 +9,7 @@ if TYPE_CHECKING:
 
 _DISPLAY, _FRAME = "linkwright/World", "world"
 _DISTANCE = 5.0
-"""Metres from which a robot and what is around it are seen."""
+"""Metres from which an empty world is seen."""
 
 
 def world_config(name: str, x: float = 0.0, y: float = 0.0) -> RvizConfig:
@@ -28,9 +28,7 @@ def world_config(name: str, x: float = 0.0, y: float = 0.0) -> RvizConfig:
     for display in config.displays:
         display.checked = display.cls.endswith("/Grid")
     show_world(config)
-    view = config.views.current
-    view.values |= {"Distance": _DISTANCE, "Focal Point/X": x, "Focal Point/Y": y}
-    config.views.current = view
+    config.propose_view({"Distance": _DISTANCE, "Focal Point/X": x, "Focal Point/Y": y})
     return config
 
 

@@ -90,6 +90,9 @@ def test_a_model_is_shown_whole_until_somebody_says_where_the_camera_is():
     config.views.current = view
     assert not config.shows_whole_robot
     assert not config.copy().shows_whole_robot
+    config.propose_view({"Distance": 7.0})
+    assert config.shows_whole_robot
+    assert config.views.current.values["Distance"] == 7.0
 
 
 def test_groups_hold_displays_and_old_classes_are_understood():

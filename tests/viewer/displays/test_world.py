@@ -127,6 +127,16 @@ async def test_without_a_frame_world_the_world_is_placed_by_a_frame_of_its_robot
         assert made.status("World")["Frame"] == ("ok", "tf has no 'world': the world is where 'base' is in both")
 
 
+async def test_a_world_without_transforms_is_at_its_own_frame_and_nothing_warns():
+    async with world(config("world")) as made, page(made.viewer) as opened:
+        await Simulation(made).describe(WORLD)
+        await opened.until("display_status", display="global", level="ok")
+        assert made.status("World")["Frame"] == ("ok", "The world is at the frame 'world'")
+        made.move({("odom", "base"): (3, 0, 0.5, *IDENTITY[3:])})
+        own = made.viewer.context.transforms.own
+        await eventually(lambda: (frame := own("world")) is not None and frame.parent == "odom")
+
+
 async def test_with_the_fixed_frame_world_the_frames_of_tf_are_placed_in_the_world_that_stands_still():
     async with world(config("world")) as made, page(made.viewer):
         simulation = Simulation(made)

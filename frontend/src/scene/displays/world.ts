@@ -13,6 +13,11 @@ import { WorldSensors } from "./world-sensors";
 /** Begins the keys of the rays of lidars. */
 const RAYS = "rays ";
 
+/** What is so much flatter than it is wide is a ground, as a rule. */
+const FLAT = 0.02;
+/** What is lower has fallen out of a world without a ground, m. */
+const FALLEN = -1;
+
 /** linkwright/World: the links of all models of a simulated world. */
 export class WorldDrawing implements Drawing {
   readonly root = new Group();
@@ -102,6 +107,36 @@ export class WorldDrawing implements Drawing {
 
   bounds(): Box3 {
     return this.shown?.bounds() ?? new Box3();
+  }
+
+  get hasRobots(): boolean {
+    return (this.scene?.robots.length ?? 0) > 0;
+  }
+
+  /** The box around the models that are robots, and that around all but grounds and what fell, in the fixed frame, m. */
+  extents(): { robots: Box3; world: Box3 } {
+    const [robots, world, all] = [new Box3(), new Box3(), new Box3()];
+    const names = new Set(this.scene?.robots);
+    for (const [link, box] of this.shown?.boundsOfLinks() ?? []) {
+      if (box.isEmpty() || this.isFlat(link)) continue;
+      if (names.has(modelOf(link))) robots.union(box);
+      if (box.max.z < FALLEN) continue;
+      if (!isLikeGround(box)) world.union(box);
+      all.union(box);
+    }
+    return { robots, world: world.isEmpty() ? all : world };
+  }
+
+  /** Where its file puts the camera, looking along x, in the fixed frame; null where it does not say. */
+  cameraOfFile(): Matrix4 | null {
+    const camera = this.scene?.camera;
+    return camera ? poseMatrix(camera, new Matrix4()).premultiply(this.world()) : null;
+  }
+
+  /** Whether a ray meets a robot, or nothing as far as it goes. */
+  isClear(ray: Raycaster): boolean {
+    const hit = this.pick(ray);
+    return hit === null || (this.scene?.robots.includes(modelOf(hit.key)) ?? false);
   }
 
   pick(ray: Raycaster): Hit | null {
@@ -209,4 +244,9 @@ export class WorldDrawing implements Drawing {
     this.sensors.take(scene);
     this.styleIsOld = true;
   }
+}
+
+function isLikeGround(box: Box3): boolean {
+  const { x, y, z } = box.getSize(new Vector3());
+  return z < FLAT * Math.min(x, y);
 }

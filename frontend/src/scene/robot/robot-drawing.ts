@@ -72,11 +72,22 @@ export class RobotDrawing {
   /** The box around what is seen, in the fixed frame, m; around the links' origins where nothing is. */
   bounds(): Box3 {
     const box = new Box3();
-    this.root.updateWorldMatrix(true, true);
-    for (const link of this.links.values()) for (const mesh of link.visibleMeshes) box.expandByObject(mesh, true);
+    for (const each of this.boundsOfLinks().values()) box.union(each);
     if (!box.isEmpty()) return box;
     for (const { pose } of this.links.values()) if (pose) box.expandByPoint(new Vector3().setFromMatrixPosition(pose));
     return box;
+  }
+
+  /** The boxes around what is seen of each link, in the fixed frame, m; empty ones where nothing is. */
+  boundsOfLinks(): Map<string, Box3> {
+    this.root.updateWorldMatrix(true, true);
+    const boxes = new Map<string, Box3>();
+    for (const [name, link] of this.links) {
+      const box = new Box3();
+      for (const mesh of link.visibleMeshes) box.expandByObject(mesh, true);
+      boxes.set(name, box);
+    }
+    return boxes;
   }
 
   /** `contrast` draws collisions over pale visuals; `isLit`: in the light of lamps in the scene, not of the camera. */

@@ -147,6 +147,7 @@ function clampDistance(distance: number): number {
   return Math.max(SMALLEST_DISTANCE, distance);
 }
 
-function direction(yaw: number, pitch: number): Vector {
+/** The unit vector to an eye from what it looks at. */
+export function direction(yaw: number, pitch: number): Vector {
   return [Math.cos(yaw) * Math.cos(pitch), Math.sin(yaw) * Math.cos(pitch), Math.sin(pitch)];
 }

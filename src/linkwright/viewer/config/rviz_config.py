@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, phrase
 from linkwright.viewer.config import file as configuration_file
@@ -313,9 +314,15 @@ class RvizConfig:
             grid.put(("Cell Size",), f"{size.cell:g}")
             tf.put(("Marker Scale",), f"{size.marker_scale:g}")
             view.values |= {"Distance": size.distance, "Focal Shape Size": size.focal_shape}
-        config.views.current = view
-        config._unchosen_view = config.views.current
+        config.propose_view(view.values)
         return config
+
+    def propose_view(self, values: Mapping[str, Any]) -> None:
+        """Set values of the view until a page has drawn what there is, and puts the camera where all of it is seen."""
+        view = self.views.current
+        view.values |= values
+        self.views.current = view
+        self._unchosen_view = self.views.current
 
     @property
     def shows_whole_robot(self) -> bool:

@@ -31,6 +31,7 @@ from linkwright.viewer.protocol.robot import MeshStatus
 from linkwright.viewer.protocol.worlds import WorldPoses, WorldRays, WorldScene
 from linkwright.viewer.sensors import sensors_of
 from linkwright.viewer.skies import daylight, fog_of
+from linkwright.viewer.viewpoints import camera_of, robots_of
 from linkwright.viewer.web.files import MeshIndex
 from linkwright.viewer.worlds import WorldContent, content_of
 
@@ -169,8 +170,9 @@ class WorldDisplay(TopicDisplay):
 
     def transforms_came(self) -> None:
         """Place the world once the frames of its robots are known; from then on its poses lead."""
-        own = self.context.transforms.own(WORLD) if self._leads else self._placed[1]
-        if self._content.links and own is None and (self._leads or self._placed[0] != WORLD):
+        own = self.context.transforms.own(WORLD)
+        placed = self._placed[1] is not None if not self._leads else own is not None and own.parent is not None
+        if self._content.links and not placed and (self._leads or self._placed[0] != WORLD):
             self._show_poses()
 
     def receive(self, status: MeshStatus) -> None:
@@ -241,6 +243,7 @@ class WorldDisplay(TopicDisplay):
         self._anchors = _anchors(content)
         self._page_problems.clear()
         lidars, cameras = sensors_of(world)
+        camera = camera_of(world)
         scene = WorldScene(
             self._revision,
             world.name,
@@ -251,6 +254,8 @@ class WorldDisplay(TopicDisplay):
             world.scene.shadows,
             [each.scene for each in lidars],
             cameras,
+            robots_of(world),
+            None if camera is None else list(camera),
             daylight(world.scene.sky),
             fog_of(world.scene.fog),
         )
@@ -327,6 +332,8 @@ class WorldDisplay(TopicDisplay):
             self.say(_FRAME, "ok", f"The world is at the frame '{WORLD}'")
             if found is not None:
                 self._place_frames(*found)
+            elif self._leads and self.context.transforms.own(WORLD) is None:
+                self.context.transforms.place(self.id, OwnFrame(WORLD))
         elif found is not None:
             row, frame, pose = found
             self._placed = ("", np.array(compose(pose, invert(tuple(self._poses[row])))))

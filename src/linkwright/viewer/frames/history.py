@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -26,13 +26,13 @@ class OwnFrame:
 
     Attributes:
         name: of the frame.
-        parent: a frame of tf.
+        parent: a frame of tf; None while none is known to be connected with it.
         pose: of that frame in this one: x, y, z, qx, qy, qz, qw.
     """
 
     name: str
-    parent: str
-    pose: NDArray[np.float64]
+    parent: str | None = None
+    pose: NDArray[np.float64] = field(default_factory=_IDENTITY.copy)
 
 
 class FrameHistory:
@@ -93,7 +93,7 @@ class FrameHistory:
         if frame == fixed_frame:
             return _IDENTITY
         own = self.own(fixed_frame)
-        if own is not None:
+        if own is not None and own.parent is not None:
             return compose(own.pose, self.pose(own.parent, frame, stamp_ns))
         found, _ = self._buffer.lookup(fixed_frame, frame, stamp_ns)
         return np.array(found)
@@ -115,7 +115,7 @@ class FrameHistory:
             pose: x, y, z, qx, qy, qz, qw.
         """
         own = self.own(frame)
-        if own is None:
+        if own is None or own.parent is None:
             return frame, np.asarray(pose, dtype=np.float64)
         return own.parent, compose(invert(own.pose), pose)
 

@@ -337,7 +337,7 @@ class FrameStream:
         fixed_frame = self.fixed_frame
         snapshot = self._snapshot(fixed_frame, self._paused_ns or self._clock.now_ns())
         poses, ages = self._poses_then(snapshot, fixed_frame), snapshot.ages
-        alone = fixed_frame not in snapshot.names and fixed_frame in self._own_frames()
+        alone = fixed_frame not in snapshot.names and self._stands_alone(fixed_frame)
         if alone:
             poses, ages = np.concatenate([poses, _IDENTITY]), np.append(ages, 0.0)
         changed = self._compare_structure(snapshot, fixed_frame if alone else None)
@@ -349,10 +349,16 @@ class FrameStream:
     def _snapshot(self, fixed_frame: str, now_ns: int) -> FrameSnapshot:
         """Where all frames are in the Fixed Frame, which a display may place."""
         own = self._history.own(fixed_frame)
-        if own is None or fixed_frame in self._buffer.frames():  # which may have come before the history has it
+        # The buffer may know the frame before the history does.
+        if own is None or own.parent is None or fixed_frame in self._buffer.frames():
             return self._buffer.snapshot(fixed_frame, now_ns)
         snapshot = self._buffer.snapshot(own.parent, now_ns)
         return replace(snapshot, poses=compose(own.pose, snapshot.poses))
+
+    def _stands_alone(self, frame: str) -> bool:
+        """Whether a frame that tf does not know is there all the same, and none of tf is connected with it."""
+        own = self._history.own(frame)
+        return frame in self._own_frames() or (own is not None and own.parent is None)
 
     def _poses_then(self, snapshot: FrameSnapshot, fixed_frame: str) -> NDArray[np.float64]:
         """Where frames are at the time to be shown; where nothing is known of that time, where they are now."""

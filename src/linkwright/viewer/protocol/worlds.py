@@ -90,7 +90,9 @@ class WorldScene(DataContent):
     """World: what is drawn; `revision` counts descriptions.
 
     `ambient` and `background` are colours, red, green, blue; `shadows` tells whether lights cast any. `daylight`
-    is that of its sky, from 0 at night to 1; None where there is no sky.
+    is that of its sky, from 0 at night to 1; None where there is no sky. `robots` are the models that are robots;
+    `camera` is where the world's file puts the camera of a window, x y z qx qy qz qw in the frame of the world, looking
+    along x; None where it says nothing.
     """
 
     revision: int
@@ -102,6 +104,8 @@ class WorldScene(DataContent):
     shadows: bool
     lidars: list[LidarScene]
     cameras: list[CameraScene]
+    robots: list[str] = field(default_factory=list)
+    camera: list[float] | None = None
     daylight: float | None = None
     fog: FogScene | None = None
 

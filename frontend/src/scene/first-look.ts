@@ -1,0 +1,70 @@
+import { Raycaster, Vector3, type Box3, type Matrix4 } from "three";
+import type { ViewState } from "../state/view";
+import type { ViewSize } from "../state/views/camera";
+import type { Span } from "../state/views/fit";
+import { aroundFrom } from "../state/views/orbit";
+import { around, overview } from "../state/views/surroundings";
+import type { Vector } from "../state/views/vector";
+import type { ViewValues } from "../state/views/view-controller";
+import { TOUCHED } from "./layers";
+
+/** What a camera that nobody has put anywhere looks at: a world, and then the robots in it. */
+const WORLD_SEEN = 1;
+const ROBOTS_SEEN = 2;
+/** A camera of a world's file that sees nothing turns about a point this far ahead; no nearer one is taken. m. */
+const AHEAD = 5;
+const NEAREST = 0.5;
+
+/** What of a world is needed to look at it. */
+export interface LookedAt {
+  readonly hasRobots: boolean;
+  extents(): { robots: Box3; world: Box3 };
+  cameraOfFile(): Matrix4 | null;
+  isClear(ray: Raycaster): boolean;
+  pick(ray: Raycaster): { distance: number } | null;
+}
+
+/**
+ * Puts a camera that nobody has put anywhere where a world's file says; else before its robots, with what is around
+ * them; or, until there are some, where all of the world is seen.
+ */
+export function lookFirst(world: LookedAt, view: ViewState, size: ViewSize): void {
+  if (!view.awaitsFit(world.hasRobots ? ROBOTS_SEEN : WORLD_SEEN)) return;
+  const camera = world.cameraOfFile();
+  if (camera) {
+    view.propose(throughCamera(world, camera), ROBOTS_SEEN, true);
+    return;
+  }
+  const { robots, world: all } = world.extents();
+  if (!robots.isEmpty()) {
+    view.propose(around(view.values, spanOf(robots), size, (eye, place) => sees(world, eye, place)), ROBOTS_SEEN, true);
+  } else {
+    view.propose(all.isEmpty() ? {} : overview(view.values, spanOf(all), size), WORLD_SEEN, false);
+  }
+}
+
+/** The values of an Orbit that looks as a camera of the world's file does, but for its roll. */
+function throughCamera(world: LookedAt, camera: Matrix4): ViewValues {
+  const eye = new Vector3().setFromMatrixPosition(camera);
+  const direction = new Vector3(1, 0, 0).transformDirection(camera);
+  const hit = world.pick(rayFrom(eye, direction))?.distance ?? (direction.z < 0 && eye.z > 0 ? -eye.z / direction.z : AHEAD);
+  const focal = eye.clone().addScaledVector(direction, Math.max(hit, NEAREST));
+  return aroundFrom(focal.toArray(), eye.toArray());
+}
+
+/** Whether nothing but robots stands between an eye and a place. */
+function sees(world: LookedAt, eye: Vector, place: Vector): boolean {
+  const from = new Vector3(...eye);
+  const direction = new Vector3(...place).sub(from);
+  return world.isClear(rayFrom(from, direction.clone().normalize(), direction.length()));
+}
+
+function rayFrom(eye: Vector3, direction: Vector3, far = Infinity): Raycaster {
+  const ray = new Raycaster(eye, direction, 0, far);
+  ray.layers.enable(TOUCHED);
+  return ray;
+}
+
+function spanOf({ min, max }: Box3): Span {
+  return { min: min.toArray(), max: max.toArray() };
+}

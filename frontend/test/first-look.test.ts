@@ -1,0 +1,114 @@
+import { Box3, Matrix4, Vector3, type Raycaster } from "three";
+import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
+import { Connection } from "../src/connection/connection";
+import { lookFirst, type LookedAt } from "../src/scene/first-look";
+import { Session } from "../src/state/session";
+import type { ViewState } from "../src/state/view";
+import { distanceBetween, type Vector } from "../src/state/views/vector";
+
+const VALUES = { Distance: 5, Yaw: 0.785398, Pitch: 0.5, "Focal Point/X": 0, "Focal Point/Y": 0, "Focal Point/Z": 0 };
+const SIZE = { width: 800, height: 600 };
+const ROBOT = new Box3(new Vector3(4, -0.2, 0), new Vector3(4.4, 0.2, 0.3));
+const HALL = new Box3(new Vector3(-20, -10, 0), new Vector3(20, 10, 3));
+
+/** The view of a page whose server says whether somebody has put the camera anywhere. */
+function viewOf(isFree: boolean): ViewState {
+  const connection = new Connection("ws://localhost/ws");
+  vi.spyOn(connection, "send").mockImplementation(() => true);
+  const { view } = new Session(connection);
+  const said = { cls: "rviz_default_plugins/Orbit", name: "Current View", values: { ...VALUES } };
+  connection.message.emit({ type: "view_state", view: said, revision: 1, whole_robot: isFree });
+  return view;
+}
+
+beforeEach(() => {
+  vi.useFakeTimers();
+  vi.stubGlobal("window", { setTimeout });
+});
+
+afterEach(() => {
+  vi.useRealTimers();
+  vi.unstubAllGlobals();
+});
+
+/** A hall with a robot, or without; a wall stands at each of these x, endless along y and as high as said. */
+class Hall implements LookedAt {
+  camera: Matrix4 | null = null;
+  constructor(
+    public hasRobots: boolean,
+    private readonly walls: readonly (readonly [x: number, height: number])[] = [],
+  ) {}
+
+  extents(): { robots: Box3; world: Box3 } {
+    return { robots: this.hasRobots ? ROBOT : new Box3(), world: HALL };
+  }
+
+  cameraOfFile(): Matrix4 | null {
+    return this.camera;
+  }
+
+  isClear({ ray: { origin, direction }, far }: Raycaster): boolean {
+    return !this.walls.some(([x, height]) => {
+      const along = (x - origin.x) / direction.x;
+      return along > 0 && along < far && origin.z + along * direction.z < height;
+    });
+  }
+
+  pick({ ray }: Raycaster): { distance: number } | null {
+    return ray.direction.x > 0.9 ? { distance: 3 } : null;
+  }
+}
+
+describe("the first look at a world", () => {
+  it("shows all of it until there is a robot, then that and what is around it, and stays", () => {
+    const view = viewOf(true);
+    const hall = new Hall(false);
+    lookFirst(hall, view, SIZE);
+    expect(view.camera.focal).toEqual([0, 0, 1.5]);
+    expect(view.values["Distance"]).toBeGreaterThan(40);
+    hall.hasRobots = true;
+    lookFirst(hall, view, SIZE);
+    expect(view.camera.focal?.[0]).toBeCloseTo(4.2);
+    expect(view.values["Distance"]).toBeGreaterThan(3);
+    expect(view.values["Distance"]).toBeLessThan(6);
+    expect(view.values["Pitch"]).toBe(0.5);
+    view.update({ Distance: 1 });
+    lookFirst(hall, view, SIZE);
+    expect(view.values["Distance"]).toBe(1);
+  });
+
+  it("does not move a camera that a file, or somebody, has put somewhere", () => {
+    const chosen = viewOf(false);
+    lookFirst(new Hall(true), chosen, SIZE);
+    expect(chosen.values).toEqual(VALUES);
+    const moved = viewOf(true);
+    moved.update({ Yaw: 3 });
+    lookFirst(new Hall(true), moved, SIZE);
+    expect(moved.values).toEqual({ ...VALUES, Yaw: 3 });
+  });
+
+  it("looks from another side, from above or from nearer where walls hide the robot", () => {
+    const from = (walls: readonly (readonly [number, number])[]): Vector => {
+      const view = viewOf(true);
+      lookFirst(new Hall(true, walls), view, SIZE);
+      return view.camera.position;
+    };
+    const free = from([]);
+    expect(free[0]).toBeGreaterThan(5);
+    expect(from([[5.5, 9]])[0]).toBeLessThan(4.2);
+    expect(from([[5.5, 2], [3, 2]])[2]).toBeGreaterThan(free[2] + 1);
+    const between = from([[4.7, 99], [3.7, 99]]);
+    expect(distanceBetween(between, [4.2, 0, 0.15])).toBeLessThan(distanceBetween(free, [4.2, 0, 0.15]));
+    expect(between[0]).toBeGreaterThan(3.7);
+    expect(between[0]).toBeLessThan(4.7);
+  });
+
+  it("looks as the world's file says, robots or not", () => {
+    const view = viewOf(true);
+    const hall = new Hall(true);
+    hall.camera = new Matrix4().setPosition(1, 2, 3);
+    lookFirst(hall, view, SIZE);
+    expect(view.camera.position.map((each) => Math.round(each * 1e6) / 1e6)).toEqual([1, 2, 3]);
+    expect(view.camera.focal?.map((each) => Math.round(each * 1e6) / 1e6)).toEqual([4, 2, 3]);
+  });
+});

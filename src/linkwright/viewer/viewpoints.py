@@ -1,0 +1,51 @@
+"""From where a page looks at a world first: what the file says, and which models it is about."""
+
+from __future__ import annotations
+
+from math import isfinite
+
+from linkwright.geometry.single import Pose, Transform
+from linkwright.sdf.frames import transform_of
+from linkwright.sdf.models import Model
+from linkwright.sdf.worlds import World
+from linkwright.xmltree import Element
+
+_FEWEST_JOINTS = 2
+"""A model without sensors and plugins that has so many moving joints is a robot, and no door."""
+_POSE_NUMBERS = 6
+
+
+def camera_of(world: World) -> Transform | None:
+    """Where the camera of the window is that a world asks for, in the frame of the world; it looks along its x axis.
+
+    Gazebo classic reads ``<gui><camera><pose>``, gz the ``<camera_pose>`` of the window's plugin that draws. None
+    where the world says neither, or no six numbers.
+    """
+    gui = world.element.first("gui") if world.element is not None else None
+    if gui is None:
+        return None
+    said = [pose for camera in gui.elements("camera") for pose in camera.elements("pose")]
+    said += [pose for plugin in gui.elements("plugin") for pose in plugin.elements("camera_pose")]
+    return _pose(said[0]) if said else None
+
+
+def robots_of(world: World) -> list[str]:
+    """The names of the models that are robots: they move, and have sensors, plugins, or some moving joints."""
+    return [model.name for model in world.models if not model.static and _is_robot(model)]
+
+
+def _pose(element: Element) -> Transform | None:
+    try:
+        numbers = [float(word) for word in element.text().split()]
+    except ValueError:
+        return None
+    if len(numbers) != _POSE_NUMBERS or not all(map(isfinite, numbers)):
+        return None
+    x, y, z, roll, pitch, yaw = numbers
+    return transform_of(Pose((x, y, z), (roll, pitch, yaw)))
+
+
+def _is_robot(model: Model) -> bool:
+    moving = sum(joint.type != "fixed" for joint in model.joints)
+    senses = any(link.sensors for link in model.links)
+    return bool(model.plugins) or senses or moving >= _FEWEST_JOINTS or any(map(_is_robot, model.models))
