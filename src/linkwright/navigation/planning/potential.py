@@ -1,0 +1,111 @@
+"""Potentials: what the cheapest way from one place to each other place costs, as a wave spreads over a costmap.
+
+It is the eikonal equation on a grid, as NavFn solves it: ways go in all directions, not only along rows, columns and
+diagonals. All cells of the front are brought up to date at once, and those whose neighbours got cheaper are looked at
+again, until nothing changes.
+
+Source: Brock and Khatib, High-speed navigation using the global dynamic window approach, ICRA 1999; nav2_navfn_planner
+(what a cell costs).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.navigation.costmaps.costmap import MAX_PASSABLE, UNKNOWN
+
+Floats = NDArray[np.float64]
+Cell = tuple[int, int]
+"""Row and column."""
+
+NEUTRAL: Final = 50.0
+"""The price of crossing a cell that costs nothing."""
+_FACTOR: Final = 0.8
+_MOST: Final = 253.0
+"""The price of crossing a cell that nobody has seen."""
+_SMALLEST_GAIN: Final = 1e-3 * NEUTRAL
+
+
+def prices(costs: NDArray[np.uint8], *, allow_unknown: bool = True) -> Floats:
+    """What it takes to cross each cell of a costmap, of the same shape; infinite where no robot can be.
+
+    Args:
+        costs: of the cells.
+        allow_unknown: whether ways may lead over what nobody has seen.
+    """
+    table = np.minimum(NEUTRAL + _FACTOR * np.arange(256.0), _MOST)
+    table[MAX_PASSABLE + 1 :] = np.inf
+    if allow_unknown:
+        table[UNKNOWN] = _MOST
+    crossed: Floats = table[costs]
+    return crossed
+
+
+def potential(
+    price: Floats, source: Cell, target: Cell | None = None, *, heuristic: bool = False
+) -> Generator[None, None, Floats]:
+    """What the cheapest way from a cell to each other one costs.
+
+    It gives way after each step of the wave, for others to work in between.
+
+    Args:
+        price: of crossing cells, of shape (rows, columns); infinite where there is no way.
+        source: where ways begin; it may have any price.
+        target: where the way leads that is wanted: what is farther away is not looked at. None for all cells.
+        heuristic: whether cells count as far away, too, from which the target cannot be reached for less (A*).
+
+    Returns:
+        Of the same shape; 0 at the source, infinite where no way leads, or only one that is not wanted.
+    """
+    rows, columns = price.shape
+    width = columns + 2
+    padded = np.full((rows + 2, width), np.inf)
+    padded[1:-1, 1:-1] = price
+    step = padded.ravel()
+    least = np.full(step.size, np.inf)
+    gain = np.where(step < np.inf, np.inf, -np.inf)  # as `least`, but nothing is gained where there is no way
+    mark = np.zeros(step.size, np.intp)
+    offsets = np.array([[-1], [1], [-width], [width]])
+    begin = (source[0] + 1) * width + source[1] + 1
+    end = None if target is None else (target[0] + 1) * width + target[1] + 1
+    ahead = _least_ahead(price, target) if heuristic and target is not None else None
+    least[begin], gain[begin] = 0.0, -np.inf
+    front = begin + offsets[:, 0]
+    front = front[step[front] < np.inf]
+    while front.size:
+        yield
+        sides = least.take(front + offsets)
+        value = _crossed(np.minimum(sides[0], sides[1]), np.minimum(sides[2], sides[3]), step.take(front))
+        better = np.flatnonzero(value < gain.take(front) - _SMALLEST_GAIN)
+        front, value = front.take(better), value.take(better)
+        least[front] = value
+        gain[front] = value
+        if end is not None and least[end] < np.inf:
+            near = (value if ahead is None else value + ahead.take(front)) < least[end]
+            front, value = front[near], value[near]
+        around = front + offsets
+        around = around[gain.take(around) > value]
+        mark[around] = order = np.arange(around.size)
+        front = around[mark.take(around) == order]
+    result: Floats = least.reshape(rows + 2, width)[1:-1, 1:-1]
+    return result
+
+
+def _crossed(a: Floats, b: Floats, price: Floats) -> Floats:
+    """What it takes to be in cells, of what it takes to be in the cheaper neighbour in each direction."""
+    low, high = np.minimum(a, b), np.maximum(a, b)
+    apart = np.minimum(high - low, price)  # farther apart, the way comes from one side only
+    value: Floats = low + 0.5 * (apart + np.sqrt(2.0 * price * price - apart * apart))
+    return value
+
+
+def _least_ahead(price: Floats, target: Cell) -> Floats:
+    """The least that the way from each cell to the target takes, of cells with a rim around them."""
+    rows, columns = price.shape
+    y, x = np.arange(-1.0, rows + 1) - target[0], np.arange(-1.0, columns + 1) - target[1]
+    ahead: Floats = (float(price.min()) * np.hypot(y[:, None], x[None, :])).ravel()
+    return ahead

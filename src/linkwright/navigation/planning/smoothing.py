@@ -1,0 +1,119 @@
+"""Smoothing: points of a way move towards the middle of their neighbours, but not far from where they were.
+
+Source: nav2_smoother ``SimpleSmoother``: what its iteration comes to is the solution of a linear system with three
+diagonals, which is solved at once. Points that would come where no robot can be stay where they were.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.navigation.costmaps.costmap import MAX_PASSABLE, UNKNOWN, Costmap
+from linkwright.navigation.grids.library import load_scipy
+
+Points = NDArray[np.float64]
+
+_LEAST_POINTS: Final = 3
+
+
+@dataclass(frozen=True, kw_only=True)
+class Smoothing:
+    """How much to smooth; names and defaults are nav2's.
+
+    Attributes:
+        w_data: how much a point wants to stay where it was.
+        w_smooth: how much it wants to be in the middle of its neighbours.
+        do_refinement: whether what was smoothed is smoothed again.
+        refinement_num: how many times.
+        enforce_path_inversion: whether points stay where the robot begins to drive the other way.
+    """
+
+    w_data: float = 0.2
+    w_smooth: float = 0.3
+    do_refinement: bool = True
+    refinement_num: int = 2
+    enforce_path_inversion: bool = True
+
+
+def smoothed(points: Points, smoothing: Smoothing, costmap: Costmap | None = None) -> tuple[Points, bool]:
+    """A smoother way.
+
+    Args:
+        points: x and y in the frame of the costmap, in metres, of shape (n, 2).
+        smoothing: how much.
+        costmap: where no robot can be; None for anywhere.
+
+    Returns:
+        As many points, the first and the last where they were; and whether all could go where smoothing wants them.
+    """
+    found, complete = points, True
+    rounds = 1 + (smoothing.refinement_num if smoothing.do_refinement else 0)
+    fixed = _fixed(points, smoothing)
+    for _ in range(rounds):
+        found, all_moved = _once(found, fixed, smoothing, costmap)
+        complete &= all_moved
+    return found, complete
+
+
+def directions(points: Points, last: float) -> NDArray[np.float64]:
+    """The yaw of each point of a way, towards the following one; the last one is given. Radians, of shape (n,)."""
+    ahead = np.diff(points, axis=0)
+    return np.append(np.arctan2(ahead[:, 1], ahead[:, 0]), last)
+
+
+def _fixed(points: Points, smoothing: Smoothing) -> NDArray[np.bool_]:
+    """Which points stay: the ends, and where the direction is turned round."""
+    fixed = np.zeros(len(points), np.bool_)
+    fixed[[0, -1]] = True
+    if smoothing.enforce_path_inversion and len(points) >= _LEAST_POINTS:
+        ahead = np.diff(points, axis=0)
+        fixed[1:-1] |= (ahead[:-1] * ahead[1:]).sum(axis=1) < 0.0
+    return fixed
+
+
+def _once(
+    points: Points, fixed: NDArray[np.bool_], smoothing: Smoothing, costmap: Costmap | None
+) -> tuple[Points, bool]:
+    if len(points) < _LEAST_POINTS:
+        return points, True
+    stays = fixed.copy()
+    while True:
+        found = _solved(points, stays, smoothing)
+        if costmap is None:
+            return found, True
+        bad = _blocked(found, costmap) & ~stays
+        if not bad.any():
+            return found, not (stays & ~fixed).any()
+        stays |= bad
+
+
+def _blocked(points: Points, costmap: Costmap) -> NDArray[np.bool_]:
+    """Which points lie where no robot can be, or half the way to the next one does."""
+    middles = (points + np.roll(points, -1, axis=0)) / 2.0
+    middles[-1] = points[-1]
+
+    def barred(places: Points) -> NDArray[np.bool_]:
+        costs = costmap.cost_at(places)
+        return np.asarray((costs > MAX_PASSABLE) & (costs != UNKNOWN))
+
+    blocked = barred(points)
+    between = barred(middles)
+    blocked |= between
+    blocked[1:] |= between[:-1]
+    return blocked
+
+
+def _solved(points: Points, stays: NDArray[np.bool_], smoothing: Smoothing) -> Points:
+    """Where points come to rest: w_data (y - x) = w_smooth (previous + next - 2 y) for those that may move."""
+    beside = np.where(stays, 0.0, -smoothing.w_smooth)
+    bands = np.zeros((3, len(points)))
+    bands[0, 1:] = beside[:-1]
+    bands[1] = np.where(stays, 1.0, smoothing.w_data + 2.0 * smoothing.w_smooth)
+    bands[2, :-1] = beside[1:]
+    wanted: Any = np.where(stays, 1.0, smoothing.w_data)[:, None] * points
+    found: Points = load_scipy("linalg").solve_banded((1, 1), bands, wanted)
+    return found

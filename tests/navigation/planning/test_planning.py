@@ -1,0 +1,318 @@
+"""Plans: as short as they can be, clear of obstacles, through mazes; what cannot be planned says why."""
+
+from __future__ import annotations
+
+from math import hypot
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from linkwright.navigation.costmaps.costmap import INSCRIBED, LETHAL, MAX_PASSABLE, UNKNOWN, Costmap
+from linkwright.navigation.costmaps.inflation_layer import Inflation
+from linkwright.navigation.grids.distances import distance_field
+from linkwright.navigation.grids.grid import Grid
+from linkwright.navigation.grids.library import load_scipy
+from linkwright.navigation.planning.planner import PlanError, Problem, Settings, plan, run
+from linkwright.navigation.planning.potential import NEUTRAL, potential, prices
+from linkwright.navigation.planning.smoothing import Smoothing, smoothed
+
+RESOLUTION = 0.1
+
+
+def costmap(cells) -> Costmap:
+    return Costmap(Grid(cells=np.asarray(cells, np.uint8), resolution=RESOLUTION))
+
+
+def drawn(*rows: str) -> Costmap:
+    """A costmap of characters: # lethal, o inscribed, ? unknown, the last row is that of y = 0."""
+    costs = {"#": LETHAL, "o": INSCRIBED, "?": UNKNOWN, ".": 0}
+    return costmap([[costs[each] for each in row] for row in reversed(rows)])
+
+
+def inflated(obstacles) -> Costmap:
+    distances = distance_field(obstacles, RESOLUTION)
+    costs = Inflation(inflation_radius=0.6, cost_scaling_factor=3.0).costs(distances, 0.2)
+    return costmap(np.where(distances > 0.6, 0, costs))
+
+
+def planned(scene: Costmap, start, goal, **more) -> np.ndarray:
+    return run(plan(scene, (*start, 0.0)[:3], (*goal, 0.0)[:3], Settings(**more)))
+
+
+def length(path: np.ndarray) -> float:
+    return float(np.hypot(*np.diff(path[:, :2], axis=0).T).sum())
+
+
+def touched(scene: Costmap, path: np.ndarray) -> int:
+    """The highest cost along the straight lines between the points of a path, other than of what is unknown."""
+    share = np.linspace(0.0, 1.0, 21)[:, None, None]
+    costs = scene.cost_at(path[None, :-1, :2] * (1 - share) + path[None, 1:, :2] * share)
+    return int(np.where(costs == UNKNOWN, 0, costs).max())
+
+
+def dijkstra(price: np.ndarray, source: tuple[int, int]) -> np.ndarray:
+    """What the cheapest ways along rows, columns and diagonals cost that cut no corner of an obstacle."""
+    rows, columns = price.shape
+    number = np.arange(rows * columns).reshape(rows, columns)
+    begins, ends, weights = [], [], []
+    for down, right in ((0, 1), (1, 0), (1, 1), (1, -1)):
+        left, step = max(0, -right), max(0, right)
+        a = (slice(0, rows - down), slice(left, columns - step))
+        b = (slice(down, rows), slice(left + right, columns - step + right))
+        with np.errstate(invalid="ignore"):
+            weight = hypot(down, right) * (price[a] + price[b]) / 2.0
+        if down and right:  # no corner is cut
+            beside = (slice(0, rows - down), slice(left + right, columns - step + right))
+            below = (slice(down, rows), slice(left, columns - step))
+            weight = np.where(np.isfinite(price[beside] + price[below]), weight, np.inf)
+        fine = np.isfinite(weight)
+        begins.append(number[a][fine])
+        ends.append(number[b][fine])
+        weights.append(weight[fine])
+    graph = load_scipy("sparse").coo_matrix(
+        (np.concatenate(weights), (np.concatenate(begins), np.concatenate(ends))), shape=(number.size, number.size)
+    )
+    found = load_scipy("sparse.csgraph").dijkstra(graph.tocsr(), directed=False, indices=number[source])
+    return np.asarray(found).reshape(rows, columns)
+
+
+def rooms(seed: int, size: int = 60) -> np.ndarray:
+    rng = np.random.default_rng(seed)
+    obstacles = np.zeros((size, size), np.bool_)
+    for _ in range(8):
+        row, column = rng.integers(5, size - 15, 2)
+        if rng.random() < 0.5:
+            obstacles[row : row + 2, column : column + rng.integers(8, 25)] = True
+        else:
+            obstacles[row : row + rng.integers(8, 25), column : column + 2] = True
+    obstacles[:5, :5] = obstacles[-5:, -5:] = False
+    return obstacles
+
+
+# --- potentials -------------------------------------------------------------------------------------------------------
+
+
+def test_in_the_open_it_is_the_distance():
+    least = run(potential(np.full((81, 81), NEUTRAL), (40, 40)))
+    rows, columns = np.ogrid[:81, :81]
+    truth = NEUTRAL * np.hypot(rows - 40, columns - 40)
+    far = truth > 20 * NEUTRAL
+    assert (least[far] >= truth[far] - 1e-6).all()
+    assert (least[far] <= 1.05 * truth[far]).all()
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_it_is_what_the_cheapest_ways_along_cells_cost(seed):
+    price = prices(inflated(rooms(seed)).grid.cells)
+    least, truth = run(potential(price, (2, 2))), dijkstra(price, (2, 2))
+    reached = np.isfinite(least)
+    assert np.array_equal(np.isfinite(truth), reached)
+    far = reached & (truth > 10 * NEUTRAL)
+    between_middles = least[far] - price[far] / 2.0 - price[2, 2] / 2.0
+    assert (between_middles <= 1.15 * truth[far]).all()  # of first order, and worst after ten cells
+    assert (least[far] >= 0.9 * truth[far]).all()  # not only in eight directions, so it may be less
+
+
+@settings(max_examples=20, deadline=None)
+@given(obstacles=st.integers(0, 10_000).map(lambda seed: np.random.default_rng(seed).random((25, 25)) < 0.35))
+def test_it_reaches_what_is_connected_and_no_more(obstacles):
+    obstacles[12, 12] = False
+    least = run(potential(np.where(obstacles, np.inf, NEUTRAL), (12, 12)))
+    groups, _ = load_scipy("ndimage").label(~obstacles)
+    assert np.array_equal(np.isfinite(least), groups == groups[12, 12])
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_looking_only_towards_the_goal_gives_the_same_cost(seed):
+    price = prices(inflated(rooms(seed)).grid.cells)
+    whole = run(potential(price, (2, 2)))
+    for heuristic in (False, True):
+        part = run(potential(price, (2, 2), (57, 57), heuristic=heuristic))
+        assert part[57, 57] == pytest.approx(whole[57, 57], rel=1e-3)
+        assert np.isfinite(part).sum() <= np.isfinite(whole).sum()
+
+
+# --- plans ------------------------------------------------------------------------------------------------------------
+
+
+def test_in_the_open_a_plan_is_straight():
+    path = planned(costmap(np.zeros((80, 80))), (0.55, 0.55), (7.05, 4.75, 1.0))
+    assert path[0, :2].tolist() == [0.55, 0.55]
+    assert path[-1].tolist() == [7.05, 4.75, 1.0]
+    assert length(path) == pytest.approx(hypot(6.5, 4.2), rel=0.01)
+    assert np.hypot(*np.diff(path[:, :2], axis=0).T).max() < 2 * RESOLUTION
+
+
+@pytest.mark.parametrize("seed", range(25))
+def test_plans_touch_nothing_and_are_about_as_cheap_as_possible(seed):
+    scene = inflated(rooms(seed))
+    price = prices(scene.grid.cells)
+    if not np.isfinite(price[[2, 57], [2, 57]]).all():
+        return
+    truth = dijkstra(price, (2, 2))[57, 57]
+    try:
+        path = planned(scene, (0.25, 0.25), (5.75, 5.75), tolerance=0.0)
+    except PlanError:
+        assert not np.isfinite(run(potential(price, (2, 2)))[57, 57])
+        return
+    assert touched(scene, path) <= MAX_PASSABLE
+    middles = (path[1:, :2] + path[:-1, :2]) / 2.0
+    cells = scene.grid.cells_of(middles)
+    steps = np.hypot(*np.diff(path[:, :2], axis=0).T) / RESOLUTION
+    assert (price[cells[:, 0], cells[:, 1]] * steps).sum() <= 1.06 * truth + 2 * NEUTRAL
+
+
+def test_through_a_maze():
+    scene = drawn(
+        "###########",
+        "#.........#",
+        "#.#######.#",
+        "#.#.....#.#",
+        "#.#.###.#.#",
+        "#.#.#...#.#",
+        "#.#.#####.#",
+        "#.#.......#",
+        "#.#########",
+        "#.........#",
+        "###########",
+    )
+    path = planned(scene, (0.95, 0.15), (0.55, 0.55))
+    assert touched(scene, path) == 0
+    assert path[-1, :2].tolist() == [0.55, 0.55]
+    assert length(path) > 2.5
+
+
+def test_no_plan_slips_through_between_corners():
+    scene = drawn("...#..", "...#..", "...#..", "..#...", "..#...", "..#...")
+    with pytest.raises(PlanError, match=r"Failed to create plan with tolerance of: 0\.000000"):
+        planned(scene, (0.05, 0.05), (0.55, 0.55), tolerance=0.0)
+
+
+def test_over_what_nobody_has_seen_only_if_that_is_allowed():
+    scene = drawn("..??..", "..??..", "..??..")
+    assert length(planned(scene, (0.05, 0.15), (0.55, 0.15))) == pytest.approx(0.5, rel=0.05)
+    with pytest.raises(PlanError):
+        planned(scene, (0.05, 0.15), (0.55, 0.15), allow_unknown=False, tolerance=0.0)
+
+
+def test_what_is_known_is_preferred_to_what_is_not():
+    scene = costmap(np.zeros((40, 40)))
+    scene.grid.cells[5:35, 15:25] = UNKNOWN
+    path = planned(scene, (0.55, 0.95), (3.55, 0.95))
+    assert (scene.cost_at(path[:, :2]) != UNKNOWN).all()
+
+
+@settings(max_examples=40, deadline=None)
+@given(obstacles=st.integers(0, 10_000).map(lambda seed: np.random.default_rng(seed).random((25, 25)) < 0.3))
+def test_no_plan_touches_an_obstacle(obstacles):
+    obstacles[[1, 23], [1, 23]] = False
+    scene = costmap(np.where(obstacles, LETHAL, 0))
+    try:
+        path = planned(scene, (0.11, 0.19), (2.39, 2.31), tolerance=0.0)
+    except PlanError:
+        return
+    assert touched(scene, path) == 0
+
+
+# --- goals that cannot be reached -------------------------------------------------------------------------------------
+
+
+def problem(scene, start, goal, **more) -> Problem:
+    with pytest.raises(PlanError) as caught:
+        planned(scene, start, goal, **more)
+    return caught.value.problem
+
+
+def test_a_goal_near_a_wall_is_moved_away_from_it():
+    obstacles = np.zeros((40, 40), np.bool_)
+    obstacles[:, 20] = True
+    scene = inflated(obstacles)
+    path = planned(scene, (0.55, 2.05), (1.85, 2.05))
+    assert path[-1, 0] == pytest.approx(1.75)
+    assert touched(scene, path) <= MAX_PASSABLE
+    assert problem(scene, (0.55, 2.05), (1.85, 2.05), tolerance=0.0) is Problem.GOAL_OCCUPIED
+
+
+def test_a_goal_inside_a_wall_is_refused():
+    obstacles = np.zeros((40, 40), np.bool_)
+    obstacles[:, 18:23] = True
+    scene = inflated(obstacles)
+    scene.grid.cells[:, 19:22] = INSCRIBED  # a wall that was seen from outside
+    assert problem(scene, (0.55, 2.05), (1.85, 2.05)) is Problem.GOAL_OCCUPIED
+    assert problem(scene, (0.55, 2.05), (2.05, 2.05)) is Problem.GOAL_OCCUPIED
+
+
+def test_a_goal_behind_a_wall_is_not_exchanged_for_one_before_it():
+    obstacles = np.zeros((40, 40), np.bool_)
+    obstacles[:, 20] = True
+    assert problem(inflated(obstacles), (0.55, 2.05), (2.35, 2.05), tolerance=1.0) is Problem.NO_VALID_PATH
+
+
+def test_what_is_outside_of_the_map():
+    scene = costmap(np.zeros((10, 10)))
+    assert problem(scene, (-0.1, 0.5), (0.5, 0.5)) is Problem.START_OUTSIDE_MAP
+    assert problem(scene, (0.5, 0.5), (0.5, 1.5)) is Problem.GOAL_OUTSIDE_MAP
+
+
+def test_a_start_in_an_obstacle_is_refused_and_one_near_it_is_left_the_shortest_way():
+    obstacles = np.zeros((40, 40), np.bool_)
+    obstacles[20] = True
+    scene = inflated(obstacles)
+    assert problem(scene, (1.05, 2.05), (3.05, 3.55)) is Problem.START_OCCUPIED
+    path = planned(scene, (1.05, 2.15), (3.05, 2.45))
+    inside = path[scene.cost_at(path[:, :2]) == INSCRIBED]
+    assert (inside[:, 0] < 1.3).all()
+    assert length(path) < 3.0
+    assert touched(scene, path) <= INSCRIBED
+
+
+# --- smoothing --------------------------------------------------------------------------------------------------------
+
+
+def corner() -> np.ndarray:
+    along = np.arange(0.05, 2.0, 0.05)
+    return np.concatenate(
+        (np.column_stack((along, np.full_like(along, 0.05))), np.column_stack((np.full_like(along, 2.0), along + 0.05)))
+    )
+
+
+def bend(points: np.ndarray) -> float:
+    ahead = np.diff(points, axis=0)
+    turns = np.diff(np.unwrap(np.arctan2(ahead[:, 1], ahead[:, 0])))
+    return float(np.abs(turns).max())
+
+
+def test_a_corner_becomes_round_and_the_ends_stay():
+    found, complete = smoothed(corner(), Smoothing())
+    assert complete
+    assert bend(found) < 0.5 * bend(corner())
+    assert found[[0, -1]] == pytest.approx(corner()[[0, -1]])
+
+
+def test_it_is_what_relaxation_comes_to():
+    found, _ = smoothed(corner(), Smoothing(do_refinement=False))
+    relaxed, given = corner(), corner()
+    for _ in range(500):
+        middle = relaxed[:-2] + relaxed[2:]
+        relaxed[1:-1] += 0.2 * (given[1:-1] - relaxed[1:-1]) + 0.3 * (middle - 2.0 * relaxed[1:-1])
+    assert found == pytest.approx(relaxed, abs=1e-9)
+
+
+def test_it_keeps_clear_of_obstacles():
+    scene = costmap(np.zeros((25, 25)))
+    scene.grid.cells[1:10, 10:20] = LETHAL  # within the corner
+    found, complete = smoothed(corner(), Smoothing(), scene)
+    assert not complete
+    assert (scene.cost_at(found) == 0).all()
+
+
+def test_where_the_robot_turns_back_it_stays():
+    there = np.column_stack((np.arange(0.0, 1.0, 0.1), np.zeros(10)))
+    back = np.column_stack((np.arange(0.8, 0.0, -0.1), np.linspace(0.02, 0.3, 8)))
+    points = np.concatenate((there, back))
+    found, _ = smoothed(points, Smoothing())
+    assert found[9] == pytest.approx(points[9])
+    loose, _ = smoothed(points, Smoothing(enforce_path_inversion=False))
+    assert loose[9] != pytest.approx(points[9])
