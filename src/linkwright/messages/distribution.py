@@ -13,3 +13,8 @@ def is_before_iron(variables: Mapping[str, str] = os.environ) -> bool:
     """Whether the distribution in ``ROS_DISTRO`` is Humble or an earlier one; without one, it is Humble."""
     distribution = variables.get("ROS_DISTRO", "").lower()
     return not distribution or distribution in BEFORE_IRON
+
+
+def is_before_kilted(variables: Mapping[str, str] = os.environ) -> bool:
+    """Whether the distribution in ``ROS_DISTRO`` is Jazzy or an earlier one; without one, it is Humble."""
+    return is_before_iron(variables) or variables.get("ROS_DISTRO", "").lower() in ("iron", "jazzy")

@@ -515,6 +515,7 @@ class Motor:
         self._name = name
         self._revision = -1
         self._number = -1
+        self._gain = 0.0
 
     @property
     def target(self) -> float:
@@ -526,6 +527,21 @@ class Motor:
     def target(self, velocity: float) -> None:
         number = self._actuator()
         self._simulation.data.ctrl[number] = velocity
+        if self._gain:
+            self._set_gain(number, self._gain)
+            self._gain = 0.0
+
+    def release(self) -> None:
+        """Let the joint turn as it will until there is a target again; to be said anew after the model has changed."""
+        number = self._actuator()
+        gain = float(self._simulation.model.actuator_gainprm[number, 0])
+        if gain:
+            self._gain = gain
+            self._set_gain(number, 0.0)
+
+    def _set_gain(self, number: int, gain: float) -> None:
+        model = self._simulation.model
+        model.actuator_gainprm[number, 0], model.actuator_biasprm[number, 2] = gain, -gain
 
     def _actuator(self) -> int:
         """The number of the actuator in MuJoCo's model of this moment."""

@@ -268,3 +268,17 @@ async def test_hardware_of_others_is_stood_in_for(graph, said):
     it = manager(graph, CONTROL.replace("mock_components/GenericSystem", "acme/Driver"))
     assert it.resources.components["arm"].state is ACTIVE
     assert said("WARN")[0].startswith("hardware 'arm': 'acme/Driver' is not for Linkwright; mock_components")
+
+
+@pytest.mark.parametrize("distribution", ["humble", "jazzy"])
+async def test_what_is_asynchronous_in_ros_runs_in_the_loop_which_is_said(made, said, monkeypatch, distribution):
+    monkeypatch.setenv("ROS_DISTRO", distribution)
+    text = CONTROL.replace("type='system'", "type='system' is_async='true'")
+    it = made({"low": "t/Low"}, text, low={"is_async": True})
+    started(it, "low")
+    assert it.switch(["low"], [], STRICT)[0]
+    it.cycle(1, 0.01)
+    assert value(it, "hip/velocity") == 0.5
+    told = [each for each in said("INFO") if "is_async" in each]
+    assert told[0] == "hardware 'arm' asks for is_async: it is read and written in the loop, as all are"
+    assert len(told) == (1 if distribution == "humble" else 2)

@@ -27,6 +27,7 @@ class InterfaceDescription:
         name: ``position``, ...
         minimum, maximum: what commands are to be between; NaN where nothing is said.
         initial_value: of states; NaN where nothing is said.
+        limited: whether commands are kept within limits, where the manager does so.
         parameters: all of its parameters as written.
     """
 
@@ -34,6 +35,7 @@ class InterfaceDescription:
     minimum: float = nan
     maximum: float = nan
     initial_value: float = nan
+    limited: bool = True
     parameters: Mapping[str, str] = field(default_factory=dict)
 
 
@@ -74,6 +76,7 @@ class HardwareDescription:
         name: its name.
         type: ``system``, ``actuator`` or ``sensor``.
         plugin: the type name of what drives it.
+        is_async: whether it asks for a thread of its own.
         parameters: what the hardware is given.
         joints, sensors, gpios: its components, in file order.
     """
@@ -81,6 +84,7 @@ class HardwareDescription:
     name: str
     type: str
     plugin: str
+    is_async: bool = False
     parameters: Mapping[str, str] = field(default_factory=dict)
     joints: tuple[ComponentDescription, ...] = ()
     sensors: tuple[ComponentDescription, ...] = ()
@@ -145,6 +149,7 @@ class _Reader:
             name,
             kind,
             plugin.text().strip(),
+            element.attributes.get("is_async", "").strip() in _TRUE,
             _parameters(hardware),
             tuple(each for each in joints if each.name in self._robot.joints),
             tuple(self._component(each, "sensor") for each in element.elements("sensor")),
@@ -184,7 +189,8 @@ class _Reader:
                 for name in ("min", "max", "initial_value")
             )
             name = each.attributes.get("name", "")
-            found[name] = InterfaceDescription(name, low, high, initial, parameters)
+            limited = _is_limited(element) and _is_limited(each)
+            found[name] = InterfaceDescription(name, low, high, initial, limited, parameters)
         return tuple(found.values())
 
     def _number(self, text: str, element: Element) -> float:
@@ -200,6 +206,11 @@ class _Reader:
         self.findings.append(
             Diagnostic(code, message, element.span(), Severity.WARNING, hint=hint, source=element.source)
         )
+
+
+def _is_limited(element: Element) -> bool:
+    limits = element.first("limits")
+    return limits is None or limits.attributes.get("enable", "true").strip() in _TRUE
 
 
 def _parameters(element: Element | None) -> dict[str, str]:

@@ -75,6 +75,13 @@ class Resources:
                     )
                 )
                 hardware = GenericSystem(each, self._logger)
+            if each.is_async:
+                self._logger.info(
+                    phrase(
+                        "hardware '{name}' asks for is_async: it is read and written in the loop, as all are",
+                        name=each.name,
+                    )
+                )
             self._logger.info(f"Initialize hardware '{each.name}' ")
             self.components[each.name] = hardware
             for state in hardware.states:

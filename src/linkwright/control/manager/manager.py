@@ -16,13 +16,15 @@ from linkwright.control.controllers.node import ControllerNode
 from linkwright.control.controllers.registry import controller_class, controller_types
 from linkwright.control.hardware.component import Hardware
 from linkwright.control.hardware.interfaces import CommandInterface, StateInterface
+from linkwright.control.hardware.limits import CommandLimits
 from linkwright.control.hardware.resources import Resources
 from linkwright.control.manager.loaded import Loaded
 from linkwright.control.manager.nodes import ProcessArguments, controller_node, words_of
 from linkwright.control.manager.switching import BEST_EFFORT, Switch, SwitchPlanner, SwitchRefusedError
-from linkwright.diagnostics import LinkwrightError
+from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.graph import Node, Parameter
 from linkwright.graph.lifecycle.states import ACTIVE, FINALIZED, INACTIVE, UNCONFIGURED, LifecycleState
+from linkwright.messages.distribution import is_before_iron
 from linkwright.simulation.exchange import Exchange
 
 _NANOSECONDS = 1_000_000_000
@@ -55,6 +57,7 @@ class ControllerManager:
         node, resources, update_rate: see above.
         robot_description: the URDF of the robot.
         controllers: those that are loaded, by name, in the order in which they are updated.
+        limits: what keeps commands within the limits of joints; None where nothing does.
         on_change: called when a controller or hardware has another state.
     """
 
@@ -72,6 +75,7 @@ class ControllerManager:
         self.update_rate = update_rate
         self.robot_description = ""
         self.controllers: dict[str, Loaded] = {}
+        self.limits: CommandLimits | None = None
         self.on_change: Callable[[], object] = lambda: None
         self._exchange = exchange
         self._process = process or ProcessArguments()
@@ -114,6 +118,8 @@ class ControllerManager:
         try:
             node = controller_node(self.node, name, self._process)
             rate = node.declare_parameter("update_rate", int(self.update_rate)).value
+            if not is_before_iron() and node.declare_parameter("is_async", False).value:
+                node.get_logger().info(phrase("is_async is asked for: it is updated in the loop, as all are"))
             return made(
                 ControllerPlace(name, ControllerNode(node, self._exchange), float(rate), self.robot_description)
             )
@@ -439,6 +445,8 @@ class ControllerManager:
             wrong = loaded.take_back_wrong_commands()
             if wrong:
                 self._tell_of_wrong_command(loaded, wrong)
+        if self.limits is not None:
+            self.limits.enforce(period_s, self.resources.claims)
         failed = self.resources.write(time_ns, period_s)
         if failed:
             self._stop_those_of(failed)

@@ -6,13 +6,16 @@ Source: the controller manager of ros2_control, Humble's names and Jazzy's.
 from __future__ import annotations
 
 from linkwright.control.hardware.description import hardware_of
-from linkwright.control.hardware.resources import Maker
+from linkwright.control.hardware.limits import CommandLimits, JointLimiter, limits_of
+from linkwright.control.hardware.resources import Maker, Resources
 from linkwright.control.manager.manager import ControllerManager
 from linkwright.control.manager.nodes import words_of
 from linkwright.descriptions import DescriptionLibrary
 from linkwright.diagnostics import Diagnostic, Severity
 from linkwright.graph import Logger
 from linkwright.graph.lifecycle.states import ACTIVE, INACTIVE, UNCONFIGURED
+from linkwright.messages.distribution import is_before_kilted
+from linkwright.urdf import Robot
 
 _INITIAL = "hardware_components_initial_state"
 
@@ -40,6 +43,9 @@ def load_hardware(manager: ControllerManager, text: str, library: DescriptionLib
     manager.robot_description = text
     resources = manager.resources
     resources.load(descriptions, make)
+    enforces = node.get_parameter_or("enforce_command_limits").value
+    if enforces if enforces is not None else not is_before_kilted():
+        manager.limits = _limits_of(reading.robot, resources, logger)
     waiting = dict.fromkeys(resources.components)
     configured = [*words_of(node, f"{_INITIAL}.inactive"), *words_of(node, "configure_components_on_start")]
     for target, names in ((UNCONFIGURED, words_of(node, f"{_INITIAL}.unconfigured")), (INACTIVE, configured)):
@@ -55,6 +61,17 @@ def load_hardware(manager: ControllerManager, text: str, library: DescriptionLib
         if not started or name in started:
             resources.set_state(name, ACTIVE)
     return True
+
+
+def _limits_of(robot: Robot, resources: Resources, logger: Logger) -> CommandLimits:
+    """What keeps the commands of the hardware within the limits of the robot's joints."""
+    limiters = []
+    for hardware in resources.components.values():
+        for each in hardware.description.joints:
+            commands = {command.kind: command for command in hardware.commands if command.component == each.name}
+            states = {state.kind: state for state in hardware.states if state.component == each.name}
+            limiters.append(JointLimiter(each.name, limits_of(robot.joints[each.name], each), commands, states))
+    return CommandLimits(limiters, logger)
 
 
 def _tell(logger: Logger, findings: list[Diagnostic]) -> None:

@@ -9,6 +9,7 @@ Source: gazebo_ros2_control and gz_ros2_control (interfaces, what is held, texts
 from __future__ import annotations
 
 from collections.abc import Collection
+from math import nan
 from typing import Protocol
 
 import numpy as np
@@ -47,10 +48,17 @@ class SimulatedSystem(Hardware):
         logger: where it tells what it does.
         plugin: the plugin in whose model it is.
         holds: whether joints are held where they are while nothing commands them.
+        gain: how much of what is missing to a position joints go with each update; NaN for all at once.
     """
 
     def __init__(
-        self, description: HardwareDescription, logger: Logger, plugin: ControlledModel, *, holds: bool
+        self,
+        description: HardwareDescription,
+        logger: Logger,
+        plugin: ControlledModel,
+        *,
+        holds: bool,
+        gain: float = nan,
     ) -> None:
         super().__init__(description, logger)
         self._joints: dict[str, SimulatedJoint] = {}
@@ -73,6 +81,7 @@ class SimulatedSystem(Hardware):
                     if command.component == each.name and command.kind in _KINDS and each.mimic is None
                 },
                 holds=holds,
+                gain=gain,
             )
         self._sensors = self._found_sensors(plugin)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import inf, isfinite, isnan
+from math import inf, isfinite, isnan, nan
 
 from linkwright.control.hardware.description import ComponentDescription
 from linkwright.control.hardware.interfaces import EFFORT, POSITION, VELOCITY, CommandInterface, StateInterface
@@ -26,6 +26,7 @@ class SimulatedJoint:
         described: what ``<ros2_control>`` says of it.
         states, commands: its interfaces, by kind.
         holds: whether it is held where it is while nothing commands it.
+        gain: how much of what is missing to a position it goes with each update; NaN for all at once.
     """
 
     def __init__(
@@ -37,11 +38,12 @@ class SimulatedJoint:
         commands: dict[str, CommandInterface],
         *,
         holds: bool,
+        gain: float = nan,
     ) -> None:
         self._simulation = simulation
         self._name = name
         self._described = described
-        self._holds = holds
+        self._holds, self._gain = holds, gain
         self._position, self._velocity = states.get(POSITION), states.get(VELOCITY)
         self._effort = states.get(EFFORT)
         self._commands = commands
@@ -54,7 +56,7 @@ class SimulatedJoint:
         self._servo: Servo | None = None
         if VELOCITY in commands:
             self._motor = simulation.add_velocity_motor(name, _GAIN, greatest)
-        if POSITION in commands:
+        if POSITION in commands or (EFFORT in commands and VELOCITY not in commands and holds):
             self._servo = simulation.add_servo(name, _FASTEST)
         self.begin()
 
@@ -68,7 +70,7 @@ class SimulatedJoint:
     def set_mode(self, kind: str) -> None:
         """Be commanded by the interface of a kind from now on; by none if it is empty."""
         before, self._mode = self._mode, kind
-        if before == VELOCITY and self._motor is not None:  # else it holds 0 already, and to say so costs a new model
+        if before in (VELOCITY, EFFORT) and self._motor is not None:  # else it holds 0, and to say so costs a new model
             self._motor.target = 0.0
         if EFFORT in self._commands:
             self._simulation.push_joint(self._name, 0.0)
@@ -97,13 +99,19 @@ class SimulatedJoint:
         """Do what is commanded; what is no number leaves it as it is."""
         command = self._commands.get(self._mode)
         if command is None:
+            if self._motor is not None and not self._holds:
+                self._motor.release()
             return
         value = command.value
         if value != value:
             return
         if self._mode == POSITION and self._servo is not None:
+            if isfinite(self._gain):
+                value = self._servo.position + self._gain * (value - self._servo.position)
             self._servo.move(value, period_s)
         elif self._mode == VELOCITY and self._motor is not None:
             self._motor.target = value
         elif self._mode == EFFORT:
+            if self._motor is not None:
+                self._motor.release()
             self._simulation.push_joint(self._name, value)

@@ -8,6 +8,7 @@ Source: gazebo_ros2_control and gz_ros2_control (parameters, names of nodes, whe
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import nan
 from typing import Any
 
 from linkwright.control.hardware.component import Hardware
@@ -38,6 +39,7 @@ class Parameters:
     parameters: tuple[str, ...] = ()
     controller_manager_name: str = "controller_manager"
     hold_joints: bool = True
+    position_proportional_gain: float = nan
 
 
 class SimulatedControl(SimulatedPlugin[Parameters]):
@@ -47,7 +49,6 @@ class SimulatedControl(SimulatedPlugin[Parameters]):
     IGNORED = (
         "robot_param",  # the description comes by its topic
         "robot_param_node",
-        "position_proportional_gain",  # positions are held by a constraint
         "e_stop_topic",
         "control_period",
         "robot_sim_type",
@@ -82,6 +83,7 @@ class SimulatedControl(SimulatedPlugin[Parameters]):
             ProcessArguments(rules, described.remappings),
             update_rate=float(rate),
         )
+        self._gain = float(values.get("position_proportional_gain", self.parameters.position_proportional_gain))
         self._systems: list[SimulatedSystem] = []
         self._last = self.simulation.time
         self._loaded = False
@@ -125,7 +127,8 @@ class SimulatedControl(SimulatedPlugin[Parameters]):
         manager.resume(self.left.pop(self._manager_node.name, Kept()))
 
     def _system(self, description: HardwareDescription, logger: Logger) -> Hardware:
-        system = SimulatedSystem(description, logger, self, holds=self.parameters.hold_joints)
+        holds = self.parameters.hold_joints
+        system = SimulatedSystem(description, logger, self, holds=holds, gain=self._gain)
         self._systems.append(system)
         return system
 

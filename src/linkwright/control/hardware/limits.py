@@ -1,0 +1,236 @@
+"""Limits of joints that commands are kept within, whichever controller gives them.
+
+Source: joint_limits of ros2_control (``enforce_command_limits`` of the controller manager; which limits hold where).
+Limits are those of ``<limit>`` and ``<safety_controller>`` of the joint, narrowed by ``min`` and ``max`` of its command
+interfaces; ``<limits enable="false"/>`` lifts them. A limit of 0 for velocities or efforts is none. Other than there a
+position moves no faster than its velocity limit from the last command on in any case.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+from math import inf, isfinite, isnan
+
+from linkwright.control.hardware.description import ComponentDescription, InterfaceDescription
+from linkwright.control.hardware.interfaces import (
+    ACCELERATION,
+    EFFORT,
+    POSITION,
+    VELOCITY,
+    CommandInterface,
+    StateInterface,
+)
+from linkwright.diagnostics import phrase
+from linkwright.graph.log.logger import Logger
+from linkwright.urdf import Joint
+from linkwright.urdf.model import Safety
+
+_UNLIMITED = (-inf, inf)
+
+
+@dataclass(frozen=True, slots=True)
+class JointLimits:
+    """Limits of a joint: in rad and N m, or m and N, and seconds; infinite where there are none.
+
+    Attributes:
+        position: the least and the greatest.
+        velocity, effort: the greatest, either way.
+        acceleration, deceleration: of commands of velocity and acceleration, the greatest.
+        safety: soft limits, within the others.
+        kinds: the interfaces whose commands are limited.
+    """
+
+    position: tuple[float, float] = _UNLIMITED
+    velocity: float = inf
+    effort: float = inf
+    acceleration: float = inf
+    deceleration: float = inf
+    safety: Safety | None = None
+    kinds: frozenset[str] = frozenset()
+
+
+def limits_of(joint: Joint, described: ComponentDescription) -> JointLimits:
+    """The limits of a joint that hardware has."""
+    limit, interfaces = joint.limit, {each.name: each for each in described.commands}
+    position, velocity, effort, acceleration, deceleration = _UNLIMITED, inf, inf, inf, inf
+    if limit is not None:
+        if joint.type in ("revolute", "prismatic"):
+            position = (limit.lower, limit.upper)
+        velocity, effort = abs(limit.velocity) or inf, abs(limit.effort) or inf
+        acceleration = abs(limit.acceleration or inf)
+        deceleration = abs(limit.deceleration or acceleration)
+    lower, upper = _range(interfaces.get(POSITION))
+    acceleration = min(acceleration, _greatest(interfaces.get(ACCELERATION)))
+    return JointLimits(
+        (max(position[0], lower), min(position[1], upper)),
+        min(velocity, _greatest(interfaces.get(VELOCITY))),
+        min(effort, _greatest(interfaces.get(EFFORT))),
+        acceleration,
+        deceleration if isfinite(deceleration) else acceleration,
+        joint.safety,
+        frozenset(each.name for each in described.commands if each.limited),
+    )
+
+
+class JointLimiter:
+    """Keeps the commands of a joint within its limits.
+
+    Args:
+        name: of the joint.
+        limits: its limits.
+        commands: its command interfaces by kind.
+        states: its state interfaces by kind.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        limits: JointLimits,
+        commands: Mapping[str, CommandInterface],
+        states: Mapping[str, StateInterface],
+    ) -> None:
+        self.name = name
+        self._limits = limits
+        self._limiting = {
+            POSITION: self._position,
+            VELOCITY: self._velocity,
+            EFFORT: self._effort,
+            ACCELERATION: self._acceleration,
+        }
+        self._commands = {
+            kind: each for kind, each in commands.items() if kind in self._limiting and kind in limits.kinds
+        }
+        self._states = states
+        self._before: dict[str, float] = {}
+
+    def enforce(self, period_s: float, claimed: Collection[str]) -> list[tuple[str, float, float]]:
+        """Limit what is commanded.
+
+        Args:
+            period_s: the time since the last call, in seconds.
+            claimed: names of interfaces that controllers have; the others are left alone.
+
+        Returns:
+            Of each command that was outside: its kind, what was commanded, and what it is now.
+        """
+        exceeded = []
+        for kind, command in self._commands.items():
+            wanted = command.value
+            if command.name not in claimed:
+                self._before.pop(kind, None)
+            elif not isnan(wanted):
+                given = self._before[kind] = self._limiting[kind](wanted, period_s)
+                if given != wanted:
+                    command.value = given
+                    exceeded.append((kind, wanted, given))
+        return exceeded
+
+    def _state(self, kind: str) -> float | None:
+        state = self._states.get(kind)
+        return None if state is None or not isfinite(state.value) else state.value
+
+    def _speeds(self, position: float | None) -> tuple[float, float]:
+        """How fast it may go either way where it is: slower and slower behind soft limits."""
+        greatest, safety = self._limits.velocity, self._limits.safety
+        if safety is None or position is None or not safety.k_position:
+            return -greatest, greatest
+        low = safety.k_position * (safety.soft_lower_limit - position)
+        high = safety.k_position * (safety.soft_upper_limit - position)
+        return _within(low, -greatest, greatest), _within(high, -greatest, greatest)
+
+    def _position(self, wanted: float, period_s: float) -> float:
+        before = self._before.get(POSITION, self._state(POSITION))
+        wanted = _within(wanted, *self._limits.position)
+        if before is None:
+            return wanted
+        low, high = self._speeds(before)
+        return _within(wanted, before + low * period_s, before + high * period_s)
+
+    def _velocity(self, wanted: float, period_s: float) -> float:
+        limits, position = self._limits, self._state(POSITION)
+        low, high = self._speeds(position)
+        wanted = _within(wanted, low, high)
+        before = self._before.get(VELOCITY, self._state(VELOCITY))
+        if before is not None:
+            up = limits.acceleration if before >= 0.0 else limits.deceleration
+            down = limits.deceleration if before > 0.0 else limits.acceleration
+            wanted = _within(wanted, before - down * period_s, before + up * period_s)
+        if position is None or period_s <= 0.0:
+            return wanted
+        lower, upper = limits.position
+        return _within(wanted, min(0.0, (lower - position) / period_s), max(0.0, (upper - position) / period_s))
+
+    def _effort(self, wanted: float, period_s: float) -> float:  # noqa: ARG002
+        limits, safety = self._limits, self._limits.safety
+        low, high = -limits.effort, limits.effort
+        position, velocity = self._state(POSITION), self._state(VELOCITY)
+        if position is not None:
+            low = 0.0 if position <= limits.position[0] else low
+            high = 0.0 if position >= limits.position[1] else high
+        if velocity is not None:
+            slowest, fastest = self._speeds(position)
+            if safety is not None and safety.k_velocity:
+                low = _within(safety.k_velocity * (slowest - velocity), low, high)
+                high = _within(safety.k_velocity * (fastest - velocity), low, high)
+            else:
+                low = 0.0 if velocity < slowest else low
+                high = 0.0 if velocity > fastest else high
+        return _within(wanted, low, high)
+
+    def _acceleration(self, wanted: float, period_s: float) -> float:  # noqa: ARG002
+        velocity = self._state(VELOCITY) or 0.0
+        slows = wanted * velocity < 0.0
+        greatest = self._limits.deceleration if slows else self._limits.acceleration
+        return _within(wanted, -greatest, greatest)
+
+
+class CommandLimits:
+    """Keeps the commands of all joints within their limits, and tells of each interface once that was not.
+
+    Args:
+        limiters: of the joints.
+        logger: where it tells.
+    """
+
+    def __init__(self, limiters: Sequence[JointLimiter], logger: Logger) -> None:
+        self._limiters = limiters
+        self._logger = logger
+        self._told: set[tuple[str, str]] = set()
+
+    def enforce(self, period_s: float, claimed: Collection[str]) -> None:
+        """Limit what is commanded; see `JointLimiter.enforce`."""
+        for limiter in self._limiters:
+            for kind, wanted, given in limiter.enforce(period_s, claimed):
+                if (limiter.name, kind) not in self._told:
+                    self._told.add((limiter.name, kind))
+                    self._logger.warning(
+                        phrase(
+                            "joint '{joint}': the commanded {kind} {wanted:g} is outside its limits, and {given:g} is "
+                            "sent; this is told once",
+                            joint=limiter.name,
+                            kind=kind,
+                            wanted=wanted,
+                            given=given,
+                        )
+                    )
+
+
+def _range(interface: InterfaceDescription | None) -> tuple[float, float]:
+    """What is said of an interface, the least and the greatest."""
+    if interface is None:
+        return _UNLIMITED
+    return (
+        -inf if isnan(interface.minimum) else interface.minimum,
+        inf if isnan(interface.maximum) else interface.maximum,
+    )
+
+
+def _greatest(interface: InterfaceDescription | None) -> float:
+    """What is said of an interface, the greatest either way."""
+    lower, upper = _range(interface)
+    return min(abs(lower), abs(upper))
+
+
+def _within(value: float, low: float, high: float) -> float:
+    return min(max(value, low), high)

@@ -1,0 +1,125 @@
+"""Commands are kept within the limits of their joints."""
+
+from __future__ import annotations
+
+from math import inf, nan
+
+import pytest
+
+from linkwright.control.hardware.interfaces import (
+    ACCELERATION,
+    EFFORT,
+    POSITION,
+    VELOCITY,
+    CommandInterface,
+    StateInterface,
+)
+from linkwright.control.hardware.limits import JointLimiter, JointLimits
+from linkwright.control.manager.switching import STRICT
+from linkwright.urdf.model import Safety
+from tests.control.robots import joint, manager, robot
+
+KINDS = frozenset((POSITION, VELOCITY, EFFORT, ACCELERATION))
+FORWARD = "forward_command_controller/ForwardCommandController"
+
+
+class Joint:
+    """A joint with one command; the states that are given do not follow it."""
+
+    def __init__(self, kind: str, states: dict[str, float] | None = None, **limits) -> None:
+        self.command = CommandInterface("hip", kind)
+        self.states = {each: StateInterface("hip", each, value) for each, value in (states or {}).items()}
+        self.limiter = JointLimiter("hip", JointLimits(kinds=KINDS, **limits), {kind: self.command}, self.states)
+
+    def send(self, value: float, period_s: float = 0.1) -> float:
+        """What becomes of a command."""
+        self.command.value = value
+        self.limiter.enforce(period_s, {self.command.name})
+        return self.command.value
+
+
+def test_positions_stay_within_their_limits_and_move_no_faster_than_the_joint_may():
+    hip = Joint(POSITION, {POSITION: 0.0}, position=(-1.0, 0.35), velocity=2.0)
+    assert [hip.send(5.0) for _ in range(3)] == pytest.approx([0.2, 0.35, 0.35])
+    assert [hip.send(-5.0) for _ in range(2)] == pytest.approx([0.15, -0.05])
+    assert hip.send(-0.1) == -0.1
+
+
+def test_a_joint_beyond_its_limit_comes_back_no_faster_than_it_may():
+    hip = Joint(POSITION, {POSITION: 1.0}, position=(-0.5, 0.5), velocity=1.0)
+    assert [hip.send(3.0) for _ in range(6)] == pytest.approx([0.9, 0.8, 0.7, 0.6, 0.5, 0.5])
+
+
+def test_velocities_have_a_greatest_value_an_acceleration_and_an_end_of_the_way():
+    wheel = Joint(VELOCITY, velocity=1.0, acceleration=4.0, deceleration=8.0)
+    wheel.send(0.0)
+    assert [wheel.send(5.0) for _ in range(4)] == pytest.approx([0.4, 0.8, 1.0, 1.0])
+    assert [wheel.send(-5.0) for _ in range(4)] == pytest.approx([0.2, -0.6, -1.0, -1.0])
+    hip = Joint(VELOCITY, {POSITION: 0.95}, position=(-1.0, 1.0), velocity=1.0)
+    assert hip.send(1.0) == pytest.approx(0.5)
+    hip.states[POSITION].value = 1.1
+    assert (hip.send(1.0), hip.send(-1.0)) == (0.0, -1.0)
+
+
+def test_efforts_have_a_greatest_value_and_do_not_push_out_of_the_limits():
+    hip = Joint(EFFORT, {POSITION: 0.0, VELOCITY: 0.0}, position=(-1.0, 1.0), velocity=2.0, effort=10.0)
+    assert (hip.send(50.0), hip.send(-50.0), hip.send(3.0)) == (10.0, -10.0, 3.0)
+    hip.states[POSITION].value = 1.0
+    assert (hip.send(5.0), hip.send(-5.0)) == (0.0, -5.0)
+    hip.states[POSITION].value, hip.states[VELOCITY].value = 0.0, -2.5
+    assert (hip.send(5.0), hip.send(-5.0)) == (5.0, 0.0)
+
+
+def test_accelerations_are_limited_apart_from_decelerations():
+    hip = Joint(ACCELERATION, {VELOCITY: 1.0}, acceleration=2.0, deceleration=5.0)
+    assert (hip.send(9.0), hip.send(-9.0)) == (2.0, -5.0)
+
+
+def test_behind_soft_limits_it_goes_slower_and_slower():
+    safety = Safety(k_velocity=10.0, k_position=5.0, soft_lower_limit=-0.8, soft_upper_limit=0.8)
+    hip = Joint(VELOCITY, {POSITION: 0.7}, position=(-1.0, 1.0), velocity=2.0, safety=safety)
+    assert hip.send(2.0) == pytest.approx(0.5)
+    hip.states[POSITION].value = 0.9
+    assert hip.send(2.0) == pytest.approx(-0.5)
+    pushed = Joint(EFFORT, {POSITION: 0.7, VELOCITY: 0.4}, effort=10.0, velocity=2.0, safety=safety)
+    assert pushed.send(9.0) == pytest.approx(1.0)
+
+
+def test_what_is_no_number_or_nobodys_is_left_alone():
+    hip = Joint(POSITION, {POSITION: 0.0}, position=(-1.0, 1.0), velocity=1.0)
+    assert hip.send(nan) != hip.send(nan)
+    hip.command.value = 7.0
+    assert hip.limiter.enforce(0.1, ()) == []
+    assert hip.command.value == 7.0
+    assert Joint(VELOCITY).send(inf) == inf
+
+
+CONTROL = robot(
+    joint("hip", "position") + "<joint name='knee'><limits enable='false'/><command_interface name='position'/>"
+    "<state_interface name='position'/></joint>"
+)
+
+
+@pytest.mark.parametrize(
+    ("distribution", "said", "limited"),
+    [("jazzy", None, False), ("jazzy", True, True), ("kilted", None, True), ("kilted", False, False)],
+)
+async def test_the_manager_enforces_them_where_it_is_asked_to(graph, log, monkeypatch, distribution, said, limited):
+    monkeypatch.setenv("ROS_DISTRO", distribution)
+    parameters = {} if said is None else {"enforce_command_limits": said}
+    made = manager(
+        graph,
+        CONTROL,
+        {**parameters, "positions": {"type": FORWARD}},
+        positions={"joints": ["hip", "knee"], "interface_name": "position"},
+    )
+    assert made.load("positions")
+    assert made.configure("positions")
+    assert made.switch(["positions"], [], STRICT)[0]
+    made.controllers["positions"].controller._wanted = [9.0, 9.0]
+    for cycle in range(1, 301):
+        made.cycle(cycle * 10_000_000, 0.01)
+    hip, knee = made.resources.commands(["hip/position", "knee/position"])
+    assert (hip.value, knee.value) == ((3.0 if limited else 9.0), 9.0)
+    told = [each.text for each in log if "is outside its limits" in each.text]
+    assert len(told) == limited

@@ -1,0 +1,120 @@
+"""A user's hardware that stops while controllers run: what it takes along, what goes on, and how it comes back."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+
+from linkwright import extensions
+from linkwright.control.hardware.component import Hardware, HardwareError
+from linkwright.descriptions import DescriptionLibrary
+from linkwright.messages import get_message
+from linkwright.nodes.control.ros2_control_node import Ros2ControlNode
+from linkwright.nodes.options import NodeOptions
+from tests.control.manager.test_ros2_control_node import ask, go_on
+from tests.control.robots import joint, robot
+
+State = get_message("lifecycle_msgs/msg/State")
+FILE = """
+controller_manager:
+  ros__parameters:
+    update_rate: 100
+    hips: {type: forward_command_controller/ForwardCommandController}
+    knees: {type: forward_command_controller/ForwardCommandController}
+hips: {ros__parameters: {joints: [hip], interface_name: velocity}}
+knees: {ros__parameters: {joints: [knee], interface_name: velocity}}
+"""
+TWO = (
+    robot(joint("hip", "velocity", "velocity"))
+    .replace("mock_components/GenericSystem", "my_robot/Arm")
+    .replace(
+        "</robot>",
+        "<ros2_control name='leg' type='system'><hardware><plugin>mock_components/GenericSystem</plugin></hardware>"
+        f"{joint('knee', 'velocity', 'velocity')}</ros2_control></robot>",
+    )
+)
+
+
+class Arm(Hardware):
+    """An arm as a user's package has it, whose cable may be out."""
+
+    wrong: Exception | None = None
+    life: tuple[str, ...] = ()
+    sent: float = 0.0
+
+    def on_activate(self) -> None:
+        type(self).life += ("on",)
+
+    def on_error(self) -> None:
+        type(self).life += ("error",)
+
+    def read(self, time_ns: int, period_s: float) -> None:
+        if self.wrong is not None:
+            raise self.wrong
+
+    def write(self, time_ns: int, period_s: float) -> None:
+        type(self).sent = self.commands[0].value
+
+
+@pytest.fixture
+def arm(tmp_path, monkeypatch) -> Iterator[type[Arm]]:
+    """The hardware of an installed package."""
+    metadata = tmp_path / "my_robot-1.0.dist-info"
+    metadata.mkdir()
+    (metadata / "METADATA").write_text("Metadata-Version: 2.1\nName: my_robot\nVersion: 1.0\n")
+    (metadata / "entry_points.txt").write_text(f"[linkwright.hardware]\nmy_robot/Arm = {__name__}:Arm\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    for name in ("wrong", "life", "sent"):
+        monkeypatch.setattr(Arm, name, getattr(Arm, name))
+    extensions._all_groups.cache_clear()
+    yield Arm
+    extensions._all_groups.cache_clear()
+
+
+@pytest.mark.parametrize("wrong", [HardwareError("the cable is out"), OSError("the cable is out")])
+async def test_its_controllers_stop_the_others_go_on_and_it_can_be_activated_again(
+    graph, clock, tmp_path, said, arm, wrong
+):
+    path = tmp_path / "controllers.yaml"
+    path.write_text(FILE)
+    words = ["--ros-args", "--params-file", str(path)]
+    options = NodeOptions(parameters={"robot_description": TWO}, arguments=words, library=DescriptionLibrary())
+    running = Ros2ControlNode(graph, options)
+    node = graph.create_node("audience")
+    for name in ("hips", "knees"):
+        assert (await ask(graph, node, "load_controller", name=name)).ok
+        assert (await ask(graph, node, "configure_controller", name=name)).ok
+    assert (await ask(graph, node, "switch_controller", activate_controllers=["hips", "knees"], strictness=2)).ok
+    array = get_message("std_msgs/msg/Float64MultiArray")
+    wanted = {each: node.create_publisher(array, f"/{each}/commands", 10) for each in ("hips", "knees")}
+    for each in wanted.values():
+        each.publish(array(data=[2.0]))
+    await go_on(graph, clock, 3)
+    assert arm.sent == 2.0
+
+    arm.wrong = wrong
+    await go_on(graph, clock, 3)
+    listed = (await ask(graph, node, "list_controllers")).controller
+    assert {each.name: each.state for each in listed} == {"hips": "inactive", "knees": "active"}
+    components = (await ask(graph, node, "list_hardware_components")).component
+    assert {each.name: each.state.label for each in components} == {"arm": "unconfigured", "leg": "active"}
+    assert arm.life == ("on", "error")
+    first, second = said("ERROR")
+    assert first.startswith("Error while reading hardware 'arm': ")
+    assert first.endswith("the cable is out")
+    assert second == ("Deactivating controllers : [ hips ] as their hardware components failed: [ arm ]")
+    wanted["knees"].publish(array(data=[3.0]))
+    await go_on(graph, clock, 2)
+    leg = running._manager.resources.components["leg"]
+    assert [each.value for each in leg.commands] == [3.0]
+
+    refused = await ask(graph, node, "switch_controller", activate_controllers=["hips"], strictness=2)
+    assert not refused.ok
+    arm.wrong = None
+    set_state = {"name": "arm", "target_state": State(id=0, label="active")}
+    assert (await ask(graph, node, "set_hardware_component_state", **set_state)).ok
+    assert (await ask(graph, node, "switch_controller", activate_controllers=["hips"], strictness=2)).ok
+    wanted["hips"].publish(array(data=[1.0]))
+    await go_on(graph, clock, 3)
+    assert (arm.sent, arm.life) == (1.0, ("on", "error", "on"))
