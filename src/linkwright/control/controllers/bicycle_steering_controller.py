@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from linkwright.control.controllers.parameters import parameter
+from linkwright.control.controllers.parameters import HUMBLE, JAZZY, parameter
 from linkwright.control.controllers.steering import SteeringController, SteeringParameters
 from linkwright.kinematics.drives import CarDrive
 
@@ -13,9 +13,9 @@ from linkwright.kinematics.drives import CarDrive
 class Parameters(SteeringParameters):
     """Of the controller."""
 
-    traction_wheel_radius: float = parameter(0.0, description="of the wheel that drives, in m")
-    front_wheel_radius: float = parameter(0.0, description="deprecated: of the wheel in front, in m")
-    rear_wheel_radius: float = parameter(0.0, description="deprecated: of the wheel behind, in m")
+    traction_wheel_radius: float = parameter(0.0, description="of the wheel that drives, in m", only=JAZZY)
+    front_wheel_radius: float = parameter(0.0, description="of the wheel in front, in m", only=HUMBLE)
+    rear_wheel_radius: float = parameter(0.0, description="of the wheel behind, in m", only=HUMBLE)
 
 
 class BicycleSteeringController(SteeringController[Parameters]):

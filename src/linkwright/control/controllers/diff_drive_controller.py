@@ -13,7 +13,7 @@ from math import isfinite, isnan, nan
 
 from linkwright.control.controllers.controller import Controller, ControllerError, InterfaceNames
 from linkwright.control.controllers.drive_odometry import DriveOdometry, frame_prefix, variances
-from linkwright.control.controllers.parameters import above, parameter
+from linkwright.control.controllers.parameters import HUMBLE, above, parameter
 from linkwright.control.controllers.speed_limits import NO_LIMITS, SpeedLimits
 from linkwright.control.controllers.velocity_input import VelocityInput
 from linkwright.control.hardware.interfaces import POSITION, VELOCITY
@@ -46,7 +46,7 @@ class Parameters:
     left_wheel_names: tuple[str, ...] = parameter((), description="joints of the wheels on the left side")
     right_wheel_names: tuple[str, ...] = parameter((), description="joints of the wheels on the right side")
     wheel_separation: float = parameter(0.0, description="between the wheels of both sides, in m")
-    wheels_per_side: int = parameter(0, description="of no effect: the names of the wheels tell")
+    wheels_per_side: int = parameter(0, description="of no effect: the names of the wheels tell", only=HUMBLE)
     wheel_radius: float = parameter(0.0, description="in m")
     wheel_separation_multiplier: float = parameter(1.0, description="corrects wheel_separation")
     left_wheel_radius_multiplier: float = parameter(1.0, description="corrects wheel_radius on the left")
@@ -63,7 +63,7 @@ class Parameters:
     cmd_vel_timeout: float = parameter(0.5, description="how long a command holds, in seconds")
     publish_limited_velocity: bool = parameter(False, description="whether ~/cmd_vel_out is published")
     velocity_rolling_window_size: int = parameter(10, description="odometry tells the mean of so many velocities")
-    use_stamped_vel: bool = parameter(True, description="whether ~/cmd_vel_unstamped is not taken too")
+    use_stamped_vel: bool = parameter(True, description="whether ~/cmd_vel_unstamped is not taken too", only=HUMBLE)
     publish_rate: float = parameter(50.0, description="of odometry, in Hz")
     linear: LinearLimits = LinearLimits()
     angular: AngularLimits = AngularLimits()

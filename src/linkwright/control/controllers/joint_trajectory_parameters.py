@@ -1,6 +1,6 @@
 """The parameters of ``joint_trajectory_controller/JointTrajectoryController``.
 
-Source: ros2_controllers, those of Humble and Jazzy together; where they differ in a default it is Humble's.
+Source: ros2_controllers, those of Humble and Jazzy together; those that one has only are marked.
 """
 
 from __future__ import annotations
@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from linkwright.control.controllers.parameters import at_least, for_each, not_empty, one_of, parameter
+from linkwright.control.controllers.parameters import HUMBLE, JAZZY, at_least, for_each, not_empty, one_of, parameter
 from linkwright.control.controllers.pid_parameters import PidParameters
 from linkwright.control.hardware.interfaces import ACCELERATION, EFFORT, POSITION, VELOCITY
 from linkwright.control.motion.tolerances import StateTolerance, Tolerances
@@ -53,8 +53,8 @@ class Gains(PidParameters):
     """Of a joint's PID controller."""
 
     ff_velocity_scale: float = parameter(0.0, description="how much of the wanted velocity is added to the command")
-    angle_wraparound: bool = parameter(False, description="whether the joint turns without an end")
-    normalize_error: bool = parameter(False, description="an older name of angle_wraparound")
+    angle_wraparound: bool = parameter(False, description="whether the joint turns without an end", only=HUMBLE)
+    normalize_error: bool = parameter(False, description="an older name of angle_wraparound", only=HUMBLE)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -84,16 +84,22 @@ class Parameters:
     command_interfaces: tuple[str, ...] = parameter((), read_only=True, check=_command_combination)
     state_interfaces: tuple[str, ...] = parameter((), read_only=True, check=_state_combination)
     allow_partial_joints_goal: bool = parameter(False, description="trajectories may name some of the joints")
-    open_loop_control: bool = parameter(False, read_only=True, description="trajectories begin at the last command")
-    interpolate_from_desired_state: bool = parameter(False, read_only=True, description="as open_loop_control")
+    open_loop_control: bool = parameter(
+        False, read_only=True, description="trajectories begin at the last command", only=HUMBLE
+    )
+    interpolate_from_desired_state: bool = parameter(
+        False, read_only=True, description="trajectories begin at the last command", only=JAZZY
+    )
     allow_integration_in_goal_trajectories: bool = parameter(False, description="points may have no positions")
     set_last_command_interface_value_as_state_on_activation: bool = True
-    state_publish_rate: float | None = parameter(None, description="Hz; without it the state comes at each update")
+    state_publish_rate: float | None = parameter(
+        None, description="Hz; without it the state comes at each update", only=HUMBLE
+    )
     action_monitor_rate: float = parameter(
         20.0, read_only=True, description="how often feedback comes, in Hz", check=at_least(0.1)
     )
     interpolation_method: str = parameter("splines", read_only=True, check=one_of("splines", "none"))
-    allow_nonzero_velocity_at_trajectory_end: bool = True
+    allow_nonzero_velocity_at_trajectory_end: bool = parameter(True, later=False)
     cmd_timeout: float = parameter(0.0, description="seconds after the end of a trajectory; more than goal_time")
     gains: Mapping[str, Gains] = for_each("joints", Gains)
     constraints: Constraints = Constraints()

@@ -12,7 +12,9 @@
         gains: Mapping[str, Gains] = for_each("joints", Gains)  # gains.JOINT.p
 
 The types are ``str``, ``float``, ``int``, ``bool``, and ``tuple[...]`` of them; ``float | None`` and ``bool | None``
-are declared without a value. Source: generate_parameter_library, which the controllers of ros2_controllers use.
+are declared without a value. What one of Humble and Jazzy has only is declared where ``ROS_DISTRO`` says so, and where
+it is given: files for either are read as they are. Source: generate_parameter_library, which the controllers of
+ros2_controllers use.
 """
 
 from __future__ import annotations
@@ -25,6 +27,7 @@ from typing import Any, Generic, TypeVar, get_type_hints
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, joined, phrase
 from linkwright.graph import Node, Parameter, ParameterDescriptor, SetParametersResult
 from linkwright.graph.parameters.parameter import ParameterType
+from linkwright.messages.distribution import is_before_iron
 
 P = TypeVar("P")
 
@@ -43,6 +46,10 @@ _TYPES: dict[Any, ParameterType] = {
     float | None: ParameterType.DOUBLE,
     bool | None: ParameterType.BOOL,
 }
+HUMBLE, JAZZY = "humble", "jazzy"
+"""What parameters may be of only."""
+
+_SAME = object()
 _NAMES, _TABLE, _BELOW, _ABOUT = "names", "table", "below", "about"
 _OF_EVERY_NODE = ("use_sim_time", "params_file", "type", "qos_overrides", "start_type_description_service")
 
@@ -57,9 +64,19 @@ class _About:
     description: str = ""
     read_only: bool = False
     check: Check | None = None
+    only: str = ""
+    later: Any = _SAME
 
 
-def parameter(default: Any, *, description: str = "", read_only: bool = False, check: Check | None = None) -> Any:
+def parameter(
+    default: Any,
+    *,
+    description: str = "",
+    read_only: bool = False,
+    check: Check | None = None,
+    only: str = "",
+    later: Any = _SAME,
+) -> Any:
     """A parameter of which more is to be said than its default.
 
     Args:
@@ -67,8 +84,10 @@ def parameter(default: Any, *, description: str = "", read_only: bool = False, c
         description: what it is for, with its unit.
         read_only: whether it has the value that it was declared with for good.
         check: what its values must be.
+        only: the distribution that has it, where it is one of them: `HUMBLE` or `JAZZY`, each with its neighbours.
+        later: its default from Iron on, where that is another one.
     """
-    return field(default=default, metadata={_ABOUT: _About(description, read_only, check)})
+    return field(default=default, metadata={_ABOUT: _About(description, read_only, check, only, later)})
 
 
 def for_each(names: str, table: type[Any], *, below: str = "") -> Any:
@@ -143,13 +162,16 @@ class ParameterTable(Generic[P]):
             else:
                 default = each.default if each.default is not MISSING else None
                 about = each.metadata.get(_ABOUT, _About())
+                if about.later is not _SAME and not is_before_iron():
+                    default = about.later
                 values[each.name] = self._value(_Declaration(name, _TYPES[kind], default, about))
         return table(**values)
 
     def _value(self, wanted: _Declaration) -> Any:
-        name = wanted.name
+        name, about = wanted.name, wanted.about
         if name not in self._declared:
-            about = wanted.about
+            if about.only not in ("", _distribution()) and name not in self._node.undeclared_overrides():
+                return wanted.default
             descriptor = ParameterDescriptor(
                 type=wanted.kind.value, description=about.description, read_only=about.read_only
             )
@@ -177,6 +199,10 @@ class ParameterTable(Generic[P]):
             if wrong is not None:
                 return SetParametersResult(successful=False, reason=wrong)
         return SetParametersResult(successful=True)
+
+
+def _distribution() -> str:
+    return HUMBLE if is_before_iron() else JAZZY
 
 
 def _listed(names: Any) -> Iterable[str]:

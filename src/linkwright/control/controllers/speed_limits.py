@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from math import isnan, nan
 
 from linkwright.control.controllers.controller import ControllerError
+from linkwright.control.controllers.parameters import HUMBLE, JAZZY, parameter
 from linkwright.diagnostics import phrase
 from linkwright.kinematics.limits import UNBOUNDED, Bounds, SpeedLimiter
 
@@ -19,16 +20,16 @@ from linkwright.kinematics.limits import UNBOUNDED, Bounds, SpeedLimiter
 class SpeedLimits:
     """Of one axis, in m/s or rad/s, their change a second, and the change of that."""
 
-    has_velocity_limits: bool | None = None
-    has_acceleration_limits: bool | None = None
-    has_jerk_limits: bool | None = None
+    has_velocity_limits: bool | None = parameter(None, only=HUMBLE)
+    has_acceleration_limits: bool | None = parameter(None, only=HUMBLE)
+    has_jerk_limits: bool | None = parameter(None, only=HUMBLE)
     max_velocity: float = nan
     min_velocity: float = nan
     max_acceleration: float = nan
     min_acceleration: float = nan
-    max_deceleration: float = nan
-    max_acceleration_reverse: float = nan
-    max_deceleration_reverse: float = nan
+    max_deceleration: float = parameter(nan, only=JAZZY)
+    max_acceleration_reverse: float = parameter(nan, only=JAZZY)
+    max_deceleration_reverse: float = parameter(nan, only=JAZZY)
     max_jerk: float = nan
     min_jerk: float = nan
 

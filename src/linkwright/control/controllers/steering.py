@@ -16,7 +16,7 @@ from typing import ClassVar, Generic, TypeVar
 
 from linkwright.control.controllers.controller import Controller, ControllerError, InterfaceNames
 from linkwright.control.controllers.drive_odometry import DriveOdometry, variances
-from linkwright.control.controllers.parameters import above, parameter
+from linkwright.control.controllers.parameters import HUMBLE, JAZZY, above, parameter
 from linkwright.control.controllers.velocity_input import REFERENCE_QOS, VelocityInput
 from linkwright.control.hardware.interfaces import POSITION, VELOCITY
 from linkwright.diagnostics import phrase
@@ -34,18 +34,24 @@ class SteeringParameters:
     """Of all of them."""
 
     reference_timeout: float = parameter(1.0, description="how long a command holds, in seconds; 0 for one update")
-    traction_joints_names: tuple[str, ...] = parameter((), description="joints that drive: right, left")
-    steering_joints_names: tuple[str, ...] = parameter((), description="joints that steer: right, left")
-    traction_joints_state_names: tuple[str, ...] = parameter((), description="what is measured, if other joints")
-    steering_joints_state_names: tuple[str, ...] = parameter((), description="what is measured, if other joints")
-    front_steering: bool = parameter(True, description="which of front_wheels_names and rear_wheels_names steer")
-    front_wheels_names: tuple[str, ...] = parameter((), description="deprecated: joints that steer or drive")
-    rear_wheels_names: tuple[str, ...] = parameter((), description="deprecated: joints that drive or steer")
-    front_wheels_state_names: tuple[str, ...] = parameter((), description="deprecated: what is measured")
-    rear_wheels_state_names: tuple[str, ...] = parameter((), description="deprecated: what is measured")
+    traction_joints_names: tuple[str, ...] = parameter((), description="joints that drive: right, left", only=JAZZY)
+    steering_joints_names: tuple[str, ...] = parameter((), description="joints that steer: right, left", only=JAZZY)
+    traction_joints_state_names: tuple[str, ...] = parameter(
+        (), description="what is measured, if other joints", only=JAZZY
+    )
+    steering_joints_state_names: tuple[str, ...] = parameter(
+        (), description="what is measured, if other joints", only=JAZZY
+    )
+    front_steering: bool = parameter(
+        True, description="which of front_wheels_names and rear_wheels_names steer", only=HUMBLE
+    )
+    front_wheels_names: tuple[str, ...] = parameter((), description="joints that steer or drive", only=HUMBLE)
+    rear_wheels_names: tuple[str, ...] = parameter((), description="joints that drive or steer", only=HUMBLE)
+    front_wheels_state_names: tuple[str, ...] = parameter((), description="what is measured", only=HUMBLE)
+    rear_wheels_state_names: tuple[str, ...] = parameter((), description="what is measured", only=HUMBLE)
     open_loop: bool = parameter(False, description="odometry by what wheels are told, not by what they do")
     reduce_wheel_speed_until_steering_reached: bool = parameter(
-        False, description="whether wheels are slow while the steering is far from its angle"
+        False, description="whether wheels are slow while the steering is far from its angle", only=JAZZY
     )
     velocity_rolling_window_size: int = parameter(10, description="odometry tells the mean of so many velocities")
     base_frame_id: str = parameter("base_link", description="the frame of the robot")
@@ -54,7 +60,7 @@ class SteeringParameters:
     twist_covariance_diagonal: tuple[float, ...] = parameter(_DIAGONAL, description="variances of the velocity")
     pose_covariance_diagonal: tuple[float, ...] = parameter(_DIAGONAL, description="variances of the pose")
     position_feedback: bool = parameter(False, description="odometry by positions of wheels, not by velocities")
-    use_stamped_vel: bool = parameter(True, description="whether ~/reference_unstamped is not taken too")
+    use_stamped_vel: bool = parameter(True, description="whether ~/reference_unstamped is not taken too", only=HUMBLE)
     wheelbase: float = parameter(0.0, description="between the axles, in m")
 
     def of_traction(self, front: float, rear: float) -> float:

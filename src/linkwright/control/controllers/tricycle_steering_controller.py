@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from linkwright.control.controllers.parameters import parameter
+from linkwright.control.controllers.parameters import HUMBLE, JAZZY, parameter
 from linkwright.control.controllers.steering import SteeringController, SteeringParameters
 from linkwright.kinematics.drives import CarDrive
 
@@ -13,11 +13,11 @@ from linkwright.kinematics.drives import CarDrive
 class Parameters(SteeringParameters):
     """Of the controller."""
 
-    traction_wheels_radius: float = parameter(0.0, description="of the wheels that drive, in m")
-    traction_track_width: float = parameter(0.0, description="between the wheels that drive, in m")
-    front_wheels_radius: float = parameter(0.0, description="deprecated: of the wheels in front, in m")
-    rear_wheels_radius: float = parameter(0.0, description="deprecated: of the wheels behind, in m")
-    wheel_track: float = parameter(0.0, description="deprecated: between the wheels that drive, in m")
+    traction_wheels_radius: float = parameter(0.0, description="of the wheels that drive, in m", only=JAZZY)
+    traction_track_width: float = parameter(0.0, description="between the wheels that drive, in m", only=JAZZY)
+    front_wheels_radius: float = parameter(0.0, description="of the wheels in front, in m", only=HUMBLE)
+    rear_wheels_radius: float = parameter(0.0, description="of the wheels behind, in m", only=HUMBLE)
+    wheel_track: float = parameter(0.0, description="between the wheels that drive, in m", only=HUMBLE)
 
 
 class TricycleSteeringController(SteeringController[Parameters]):

@@ -1,0 +1,60 @@
+"""Humble's parameters of controllers and Jazzy's: declared are those of one, and taken are those of both."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.control.controllers.registry import controller_class
+
+WHEELS = {"left_wheel_names": ["left"], "right_wheel_names": ["right"], "wheel_separation": 0.4, "wheel_radius": 0.1}
+ARM = {"joints": ["hip"], "command_interfaces": ["position"], "state_interfaces": ["position"]}
+DRIVE = "diff_drive_controller/DiffDriveController"
+TRAJECTORY = "joint_trajectory_controller/JointTrajectoryController"
+CAR = "ackermann_steering_controller/AckermannSteeringController"
+
+
+def declared(controller) -> set[str]:
+    """The names of its parameters."""
+    return set(controller.node.graph_node.parameter_names())
+
+
+@pytest.mark.parametrize(
+    ("kind", "given", "humble", "jazzy"),
+    [
+        (DRIVE, WHEELS, {"linear.x.has_velocity_limits", "use_stamped_vel"}, {"linear.x.max_deceleration"}),
+        (TRAJECTORY, ARM, {"open_loop_control", "gains.hip.angle_wraparound"}, {"interpolate_from_desired_state"}),
+        (CAR, {}, {"front_steering", "front_wheels_radius"}, {"traction_joints_names", "traction_wheels_radius"}),
+    ],
+    ids=["drive", "trajectory", "car"],
+)
+async def test_the_parameters_are_those_of_the_distribution(stand, monkeypatch, kind, given, humble, jazzy):
+    found = {}
+    for distribution in ("", "humble", "jazzy"):
+        monkeypatch.setenv("ROS_DISTRO", distribution)
+        found[distribution] = declared(stand.make(controller_class(kind), f"it_{distribution}", **given))
+    assert found[""] == found["humble"]
+    assert found["humble"] >= humble
+    assert not found["humble"] & jazzy
+    assert found["jazzy"] >= jazzy
+    assert not found["jazzy"] & humble
+
+
+@pytest.mark.parametrize(("distribution", "allowed"), [("humble", True), ("jazzy", False)])
+async def test_a_default_is_that_of_the_distribution(stand, monkeypatch, distribution, allowed):
+    monkeypatch.setenv("ROS_DISTRO", distribution)
+    controller = stand.make(controller_class(TRAJECTORY), **ARM)
+    assert controller.parameters.allow_nonzero_velocity_at_trajectory_end is allowed
+    given = stand.make(controller_class(TRAJECTORY), "given", allow_nonzero_velocity_at_trajectory_end=True, **ARM)
+    assert given.parameters.allow_nonzero_velocity_at_trajectory_end
+
+
+@pytest.mark.parametrize("distribution", ["humble", "jazzy"])
+async def test_a_file_for_the_other_one_is_read_as_it_is(stand, monkeypatch, log, distribution):
+    monkeypatch.setenv("ROS_DISTRO", distribution)
+    limits = {"linear": {"x": {"has_velocity_limits": True, "max_velocity": 1.0, "max_deceleration": -2.0}}}
+    controller = stand.make(controller_class(DRIVE), **WHEELS, **limits)
+    axis = controller.parameters.linear.x
+    assert (axis.has_velocity_limits, axis.max_deceleration) == (True, -2.0)
+    assert {"linear.x.has_velocity_limits", "linear.x.max_deceleration"} <= declared(controller)
+    assert "angular.z.has_velocity_limits" in declared(controller) or distribution == "jazzy"
+    assert not [each.text for each in log if "is no parameter" in str(each.text)]
