@@ -18,7 +18,7 @@ from linkwright.graph import Clock, ClockType, Graph, ParameterType
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 from linkwright.nodes.teleop.keys import INTERRUPT, MOVES, SPEEDS, STILL, Direction, help_text, keys_in, speeds_text
 from linkwright.nodes.teleop.terminal import KeyTerminal
-from linkwright.nodes.teleop.velocity_topic import VelocityTopic
+from linkwright.nodes.velocity_topic import VelocityTopic
 
 _REVIEW_SECONDS = 0.5
 _SPEEDS_BETWEEN_HELPS = 15

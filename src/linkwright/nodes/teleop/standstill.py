@@ -8,7 +8,7 @@ from linkwright.diagnostics import phrase
 from linkwright.graph import Node, Publisher
 from linkwright.graph.endpoints.commander import who_was_lost
 from linkwright.graph.endpoints.info import EndpointInfo
-from linkwright.nodes.teleop.velocity_topic import TWIST, TWIST_STAMPED
+from linkwright.nodes.velocity_topic import TWIST, TWIST_STAMPED
 
 VELOCITIES = (TWIST, TWIST_STAMPED)
 """The types of messages that `send_stop` can publish."""

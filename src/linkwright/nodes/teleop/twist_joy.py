@@ -13,7 +13,7 @@ from typing import Any
 from linkwright.graph import Clock, ClockType, EndpointKind, Graph, Node, ParameterType
 from linkwright.messages import get_message
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
-from linkwright.nodes.teleop.velocity_topic import VelocityTopic
+from linkwright.nodes.velocity_topic import VelocityTopic
 
 _DEPTH = 10
 _REVIEW_SECONDS = 0.5

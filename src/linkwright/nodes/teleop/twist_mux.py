@@ -20,7 +20,7 @@ from linkwright.graph.endpoints.commander import Commander
 from linkwright.messages import get_message
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 from linkwright.nodes.teleop.standstill import send_stop
-from linkwright.nodes.teleop.velocity_topic import TWIST, TWIST_STAMPED
+from linkwright.nodes.velocity_topic import TWIST, TWIST_STAMPED
 
 _DEPTH = 10
 _MOST = 255

@@ -18,7 +18,7 @@ from linkwright.graph.lifecycle.states import LifecycleState, TransitionCallback
 from linkwright.messages import get_message
 from linkwright.nodes.navigation.managed import ManagedNode, ManagedServer
 from linkwright.nodes.teleop.smoothing import Limits, smoothed
-from linkwright.nodes.teleop.velocity_topic import TWIST, TWIST_STAMPED, VelocityTopic
+from linkwright.nodes.velocity_topic import TWIST, TWIST_STAMPED, VelocityTopic
 
 _DEPTH = 10
 _NANOSECONDS = 1e9

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import Node
-from linkwright.nodes.teleop.velocity_topic import VelocityTopic
+from linkwright.nodes.velocity_topic import VelocityTopic
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
 from linkwright.viewer.protocol.monitor import AimTeleop, Drive, TeleopState, TeleopTarget
 from linkwright.viewer.web.audience import Page

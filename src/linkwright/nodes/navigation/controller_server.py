@@ -1,0 +1,353 @@
+"""controller_server of nav2: drives along paths that the action ``follow_path`` is given.
+
+Parameters, topics and results are those of nav2. Different on purpose: unless ``enable_stamped_cmd_vel`` is set, Twist
+or TwistStamped is published, whichever is listened to; while the costmap is not current the robot stands still.
+"""
+
+from __future__ import annotations
+
+from math import cos, hypot, sin
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.geometry.single import rpy_from_quaternion
+from linkwright.graph import Graph, ParameterType, TransformException
+from linkwright.graph.actions.goal import ServerGoalHandle
+from linkwright.graph.lifecycle.states import INACTIVE
+from linkwright.messages import get_message
+from linkwright.navigation.following.follower import STILL, Follower, FollowingError, Pose, Situation, Velocity
+from linkwright.navigation.following.path import FollowedPath
+from linkwright.nodes.navigation.costmap import CostmapNode, make_costmap
+from linkwright.nodes.navigation.followers import make_follower, make_goal_checker, make_progress_checker
+from linkwright.nodes.navigation.goals import GoalServer
+from linkwright.nodes.navigation.managed import ManagedNode, ManagedServer
+from linkwright.nodes.navigation.plugins import texts_of
+from linkwright.nodes.options import NodeOptions, create_node_of, starting
+from linkwright.nodes.settings import positive
+from linkwright.nodes.velocity_topic import VelocityTopic
+
+_DEPTH = 10
+_SECONDS_BETWEEN_COMPLAINTS = 2.0
+_STALE_PATH_FRAME = 2.0
+"""Seconds after which where the path's frame is, is not known any more."""
+
+
+class _GoalError(Exception):
+    """A goal cannot be worked on; the name of nav2's error code, and why."""
+
+    def __init__(self, code: str, reason: str) -> None:
+        super().__init__(reason)
+        self.code = code
+
+
+class ControllerNode(ManagedNode):
+    """The node of the graph.
+
+    Attributes:
+        costmap: around the robot; set before it is configured.
+    """
+
+    costmap: CostmapNode
+
+    def declare(self) -> None:
+        """Declare the parameters of nav2 that do not belong to a plugin."""
+        declare = self.declare_parameter
+        declare("controller_frequency", 20.0)
+        for axis in ("x", "y", "theta"):
+            declare(f"min_{axis}_velocity_threshold", 0.0001)
+        declare("speed_limit_topic", "speed_limit")
+        declare("failure_tolerance", 0.0)
+        declare("costmap_update_timeout", 0.3)
+        declare("odom_topic", "odom")
+        declare("odom_duration", 0.3)
+        declare("publish_zero_velocity", True)
+        declare("use_realtime_priority", False)
+        declare("action_server_result_timeout", 10.0)
+        self._stamped: bool | None = declare("enable_stamped_cmd_vel", ParameterType.BOOL).value
+        self._old_progress: str = declare("progress_checker_plugin", "").value  # Humble's
+        self._followers: dict[str, Follower] = {}
+        self._goals: GoalServer | None = None
+        self._timer: Any = None
+        self._measured = STILL
+        self._command: Velocity | None = None
+
+    def configure(self) -> None:
+        """Make the plugins and the costmap, offer the action.
+
+        Raises:
+            LinkwrightError: a parameter is not given or means nothing.
+        """
+        self._frequency = positive(self, "controller_frequency", self._value("controller_frequency"))
+        progress = [self._old_progress] if self._old_progress else None
+        self._progress = {
+            each: make_progress_checker(self, each)
+            for each in progress or texts_of(self, "progress_checker_plugins", ["progress_checker"])
+        }
+        names = texts_of(self, "goal_checker_plugins", ["goal_checker"])
+        self._checkers = {each: make_goal_checker(self, each) for each in names}
+        names = texts_of(self, "controller_plugins", ["FollowPath"])
+        self._followers = {each: make_follower(self, each) for each in names}
+        self.costmap.trigger_configure()
+        odometry, limit = get_message("nav_msgs/msg/Odometry"), get_message("nav2_msgs/msg/SpeedLimit")
+        self.keep(self.create_subscription(odometry, self._value("odom_topic"), self._on_odometry, _DEPTH))
+        self.keep(self.create_subscription(limit, self._value("speed_limit_topic"), self._on_speed_limit, _DEPTH))
+        self._output = VelocityTopic(self, "cmd_vel", self._stamped)
+        self._goals = self.keep(
+            GoalServer(self, "nav2_msgs/action/FollowPath", "follow_path", self._start, may_begin=self._may_begin)
+        )
+
+    def activate(self) -> None:
+        """Take goals."""
+        self.costmap.trigger_activate()
+
+    def deactivate(self) -> None:
+        """Stop the robot, and take no goals."""
+        if self._goals is not None and self._goals.current is not None:
+            self._halt()
+            self._goals.abort("UNKNOWN", "the server was deactivated")
+        if self.costmap.is_active:
+            self.costmap.trigger_deactivate()
+
+    def cleanup(self) -> None:
+        """Let the plugins go."""
+        self._end_timer()
+        self._followers.clear()
+        self._goals = None
+        if hasattr(self, "_output"):
+            self._output.close()
+        if self.costmap.lifecycle_state == INACTIVE:
+            self.costmap.trigger_cleanup()
+
+    # --- goals --------------------------------------------------------------------------------------------------------
+
+    def _may_begin(self, _goal: Any) -> bool:
+        if not self.is_active:
+            self.get_logger().warning("Action server is inactive. Rejecting the goal.")
+        return self.is_active
+
+    def _start(self, goal: ServerGoalHandle) -> None:
+        """Begin with a goal; a robot that drives goes on driving."""
+        request = goal.request
+        assert self._goals is not None, "it is configured"
+        self.get_logger().info("Received a goal, begin computing control effort.")
+        try:
+            self._follower = _chosen(self._followers, request.controller_id, "controller", "INVALID_CONTROLLER")
+            self._checker = _chosen(self._checkers, request.goal_checker_id, "goal checker", "INVALID_CONTROLLER")
+            asked = getattr(request, "progress_checker_id", "")
+            checker = _chosen(self._progress, asked, "progress checker", "INVALID_CONTROLLER")
+            self._take_path(request.path)
+        except _GoalError as failure:
+            self._fail(failure)
+            return
+        if self._timer is None:
+            self._progress_checker = checker
+            self._progress_checker.begin()
+            self._good_ns = self._now_ns()
+            self._output.review()
+            self._timer = self.create_timer(1.0 / self._frequency, self._cycle)
+
+    def _take_path(self, message: Any) -> None:
+        poses = poses_of(message.poses)
+        if not len(poses):
+            raise _GoalError("INVALID_PATH", "Path is empty.")
+        goal = tuple(poses[-1])
+        if self._timer is None or getattr(self, "_goal_in_path", None) != goal:
+            self._checker.begin()
+        self._goal_in_path: Pose = goal
+        self._path_frame = message.header.frame_id or message.poses[0].header.frame_id
+        grid = self.costmap.costmap.grid
+        self._reach = max(grid.rows, grid.columns) * grid.resolution / 2.0
+        self._path = FollowedPath(poses if len(poses) > 1 else np.repeat(poses, 2, axis=0), self._reach)
+        self._follower.begin()
+
+    def _cycle(self) -> None:
+        """Find the next velocity."""
+        goals = self._goals
+        if goals is None or goals.current is None:
+            self._halt()
+            return
+        if goals.is_canceled:
+            self.get_logger().info("Goal was canceled. Stopping the robot.")
+            self._halt()
+            goals.canceled()
+            return
+        try:
+            if not self.costmap.is_current:
+                self._wait_for_costmap()
+                return
+            self._drive(goals)
+        except _GoalError as failure:
+            self._fail(failure)
+
+    def _wait_for_costmap(self) -> None:
+        self._publish(STILL)
+        message = "the costmap is not current: the robot waits"
+        self.get_logger().warning(message, throttle_duration_sec=_SECONDS_BETWEEN_COMPLAINTS)
+        if (
+            self._now_ns() - self._good_ns
+            > max(self._value("costmap_update_timeout"), _SECONDS_BETWEEN_COMPLAINTS) * 1e9
+        ):
+            raise _GoalError("CONTROLLER_TIMED_OUT", "Costmap timed out waiting for update")
+
+    def _drive(self, goals: GoalServer) -> None:
+        """Drive for a cycle."""
+        now_ns = self._now_ns()
+        frame = self._pose(self._path_frame, _STALE_PATH_FRAME)
+        pose = self._pose(self.costmap.robot_base_frame, self.costmap.get_parameter("transform_tolerance").value)
+        x, y, yaw = _seen_from(frame, pose)
+        self._path.progress(x, y)
+        velocity = self._velocity()
+        if self._checker.is_reached((x, y, yaw), self._goal_in_path, self._measured):
+            self.get_logger().info("Reached the goal!")
+            self._halt()
+            goals.succeed()
+            return
+        if not self._progress_checker.gets_on((x, y, yaw), now_ns):
+            raise _GoalError("FAILED_TO_MAKE_PROGRESS", "Failed to make progress")
+        situation = Situation(
+            pose=pose,
+            velocity=velocity,
+            path=_placed(frame, self._path.ahead(self._reach)),
+            costmap=self.costmap.costmap,
+            footprint=self.costmap.footprint,
+            period=1.0 / self._frequency,
+            xy_tolerance=self._checker.xy_tolerance,
+        )
+        try:
+            command = self._follower.velocity(situation)
+        except FollowingError as error:
+            self._bear(str(error), now_ns)
+            return
+        self._good_ns = now_ns
+        self._publish(command)
+        goals.feedback(distance_to_goal=self._path.remaining(x, y), speed=hypot(self._measured.x, self._measured.y))
+
+    def _bear(self, reason: str, now_ns: int) -> None:
+        """Stand still because there is no velocity, for as long as ``failure_tolerance`` says."""
+        tolerance = self._value("failure_tolerance")
+        if not tolerance:
+            raise _GoalError("NO_VALID_CONTROL", reason)
+        self.get_logger().warning(reason, throttle_duration_sec=_SECONDS_BETWEEN_COMPLAINTS)
+        self._publish(STILL)
+        if 0.0 < tolerance < (now_ns - self._good_ns) / 1e9:
+            raise _GoalError("PATIENCE_EXCEEDED", "Controller patience exceeded")
+
+    def _velocity(self) -> Velocity:
+        """The velocity that the robot has, as far as it was told; before that as measured."""
+        return self._measured if self._command is None else self._command
+
+    def _pose(self, frame: str, most_seconds: float) -> Pose:
+        """A frame in that of the costmap.
+
+        Raises:
+            _GoalError: it is not known, or has not been for too long.
+        """
+        target = self.costmap.global_frame
+        if not frame or frame == target:
+            return 0.0, 0.0, 0.0
+        try:
+            found, stamp_ns = self.costmap.transforms.lookup(target, frame, 0)
+        except TransformException as error:
+            raise _GoalError("TF_ERROR", f"Failed to obtain the pose of {frame} in {target}: {error}") from None
+        age = (self._now_ns() - stamp_ns) / 1e9
+        if stamp_ns and age > most_seconds:
+            raise _GoalError(
+                "TF_ERROR", f"the pose of {frame} in {target} is {age:.2f} s old: nobody sends it any more"
+            )
+        return found[0], found[1], rpy_from_quaternion(found[3:])[2]
+
+    def _fail(self, failure: _GoalError) -> None:
+        self.get_logger().error(str(failure))
+        self._halt()
+        assert self._goals is not None, "it is configured"
+        self._goals.abort(failure.code, str(failure))
+
+    def _halt(self) -> None:
+        """Stop the robot."""
+        self._end_timer()
+        self._output.stop()
+        self._command = None
+
+    def _end_timer(self) -> None:
+        if self._timer is not None:
+            self._timer.destroy()
+            self._timer = None
+
+    def _publish(self, velocity: Velocity) -> None:
+        self._command = velocity
+        self._output.publish((velocity.x, velocity.y, 0.0), (0.0, 0.0, velocity.yaw))
+
+    # --- topics -------------------------------------------------------------------------------------------------------
+
+    def _on_odometry(self, message: Any) -> None:
+        twist = message.twist.twist
+        measured = (twist.linear.x, twist.linear.y, twist.angular.z)
+        least = (self._value(f"min_{axis}_velocity_threshold") for axis in ("x", "y", "theta"))
+        self._measured = Velocity(*(v if abs(v) > low else 0.0 for v, low in zip(measured, least, strict=True)))
+
+    def _on_speed_limit(self, message: Any) -> None:
+        for follower in self._followers.values():
+            follower.limit_speed(message.speed_limit, is_percentage=message.percentage)
+
+    def _value(self, name: str) -> Any:
+        return self.get_parameter(name).value
+
+    def _now_ns(self) -> int:
+        return self.get_clock().now().nanoseconds
+
+
+class ControllerServer(ManagedServer):
+    """The running node, with its costmap."""
+
+    DEFAULT_NAME = "controller_server"
+    NODE = ControllerNode
+    _node: ControllerNode
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        node, _ = create_node_of(ControllerNode, graph, options, self.DEFAULT_NAME)
+        self._node = node
+        with starting(node):
+            node.costmap = make_costmap(node, graph, options, "local_costmap")
+            node.start_itself()
+
+    def close(self) -> None:
+        """End it."""
+        super().close()
+        self._node.costmap.destroy_node()
+
+
+def poses_of(messages: Any) -> NDArray[np.float64]:
+    """x, y (metres) and yaw (radians) of geometry_msgs/PoseStamped, of shape (poses, 3)."""
+    rows = []
+    for each in messages:
+        position, turn = each.pose.position, each.pose.orientation
+        rows.append((position.x, position.y, rpy_from_quaternion((turn.x, turn.y, turn.z, turn.w))[2]))
+    return np.array(rows, np.float64).reshape(-1, 3)
+
+
+def _chosen(plugins: dict[str, Any], name: str, what: str, code: str) -> Any:
+    """The plugin that a goal names; the only one where it names none."""
+    if name in plugins:
+        return plugins[name]
+    if not name and len(plugins) == 1:
+        return next(iter(plugins.values()))
+    raise _GoalError(code, f"there is no {what} '{name}'; there are: {', '.join(plugins)}")
+
+
+def _placed(frame: Pose, poses: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Poses that are given in a frame, of shape (poses, 3), where that frame is."""
+    x, y, yaw = frame
+    c, s = cos(yaw), sin(yaw)
+    placed: NDArray[np.float64] = np.stack(
+        (x + c * poses[:, 0] - s * poses[:, 1], y + s * poses[:, 0] + c * poses[:, 1], yaw + poses[:, 2]), axis=-1
+    )
+    return placed
+
+
+def _seen_from(frame: Pose, pose: Pose) -> Pose:
+    """A pose in a frame, both given in the same one."""
+    c, s = cos(frame[2]), sin(frame[2])
+    dx, dy = pose[0] - frame[0], pose[1] - frame[1]
+    return c * dx + s * dy, c * dy - s * dx, pose[2] - frame[2]

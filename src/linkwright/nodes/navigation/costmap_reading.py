@@ -1,0 +1,18 @@
+"""Costmaps of other nodes, as nav2_msgs/Costmap tells them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from linkwright.navigation.costmaps.costmap import Costmap
+from linkwright.navigation.grids.grid import Grid
+
+
+def costmap_of(message: Any) -> Costmap:
+    """The costmap of a message."""
+    metadata = message.metadata
+    cells = np.frombuffer(message.data, np.uint8).reshape(metadata.size_y, metadata.size_x)
+    origin = metadata.origin.position
+    return Costmap(Grid(cells=cells, resolution=metadata.resolution, x=origin.x, y=origin.y))

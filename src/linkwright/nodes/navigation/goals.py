@@ -1,0 +1,120 @@
+"""An action that works on one goal at a time: a new goal takes the place of the one before, as with nav2's servers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from linkwright.graph import ActionServer, Node
+from linkwright.graph.actions.goal import CancelResponse, GoalEvent, GoalResponse, ServerGoalHandle
+from linkwright.messages import get_action
+
+
+class GoalServer:
+    """The server of an action.
+
+    Args:
+        node: whose it is.
+        kind: type of the action.
+        name: of the action.
+        begin: called with each goal once it is accepted; the one before, if there was one, was aborted.
+        may_begin: asked whether a goal is accepted.
+
+    Who works on the goal looks now and then whether it `is_canceled`, and then calls `canceled`.
+
+    Attributes:
+        current: the goal that is worked on.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        kind: str,
+        name: str,
+        begin: Callable[[ServerGoalHandle], None],
+        *,
+        may_begin: Callable[[Any], bool],
+    ) -> None:
+        self.current: ServerGoalHandle | None = None
+        self._type = get_action(kind)
+        self._begin = begin
+        self._server = ActionServer(
+            node,
+            self._type,
+            name,
+            _never,
+            goal_callback=lambda goal: GoalResponse.ACCEPT if may_begin(goal) else GoalResponse.REJECT,
+            handle_accepted_callback=self._accepted,
+            cancel_callback=lambda _goal: CancelResponse.ACCEPT,
+        )
+
+    @property
+    def goal(self) -> Any:
+        """The message of the goal that is worked on."""
+        assert self.current is not None, "something is worked on"
+        return self.current.request
+
+    @property
+    def is_canceled(self) -> bool:
+        """Whether the goal that is worked on is to be canceled."""
+        return self.current is not None and self.current.is_cancel_requested
+
+    def feedback(self, **fields: Any) -> None:
+        """Publish feedback."""
+        if self.current is not None:
+            message = self._type.Feedback()
+            for name, value in fields.items():
+                setattr(message, name, value)
+            self.current.publish_feedback(message)
+
+    def succeed(self, **fields: Any) -> None:
+        """The goal was reached; fields of the result."""
+        if (goal := self._leave()) is not None:
+            goal.succeed(self._result("", "", fields))
+
+    def abort(self, code: str, reason: str, **fields: Any) -> None:
+        """The goal cannot be reached.
+
+        Args:
+            code: name of the error code, where results have one (Jazzy).
+            reason: what is told with it.
+            fields: of the result.
+        """
+        if (goal := self._leave()) is not None:
+            goal.abort(self._result(code, reason, fields))
+
+    def canceled(self, **fields: Any) -> None:
+        """The goal was canceled."""
+        if (goal := self._leave()) is not None:
+            if goal.is_cancel_requested:
+                goal.canceled(self._result("", "", fields))
+            else:
+                goal.abort(self._result("", "", fields))
+
+    def destroy(self) -> None:
+        """Leave the graph; a goal that is worked on is aborted."""
+        self.abort("UNKNOWN", "the server ends")
+        self._server.destroy()
+
+    def _leave(self) -> ServerGoalHandle | None:
+        goal, self.current = self.current, None
+        return goal if goal is not None and goal.is_active else None
+
+    def _accepted(self, goal: ServerGoalHandle) -> None:
+        self.abort("UNKNOWN", "another goal took its place")
+        goal.update(GoalEvent.EXECUTE)
+        self.current = goal
+        self._begin(goal)
+
+    def _result(self, code: str, reason: str, fields: dict[str, Any]) -> Any:
+        result = self._type.Result()
+        if code and hasattr(result, "error_code"):
+            result.error_code = getattr(result, code, 0)
+            result.error_msg = reason
+        for name, value in fields.items():
+            setattr(result, name, value)
+        return result
+
+
+def _never(_goal: ServerGoalHandle) -> None:
+    """Goals are worked on by timers, not by a callback."""

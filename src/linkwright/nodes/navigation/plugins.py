@@ -1,0 +1,77 @@
+"""Plugins of nav2's servers: their types, as files write them, and their parameters, ``NAME.parameter``."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import fields
+from typing import Any, TypeVar
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+from linkwright.graph import Node, ParameterDescriptor, ParameterType
+
+T = TypeVar("T")
+
+
+def declared(node: Node, prefix: str, table: type[T], **defaults: Any) -> T:
+    """The parameters of a plugin, declared as the fields of a dataclass say.
+
+    Args:
+        node: whose they are.
+        prefix: the name of the plugin.
+        table: the dataclass; the names of its fields are those of the parameters.
+        defaults: for fields that have another one here.
+
+    Raises:
+        LinkwrightError: a parameter has another type.
+    """
+    values = {
+        each.name: value_of(node, f"{prefix}.{each.name}", defaults.get(each.name, each.default))
+        for each in fields(table)  # type: ignore[arg-type]  # it is a dataclass
+    }
+    return table(**values)
+
+
+def value_of(node: Node, name: str, default: Any) -> Any:
+    """The value of a parameter, which is declared if it is not yet."""
+    if node.has_parameter(name):
+        return node.get_parameter(name).value
+    return node.declare_parameter(name, default).value
+
+
+def texts_of(node: Node, name: str, default: Sequence[str]) -> list[str]:
+    """As `value_of`, for a list of texts, which may be given empty."""
+    if not node.has_parameter(name):
+        node.declare_parameter(name, list(default), ParameterDescriptor(dynamic_typing=True))
+    return [str(each) for each in node.get_parameter(name).value or ()]
+
+
+def type_of(node: Node, plugin: str, usual: Mapping[str, str]) -> str:
+    """The type of a plugin with ``/`` for ``::``, as ``PLUGIN.plugin`` says.
+
+    Args:
+        node: whose it is.
+        plugin: its name.
+        usual: types by the names that need none.
+
+    Raises:
+        LinkwrightError: NODE431, it is not given.
+    """
+    name = f"{plugin}.plugin"
+    given = value_of(node, name, usual.get(plugin, ParameterType.STRING))
+    if not given:
+        raise LinkwrightError(
+            Diagnostic(
+                "NODE431",
+                phrase("'{node}' needs the parameter '{name}'", node=node.get_name(), name=name),
+                hint=phrase("it is the type of the plugin '{plugin}'", plugin=plugin),
+            )
+        )
+    return str(given).replace("::", "/")
+
+
+def take_unread(node: Node, plugin: str) -> list[str]:
+    """Declare the parameters that were given to a plugin and that it does not have; their names without its own."""
+    names = [each for each in node.undeclared_overrides() if each.startswith(f"{plugin}.")]
+    for name in names:
+        node.declare_parameter(name, None, ParameterDescriptor(dynamic_typing=True))
+    return [each.removeprefix(f"{plugin}.") for each in names]

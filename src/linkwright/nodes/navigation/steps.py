@@ -1,0 +1,194 @@
+"""Servers whose goals are done in steps, most of which are goals of other servers.
+
+What is to be done is written as a generator: it goes on once each cycle, and ``yield`` waits for the next. It ends when
+the goal is reached, raises `StepError` when it cannot be, and is closed when the goal is canceled.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator
+from typing import Any
+
+from linkwright.graph import ActionClient
+from linkwright.graph.actions.goal import GoalStatus
+from linkwright.nodes.navigation.goals import GoalServer
+from linkwright.nodes.navigation.managed import ManagedNode
+
+Step = Generator[None, None, Any]
+"""What goes on in steps, one each cycle."""
+
+_PERIOD = 0.05
+_SERVER_SECONDS = 5.0
+"""For so long an answer of another server is waited for."""
+
+
+class StepError(Exception):
+    """A step failed.
+
+    Attributes:
+        code: name of nav2's error code.
+        is_final: whether it would fail again however often it is tried.
+    """
+
+    def __init__(self, code: str, reason: str, *, is_final: bool = False) -> None:
+        super().__init__(reason)
+        self.code = code
+        self.is_final = is_final
+
+
+class StepNode(ManagedNode):
+    """A node that works on one goal at a time, in steps."""
+
+    _work: Step | None = None
+    _timer: Any = None
+    _server: GoalServer | None = None
+
+    def work_on(self, server: GoalServer, work: Step) -> None:
+        """Begin with the goal that a server was given, and end what was worked on before."""
+        self._stop()
+        if self._server is not None and self._server is not server:
+            self._server.abort("UNKNOWN", "another goal took its place")
+        self._server, self._work = server, work
+        self._timer = self.create_timer(_PERIOD, self._cycle)
+
+    def tell_progress(self, server: GoalServer) -> None:
+        """Publish the feedback of the goal; called each cycle."""
+
+    def result(self) -> dict[str, Any]:
+        """Fields of the result."""
+        return {}
+
+    def deactivate(self) -> None:
+        """End what is done, and take no goals."""
+        self._stop()
+        if self._server is not None:
+            self._server.abort("UNKNOWN", "the server was deactivated", **self.result())
+
+    def cleanup(self) -> None:
+        """End what is done."""
+        self._stop()
+        self._server = None
+
+    def may_begin(self) -> bool:
+        """Whether goals are taken; it is told if they are not."""
+        if not self.is_active:
+            self.get_logger().warning("Action server is inactive. Rejecting the goal.")
+        return self.is_active
+
+    def asked(self, client: ActionClient, goal: Any, complaint: str) -> Step:
+        """The result of a goal of another server; it is canceled when this is closed.
+
+        Raises:
+            StepError: there is no such server, or it did not reach the goal.
+        """
+        if not client.server_is_ready():
+            raise StepError("UNKNOWN", f"{complaint}: there is no action {client.action_name}")
+        sent = Sent(client, goal)
+        try:
+            while not sent.is_over:
+                yield
+        finally:
+            sent.cancel()
+        if sent.has_failed:
+            raise StepError("UNKNOWN", sent.reason(complaint))
+        return sent.result
+
+    def until(self, is_done: Callable[[], bool], what: str) -> Step:
+        """Wait for an answer.
+
+        Raises:
+            StepError: it does not come.
+        """
+        limit_ns = self.now_ns() + round(_SERVER_SECONDS * 1e9)
+        while not is_done():
+            if self.now_ns() > limit_ns:
+                raise StepError("UNKNOWN", f"{what} does not answer")
+            yield
+
+    def now_ns(self) -> int:
+        """The node's time."""
+        return self.get_clock().now().nanoseconds
+
+    def _cycle(self) -> None:
+        """The next step."""
+        server, work = self._server, self._work
+        if server is None or work is None:
+            self._stop()
+            return
+        if server.is_canceled:
+            self.get_logger().info("Goal canceled")
+            self._stop()
+            server.canceled(**self.result())
+            return
+        try:
+            next(work)
+        except StopIteration:
+            self.get_logger().info("Goal succeeded")
+            self._stop()
+            server.succeed(**self.result())
+        except StepError as failure:
+            self.get_logger().error(f"Goal failed: {failure}")
+            self._stop()
+            server.abort(failure.code, str(failure), **self.result())
+        else:
+            self.tell_progress(server)
+
+    def _stop(self) -> None:
+        """End the work; what it asked of others is canceled."""
+        work, self._work = self._work, None
+        if work is not None:
+            work.close()
+        if self._timer is not None:
+            self._timer.destroy()
+            self._timer = None
+
+
+class Sent:
+    """A goal that was sent to another server."""
+
+    def __init__(self, client: ActionClient, goal: Any) -> None:
+        self._handle: Any = None
+        self._answer: Any = None
+        self._dropped = False
+        self.result: Any = None
+        client.send_goal_async(goal).add_done_callback(self._accepted)
+
+    def _accepted(self, future: Any) -> None:
+        self._handle = future.result()
+        if not self._handle.accepted:
+            return
+        if self._dropped:
+            self._handle.cancel_goal_async()
+            return
+        self._handle.get_result_async().add_done_callback(self._ended)
+
+    def _ended(self, future: Any) -> None:
+        self._answer = future.result()
+        self.result = self._answer.result
+
+    @property
+    def is_over(self) -> bool:
+        """Whether it was rejected or has ended."""
+        return self._answer is not None or (self._handle is not None and not self._handle.accepted)
+
+    @property
+    def has_succeeded(self) -> bool:
+        """Whether the goal was reached."""
+        return self._answer is not None and self._answer.status == GoalStatus.SUCCEEDED
+
+    @property
+    def has_failed(self) -> bool:
+        """Whether it is over and the goal was not reached."""
+        return self.is_over and not self.has_succeeded
+
+    def reason(self, usual: str) -> str:
+        """Why it failed, as the server says it (Jazzy), else as usual."""
+        said = getattr(self.result, "error_msg", "")
+        return f"{usual}: {said}" if said else usual
+
+    def cancel(self) -> None:
+        """Have it canceled, unless it is over."""
+        if not self.is_over:
+            self._dropped = True
+            if self._handle is not None:
+                self._handle.cancel_goal_async()
