@@ -8,6 +8,8 @@ from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, joined, phrase
 from linkwright.graph import Graph, Parameter
+from linkwright.graph.command_line.ros_arguments import parse
+from linkwright.graph.parameters.rules import ParameterRules
 from linkwright.messages import get_service
 from linkwright.nodes.options import NodeOptions, RunningNode, SingleNode, create_node, starting
 from linkwright.nodes.registry import COMPONENTS
@@ -19,7 +21,8 @@ class ComponentContainer(SingleNode):
     """The running node.
 
     It answers ``~/_container/load_node``, ``unload_node`` and ``list_nodes`` as rclcpp_components does. What it can
-    load are the components that come with Linkwright (`COMPONENTS`); others are libraries of compiled code.
+    load are the components that come with Linkwright (`COMPONENTS`); others are libraries of compiled code. Nodes that
+    a component makes besides its own, such as costmaps, have the parameters that files give to the container's process.
 
     Attributes:
         on_loaded: called with each node that was loaded and what it was started with.
@@ -31,6 +34,9 @@ class ComponentContainer(SingleNode):
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._graph = graph
         self._library = options.library
+        self._for_others = ParameterRules()
+        self._for_others.add(options.for_others)
+        self._for_others.add(parse(options.arguments).parameters)
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         self._loaded: dict[int, RunningNode] = {}
         self._last_id = 0
@@ -81,6 +87,7 @@ class ComponentContainer(SingleNode):
             parameters={each.name: Parameter.from_parameter_msg(each).value for each in request.parameters},
             remappings=[_pair(rule) for rule in request.remap_rules],
             library=self._library,
+            for_others=self._for_others,
         )
         try:
             number, running = self.load(request.package_name, request.plugin_name, options)

@@ -250,6 +250,23 @@ def test_a_map_lies_turned_in_the_frame_of_the_costmap():
     assert np.argwhere(scene.costmap.grid.cells).tolist() == [[39, 39]]
 
 
+@given(x=st.integers(-50, 50), y=st.integers(-50, 50))
+def test_a_map_lies_somewhere_else_than_the_costmap(x, y):
+    layer = StaticLayer(Interpretation())
+    scene = costmap(layer)
+    grid = occupancy(20, 30)
+    grid.cells[:] = np.where(np.random.default_rng(0).random((20, 30)) < 0.5, 100, 0)
+    grid.x, grid.y = 0.1 * x, 0.1 * y
+    layer.take(grid)
+    scene.update(HERE, 0)
+    rows, columns = np.mgrid[:40, :40]
+    there = np.stack((rows - y, columns - x), axis=-1)
+    inside = grid.has(there)
+    expected = np.zeros((40, 40), np.uint8)
+    expected[inside] = np.where(grid.cells[there[inside][:, 0], there[inside][:, 1]] == 100, LETHAL, 0)
+    assert np.array_equal(scene.costmap.grid.cells, expected)
+
+
 def test_a_part_of_a_map_changes():
     layer = StaticLayer(Interpretation())
     scene = costmap(layer)

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from linkwright.navigation.costmaps.costmap import FREE, LETHAL, UNKNOWN
 from linkwright.navigation.costmaps.layer import Costs, Layer, Moment, Window, footprint_window, free_footprint
@@ -16,6 +17,10 @@ from linkwright.navigation.grids.grid import Grid
 
 MapPose = tuple[float, float, float]
 """x, y (metres) and yaw (radians) of the costmap's frame in that of the map."""
+
+_SAME_PLACE: MapPose = (0.0, 0.0, 0.0)
+_ROUNDING = 1e-3
+"""By how much of a cell two grids may be apart and still lie on each other."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -119,17 +124,40 @@ class StaticLayer(Layer):
         """Copy the map, or what of it is in the window."""
         if self.map is None or self._placed is None:
             return
-        rows, columns = np.mgrid[window.top : window.bottom, window.left : window.right]
-        centres = grid.centres_of(np.stack((rows, columns), axis=-1))
-        x, y, yaw = self._placed
-        if (x, y, yaw) != (0.0, 0.0, 0.0):
-            cosine, sine = np.cos(yaw), np.sin(yaw)
-            centres = centres @ np.array([[cosine, sine], [-sine, cosine]]) + (x, y)
-        indices = self.map.cells_of(centres)
-        inside = self.map.has(indices)
-        indices = indices[inside]
-        costs = self.map.cells[indices[:, 0], indices[:, 1]]
         part = grid.cells[window.cells]
+        inside, costs = self._lying_straight(grid, window) or self._lying_anyhow(grid, window)
         part[inside] = np.maximum(part[inside], costs) if self._use_maximum else costs
         if self._footprint_clearing:
             free_footprint(grid.cells, moment, grid, window)
+
+    def _lying_straight(self, grid: Grid, window: Window) -> tuple[tuple[slice, slice], Costs] | None:
+        """Which cells of a window the map has, and its costs; None where cells of both do not lie on each other."""
+        known = self.map
+        assert known is not None
+        if self._placed != _SAME_PLACE or known.yaw or known.resolution != grid.resolution:
+            return None
+        down, right = (grid.y - known.y) / grid.resolution, (grid.x - known.x) / grid.resolution
+        rows, columns = round(down), round(right)
+        if abs(down - rows) + abs(right - columns) > _ROUNDING:
+            return None
+        seen = Window(window.top + rows, window.left + columns, window.bottom + rows, window.right + columns).within(
+            known
+        )
+        top, left = seen.top - rows - window.top, seen.left - columns - window.left
+        if seen.is_empty:
+            return (slice(0, 0), slice(0, 0)), known.cells[seen.cells]
+        there = slice(top, top + seen.bottom - seen.top), slice(left, left + seen.right - seen.left)
+        return there, known.cells[seen.cells]
+
+    def _lying_anyhow(self, grid: Grid, window: Window) -> tuple[NDArray[np.bool_], Costs]:
+        """As `_lying_straight`, for cells that lie anyhow: what the map has at their middles."""
+        assert self.map is not None
+        assert self._placed is not None
+        rows, columns = np.mgrid[window.top : window.bottom, window.left : window.right]
+        centres = grid.centres_of(np.stack((rows, columns), axis=-1))
+        x, y, yaw = self._placed
+        cosine, sine = np.cos(yaw), np.sin(yaw)
+        indices = self.map.cells_of(centres @ np.array([[cosine, sine], [-sine, cosine]]) + (x, y))
+        inside = self.map.has(indices)
+        indices = indices[inside]
+        return inside, self.map.cells[indices[:, 0], indices[:, 1]]

@@ -129,6 +129,11 @@ class CostmapNode(ManagedNode):
         return self.layered.footprint
 
     @property
+    def uses_radius(self) -> bool:
+        """Whether the robot is taken to be round."""
+        return str(self._value("footprint")).replace(" ", "") in {"", "[]"}
+
+    @property
     def is_current(self) -> bool:
         """Whether it was updated, has a map if it wants one, and sensors were heard as often as they should be."""
         return self._layered is not None and self._layered.is_current(self._now_ns())
@@ -236,7 +241,7 @@ class CostmapNode(ManagedNode):
 
     def _read_footprint(self) -> Footprint:
         text = self._value("footprint")
-        if text.replace(" ", "") in {"", "[]"}:
+        if self.uses_radius:
             return circle(self._positive("robot_radius"))
         try:
             return read_footprint(text)

@@ -104,17 +104,18 @@ class CostmapPublisher:
             message = self._update("map_msgs/msg/OccupancyGridUpdate", array("b", cells), window, stamp)
             message.width, message.height = window.right - window.left, window.bottom - window.top
             self._updates.publish(message)
-        if self._raw.get_subscription_count() and (whole or not window.is_empty):
-            self._publish_raw(window, stamp, whole=whole)
+        if whole or not window.is_empty:
+            self._publish_raw(window, stamp)
 
-    def _publish_raw(self, window: Window, stamp: Any, *, whole: bool) -> None:
-        if whole or self._raw_updates is None:
+    def _publish_raw(self, window: Window, stamp: Any) -> None:
+        """All of it, for those who hear no updates, and what changed."""
+        if self._raw.get_subscription_count():
             self._raw.publish(raw_message(self._costmap.costmap, self._frame, stamp))
-            return
-        cells = array("B", self._costmap.costmap.grid.cells[window.cells].tobytes())
-        message = self._update("nav2_msgs/msg/CostmapUpdate", cells, window, stamp)
-        message.size_x, message.size_y = window.right - window.left, window.bottom - window.top
-        self._raw_updates.publish(message)
+        if self._raw_updates is not None and self._raw_updates.get_subscription_count() and not window.is_empty:
+            cells = array("B", self._costmap.costmap.grid.cells[window.cells].tobytes())
+            message = self._update("nav2_msgs/msg/CostmapUpdate", cells, window, stamp)
+            message.size_x, message.size_y = window.right - window.left, window.bottom - window.top
+            self._raw_updates.publish(message)
 
     def _update(self, kind: str, cells: Any, window: Window, stamp: Any) -> Any:
         message = get_message(kind)()

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
+from math import ceil
 from typing import Any
 
 import numpy as np
@@ -34,6 +35,8 @@ from linkwright.nodes.laser_filters import scan_of
 from linkwright.nodes.pointcloud_to_laserscan import points_of
 
 _WAITING = 50
+_MOST_POINTS = 40_000
+"""Of a cloud; of a larger one every n-th point counts, which still are many for each cell."""
 _LITTLE = 1e-4
 """By which a ray that met nothing ends before the range of its sensor, in metres."""
 
@@ -103,6 +106,7 @@ class SensorTopic:
         points = self._points(message)
         if points is None:
             return
+        points = points[:: max(1, ceil(len(points) / _MOST_POINTS))]
         origin = np.array(pose[:3])
         if self._sensor_frame and self._sensor_frame != message.header.frame_id:
             stamp = message.header.stamp.nanoseconds

@@ -1,0 +1,38 @@
+"""Paths and poses as messages."""
+
+from __future__ import annotations
+
+from math import cos, sin
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.geometry.single import rpy_from_quaternion
+from linkwright.messages import get_message
+
+
+def path_message(poses: NDArray[np.float64], frame: str, stamp: Any) -> Any:
+    """The nav_msgs/Path of poses: x, y (metres) and yaw (radians), of shape (n, 3)."""
+    path, pose_stamped = get_message("nav_msgs/msg/Path")(), get_message("geometry_msgs/msg/PoseStamped")
+    path.header.frame_id, path.header.stamp = frame, stamp
+    for x, y, yaw in poses.tolist():
+        message = pose_stamped()
+        message.header.frame_id, message.header.stamp = frame, stamp
+        message.pose.position.x, message.pose.position.y = x, y
+        message.pose.orientation.z, message.pose.orientation.w = sin(yaw / 2.0), cos(yaw / 2.0)
+        path.poses.append(message)
+    return path
+
+
+def poses_of(path: Any) -> NDArray[np.float64]:
+    """x, y (metres) and yaw (radians) of the poses of a nav_msgs/Path, of shape (n, 3)."""
+    return np.array([pose_of(each) for each in path.poses], np.float64).reshape(-1, 3)
+
+
+def pose_of(stamped: Any) -> tuple[float, float, float]:
+    """x, y (metres) and yaw (radians) of a geometry_msgs/PoseStamped."""
+    position, turn = stamped.pose.position, stamped.pose.orientation
+    quaternion = (turn.x, turn.y, turn.z, turn.w)
+    yaw = rpy_from_quaternion(quaternion)[2] if any(quaternion) else 0.0
+    return position.x, position.y, yaw

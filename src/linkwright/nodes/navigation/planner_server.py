@@ -1,0 +1,285 @@
+"""planner_server of nav2: plans ways for the actions ``compute_path_to_pose`` and ``compute_path_through_poses``.
+
+Parameters, topics, texts and results are those of nav2, Humble and Jazzy. All types of planners are recognised, and one
+method does the work of all (`linkwright.navigation.planning.planner`); where it is not that of the type, a line says
+so. Different on purpose: a goal in an obstacle is refused however large the tolerance is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator
+from dataclasses import fields, replace
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.graph import Graph
+from linkwright.graph.actions.goal import ServerGoalHandle
+from linkwright.graph.lifecycle.states import INACTIVE
+from linkwright.graph.time.values import Duration
+from linkwright.messages import get_message, get_service
+from linkwright.navigation.costmaps.costmap import INSCRIBED, LETHAL
+from linkwright.navigation.costmaps.layered import Pose
+from linkwright.navigation.planning.planner import PlanError, Settings, plan
+from linkwright.nodes.navigation.costmap import CostmapNode, make_costmap
+from linkwright.nodes.navigation.goals import GoalServer
+from linkwright.nodes.navigation.managed import ManagedNode, ManagedServer
+from linkwright.nodes.navigation.paths import path_message, pose_of, poses_of
+from linkwright.nodes.navigation.plugins import declared, take_unread, texts_of, type_of
+from linkwright.nodes.navigation.slices import WAIT, SlicedWork
+from linkwright.nodes.options import NodeOptions, create_node_of, starting
+
+_NANOSECONDS = 1e9
+_NAVFN: Final = "nav2_navfn_planner/NavfnPlanner"
+_USUAL: Final = {"GridBased": _NAVFN}
+_OTHERS: Final = {
+    "nav2_theta_star_planner/ThetaStarPlanner": Settings(),
+    "nav2_smac_planner/SmacPlanner2D": Settings(tolerance=0.125),
+    "nav2_smac_planner/SmacPlannerHybrid": Settings(tolerance=0.25),
+    "nav2_smac_planner/SmacPlannerLattice": Settings(tolerance=0.25),
+}
+"""Types whose work NavFn's method does, with what they have for parameters that are not given."""
+
+Poses = NDArray[np.float64]
+Work = Generator[str | None, None, Any]
+
+
+class _RefusedError(Exception):
+    """There is no plan.
+
+    Attributes:
+        code: name of nav2's error code.
+    """
+
+    def __init__(self, code: str, reason: str) -> None:
+        super().__init__(reason)
+        self.code = code
+
+
+class PlannerNode(ManagedNode):
+    """The node of the graph.
+
+    Attributes:
+        costmap: of the world; set before it is configured.
+    """
+
+    costmap: CostmapNode
+
+    def declare(self) -> None:
+        """Declare the parameters of nav2 that do not belong to a planner."""
+        self.declare_parameter("expected_planner_frequency", 1.0)
+        self.declare_parameter("action_server_result_timeout", 10.0)
+        self.declare_parameter("costmap_update_timeout", 1.0)
+        self._planners: dict[str, Settings] = {}
+        self._work: dict[str, SlicedWork] = {}
+
+    def configure(self) -> None:
+        """Make the planners and the costmap, offer the actions.
+
+        Raises:
+            LinkwrightError: NODE431, a planner has no type.
+        """
+        self._planners = {name: self._planner(name) for name in texts_of(self, "planner_plugins", ["GridBased"])}
+        self.get_logger().info(f"Planner Server has {' '.join(self._planners)}  planners available.")
+        if self.get_parameter("expected_planner_frequency").value <= 0.0:
+            self.get_logger().warning(
+                "The expected planner frequency parameter is 0 Hz or less: it is not told when plans take too long"
+            )
+        self.costmap.trigger_configure()
+        self._plans = self.keep(self.create_publisher(get_message("nav_msgs/msg/Path"), "plan", 1))
+        self._offer("ComputePathToPose", "compute_path_to_pose", self._to_pose)
+        self._offer("ComputePathThroughPoses", "compute_path_through_poses", self._through_poses)
+        kind = get_service("nav2_msgs/srv/IsPathValid")
+        self.keep(self.create_service(kind, "is_path_valid", self._is_path_valid))
+
+    def activate(self) -> None:
+        """Take goals."""
+        self.costmap.trigger_activate()
+
+    def deactivate(self) -> None:
+        """Plan nothing more."""
+        self._stop()
+        if self.costmap.is_active:
+            self.costmap.trigger_deactivate()
+
+    def cleanup(self) -> None:
+        """Let the costmap go."""
+        self._stop()
+        if self.costmap.lifecycle_state == INACTIVE:
+            self.costmap.trigger_cleanup()
+
+    # --- planners -----------------------------------------------------------------------------------------------------
+
+    def _planner(self, name: str) -> Settings:
+        kind = type_of(self, name, _USUAL)
+        usual = _OTHERS.get(kind, Settings())
+        settings = declared(self, name, Settings, **{each.name: getattr(usual, each.name) for each in fields(usual)})
+        if kind != _NAVFN:
+            take_unread(self, name)
+            self.get_logger().warning(
+                f"there is no {kind} here: plans of '{name}' go the way of NavFn, in all directions and with no regard "
+                "to how tightly a robot can turn"
+            )
+        self.get_logger().info(f"Created global planner plugin {name} of type {kind}")
+        return settings
+
+    def _chosen(self, name: str) -> tuple[str, Settings]:
+        if not name and len(self._planners) == 1:
+            name = next(iter(self._planners))
+        if name not in self._planners:
+            known = " ".join(self._planners)
+            self.get_logger().error(f"planner {name} is not a valid planner. Planner names are: {known}")
+            raise _RefusedError("INVALID_PLANNER", f"Planner id {name} is invalid")
+        names = [each.name for each in fields(Settings)]
+        now = {each: self.get_parameter(f"{name}.{each}").value for each in names}
+        return name, replace(self._planners[name], **now)
+
+    # --- goals --------------------------------------------------------------------------------------------------------
+
+    def _offer(self, kind: str, name: str, work: Callable[[Any], Work]) -> None:
+        """Offer an action whose goals some work makes a path for."""
+
+        def begin(goal: ServerGoalHandle) -> None:
+            self._stop(name)
+            began_ns = self._now_ns()
+
+            def done(poses: Any, error: Exception | None) -> None:
+                del self._work[name]
+                self._finish(server, poses, error, began_ns)
+
+            self._work[name] = SlicedWork(self, work(goal.request), lambda: not server.is_canceled, done)
+
+        server = self.keep(GoalServer(self, f"nav2_msgs/action/{kind}", name, begin, may_begin=self._may_begin))
+
+    def _may_begin(self, _goal: Any) -> bool:
+        if not self.is_active:
+            self.get_logger().warning("Action server is inactive. Rejecting the goal.")
+        return self.is_active
+
+    def _finish(self, server: GoalServer, poses: Any, error: Exception | None, began_ns: int) -> None:
+        if isinstance(error, _RefusedError):
+            server.abort(error.code, str(error))
+        elif error is not None:
+            self.get_logger().error(f"planning failed: {error!r}")
+            server.abort("UNKNOWN", str(error))
+        elif poses is None:
+            self.get_logger().info("Goal was canceled. Canceling planning action.")
+            server.canceled()
+        else:
+            path = path_message(poses, self.costmap.global_frame, self.get_clock().now().to_msg())
+            self._plans.publish(path)
+            took_ns = self._now_ns() - began_ns
+            self._complain_of_slowness(took_ns / _NANOSECONDS)
+            server.succeed(path=path, planning_time=Duration(nanoseconds=took_ns).to_msg())
+
+    def _complain_of_slowness(self, seconds: float) -> None:
+        frequency = self.get_parameter("expected_planner_frequency").value
+        if frequency > 0.0 and seconds > 1.0 / frequency:
+            self.get_logger().warning(
+                f"Planner loop missed its desired rate of {frequency:.4f} Hz. "
+                f"Current loop rate is {1.0 / seconds:.4f} Hz"
+            )
+
+    def _stop(self, *names: str) -> None:
+        """Leave the work for an action where it stands, or that for all."""
+        for name in names or tuple(self._work):
+            work = self._work.pop(name, None)
+            if work is not None:
+                work.stop()
+
+    # --- work ---------------------------------------------------------------------------------------------------------
+
+    def _to_pose(self, request: Any) -> Work:
+        yield from self._until_current()
+        start, goal = self._start_of(request), self._placed(request.goal)
+        return (yield from self._planned(start, goal, request.planner_id))
+
+    def _through_poses(self, request: Any) -> Work:
+        yield from self._until_current()
+        goals = getattr(request.goals, "poses", request.goals)
+        if not len(goals):
+            raise _RefusedError("NO_VIAPOINTS_GIVEN", "No viapoints given")
+        start = self._start_of(request)
+        parts = []
+        for each in goals:
+            part = yield from self._planned(start, self._placed(each), request.planner_id)
+            parts.append(part)
+            start = (float(part[-1, 0]), float(part[-1, 1]), float(part[-1, 2]))
+        return np.concatenate(parts)
+
+    def _until_current(self) -> Work:
+        timeout_ns = self.get_parameter("costmap_update_timeout").value * _NANOSECONDS
+        began_ns = self._now_ns()
+        while not self.costmap.is_current:
+            if self._now_ns() - began_ns > timeout_ns:
+                raise _RefusedError("TIMEOUT", "Costmap timed out waiting for update")
+            yield WAIT
+
+    def _planned(self, start: Pose, goal: Pose, planner: str) -> Work:
+        name, settings = self._chosen(planner)
+        try:
+            return (yield from plan(self.costmap.costmap.copy(), start, goal, settings))
+        except PlanError as error:
+            self.get_logger().warning(
+                f"{name} plugin failed to plan from ({start[0]:.2f}, {start[1]:.2f}) "
+                f'to ({goal[0]:.2f}, {goal[1]:.2f}): "{error}"'
+            )
+            raise _RefusedError(error.problem.value, str(error)) from None
+
+    def _start_of(self, request: Any) -> Pose:
+        if request.use_start:
+            return self._placed(request.start)
+        pose = self.costmap.robot_pose()
+        if pose is None:
+            raise _RefusedError("TF_ERROR", "Unable to get start pose")
+        return pose
+
+    def _placed(self, stamped: Any) -> Pose:
+        pose = self.costmap.pose_of(pose_of(stamped), stamped.header.frame_id)
+        if pose is None:
+            raise _RefusedError("TF_ERROR", "Unable to transform poses to global frame")
+        return pose
+
+    # --- the service --------------------------------------------------------------------------------------------------
+
+    def _is_path_valid(self, request: Any, response: Any) -> Any:
+        """Whether the robot can go on along a path from where it is."""
+        poses = poses_of(request.path)
+        here = self.costmap.robot_pose() if self.is_active else None
+        response.is_valid = bool(len(poses))
+        if not len(poses) or here is None:
+            return response
+        first = int(np.argmin(np.hypot(poses[:, 0] - here[0], poses[:, 1] - here[1])))
+        ahead = poses[first:]
+        if self.costmap.uses_radius:
+            costs = self.costmap.costmap.cost_at(ahead[:, :2], outside=LETHAL)
+            bad = (costs == LETHAL) | (costs == INSCRIBED)
+        else:
+            bad = self.costmap.costmap.footprint_cost(ahead, self.costmap.footprint) == LETHAL
+        response.invalid_pose_indices = [first + int(index) for index in np.flatnonzero(bad)]
+        response.is_valid = not bad.any()
+        return response
+
+    def _now_ns(self) -> int:
+        return self.get_clock().now().nanoseconds
+
+
+class PlannerServer(ManagedServer):
+    """The running node, with its costmap."""
+
+    DEFAULT_NAME = "planner_server"
+    NODE = PlannerNode
+    _node: PlannerNode
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        node, _ = create_node_of(PlannerNode, graph, options, self.DEFAULT_NAME)
+        self._node = node
+        with starting(node):
+            node.costmap = make_costmap(node, graph, options, "global_costmap")
+            node.start_itself()
+
+    def close(self) -> None:
+        """End it."""
+        super().close()
+        self._node.costmap.destroy_node()

@@ -1,0 +1,74 @@
+"""Long work on the event loop, in slices: others get their turns in between."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Generator
+from time import perf_counter
+from typing import Any
+
+from linkwright.graph import Node
+
+SECONDS_A_SLICE = 0.008
+_SECONDS_TO_WAIT = 0.02
+
+WAIT = "wait"
+"""What work yields that cannot go on before something else has happened."""
+
+
+class SlicedWork:
+    """Does the work of a generator until it ends or is stopped.
+
+    Args:
+        node: whose time passes while the work waits.
+        work: yields None where others may have their turn, and `WAIT` to be asked again a little later.
+        is_wanted: asked now and then whether to go on.
+        done: called in the end with what the work returned and None, or with None and what it raised; with None twice
+            when it is not wanted any more.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        work: Generator[str | None, None, Any],
+        is_wanted: Callable[[], bool],
+        done: Callable[[Any, Exception | None], None],
+    ) -> None:
+        self._node, self._work, self._is_wanted, self._done = node, work, is_wanted, done
+        self._timer: Any = None
+        self._turn: asyncio.Handle | None = None
+        self._later()
+
+    def stop(self) -> None:
+        """End the work where it stands; nobody is called."""
+        self._work.close()
+        if self._turn is not None:
+            self._turn.cancel()
+        self._end_timer()
+
+    def _later(self) -> None:
+        self._turn = asyncio.get_running_loop().call_soon(self._go_on)
+
+    def _go_on(self) -> None:
+        self._end_timer()
+        if not self._is_wanted():
+            self._work.close()
+            self._done(None, None)
+            return
+        until = perf_counter() + SECONDS_A_SLICE
+        try:
+            while perf_counter() < until:
+                if next(self._work) == WAIT:
+                    self._timer = self._node.create_timer(_SECONDS_TO_WAIT, self._go_on)
+                    return
+        except StopIteration as end:
+            self._done(end.value, None)
+        except Exception as error:  # noqa: BLE001  # whoever wants the work done is to be told
+            self._done(None, error)
+        else:
+            self._later()
+
+    def _end_timer(self) -> None:
+        if self._timer is not None:
+            self._timer.destroy()
+            self._timer = None
