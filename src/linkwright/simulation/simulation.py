@@ -18,16 +18,15 @@ from linkwright.sdf.saved import as_saved
 from linkwright.sdf.worlds import World, gravity_of, physics_of
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.scene.bodies import COLLISION_GROUP
-from linkwright.simulation.scene.compiling import compiled, count_links, refused_models
+from linkwright.simulation.scene.compiling import compiled, count_links, refused_models, whole_step
 from linkwright.simulation.scene.figures import let_walk, put_kinematic
 from linkwright.simulation.scene.meshes import MeshLibrary
 from linkwright.simulation.scene.scene import Scene
 from linkwright.simulation.schedule import Schedule, Task
+from linkwright.simulation.solving import Solving, wake
 
 NANOSECONDS = 1_000_000_000
 
-_AWAKE = -11
-"""What MuJoCo counts up from for trees of bodies until they may sleep: one more than ``mjMINAWAKE`` below zero."""
 _SERVO_SPEED = 2.0
 """How fast a servo moves in rad/s or m/s where nothing says it."""
 _BEYOND = 1e10
@@ -80,9 +79,10 @@ class Simulation:
             self._meshes = MeshLibrary(finder)
             self.scene = Scene(self.world, self._meshes, step, refused)
             made = compiled(self.scene)
-        self.step = _whole_step(self.scene.step, self.world)
+        self.step = whole_step(self.scene.step, self.world)
         self.time = 0
         self.schedule = Schedule()
+        self._solving = Solving(self.schedule)
         self._bodies: dict[str, int] = {}
         self._joints: dict[str, tuple[int, int]] = {}
         self._pushes: dict[str, dict[str, Array]] = {}
@@ -223,7 +223,7 @@ class Simulation:
         if tree >= 0:
             self.model.tree_sleep_policy[tree] = never
             if self.data.tree_asleep[tree] >= 0:
-                self.data.tree_asleep[self.data.tree_asleep >= 0] = _AWAKE
+                wake(self.data)
 
     def renew(self) -> None:
         """Bring MuJoCo's model up to the scene."""
@@ -249,10 +249,12 @@ class Simulation:
         """Go on with a model of MuJoCo and its state."""
         self.model, self.data = model, data
         self._state: tuple[Array, Array] = data.qpos, data.qvel
+        self._solving.take(model, data, self.time, self.step)
 
     def reset(self) -> None:
         """Put everything back to where it was at the start; time begins anew."""
         self.refresh()
+        self._solving.restart()  # before: MuJoCo places what stands still only where things may sleep
         self._mujoco.mj_resetData(self.model, self.data)
         self._pushes.clear()
         self.time = 0
@@ -481,25 +483,7 @@ class Simulation:
         self.refresh()
         self.scene.spec.option.gravity = gravity
         self.model.opt.gravity[:] = gravity
-        self.data.tree_asleep[self.data.tree_asleep >= 0] = _AWAKE
-
-
-def _whole_step(step: float, world: World) -> int:
-    """A time step in s as nanoseconds, which may be that of a world.
-
-    Raises:
-        LinkwrightError: SIM106 no time passes in it.
-    """
-    if not (isfinite(step) and round(step * NANOSECONDS) > 0):
-        message = phrase("a time step of {step} s cannot be simulated", step=step)
-        hint = phrase("0.001 is usual: <max_step_size>0.001")
-        said = physics_of(world)
-        element = said.element if said.max_step_size == step else None
-        if element is None:
-            raise LinkwrightError(Diagnostic("SIM106", message, hint=hint))
-        place = element.first("max_step_size") or element
-        raise LinkwrightError(Diagnostic("SIM106", message, place.span(), hint=hint, source=place.source))
-    return round(step * NANOSECONDS)
+        wake(self.data)
 
 
 def _outlook(world: World) -> tuple[object, ...]:

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
+from math import isfinite
 from typing import Any
 from warnings import catch_warnings, simplefilter
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, foreign, phrase
 from linkwright.sdf.models import Model
 from linkwright.sdf.resources import ResourceFinder
-from linkwright.sdf.worlds import World
+from linkwright.sdf.worlds import World, physics_of
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.scene.meshes import MeshLibrary
 from linkwright.simulation.scene.scene import Scene
 
+_NANOSECONDS = 1_000_000_000
 _MANY_LINKS, MOST_LINKS = 1000, 10_000
 """From how many links on MuJoCo is given memory for all pairs of them, and how many there may be."""
 _BYTES_A_PAIR, _BYTES = 3, 1 << 28
@@ -90,3 +92,21 @@ def _refusal(world: World, finder: ResourceFinder) -> Phrase | None:
     except LinkwrightError as error:
         return error.diagnostics[0].message
     return None
+
+
+def whole_step(step: float, world: World) -> int:
+    """A time step in s as nanoseconds, which may be that of a world.
+
+    Raises:
+        LinkwrightError: SIM106 no time passes in it.
+    """
+    if not (isfinite(step) and round(step * _NANOSECONDS) > 0):
+        message = phrase("a time step of {step} s cannot be simulated", step=step)
+        hint = phrase("0.001 is usual: <max_step_size>0.001")
+        said = physics_of(world)
+        element = said.element if said.max_step_size == step else None
+        if element is None:
+            raise LinkwrightError(Diagnostic("SIM106", message, hint=hint))
+        place = element.first("max_step_size") or element
+        raise LinkwrightError(Diagnostic("SIM106", message, place.span(), hint=hint, source=place.source))
+    return round(step * _NANOSECONDS)

@@ -1,0 +1,114 @@
+"""Many robots are solved for together, and what rests still falls asleep."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from linkwright.simulation.library import load_mujoco
+from linkwright.simulation.simulation import NANOSECONDS, Simulation
+from linkwright.simulation.solving import Solving
+from tests.simulation.worlds import GROUND, box, mbot, simulated
+
+ROBOTS = 9
+LOOK = 20 * NANOSECONDS // 1000
+
+
+def driving(*more: str, robots: int = ROBOTS) -> Simulation:
+    """Robots side by side that drive straight on, each a little faster than the one before."""
+    placed = [
+        mbot(f"0 {number} 0.11 0 0 0").replace('name="mbot"', f'name="mbot{number}"', 1) for number in range(robots)
+    ]
+    simulation = simulated(GROUND, *placed, *more)
+    motors = [
+        [simulation.add_velocity_motor(f"mbot{number}::{side}_joint", 20.0, 5.0) for side in ("left", "right")]
+        for number in range(robots)
+    ]
+    simulation.renew()
+    for number, pair in enumerate(motors):
+        for motor in pair:
+            motor.target = 1.0 + number
+    return simulation
+
+
+def is_together(simulation: Simulation) -> bool:
+    """Whether MuJoCo solves for all together."""
+    mujoco, option = load_mujoco(), simulation.model.opt
+    islands = not option.disableflags & mujoco.mjtDisableBit.mjDSBL_ISLAND.value
+    sleeps = bool(option.enableflags & mujoco.mjtEnableBit.mjENBL_SLEEP.value)
+    assert islands is sleeps
+    return not islands
+
+
+def test_many_robots_drive_the_same_way_together(monkeypatch):
+    together = driving()
+    together.advance(5 * LOOK)
+    assert is_together(together)
+    together.advance(NANOSECONDS)
+    with monkeypatch.context() as patch:
+        patch.setattr(Solving, "_look", lambda _: None)
+        alone = driving()
+        alone.advance(5 * LOOK + NANOSECONDS)
+        assert not is_together(alone)
+    assert together.model_pose("mbot8")[0] > 0.3
+    np.testing.assert_allclose(together.data.qpos, alone.data.qpos, atol=1e-7)
+
+
+def test_few_robots_are_solved_for_one_by_one():
+    simulation = driving(robots=4)
+    simulation.advance(5 * LOOK)
+    assert not is_together(simulation)
+
+
+def test_what_rests_falls_asleep_though_many_robots_drive():
+    boxes = [box(f"box{number}", f"{number} -3 0.1 0 0 0", "0.2 0.2 0.2") for number in range(6)]
+    simulation = driving(*boxes)
+    simulation.advance(2 * LOOK)
+    assert is_together(simulation)  # the boxes have not come to rest yet
+    simulation.advance(2 * NANOSECONDS)
+    assert not is_together(simulation)
+    assert simulation.data.ntree_awake == ROBOTS
+    simulation.push("box0::link", (0.0, 0.0, 20.0))
+    simulation.advance(100 * NANOSECONDS // 1000)
+    assert simulation.link_pose("box0::link")[2] > 0.11
+
+
+def test_what_slept_is_awake_when_it_is_hit_while_all_are_solved_for_together():
+    simulation = driving(box("wall", "1.2 8 0.1 0 0 0", "0.2 0.4 0.2", mass=0.2))
+    tree = int(simulation.model.body_treeid[simulation.model.body("wall::link").id])
+    simulation.advance(51 * LOOK)
+    assert not is_together(simulation)  # it is seen what rests
+    simulation.advance(LOOK * 3 // 4)
+    assert simulation.data.tree_asleep[tree] >= 0
+    simulation.advance(LOOK // 2)
+    assert is_together(simulation)
+    assert simulation.link_pose("wall::link")[0] == pytest.approx(1.2, abs=1e-4)
+    simulation.advance(2 * NANOSECONDS)
+    ahead = simulation.link_pose("wall::link")[0]
+    assert ahead > simulation.model_pose("mbot8")[0] > 1.2
+    simulation.advance(NANOSECONDS)
+    assert simulation.link_pose("wall::link")[0] > ahead + 0.1
+
+
+def test_a_reset_gives_the_same_bits_again():
+    simulation = driving()
+    simulation.advance(NANOSECONDS // 2)
+    once = simulation.data.qpos.tobytes()
+    simulation.reset()
+    assert not is_together(simulation)
+    for number in range(ROBOTS):
+        assert simulation.model_pose(f"mbot{number}")[0] == pytest.approx(0.0)
+    simulation.data.ctrl[:] = np.repeat(1.0 + np.arange(ROBOTS), 2)
+    simulation.advance(NANOSECONDS // 2)
+    assert simulation.data.qpos.tobytes() == once
+
+
+def test_robots_that_go_leave_the_others_to_be_solved_for_one_by_one():
+    simulation = driving()
+    simulation.advance(5 * LOOK)
+    assert is_together(simulation)
+    for number in range(4):
+        simulation.delete(f"mbot{number}")
+    simulation.advance(5 * LOOK)
+    assert not is_together(simulation)
+    assert simulation.schedule.next_time is None
