@@ -1,0 +1,326 @@
+"""Goals for nav2 from a program, without callbacks (the API of ``nav2_simple_commander.robot_navigator``)."""
+
+from __future__ import annotations
+
+from enum import Enum
+from typing import Any
+
+from linkwright.graph import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from linkwright.graph.actions.goal import GoalStatus
+from linkwright.graph.time.values import Duration
+from linkwright.messages import get_action, get_message, get_service
+from linkwright.standins.rclpy_api.action import ActionClient
+from linkwright.standins.rclpy_api.node import Node
+from linkwright.standins.rclpy_api.session import spin_once, spin_until_future_complete
+
+_WAIT = 1.0
+"""Seconds between two complaints about a server that is not there."""
+_STEP = 0.1
+_ACTIVE = "active"
+
+
+class TaskResult(Enum):
+    """What became of a task."""
+
+    UNKNOWN = 0
+    SUCCEEDED = 1
+    CANCELED = 2
+    FAILED = 3
+
+
+_RESULTS = {
+    GoalStatus.SUCCEEDED: TaskResult.SUCCEEDED,
+    GoalStatus.ABORTED: TaskResult.FAILED,
+    GoalStatus.CANCELED: TaskResult.CANCELED,
+}
+_ACTIONS = {
+    "navigate_to_pose": "NavigateToPose",
+    "navigate_through_poses": "NavigateThroughPoses",
+    "follow_waypoints": "FollowWaypoints",
+    "follow_path": "FollowPath",
+    "compute_path_to_pose": "ComputePathToPose",
+    "compute_path_through_poses": "ComputePathThroughPoses",
+    "smooth_path": "SmoothPath",
+    "spin": "Spin",
+    "backup": "BackUp",
+    "drive_on_heading": "DriveOnHeading",
+    "assisted_teleop": "AssistedTeleop",
+}
+
+
+class BasicNavigator(Node):
+    """Asks nav2 for what it can do: each task begins at once, and `isTaskComplete` tells whether it has ended.
+
+    Attributes:
+        initial_pose: where the robot was said to be.
+        initial_pose_received: whether the localisation has answered.
+        feedback: the latest of the task.
+        status: of the task, a number of action_msgs/GoalStatus; None before it has ended.
+        goal_handle: of the task.
+        result_future: gets its result.
+    """
+
+    def __init__(self, node_name: str = "basic_navigator", namespace: str = "") -> None:
+        super().__init__(node_name=node_name, namespace=namespace)
+        self.initial_pose: Any = get_message("geometry_msgs/msg/PoseStamped")()
+        self.initial_pose.header.frame_id = "map"
+        self.initial_pose_received = False
+        self.goal_handle: Any = None
+        self.result_future: Any = None
+        self.feedback: Any = None
+        self.status: int | None = None
+        self._actions: dict[str, Any] = {}
+        kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL, reliability=ReliabilityPolicy.RELIABLE)
+        pose = get_message("geometry_msgs/msg/PoseWithCovarianceStamped")
+        self.localization_pose_sub = self.create_subscription(pose, "amcl_pose", self._amclPoseCallback, kept)
+        self.initial_pose_pub = self.create_publisher(pose, "initialpose", 10)
+
+    def destroyNode(self) -> None:
+        """End the node."""
+        self.destroy_node()
+
+    # --- tasks --------------------------------------------------------------------------------------------------------
+
+    def setInitialPose(self, initial_pose: Any) -> None:
+        """Say where the robot is (geometry_msgs/PoseStamped)."""
+        self.initial_pose_received = False
+        self.initial_pose = initial_pose
+        self._setInitialPose()
+
+    def goToPose(self, pose: Any, behavior_tree: str = "") -> bool:
+        """Go to a pose; whether the goal was accepted."""
+        return self._begin("navigate_to_pose", pose=pose, behavior_tree=behavior_tree)
+
+    def goThroughPoses(self, poses: Any, behavior_tree: str = "") -> bool:
+        """Go to the last of some poses by way of the others; whether the goal was accepted."""
+        return self._begin("navigate_through_poses", poses=list(poses), behavior_tree=behavior_tree)
+
+    def followWaypoints(self, poses: Any) -> bool:
+        """Go to each of some poses and do there what is to be done; whether the goal was accepted."""
+        return self._begin("follow_waypoints", poses=list(poses))
+
+    def followPath(self, path: Any, controller_id: str = "", goal_checker_id: str = "") -> bool:
+        """Drive along a path; whether the goal was accepted."""
+        return self._begin("follow_path", path=path, controller_id=controller_id, goal_checker_id=goal_checker_id)
+
+    def spin(self, spin_dist: float = 1.57, time_allowance: float = 10) -> bool:
+        """Turn on the spot by an angle (radians); whether the goal was accepted."""
+        return self._begin("spin", target_yaw=float(spin_dist), time_allowance=_duration(time_allowance))
+
+    def backup(self, backup_dist: float = 0.15, backup_speed: float = 0.025, time_allowance: float = 10) -> bool:
+        """Drive straight back (metres, m/s); whether the goal was accepted."""
+        return self._straight("backup", backup_dist, backup_speed, time_allowance)
+
+    def driveOnHeading(self, dist: float = 0.15, speed: float = 0.025, time_allowance: float = 10) -> bool:
+        """Drive straight on (metres, m/s); whether the goal was accepted."""
+        return self._straight("drive_on_heading", dist, speed, time_allowance)
+
+    def assistedTeleop(self, time_allowance: float = 30) -> bool:
+        """Let somebody drive, but not into obstacles; whether the goal was accepted."""
+        return self._begin("assisted_teleop", time_allowance=_duration(time_allowance))
+
+    def cancelTask(self) -> None:
+        """End the task."""
+        self.info("Canceling current task.")
+        if self.result_future is not None:
+            spin_until_future_complete(self, self.goal_handle.cancel_goal_async())
+
+    def isTaskComplete(self) -> bool:
+        """Whether the task has ended, or there is none; it waits for a tenth of a second."""
+        if self.result_future is None:
+            return True
+        spin_until_future_complete(self, self.result_future, timeout_sec=_STEP)
+        answer = self.result_future.result() if self.result_future.done() else None
+        if answer is None:
+            return False
+        self.status = answer.status
+        if self.status != GoalStatus.SUCCEEDED:
+            self.debug(f"Task with failed with status code: {self.status}")
+        return True
+
+    def getFeedback(self) -> Any:
+        """The latest feedback of the task; None before the first."""
+        return self.feedback
+
+    def getResult(self) -> TaskResult:
+        """What became of the task."""
+        return _RESULTS.get(GoalStatus(self.status or 0), TaskResult.UNKNOWN)
+
+    # --- waiting ------------------------------------------------------------------------------------------------------
+
+    def waitUntilNav2Active(self, navigator: str = "bt_navigator", localizer: str = "amcl") -> None:
+        """Wait until nav2 is at work, and the robot knows where it is."""
+        if localizer != "robot_localization":
+            self._waitForNodeToActivate(localizer)
+        if localizer == "amcl":
+            self._waitForInitialPose()
+        self._waitForNodeToActivate(navigator)
+        self.info("Nav2 is ready for use!")
+
+    # --- plans --------------------------------------------------------------------------------------------------------
+
+    def getPath(self, start: Any, goal: Any, planner_id: str = "", use_start: bool = False) -> Any:
+        """A path to a pose (nav_msgs/Path); None where there is none."""
+        told = {"start": start, "goal": goal, "planner_id": planner_id, "use_start": use_start}
+        return getattr(self._done("compute_path_to_pose", **told), "path", None)
+
+    def getPathThroughPoses(self, start: Any, goals: Any, planner_id: str = "", use_start: bool = False) -> Any:
+        """A path through poses; see `getPath`."""
+        told = {"start": start, "goals": list(goals), "planner_id": planner_id, "use_start": use_start}
+        return getattr(self._done("compute_path_through_poses", **told), "path", None)
+
+    def smoothPath(
+        self, path: Any, smoother_id: str = "", max_duration: float = 2.0, check_for_collision: bool = False
+    ) -> Any:
+        """A path that is smoother; None where that failed."""
+        told = {"path": path, "smoother_id": smoother_id, "max_smoothing_duration": _duration(max_duration)}
+        return getattr(self._done("smooth_path", **told, check_for_collisions=check_for_collision), "path", None)
+
+    # --- maps and costmaps --------------------------------------------------------------------------------------------
+
+    def changeMap(self, map_filepath: str) -> bool:
+        """Have another map served; whether that was possible."""
+        answer = self._call("nav2_msgs/srv/LoadMap", "map_server/load_map", map_url=map_filepath)
+        if answer.result != answer.RESULT_SUCCESS:
+            self.error("Change map request failed!")
+        return bool(answer.result == answer.RESULT_SUCCESS)
+
+    def clearAllCostmaps(self) -> None:
+        """Have all costmaps forget their obstacles."""
+        self.clearLocalCostmap()
+        self.clearGlobalCostmap()
+
+    def clearLocalCostmap(self) -> None:
+        """Have the local costmap forget its obstacles."""
+        self._call("nav2_msgs/srv/ClearEntireCostmap", "local_costmap/clear_entirely_local_costmap")
+
+    def clearGlobalCostmap(self) -> None:
+        """Have the global costmap forget its obstacles."""
+        self._call("nav2_msgs/srv/ClearEntireCostmap", "global_costmap/clear_entirely_global_costmap")
+
+    def getGlobalCostmap(self) -> Any:
+        """The global costmap (nav2_msgs/Costmap)."""
+        return self._call("nav2_msgs/srv/GetCostmap", "global_costmap/get_costmap").map
+
+    def getLocalCostmap(self) -> Any:
+        """The local costmap (nav2_msgs/Costmap)."""
+        return self._call("nav2_msgs/srv/GetCostmap", "local_costmap/get_costmap").map
+
+    # --- the life of nav2 ---------------------------------------------------------------------------------------------
+
+    def lifecycleStartup(self) -> None:
+        """Have the lifecycle managers bring nav2 up."""
+        self._manage("STARTUP")
+
+    def lifecycleShutdown(self) -> None:
+        """Have the lifecycle managers shut nav2 down."""
+        self._manage("SHUTDOWN")
+
+    # --- inside -------------------------------------------------------------------------------------------------------
+
+    def _straight(self, name: str, distance: float, speed: float, time_allowance: float) -> bool:
+        target = get_message("geometry_msgs/msg/Point")(x=float(distance))
+        return self._begin(name, target=target, speed=float(speed), time_allowance=_duration(time_allowance))
+
+    def _begin(self, name: str, **goal: Any) -> bool:
+        """Send a goal; whether it was accepted."""
+        self.feedback, self.status, self.result_future = None, None, None
+        self.goal_handle = self._sent(name, goal, self._feedbackCallback)
+        if not self.goal_handle.accepted:
+            self.error(f"{name} was rejected!")
+            return False
+        self.result_future = self.goal_handle.get_result_async()
+        return True
+
+    def _done(self, name: str, **goal: Any) -> Any:
+        """The result of a goal; None where it was not reached."""
+        handle = self._sent(name, goal, None)
+        if not handle.accepted:
+            self.error(f"{name} was rejected!")
+            return None
+        future = handle.get_result_async()
+        spin_until_future_complete(self, future)
+        self.status = future.result().status
+        if self.status != GoalStatus.SUCCEEDED:
+            self.warn(f"{name} failed with status code: {self.status}")
+            return None
+        return future.result().result
+
+    def _sent(self, name: str, goal: dict[str, Any], on_feedback: Any) -> Any:
+        kind = get_action(f"nav2_msgs/action/{_ACTIONS[name]}")
+        if name not in self._actions:
+            self._actions[name] = ActionClient(self, kind, name)
+        client = self._actions[name]
+        while not client.wait_for_server(timeout_sec=_WAIT):
+            self.info(f"'{name}' action server not available, waiting...")
+        future = client.send_goal_async(kind.Goal(**goal), on_feedback)
+        spin_until_future_complete(self, future)
+        return future.result()
+
+    def _call(self, kind: str, name: str, **request: Any) -> Any:
+        service = get_service(kind)
+        client = self.create_client(service, name)
+        try:
+            while not client.wait_for_service(timeout_sec=_WAIT):
+                self.info(f"{name} service not available, waiting...")
+            future = client.call_async(service.Request(**request))
+            spin_until_future_complete(self, future)
+            return future.result()
+        finally:
+            self.destroy_client(client)
+
+    def _manage(self, command: str) -> None:
+        kind = "nav2_msgs/srv/ManageLifecycleNodes"
+        number = getattr(get_service(kind).Request, command)
+        for name, types in self.get_service_names_and_types():
+            if kind in types:
+                self._call(kind, name, command=number)
+
+    def _waitForNodeToActivate(self, node_name: str) -> None:
+        state = "unknown"
+        while state != _ACTIVE:
+            state = self._call("lifecycle_msgs/srv/GetState", f"{node_name}/get_state").current_state.label
+            self.debug(f"Result of get_state: {state}")
+            if state != _ACTIVE:
+                spin_once(self, timeout_sec=_STEP)
+
+    def _waitForInitialPose(self) -> None:
+        while not self.initial_pose_received:
+            self.info("Setting initial pose")
+            self._setInitialPose()
+            self.info("Waiting for amcl_pose to be received")
+            spin_once(self, timeout_sec=_WAIT)
+
+    def _setInitialPose(self) -> None:
+        message = get_message("geometry_msgs/msg/PoseWithCovarianceStamped")()
+        message.pose.pose = self.initial_pose.pose
+        message.header.frame_id = self.initial_pose.header.frame_id
+        message.header.stamp = self.initial_pose.header.stamp
+        self.initial_pose_pub.publish(message)
+
+    def _amclPoseCallback(self, msg: Any) -> None:  # noqa: ARG002 - that it came is enough
+        self.debug("Received amcl pose")
+        self.initial_pose_received = True
+
+    def _feedbackCallback(self, msg: Any) -> None:
+        self.feedback = msg.feedback
+
+    def info(self, msg: str) -> None:
+        """Log an information."""
+        self.get_logger().info(msg)
+
+    def warn(self, msg: str) -> None:
+        """Log a warning."""
+        self.get_logger().warning(msg)
+
+    def error(self, msg: str) -> None:
+        """Log an error."""
+        self.get_logger().error(msg)
+
+    def debug(self, msg: str) -> None:
+        """Log for debugging."""
+        self.get_logger().debug(msg)
+
+
+def _duration(seconds: float) -> Any:
+    return Duration(seconds=float(seconds)).to_msg()

@@ -1,0 +1,147 @@
+"""nav2_simple_commander as users write it, with servers that answer in another thread."""
+
+from __future__ import annotations
+
+import threading
+
+import pytest
+import rclpy
+from action_msgs.msg import GoalStatus
+from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
+from lifecycle_msgs.srv import GetState
+from nav2_msgs.action import ComputePathToPose, NavigateToPose, Spin
+from nav2_msgs.srv import ClearEntireCostmap
+from nav2_simple_commander.robot_navigator import BasicNavigator, TaskResult
+from rclpy.action import ActionServer, CancelResponse
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile
+
+
+class Servers(Node):
+    """What nav2 offers, as far as it is asked for here."""
+
+    def __init__(self):
+        super().__init__("servers")
+        self.cleared = []
+        self.held = None
+        for name in ("bt_navigator", "amcl"):
+            self.create_service(GetState, f"{name}/get_state", self.on_state)
+        for which in ("local", "global"):
+            self.create_service(
+                ClearEntireCostmap,
+                f"{which}_costmap/clear_entirely_{which}_costmap",
+                lambda _request, response, which=which: self.cleared.append(which) or response,
+            )
+        kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        self.estimate = self.create_publisher(PoseWithCovarianceStamped, "amcl_pose", kept)
+        self.create_subscription(PoseWithCovarianceStamped, "initialpose", self.estimate.publish, 10)
+        ActionServer(
+            self,
+            NavigateToPose,
+            "navigate_to_pose",
+            self.on_go,
+            handle_accepted_callback=self.on_accepted,
+            cancel_callback=lambda _handle: CancelResponse.ACCEPT,
+        )
+        self.create_timer(0.01, self.on_timer)
+        ActionServer(self, Spin, "spin", self.on_spin)
+        ActionServer(self, ComputePathToPose, "compute_path_to_pose", self.on_plan)
+
+    def on_state(self, _request, response):
+        response.current_state.label = "active"
+        return response
+
+    def on_accepted(self, handle):
+        if handle.request.pose.pose.position.x < 5.0:
+            handle.execute()
+        else:
+            self.held = handle
+
+    def on_timer(self):
+        if self.held is not None and self.held.is_cancel_requested:
+            self.held.execute()
+            self.held = None
+
+    def on_go(self, handle):
+        feedback = NavigateToPose.Feedback()
+        feedback.distance_remaining = 1.5
+        handle.publish_feedback(feedback)
+        if handle.is_cancel_requested:
+            handle.canceled()
+        elif handle.request.pose.pose.position.x < 0.0:
+            handle.abort()
+        else:
+            handle.succeed()
+        return NavigateToPose.Result()
+
+    def on_spin(self, handle):
+        handle.succeed()
+        return Spin.Result()
+
+    def on_plan(self, handle):
+        result = ComputePathToPose.Result()
+        result.path.poses = [handle.request.start, handle.request.goal]
+        handle.succeed()
+        return result
+
+
+@pytest.fixture
+def servers(monkeypatch):
+    monkeypatch.setenv("LINKWRIGHT_DDS", "0")
+    rclpy.init(args=[])
+    node = Servers()
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    thread = threading.Thread(target=executor.spin)
+    thread.start()
+    yield node
+    executor.shutdown()
+    rclpy.try_shutdown()
+    thread.join()
+
+
+@pytest.fixture
+def navigator(servers):
+    return BasicNavigator()
+
+
+def pose(x):
+    message = PoseStamped()
+    message.header.frame_id = "map"
+    message.pose.position.x = x
+    return message
+
+
+def finished(navigator):
+    while not navigator.isTaskComplete():
+        pass
+    return navigator.getResult()
+
+
+def test_a_robot_is_placed_and_sent_somewhere(navigator):
+    navigator.setInitialPose(pose(0.0))
+    navigator.waitUntilNav2Active()
+    assert navigator.goToPose(pose(1.0))
+    assert finished(navigator) == TaskResult.SUCCEEDED
+    assert navigator.getFeedback().distance_remaining == 1.5
+
+
+def test_what_fails_and_what_is_canceled_is_told(navigator):
+    assert navigator.goToPose(pose(-1.0))
+    assert finished(navigator) == TaskResult.FAILED
+    assert navigator.status == GoalStatus.STATUS_ABORTED
+    assert navigator.goToPose(pose(9.0))
+    assert not navigator.isTaskComplete()
+    assert navigator.getResult() == TaskResult.UNKNOWN
+    navigator.cancelTask()
+    assert finished(navigator) == TaskResult.CANCELED
+
+
+def test_spinning_plans_and_costmaps(navigator, servers):
+    assert navigator.spin(spin_dist=1.57, time_allowance=10)
+    assert finished(navigator) == TaskResult.SUCCEEDED
+    assert [each.pose.position.x for each in navigator.getPath(pose(0.0), pose(2.0)).poses] == [0.0, 2.0]
+    navigator.clearAllCostmaps()
+    assert servers.cleared == ["local", "global"]
+    navigator.destroyNode()
