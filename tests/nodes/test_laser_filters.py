@@ -119,3 +119,16 @@ async def test_unknown_parameters_and_filters_behind_a_gap_are_named(test):
     )
     assert all(text.startswith("'filter3.") for text in rest)
     assert rest
+
+
+async def test_a_lazy_chain_listens_only_while_somebody_listens_to_it(test):
+    running = start(test, filter1=RANGE, lazy_subscription=True)
+    assert test.graph.count_subscribers("/scan") == 0
+    listener = test.graph.create_node("listener")
+    listener.create_subscription("sensor_msgs/msg/LaserScan", "/scan_filtered", lambda _: None, 10)
+    await test.settle()
+    assert test.graph.count_subscribers("/scan") == 1
+    listener.destroy_node()
+    await test.settle()
+    assert test.graph.count_subscribers("/scan") == 0
+    running.close()

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import sys
+
+import pytest
+
 from linkwright.graph import EndpointInfo, NodeIdentity, QoSProfile
+from linkwright.graph.faults import ExternalShutdownException
 from linkwright.messages import String
 from linkwright.wire.dds import departures
-from linkwright.wire.dds.departures import GRACE, Departures
+from linkwright.wire.dds.departures import GRACE, Departures, ends_by_error
 from linkwright.wire.dds.discovery_info import NodeEntities, ParticipantEntities
 from linkwright.wire.dds.remote import RemoteEndpoint, RemoteGraph, RemoteParticipant
 
@@ -115,3 +120,25 @@ def test_a_publisher_that_is_destroyed_and_a_process_that_leaves_are_not_lost(pr
     marker.kill()
     us.spin_until(lambda: lost)  # after those that left, if these were told, too
     assert {each.node.name for each in lost} == {"marker"}, lost
+
+
+def test_a_program_that_ends_with_an_exception_that_nobody_caught_is_lost(processes, monkeypatch):
+    us = processes("ours")
+    lost: list[EndpointInfo] = []
+    us.node.create_subscription(String, "/other", lambda _: None, 10).watch_lost(lost.append)
+    them = processes("theirs")
+    them.node.create_publisher(String, "/other", 10)
+    us.spin_until(lambda: us.node.count_publishers("/other") == 1)
+    monkeypatch.setattr(sys, "last_value", ValueError("nobody caught it"), raising=False)
+    them.transport.close()  # as at the end of the program
+    us.spin_until(lambda: lost)
+    assert [each.node.name for each in lost] == ["theirs"]
+
+
+@pytest.mark.parametrize(
+    ("error", "is_one"),
+    [(ValueError(), True), (None, False), (KeyboardInterrupt(), False), (ExternalShutdownException(), False)],
+)
+def test_what_is_an_end_by_error(monkeypatch, error, is_one):
+    monkeypatch.setattr(sys, "last_value", error, raising=False)
+    assert ends_by_error() is is_one

@@ -2,12 +2,13 @@
 
 Source: laser_filters 2.0 (ROS 2 Humble): the topics, the qualities of service and the parameters ``filterN.name``,
 ``filterN.type`` and ``filterN.params``. With ``tf_message_filter_target_frame`` a scan whose place in that frame is not
-known is dropped; it does not wait.
+known is dropped; it does not wait, so ``tf_message_filter_tolerance`` changes nothing.
 """
 
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import MISSING, fields
 from typing import Any, get_type_hints
 
@@ -16,9 +17,10 @@ import numpy as np
 from linkwright.control.filters.scans.scan import Scan, ScanFilter
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, phrase
 from linkwright.extensions import extensions
-from linkwright.graph import SENSOR_DATA_QOS, Graph, Node, ParameterDescriptor
+from linkwright.graph import SENSOR_DATA_QOS, Graph, Node, ParameterDescriptor, Subscription
 from linkwright.messages import Time, get_message
 from linkwright.nodes.frame_poses import FramePoses
+from linkwright.nodes.lazy import LazySubscriptions
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 from linkwright.nodes.settings import tell_unknown
 
@@ -46,13 +48,25 @@ class ScanToScanFilterChain(SingleNode):
         with starting(node):
             self._chain = read_chain(node)
             self._target: str = node.declare_parameter("tf_message_filter_target_frame", "").value
-            node.declare_parameter("tf_message_filter_tolerance", 0.03)
-            node.declare_parameter("lazy_subscription", False)
+            node.declare_parameter("tf_message_filter_tolerance", 0.03)  # of waiting, which is not done
+            is_lazy = node.declare_parameter("lazy_subscription", False).value
             tell_unknown(node)
         self._poses = FramePoses(node, "Dropping Scan: Transform unavailable")
         kind = get_message("sensor_msgs/msg/LaserScan")
         self._publisher = node.create_publisher(kind, "scan_filtered", _DEPTH)
-        node.create_subscription(kind, "scan", self._hear, SENSOR_DATA_QOS)
+
+        def subscribe() -> Sequence[Subscription[Any]]:
+            return (node.create_subscription(kind, "scan", self._hear, SENSOR_DATA_QOS),)
+
+        self._lazy = LazySubscriptions(graph, node, (self._publisher,), subscribe) if is_lazy else None
+        if not is_lazy:
+            subscribe()
+
+    def close(self) -> None:
+        """End it."""
+        if self._lazy is not None:
+            self._lazy.close()
+        super().close()
 
     def _hear(self, message: Any) -> None:
         scan: Scan | None = scan_of(message)
