@@ -83,6 +83,18 @@ class Mapper:
         self._in_map: Floats | None = None
         self._session = 0
 
+    @property
+    def latest_ns(self) -> int:
+        """When the last scan was taken that was processed, nanoseconds; 0 before the first one."""
+        return 0 if self._last is None else self._last[1]
+
+    def replace(self, graph: PoseGraph, scans: list[PlanarScan], odometry: list[Floats]) -> None:
+        """Take another map; nothing of it is drawn yet."""
+        for number in range(len(self.scans)):
+            self.occupancy.erase(number)
+        self.graph, self.scans, self.odometry = graph, scans, odometry
+        self.begin_session(None)
+
     def begin_session(self, pose: Floats | None) -> None:
         """Go on with the map from elsewhere: the next scan is searched around a pose of shape (3,), or the first one's.
 
@@ -96,11 +108,18 @@ class Mapper:
         elif len(self.graph.poses):
             self._in_map = self.graph.poses[0].copy()
 
-    def wants(self, odometry: Floats, stamp_ns: int) -> bool:
-        """Whether a scan at a pose of odometry is taken: the robot went far enough since the last one that was."""
-        if self._last is None:
+    def wants(self, odometry: Floats, stamp_ns: int, since: tuple[Floats, int] | None = None) -> bool:
+        """Whether a scan at a pose of odometry is taken: the robot went far enough since the last one that was.
+
+        Args:
+            odometry: the pose, of shape (3,).
+            stamp_ns: when.
+            since: pose and time of a scan that waits to be processed; it counts as the last one.
+        """
+        last = since or self._last
+        if last is None:
             return True
-        pose, before_ns = self._last
+        pose, before_ns = last
         if stamp_ns - before_ns < self.settings.minimum_time_interval * 1e9:
             return False
         moved = between(pose, odometry)

@@ -1,0 +1,41 @@
+"""The graph of poses as markers: a ball for each scan, a line for each edge."""
+
+from __future__ import annotations
+
+from itertools import chain
+from typing import Any
+
+from linkwright.messages import get_message
+from linkwright.navigation.slam.pose_graph import PoseGraph
+
+_BALL = 0.1
+_LINE = 0.02
+
+
+def graph_markers(graph: PoseGraph, frame: str, stamp: Any) -> Any:
+    """The visualization_msgs/MarkerArray of a graph; edges of consecutive scans are blue, others green."""
+    array = get_message("visualization_msgs/msg/MarkerArray")()
+    point = get_message("geometry_msgs/msg/Point")
+    points = [point(x=x, y=y) for x, y in graph.poses[:, :2].tolist()]
+    edges = list(zip(graph.first, graph.second, strict=True))
+    in_a_row = [(first, second) for first, second in edges if second == first + 1]
+    others = [(first, second) for first, second in edges if second != first + 1]
+    kind = get_message("visualization_msgs/msg/Marker")
+    for number, (shape, size, colour, where) in enumerate(
+        (
+            (kind.SPHERE_LIST, _BALL, (1.0, 0.0, 0.0), points),
+            (kind.LINE_LIST, _LINE, (0.0, 0.0, 1.0), [points[each] for each in chain.from_iterable(in_a_row)]),
+            (kind.LINE_LIST, _LINE, (0.0, 0.8, 0.0), [points[each] for each in chain.from_iterable(others)]),
+        )
+    ):
+        marker = kind()
+        marker.header.frame_id, marker.header.stamp = frame, stamp
+        marker.ns, marker.id, marker.type = "slam_toolbox", number, shape
+        marker.action = kind.ADD if where else kind.DELETE
+        marker.pose.orientation.w = 1.0
+        marker.scale.x = marker.scale.y = marker.scale.z = size
+        marker.color.r, marker.color.g, marker.color.b = colour
+        marker.color.a = 1.0
+        marker.points = where
+        array.markers.append(marker)
+    return array

@@ -1,0 +1,121 @@
+"""The executables of slam_toolbox: async, sync, localization, and map_and_localization.
+
+They follow slam_toolbox 2.6 (Humble), whose nodes work as soon as they start, and 2.8 (Jazzy), whose nodes are managed;
+``ROS_DISTRO`` says which. What makes the map is Linkwright's own (`linkwright.navigation.slam`). Other than there:
+
+- All solver plugins are one: Gauss-Newton on sparse matrices. Least squares end each match, so that
+  ``fine_search_angle_offset`` changes nothing; nor does ``use_scan_barycenter``.
+- A turn by ``minimum_travel_heading`` is enough for a scan to be taken, as the parameter says.
+- Scans are not moved by hand (``enable_interactive_mode``), maps are not merged, and nothing is forgotten: there is no
+  ``lifelong_slam_toolbox_node``. The robot is taken to stand still while a scan is made.
+- A graph is saved in a form of our own, in one file; what slam_toolbox saved cannot be read.
+- Where simulated time jumps back, as when a world is reset, the map begins anew.
+"""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from linkwright.graph import Graph, Node
+from linkwright.messages.distribution import is_before_iron
+from linkwright.nodes.navigation.managed import ManagedNode
+from linkwright.nodes.navigation.slam_toolbox.parameters import settings_of
+from linkwright.nodes.navigation.slam_toolbox.services import ToolboxServices
+from linkwright.nodes.navigation.slam_toolbox.toolbox import Toolbox
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, create_node_of, starting
+from linkwright.nodes.settings import tell_unknown
+
+
+class _Managed(ManagedNode):
+    """Jazzy's node on the graph."""
+
+    kind: type[AsyncSlamToolbox]
+
+    def declare(self) -> None:
+        """Only a lifecycle manager is bonded with."""
+        if not self.declare_parameter("use_lifecycle_manager", False).value:
+            self._beats = 0.0
+
+    def configure(self) -> None:
+        """Read the parameters and join the graph.
+
+        Raises:
+            LinkwrightError: see `AsyncSlamToolbox`.
+        """
+        self._toolbox, self._services = self.kind.open(self)
+
+    def activate(self) -> None:
+        """Begin to map."""
+        self._toolbox.start()
+
+    def deactivate(self) -> None:
+        """Stop mapping."""
+        self._toolbox.stop()
+
+    def cleanup(self) -> None:
+        """Forget the map."""
+        if hasattr(self, "_toolbox"):
+            self._services.close()
+            self._toolbox.close()
+            del self._services, self._toolbox
+
+
+class AsyncSlamToolbox(SingleNode):
+    """The running node.
+
+    Raises:
+        LinkwrightError: a parameter cannot have its value (NODE433, GRAPH201), SciPy is not installed (NAV101), or the
+            map to begin with cannot be read (NAV501).
+    """
+
+    DEFAULT_NAME: ClassVar[str] = "slam_toolbox"
+    KEEPS_ALL: ClassVar[bool] = False
+    LOCALIZES: ClassVar[bool] = False
+    SWITCHES: ClassVar[bool] = False
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        self._work: tuple[Toolbox, ToolboxServices] | None = None
+        if not is_before_iron():
+            kind = type("Managed", (_Managed,), {"kind": type(self)})
+            node, _ = create_node_of(kind, graph, options, self.DEFAULT_NAME)
+            self._node = node
+            node.start_itself()
+            return
+        self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
+        with starting(self._node):
+            self._node.declare_parameter("use_lifecycle_manager", False)
+            self._work = self.open(self._node)
+            tell_unknown(self._node)
+        self._work[0].start()
+
+    @classmethod
+    def open(cls, node: Node) -> tuple[Toolbox, ToolboxServices]:
+        """Read the parameters of a node, and make what works for it."""
+        toolbox = Toolbox(node, settings_of(node), keeps_all=cls.KEEPS_ALL, localizes=cls.LOCALIZES)
+        return toolbox, ToolboxServices(toolbox, has_queue=cls.KEEPS_ALL, switches=cls.SWITCHES)
+
+    def close(self) -> None:
+        """End it."""
+        if self._work is not None:
+            self._work[0].stop()
+        elif isinstance(self._node, ManagedNode):
+            self._node.leave()
+        super().close()
+
+
+class SyncSlamToolbox(AsyncSlamToolbox):
+    """The running node, which puts all scans into the map, however long that takes."""
+
+    KEEPS_ALL = True
+
+
+class LocalizationSlamToolbox(AsyncSlamToolbox):
+    """The running node, which finds the robot in a saved map."""
+
+    LOCALIZES = True
+
+
+class MapAndLocalizationSlamToolbox(AsyncSlamToolbox):
+    """The running node, which maps until a service tells it to localise."""
+
+    SWITCHES = True

@@ -1,0 +1,228 @@
+"""The parameters of slam_toolbox's nodes, with its names, types and defaults (2.6 for Humble, 2.8 for Jazzy)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf
+from typing import Any
+
+import numpy as np
+
+from linkwright.graph import Node, Parameter, ParameterType
+from linkwright.navigation.slam.poses import Floats
+from linkwright.navigation.slam.search import Search
+from linkwright.navigation.slam.settings import MapperSettings
+from linkwright.nodes.settings import positive
+
+_WITHOUT_EFFECT: dict[str, bool | int | float | str] = {
+    "mode": "mapping",
+    "debug_logging": False,
+    "scan_queue_size": 1,
+    "stack_size_to_use": 40_000_000,
+    "use_map_saver": True,
+    "enable_interactive_mode": False,
+    "restamp_tf": False,
+    "use_scan_barycenter": True,
+    "fine_search_angle_offset": 0.00349,
+    "solver_plugin": "solver_plugins::CeresSolver",
+    "ceres_linear_solver": "SPARSE_NORMAL_CHOLESKY",
+    "ceres_preconditioner": "SCHUR_JACOBI",
+    "ceres_trust_strategy": "LEVENBERG_MARQUARDT",
+    "ceres_dogleg_type": "TRADITIONAL_DOGLEG",
+    "ceres_loss_function": "None",
+}
+"""Parameters that files have and that change nothing here; what they choose is done in one way."""
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """What a node is told; lengths in metres, angles in radians, times in nanoseconds where the name says so.
+
+    Attributes:
+        odom_frame: the frame of odometry.
+        map_frame: the frame of the map, its parent.
+        base_frame: the robot.
+        scan_topic: where scans come from.
+        map_name: the topic of the map; with ``_metadata`` that of its size.
+        resolution: side of a cell.
+        ranges: the least and the most that a reading counts.
+        throttle_scans: every so many scans one is looked at.
+        transform_timeout_ns: how long a scan waits for its transform, and how far transforms are sent ahead.
+        transform_period: between two transforms, seconds; 0 for none.
+        map_update_interval: between two maps, seconds.
+        tf_buffer_ns: how long transforms are kept.
+        position_covariance_scale: of the published pose.
+        yaw_covariance_scale: the same for its angle.
+        min_pass_through: see `OccupancyMap`.
+        occupancy_threshold: see `OccupancyMap`.
+        map_file_name: of a pose graph to go on with; "" for none.
+        start: where the robot is in it, of shape (3,); None for where its first scan was taken.
+        mapper: how the mapper works.
+    """
+
+    odom_frame: str
+    map_frame: str
+    base_frame: str
+    scan_topic: str
+    map_name: str
+    resolution: float
+    ranges: tuple[float, float]
+    throttle_scans: int
+    transform_timeout_ns: int
+    transform_period: float
+    map_update_interval: float
+    tf_buffer_ns: int
+    position_covariance_scale: float
+    yaw_covariance_scale: float
+    min_pass_through: int
+    occupancy_threshold: float
+    map_file_name: str
+    start: Floats | None
+    mapper: MapperSettings
+
+
+class _Declared:
+    """Declares parameters of a node, which may be declared already, and reads them."""
+
+    def __init__(self, node: Node) -> None:
+        self._node = node
+
+    def _value(self, name: str, default: object) -> Any:
+        if not self._node.has_parameter(name):
+            self._node.declare_parameter(name, default)
+        return self._node.get_parameter(name).value
+
+    def flag(self, name: str, default: bool) -> bool:
+        return bool(self._value(name, default))
+
+    def whole(self, name: str, default: int) -> int:
+        return int(self._value(name, default))
+
+    def number(self, name: str, default: float) -> float:
+        return float(self._value(name, default))
+
+    def more_than_nothing(self, name: str, default: float) -> float:
+        return positive(self._node, name, self.number(name, default))
+
+    def text(self, name: str, default: str) -> str:
+        return str(self._value(name, default))
+
+    def frame(self, name: str, default: str) -> str:
+        return self.text(name, default).removeprefix("/")
+
+    def without_effect(self) -> None:
+        for name, default in _WITHOUT_EFFECT.items():
+            self._value(name, default)
+
+
+def settings_of(node: Node) -> Settings:
+    """Declare the parameters of a node and read them; they may be declared already.
+
+    Raises:
+        LinkwrightError: NODE433 for a value that means nothing, GRAPH201 for one of another type.
+    """
+    declared = _Declared(node)
+    declared.without_effect()
+    declared.flag("paused_new_measurements", False)
+    _tell_replaced(node)
+    resolution = declared.number("resolution", 0.05)
+    if resolution <= 0.0:
+        node.get_logger().warning(
+            "You've set resolution of map to be zero or negative, this isn't allowed so it will be set to default "
+            "value 0.05."
+        )
+        resolution = 0.05
+    throttle = declared.whole("throttle_scans", 1)
+    if throttle <= 0:
+        node.get_logger().warning(
+            "You've set throttle_scans to be zero, this isn't allowed so it will be set to default value 1."
+        )
+        throttle = 1
+    return Settings(
+        odom_frame=declared.frame("odom_frame", "odom"),
+        map_frame=declared.frame("map_frame", "map"),
+        base_frame=declared.frame("base_frame", "base_footprint"),
+        scan_topic=declared.text("scan_topic", "/scan"),
+        map_name=declared.text("map_name", "/map"),
+        resolution=resolution,
+        ranges=(declared.number("min_laser_range", 0.0), declared.more_than_nothing("max_laser_range", 25.0)),
+        throttle_scans=throttle,
+        transform_timeout_ns=round(declared.number("transform_timeout", 0.5) * 1e9),
+        transform_period=declared.number("transform_publish_period", 0.05),
+        map_update_interval=declared.more_than_nothing("map_update_interval", 10.0),
+        tf_buffer_ns=round(declared.number("tf_buffer_duration", 30.0) * 1e9),
+        position_covariance_scale=declared.number("position_covariance_scale", 1.0),
+        yaw_covariance_scale=declared.number("yaw_covariance_scale", 1.0),
+        min_pass_through=declared.whole("min_pass_through", 2),
+        occupancy_threshold=declared.number("occupancy_threshold", 0.1),
+        map_file_name=declared.text("map_file_name", ""),
+        start=_start(node),
+        mapper=_mapper(declared),
+    )
+
+
+def _tell_replaced(node: Node) -> None:
+    solver: str = node.get_parameter("solver_plugin").value
+    node.get_logger().info(f"Using Linkwright's sparse Gauss-Newton solver in place of solver plugin {solver}")
+    if node.get_parameter("enable_interactive_mode").value:
+        node.get_logger().info("enable_interactive_mode is not had: scans cannot be moved by hand")
+
+
+def _start(node: Node) -> Floats | None:
+    """Where the robot is in a map that is given; the node is told what it would not expect, as slam_toolbox does."""
+    for name, kind in (("map_start_pose", ParameterType.DOUBLE_ARRAY), ("map_start_at_dock", ParameterType.BOOL)):
+        if not node.has_parameter(name):
+            node.declare_parameter(name, kind)
+    pose = node.get_parameter_or("map_start_pose", Parameter("map_start_pose")).value
+    if pose is None:
+        return None
+    if len(pose) != 3:
+        node.get_logger().error(
+            "Incorrect number of arguments for map starting pose. Must be in format: [x, y, theta]. Starting at the "
+            "origin"
+        )
+        return np.zeros(3)
+    return np.array(pose, dtype=np.float64)
+
+
+def _mapper(declared: _Declared) -> MapperSettings:
+    number, positive_number = declared.number, declared.more_than_nothing
+    angle_offset = number("coarse_search_angle_offset", 0.349)
+    angle_resolution = positive_number("coarse_angle_resolution", 0.0349)
+    return MapperSettings(
+        use_scan_matching=declared.flag("use_scan_matching", True),
+        minimum_time_interval=number("minimum_time_interval", 0.5),
+        minimum_travel_distance=number("minimum_travel_distance", 0.5),
+        minimum_travel_heading=number("minimum_travel_heading", 0.5),
+        scan_buffer_size=max(1, declared.whole("scan_buffer_size", 10)),
+        scan_buffer_maximum_scan_distance=number("scan_buffer_maximum_scan_distance", 10.0),
+        link_match_minimum_response_fine=number("link_match_minimum_response_fine", 0.1),
+        link_scan_maximum_distance=number("link_scan_maximum_distance", 1.5),
+        do_loop_closing=declared.flag("do_loop_closing", True),
+        loop_search_maximum_distance=number("loop_search_maximum_distance", 3.0),
+        loop_match_minimum_chain_size=declared.whole("loop_match_minimum_chain_size", 10),
+        loop_match_maximum_variance_coarse=number("loop_match_maximum_variance_coarse", 3.0),
+        loop_match_minimum_response_coarse=number("loop_match_minimum_response_coarse", 0.35),
+        loop_match_minimum_response_fine=number("loop_match_minimum_response_fine", 0.45),
+        matching=Search(
+            dimension=positive_number("correlation_search_space_dimension", 0.5),
+            resolution=positive_number("correlation_search_space_resolution", 0.01),
+            smear_deviation=positive_number("correlation_search_space_smear_deviation", 0.1),
+            angle_offset=angle_offset,
+            angle_resolution=angle_resolution,
+            distance_variance_penalty=positive_number("distance_variance_penalty", 0.5),
+            angle_variance_penalty=positive_number("angle_variance_penalty", 1.0),
+            minimum_distance_penalty=number("minimum_distance_penalty", 0.5),
+            minimum_angle_penalty=number("minimum_angle_penalty", 0.9),
+        ),
+        loop=Search(
+            dimension=positive_number("loop_search_space_dimension", 8.0),
+            resolution=positive_number("loop_search_space_resolution", 0.05),
+            smear_deviation=positive_number("loop_search_space_smear_deviation", 0.03),
+            angle_offset=angle_offset,
+            angle_resolution=angle_resolution,
+            distance_variance_penalty=inf,
+            angle_variance_penalty=inf,
+        ),
+        use_response_expansion=declared.flag("use_response_expansion", True),
+    )

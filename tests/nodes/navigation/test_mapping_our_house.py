@@ -1,0 +1,54 @@
+"""Our house, mapped by driving through it with bad odometry."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from linkwright.geometry.single import rpy_from_quaternion
+from linkwright.messages import get_service
+from linkwright.navigation.grids.occupancy import grid_of
+from linkwright.navigation.slam.poses import between, compose
+from linkwright.nodes import NodeOptions
+from linkwright.nodes.navigation.slam_toolbox.nodes import AsyncSlamToolbox
+from tests.nodes.navigation.house import TOUR, Drift, distances, drive, faces, gaps, occupied_of, points_of, simulation
+
+CELL = 0.05
+
+
+@pytest.mark.slow
+def test_the_walls_of_our_house_are_mapped_within_5_cm_and_the_loop_is_closed(monkeypatch):
+    monkeypatch.delenv("ROS_DISTRO", raising=False)
+    walls, solid = faces(), faces(("walls", "furniture"))
+    with simulation() as test:
+        drift = Drift(test, scale=1.03, yaw_per_metre=0.03, noise=0.05)
+        options = NodeOptions(parameters={"use_sim_time": True}, remappings=[("/tf", "/drifting_tf")])
+        mapper = AsyncSlamToolbox(test.graph, options)
+        transforms = test.record("/drifting_tf")
+        drive(test, TOUR)
+        grid = grid_of(test.call("/slam_toolbox/dynamic_map", get_service("nav_msgs/srv/GetMap").Request()).map)
+        here = test.robot_pose()
+        true = np.array((here[0], here[1], rpy_from_quaternion(here[3:])[2]))
+        correction = [each for message in transforms for each in message.transforms if each.header.frame_id == "map"][
+            -1
+        ]
+        mapper.close()
+    # The loop: odometry ends a metre from where the robot is, and the map does not.
+    at, turned = correction.transform.translation, correction.transform.rotation
+    yaw = rpy_from_quaternion((turned.x, turned.y, turned.z, turned.w))[2]
+    assert np.hypot(*between(true, drift.pose)[:2]) > 0.8
+    error = between(true, compose(np.array((at.x, at.y, yaw)), drift.pose))
+    assert np.hypot(error[0], error[1]) < 0.05
+    assert abs(error[2]) < 0.02
+    # The walls: what is occupied near them lies on them, and what can be seen of them is there.
+    occupied = occupied_of(grid)
+    near = occupied[distances(walls, occupied) < 0.2]
+    assert len(near) > 900
+    assert distances(solid, near).max() < CELL + 1e-4
+    points = points_of(walls, solid)
+    inside = points[(np.abs(points[:, 0]) < 4.95) & (np.abs(points[:, 1]) < 3.95)]
+    counter = (inside[:, 0] > 4.8) & (inside[:, 1] < 0.3)  # nobody sees the wall behind it
+    assert counter.sum() < 0.12 * len(inside)
+    missing = gaps(grid, inside[~counter])
+    assert np.quantile(missing, 0.99) < CELL
+    assert missing.max() < 2 * CELL
