@@ -94,6 +94,13 @@ def test_controllers_are_loaded_and_unloaded(manager, capsys):
     assert "Error reloading" in run(capsys, "reload_controller_libraries", status=1)
 
 
+def test_states_by_their_names_before_humble(manager, capsys):
+    manager()
+    assert run(capsys, "load_controller", "positions", "--set-state", "start").endswith("into state active\n")
+    manager("active")
+    assert run(capsys, "set_controller_state", "positions", "stop") == "Successfully deactivated positions\n"
+
+
 def test_states_are_set(manager, capsys):
     manager("unconfigured")
     assert run(capsys, "set_controller_state", "positions", "inactive") == "Successfully configured positions\n"

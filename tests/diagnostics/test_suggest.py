@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from linkwright.diagnostics import did_you_mean, missing_file_hint, nearest
+from linkwright.diagnostics import did_you_mean, is_misspelt, missing_file_hint, nearest
 
 LINKS = ["base_link", "base_footprint", "left_wheel", "right_wheel"]
 
@@ -53,3 +53,21 @@ def test_a_missing_file_has_a_hint_whatever_is_beside_it(tmp_path, monkeypatch):
     assert missing_file_hint(tmp_path / "a.urdf") == "there are: robot.urdf"
     assert missing_file_hint(tmp_path / "robto.urdf") == "did you mean 'robot.urdf'?"
     assert missing_file_hint(tmp_path / "x", lambda name: name.endswith(".txt")) == "there are: notes.txt"
+
+
+@pytest.mark.parametrize(
+    ("name", "other", "misspelt"),
+    [
+        ("amr", "arm", True),
+        ("taker", "talker", True),
+        ("rviz", "rviz2", True),
+        ("robot_state_publishr", "robot_state_publisher", True),
+        ("my_robot_descripton", "my_robot_description", True),
+        ("map_saver_server", "map_server", False),
+        ("crazyflie_control", "crazyflie_gazebo", False),
+        ("joint_state_publisher_gui", "joint_state_publisher", False),
+        ("move_group", "robot", False),
+    ],
+)
+def test_a_misspelt_name_is_not_one_that_is_merely_alike(name: str, other: str, misspelt: bool) -> None:
+    assert is_misspelt(name, ["zzz", other]) is misspelt

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from launch.actions import OpaqueFunction
+from launch.actions import GroupAction, OpaqueFunction
 
 from launch import LaunchContext, LaunchDescriptionEntity
 from linkwright.graph import Graph
@@ -260,3 +260,16 @@ async def test_the_launch_files_of_the_tutorial_load_the_robot(
     assert all(part in request.xml for part in parts)
     ((_, parameters, _),) = simulators.started
     assert parameters["world"] == str(WORLD)
+
+
+async def test_what_ends_the_launch_is_decided_where_its_argument_is_known(
+    launch: Callable[..., Any], simulators: Simulators
+) -> None:
+    """At the end of the server the scope of the include is over."""
+    for package, name, argument in (
+        ("ros_gz_sim", "gz_sim.launch.py", {"gz_args": str(WORLD)}),
+        ("gazebo_ros", "gzserver.launch.py", {"world": str(WORLD)}),
+    ):
+        launched = await launch(GroupAction([include(package, name, **argument)], scoped=True, forwarding=False))
+        assert launched.succeeded, launched.err
+        assert "error" not in launched.err

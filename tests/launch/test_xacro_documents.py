@@ -65,3 +65,10 @@ async def test_a_function_that_builds_the_node(launch, write: Write) -> None:
         OpaqueFunction(function=build), TimerAction(period=0.05, actions=[OpaqueFunction(function=check), Shutdown()])
     )
     assert done.succeeded, done.err
+
+
+def test_a_document_that_was_read_from_a_file_depends_on_files_only(write: Write) -> None:
+    with write("a.xacro", MODEL).open() as file:
+        document = xacro.parse(file)
+    xacro.process_doc(document)
+    assert all(path.is_file() for path in document.expansion.dependencies)

@@ -192,10 +192,21 @@ def _diagram(controllers: Sequence[Any]) -> str:
 # --- changing ---------------------------------------------------------------------------------------------------------
 
 
+_OLD_STATES = {"start": "active", "stop": "inactive", "configure": "inactive"}
+"""What launch files from before Humble call states."""
+
+
+def _state(word: str) -> str:
+    return _OLD_STATES.get(word, word)
+
+
 def _configure_load(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("controller_name", metavar="CONTROLLER", help="its name")
     parser.add_argument(
-        "--set-state", choices=("unconfigured", "inactive", "active", "configured"), help="lead it there, too"
+        "--set-state",
+        type=_state,
+        choices=("unconfigured", "inactive", "active", "configured"),
+        help="lead it there, too",
     )
     _common(parser)
 
@@ -235,7 +246,9 @@ async def _unload(arguments: argparse.Namespace, ask: Ask) -> int:
 
 def _configure_set_state(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("controller_name", metavar="CONTROLLER", help="its name")
-    parser.add_argument("state", choices=("unconfigured", "inactive", "active"), help="the state that it is to have")
+    parser.add_argument(
+        "state", type=_state, choices=("unconfigured", "inactive", "active"), help="the state that it is to have"
+    )
     _common(parser)
 
 

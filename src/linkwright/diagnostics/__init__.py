@@ -15,7 +15,7 @@ from linkwright.diagnostics.phrase import (
 )
 from linkwright.diagnostics.render import display_path, print_diagnostics, render, to_data, wants_colour
 from linkwright.diagnostics.source import SourceText, Span
-from linkwright.diagnostics.suggest import did_you_mean, missing_file_hint, nearest
+from linkwright.diagnostics.suggest import did_you_mean, is_misspelt, missing_file_hint, nearest
 from linkwright.diagnostics.translation import translated
 
 __all__ = [
@@ -32,6 +32,7 @@ __all__ = [
     "foreign",
     "has_errors",
     "install_hint",
+    "is_misspelt",
     "joined",
     "missing_extra",
     "missing_file_hint",

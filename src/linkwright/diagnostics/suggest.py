@@ -32,6 +32,32 @@ def nearest(name: str, candidates: Iterable[str], limit: int = 3) -> list[str]:
     return [by_fold[match] for match in get_close_matches(folded, near, n=limit, cutoff=0.6)]
 
 
+def is_misspelt(name: str, names: Iterable[str]) -> bool:
+    """Whether a name is one of others but for a letter: left out, added, another one, or swapped with its neighbour.
+
+    In long names there may be more such slips, one for every ten letters.
+    """
+    return any(_is_within(name, other, 1 + len(name) // 10) for other in names)
+
+
+def _is_within(one: str, other: str, most: int) -> bool:
+    """Whether so many slips make one text of another (the distance called optimal string alignment)."""
+    if abs(len(one) - len(other)) > most:
+        return False
+    before: list[int] = []
+    row = list(range(len(other) + 1))
+    for i, letter in enumerate(one):
+        before_that, before, row = before, row, [i + 1]
+        for j, theirs in enumerate(other):
+            cost = min(before[j + 1] + 1, row[j] + 1, before[j] + (letter != theirs))
+            if i and j and letter == other[j - 1] and one[i - 1] == theirs:
+                cost = min(cost, before_that[j - 1] + 1)
+            row.append(cost)
+        if min(row) > most:
+            return False
+    return row[-1] <= most
+
+
 def did_you_mean(name: str, candidates: Iterable[str]) -> Phrase | None:
     """A hint such as ``did you mean 'radius'?``, or None when no candidate is near."""
     return _meant(nearest(name, candidates))

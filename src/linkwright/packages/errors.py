@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, did_you_mean, nearest, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, did_you_mean, is_misspelt, nearest, phrase
 
 _SHARED = re.compile(
     r"(?<![^_])(my|ros2?|robots?|description|bringup|gazebo|gz|control|moveit|config|msgs|driver)(?![^_])"
@@ -23,7 +23,7 @@ class PackageNotFoundError(LinkwrightError, KeyError):
 
     Attributes:
         name: the package that was looked for.
-        is_slip: whether a package that there is may be meant.
+        is_slip: whether it is the misspelt name of a package that there is.
     """
 
     def __init__(self, name: str, searched: Sequence[str], known: Iterable[str]) -> None:
@@ -32,7 +32,7 @@ class PackageNotFoundError(LinkwrightError, KeyError):
         hint = meant or (phrase("go to the workspace that holds it, or source its install/setup.bash"))
         super().__init__(Diagnostic("PKG101", phrase("package '{name}' not found", name=name), notes=notes, hint=hint))
         self.name = name
-        self.is_slip = meant is not None
+        self.is_slip = is_misspelt(name, known)
 
 
 def _like(name: str, known: Iterable[str]) -> list[str]:

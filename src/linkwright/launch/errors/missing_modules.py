@@ -18,8 +18,6 @@ _ROS_PACKAGES = {
     "nav2_simple_commander": "navigation2",
     "lbr_bringup": "lbr_fri_ros2_stack",
     "ros2_benchmark": "ros2_benchmark",
-    "ros_gz_bridge": "ros_gz",
-    "ros_gz_sim": "ros_gz",
     "scripts": "gazebo_ros_pkgs",
     "py_trees_ros": "py_trees_ros",
     "simple_launch": "simple_launch",

@@ -5,15 +5,10 @@ A launch leaves such a part out and goes on: the simulation of a robot is of use
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from difflib import SequenceMatcher
-
 from linkwright.diagnostics import LinkwrightError
 from linkwright.packages import PackageNotFoundError
 
 _MARK = "is_unavailable"
-_SLIP = 0.85
-"""So like are two names of which one is misspelt. ``map_server`` and ``map_saver_server`` are less so."""
 
 
 def unavailable(error: LinkwrightError) -> LinkwrightError:
@@ -25,11 +20,6 @@ def unavailable(error: LinkwrightError) -> LinkwrightError:
 def is_unavailable(error: LinkwrightError) -> bool:
     """Whether an error was marked, see `unavailable`."""
     return bool(vars(error).get(_MARK))
-
-
-def is_slip(name: str, names: Iterable[str]) -> bool:
-    """Whether a name is that of something there is, misspelt."""
-    return any(SequenceMatcher(None, name, other).ratio() >= _SLIP for other in names)
 
 
 def is_foreign(error: LinkwrightError) -> bool:

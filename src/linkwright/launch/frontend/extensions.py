@@ -31,12 +31,16 @@ _OURS = {
     },
     PARSERS: {"xml": "linkwright.launch.frontend.xml:Parser", "yaml": "linkwright.launch.frontend.yaml:Parser"},
 }
+_STAND_INS = {ACTIONS: {"ros_gz_sim": "linkwright.launch.ros.gazebo"}, PARSERS: {}}
+"""Ours in the place of packages, unless these are installed."""
 
 
 def load(group: str) -> Iterator[tuple[str, Any]]:
     """Name and object of each entry point of a group, ours first; for one that fails there is a warning instead."""
-    ours = (EntryPoint(name, value, group) for name, value in _OURS[group].items())
-    for entry_point in (*ours, *entry_points(group=group)):
+    installed = entry_points(group=group)
+    stand_ins = {name: value for name, value in _STAND_INS[group].items() if name not in installed.names}
+    ours = (EntryPoint(name, value, group) for name, value in {**_OURS[group], **stand_ins}.items())
+    for entry_point in (*ours, *installed):
         try:
             loaded = entry_point.load()
         except Exception:  # noqa: BLE001, PERF203 - a broken package must not stop the others

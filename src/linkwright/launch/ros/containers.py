@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, is_misspelt, phrase
 from linkwright.launch.errors.places import error_at, located
-from linkwright.launch.errors.unavailable import is_slip, unavailable
+from linkwright.launch.errors.unavailable import unavailable
 from linkwright.launch.model import events
 from linkwright.launch.model.action import Action
 from linkwright.launch.model.markup.expose import expose_action
@@ -222,7 +222,7 @@ def _is_of_others(finder: PackageFinder, package: str, plugin: str) -> bool:
     ours = [f"{owner}/{name}" for owner, name in COMPONENTS]
     component = f"{package}/{plugin}"
     was_built = share is not None and is_installed(share) and not is_substitute(share)
-    return not (was_built or component in ours or is_slip(component, ours))
+    return not (was_built or component in ours or is_misspelt(component, ours))
 
 
 def _described(entity: Entity, parser: Parser, optional: bool = False) -> list[ComposableNode]:

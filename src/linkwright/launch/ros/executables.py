@@ -17,13 +17,13 @@ from linkwright.diagnostics import (
     did_you_mean,
     display_path,
     foreign,
+    is_misspelt,
     joined,
-    nearest,
     phrase,
 )
 from linkwright.hosting.plans import VIEWER, is_viewer
 from linkwright.launch.errors.exceptions import as_ros_error
-from linkwright.launch.errors.unavailable import is_slip, unavailable
+from linkwright.launch.errors.unavailable import unavailable
 from linkwright.packages import PackageFinder, PackageNotFoundError, install_prefix, is_installed, is_substitute
 from linkwright.packages.programs.child_python import python_command
 
@@ -220,8 +220,7 @@ def _no_package(finder: PackageFinder, package: str, name: str, error: PackageNo
     message = phrase("package '{package}' of node executable '{name}' not found", package=package, name=name)
     diagnostic = Diagnostic("LAUNCH131", message, notes=error.diagnostics[0].notes, hint=hint)
     missing = as_ros_error(KeyError(message), diagnostic)
-    own = (each for each, share in theirs.items() if not is_substitute(share))
-    return missing if is_slip(package, ours) or nearest(package, own) else unavailable(missing)
+    return missing if is_misspelt(package, (*ours, *theirs)) else unavailable(missing)
 
 
 def _no_executable(finder: PackageFinder, package: str, name: str, present: dict[str, Executable]) -> LinkwrightError:
@@ -248,7 +247,7 @@ def _no_executable(finder: PackageFinder, package: str, name: str, present: dict
     if hint is None:
         hint = phrase("it has: {present}", present=joined(present)) if present else _NO_EXECUTABLES
     error = _lookup_error(message, notes, hint)
-    return unavailable(error) if is_ours and not is_slip(name, present) else error
+    return unavailable(error) if is_ours and not is_misspelt(name, present) else error
 
 
 def _not_in_sources(package: str, name: str, share: Path) -> LinkwrightError:

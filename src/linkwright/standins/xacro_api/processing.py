@@ -248,7 +248,7 @@ def _expand(tree: Document, file: str | None, mappings: Mapping[str, Any] | None
     session.warn_of_unused_arguments()
     if descriptions is None or call is None:
         _tell(session.diagnostics)
-    files = tuple(Path(name) for name in session.dependencies)
+    files = tuple(Path(name) for name in session.dependencies if name != _TEXT)
     return Expansion(expanded, files, session.arguments, tuple(session.diagnostics))
 
 

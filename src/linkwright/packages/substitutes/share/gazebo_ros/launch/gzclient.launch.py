@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What stands in for Gazebo's window, with the arguments of gazebo_ros' file of this name."""
 
-from launch.actions import DeclareLaunchArgument, Shutdown
+from launch.actions import DeclareLaunchArgument, OpaqueFunction, Shutdown
 from launch.conditions import IfCondition
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
@@ -12,13 +12,19 @@ IGNORED = ("extra_gazebo_args", "gdb", "help", "profile", "valgrind", "verbose",
 """Arguments that mean nothing to a window that is a page."""
 
 
-def generate_launch_description():
+def start(context):
     """Return the node that says where the window is."""
-    required = LaunchConfiguration("gui_required")
+    required = IfCondition(LaunchConfiguration("gui_required")).evaluate(context)
+    on_exit = [Shutdown()] if required else None
+    return [Node(package="gazebo_ros", executable="gzclient", on_exit=on_exit)]
+
+
+def generate_launch_description():
+    """Return the arguments, and the node once they are known."""
     return LaunchDescription(
         [
             *(DeclareLaunchArgument(name, default_value="", description="Not used") for name in IGNORED),
             DeclareLaunchArgument("gui_required", default_value="false", description="Whether all ends with it"),
-            Node(package="gazebo_ros", executable="gzclient", on_exit=[Shutdown(condition=IfCondition(required))]),
+            OpaqueFunction(function=start),
         ]
     )

@@ -47,7 +47,7 @@ def start_server(context):
     words += ["-u"] if value("pause").lower() in ("true", "1") else []
     words += ["--seed", value("seed")] if value("seed") else []
     command = classic_server([*words, *shlex.split(value("extra_gazebo_args"))])
-    required = IfCondition(LaunchConfiguration("server_required"))
+    required = IfCondition(LaunchConfiguration("server_required")).evaluate(context)
     return [
         Node(
             package=command.package,
@@ -55,7 +55,7 @@ def start_server(context):
             output="screen",
             arguments=command.ros_arguments,
             parameters=[*([value("params_file")] if value("params_file") else []), command.parameters],
-            on_exit=[Shutdown(condition=required)],
+            on_exit=[Shutdown()] if required else None,
         )
     ]
 

@@ -25,7 +25,7 @@ def start(context):
     """Return the server, or what stands in for the window where that alone is asked for."""
     given = LaunchConfiguration("gz_args").perform(context) or LaunchConfiguration("ign_args").perform(context)
     command = gz_server(shlex.split(given))
-    condition = IfCondition(LaunchConfiguration("on_exit_shutdown"))
+    required = IfCondition(LaunchConfiguration("on_exit_shutdown")).evaluate(context)
     return [
         Node(
             package=command.package,
@@ -33,7 +33,7 @@ def start(context):
             output="screen",
             arguments=command.ros_arguments,
             parameters=[command.parameters],
-            on_exit=[Shutdown(condition=condition)],
+            on_exit=[Shutdown()] if required else None,
         )
     ]
 

@@ -1,0 +1,157 @@
+"""The actions of ``ros_gz_sim`` and ``ros_gz_bridge``: a simulation, models put into it, and bridges, as tags too."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from linkwright.launch.model.action import Action
+from linkwright.launch.model.context import LaunchContext
+from linkwright.launch.model.markup.expose import expose_action
+from linkwright.launch.model.substitution import (
+    SomeSubstitutionsType,
+    normalize_to_list_of_substitutions,
+    perform_substitutions,
+)
+from linkwright.launch.ros.node import Node
+from linkwright.launch.ros.parameter_lists import normalize_parameters
+from linkwright.launch.ros.parsing import Entities, parse_parameters
+
+if TYPE_CHECKING:
+    from linkwright.launch.model.markup.entity import Entity, Parser
+
+_CONTAINER = {"container_name": "ros_gz_container", "create_own_container": "False", "use_composition": "False"}
+
+
+class _OneNode(Action):
+    """An action that starts a node, made of texts.
+
+    Args:
+        kwargs: the texts of `TEXTS`, and those of every action.
+    """
+
+    TEXTS: ClassVar[Mapping[str, str]] = {}
+    """Name and default of each text."""
+
+    def __init__(self, **kwargs: Any) -> None:
+        given = {name: kwargs.pop(name, default) for name, default in self.TEXTS.items()}
+        super().__init__(**kwargs)
+        self._texts = {
+            name: normalize_to_list_of_substitutions(text if isinstance(text, (str, list, tuple)) else _text(text))
+            for name, text in given.items()
+        }
+
+    @classmethod
+    def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
+        """Reads the tag, whose attributes are the texts."""
+        _, kwargs = super().parse(entity, parser)
+        for name in cls.TEXTS:
+            text = entity.get_attr(name, data_type=str, optional=True)
+            if text is not None:
+                kwargs[name] = parser.parse_substitution(text)
+        return cls, kwargs
+
+    def execute(self, context: LaunchContext) -> list[Any]:
+        """The node, to be visited next."""
+        texts = {name: perform_substitutions(context, text) for name, text in self._texts.items()}
+        node = self._node(texts)
+        node.place = self.place
+        return [node]
+
+    def _node(self, texts: Mapping[str, str]) -> Node:
+        raise NotImplementedError
+
+
+def _text(value: Any) -> Any:
+    return str(value) if isinstance(value, (bool, int, float)) else value
+
+
+@expose_action("gz_server")
+class GzServer(_OneNode):
+    """The simulation without a window.
+
+    Args:
+        kwargs: ``world_sdf_file`` or ``world_sdf_string``; what concerns containers is without effect.
+    """
+
+    TEXTS: ClassVar[Mapping[str, str]] = {"world_sdf_file": "", "world_sdf_string": "", **_CONTAINER}
+
+    def _node(self, texts: Mapping[str, str]) -> Node:
+        world = {name: texts[name] for name in ("world_sdf_file", "world_sdf_string") if texts[name]}
+        return Node(package="ros_gz_sim", executable="gzserver", output="screen", parameters=[world])
+
+
+@expose_action("gz_spawn_model")
+class GzSpawnModel(_OneNode):
+    """A model that is put into the world.
+
+    Args:
+        kwargs: ``world``, one of ``file``, ``model_string`` and ``topic``, ``entity_name``, ``allow_renaming``, and the
+            pose as ``x``, ``y``, ``z`` (m), ``roll``, ``pitch``, ``yaw`` (rad).
+    """
+
+    TEXTS: ClassVar[Mapping[str, str]] = {
+        **dict.fromkeys(("world", "file", "model_string", "topic", "entity_name"), ""),
+        "allow_renaming": "False",
+        **dict.fromkeys(("x", "y", "z", "roll", "pitch", "yaw"), "0.0"),
+    }
+
+    def _node(self, texts: Mapping[str, str]) -> Node:
+        options = {"world": "world", "file": "file", "model_string": "string", "topic": "topic", "entity_name": "name"}
+        options |= {"x": "x", "y": "y", "z": "z", "roll": "R", "pitch": "P", "yaw": "Y"}
+        words = [word for name, option in options.items() if texts[name] for word in (f"-{option}", texts[name])]
+        words += ["-allow_renaming", texts["allow_renaming"].lower()]
+        return Node(package="ros_gz_sim", executable="create", output="screen", arguments=words)
+
+
+@expose_action("ros_gz_bridge")
+class RosGzBridge(_OneNode):
+    """A bridge between topics.
+
+    Args:
+        bridge_name: the node's name.
+        config_file: which topics it hands over: path of a YAML file.
+        extra_bridge_params: further parameters, as those of a `Node`.
+        kwargs: ``namespace`` and ``log_level``; what concerns containers and starting again is without effect.
+    """
+
+    TEXTS: ClassVar[Mapping[str, str]] = {
+        "bridge_name": "ros_gz_bridge",
+        "config_file": "",
+        "namespace": "",
+        "log_level": "info",
+        "use_respawn": "False",
+        "bridge_params": "",
+        **_CONTAINER,
+    }
+
+    def __init__(
+        self,
+        *,
+        bridge_name: SomeSubstitutionsType,
+        config_file: SomeSubstitutionsType,
+        extra_bridge_params: Any = None,
+        **kwargs: Any,
+    ) -> None:
+        super().__init__(bridge_name=bridge_name, config_file=config_file, **kwargs)
+        self._parameters = [] if extra_bridge_params is None else list(normalize_parameters(extra_bridge_params))
+
+    @classmethod
+    def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Action], dict[str, Any]]:
+        """Reads the tag, and ``param`` inside."""
+        _, kwargs = super().parse(entity, parser)
+        tags = entity.get_attr("param", data_type=Entities, optional=True)
+        if tags:
+            kwargs["extra_bridge_params"] = parse_parameters(tags, parser)
+        return cls, kwargs
+
+    def _node(self, texts: Mapping[str, str]) -> Node:
+        return Node(
+            package="ros_gz_bridge",
+            executable="parameter_bridge",
+            name=texts["bridge_name"],
+            namespace=texts["namespace"],
+            output="screen",
+            parameters=[{"config_file": texts["config_file"]}, *self._parameters],
+            arguments=["--ros-args", "--log-level", texts["log_level"]],
+        )
