@@ -28,6 +28,7 @@ from linkwright.simulation.plugins.ros_element import node_of
 from linkwright.simulation.scene.scene import SceneModel
 from linkwright.simulation.server.carrying import motion_of, resume
 from linkwright.simulation.server.changes import Coming, changes_to, check, come_into, surroundings
+from linkwright.simulation.server.standing import stand_up
 from linkwright.simulation.server.unsimulated import unsimulated
 from linkwright.simulation.simulation import Simulation
 
@@ -115,7 +116,7 @@ class SimulationServer:
         Args:
             model: with its includes resolved.
             name: what it is called.
-            pose: of its frame in the world.
+            pose: of its frame in the world; what would stand in the ground there is put on it.
             namespace: of the nodes of its plugins that name none.
 
         Raises:
@@ -124,6 +125,7 @@ class SimulationServer:
         if name in self.simulation.scene.models:
             raise LinkwrightError(Diagnostic("SIM102", phrase("there is already a model '{name}'", name=name)))
         self._exchange((), (Coming(model, name, pose, namespace),))
+        stand_up(self.simulation, name)
 
     def renew(self, model: Model, name: str) -> None:
         """Take another model in the place of one: it goes on where that is, as fast, its joints as they are.

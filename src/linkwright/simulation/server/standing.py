@@ -1,0 +1,50 @@
+"""Models that come into what they are to stand on: they are put on it.
+
+Launch files spawn robots at a height of 0, though their origin is above the wheels, or into worlds whose ground is a
+plate of some thickness. The contacts of a robot that stands in the ground would push it out within a few steps, and
+fast enough to throw a light one over.
+"""
+
+from __future__ import annotations
+
+from linkwright.simulation.library import load_mujoco
+from linkwright.simulation.simulation import Simulation
+
+_LEAST, _MOST = 0.002, 0.3
+"""Depths in m between which a model is put higher: what is less does no harm, what is more may be meant."""
+_UPWARD = 0.7
+"""The least part of a contact's direction that points up; a wall does not lift what stands in it."""
+
+
+def stand_up(simulation: Simulation, name: str) -> None:
+    """Put a model so much higher that it no longer stands in what does not move; one that is fixed stays.
+
+    Raises:
+        KeyError: there is no such model.
+    """
+    if not simulation.free_links(name):
+        return
+    height = _depth(simulation, name)
+    if not _LEAST < height < _MOST:
+        return
+    x, y, z, *rotation = simulation.model_pose(name)
+    qx, qy, qz, qw = rotation
+    simulation.place({name: (x, y, z + height, qx, qy, qz, qw)})
+
+
+def _depth(simulation: Simulation, name: str) -> float:
+    """How much higher in m a model has to be."""
+    simulation.refresh()
+    model, data = simulation.model, simulation.data
+    own = {simulation.body(held.link.name) for held in simulation.scene.models[name].structure.links}
+    load_mujoco().mj_collision(model, data)
+    depth = 0.0
+    for contact in data.contact:
+        bodies = [int(model.geom_bodyid[geom]) for geom in contact.geom]
+        is_own = [body in own for body in bodies]
+        if is_own[0] == is_own[1] or model.body_weldid[bodies[is_own.index(False)]] != 0:
+            continue
+        up = float(contact.frame[2]) * (1.0 if is_own[1] else -1.0)  # its direction is from the first to the second
+        if up > _UPWARD:
+            depth = max(depth, -float(contact.dist) / up)
+    return depth

@@ -1,0 +1,49 @@
+"""Models that are put into the ground stand on it."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.simulation.server.standing import stand_up
+from tests.simulation.worlds import GROUND, box, model, simulated
+
+PLATE = (
+    '<model name="plate"><static>true</static><link name="link"><collision name="collision">'
+    "<geometry><box><size>20 20 0.1</size></box></geometry></collision></link></model>"
+)
+WALL = (
+    '<model name="wall"><static>true</static><link name="link"><pose>0.15 0 0.5 0 0 0</pose>'
+    '<collision name="collision">'
+    "<geometry><box><size>0.2 4 1</size></box></geometry></collision></link></model>"
+)
+
+
+def height(*parts: str, z: float) -> float:
+    """Where a box of 0.2 m is that was put somewhere."""
+    simulation = simulated(*parts)
+    simulation.spawn(model(box("crate", "0 0 0 0 0 0", "0.2 0.2 0.2")), "crate", (0.0, 0.0, z, 0.0, 0.0, 0.0, 1.0))
+    stand_up(simulation, "crate")
+    return simulation.model_pose("crate")[2]
+
+
+@pytest.mark.parametrize(("ground", "top"), [(GROUND, 0.0), (PLATE, 0.05)])
+def test_a_box_that_stands_in_the_ground_is_put_on_it(ground: str, top: float) -> None:
+    assert height(ground, z=0.07) == pytest.approx(top + 0.1, abs=1e-6)
+
+
+def test_a_box_above_the_ground_stays_where_it_is() -> None:
+    assert height(GROUND, z=0.1) == pytest.approx(0.1)
+    assert height(GROUND, z=0.5) == pytest.approx(0.5)
+
+
+def test_a_box_in_a_wall_is_not_lifted() -> None:
+    assert height(GROUND, WALL, z=0.1) == pytest.approx(0.1)
+
+
+def test_it_comes_to_rest_there() -> None:
+    simulation = simulated(PLATE)
+    simulation.spawn(model(box("crate", "0 0 0 0 0 0", "0.2 0.2 0.2")), "crate")
+    stand_up(simulation, "crate")
+    simulation.advance(500_000_000)
+    x, y, z, *_ = simulation.model_pose("crate")
+    assert (x, y, z) == pytest.approx((0.0, 0.0, 0.15), abs=1e-3)
