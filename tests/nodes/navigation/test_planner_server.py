@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from math import hypot
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from linkwright.graph import ActionClient
+import linkwright.packages
+from linkwright.graph import ActionClient, LogLevel
 from linkwright.graph.actions.goal import GoalStatus
 from linkwright.graph.parameters.rules import ParameterRules
 from linkwright.messages import classes, get_action, get_message, get_service
@@ -19,6 +21,7 @@ from linkwright.nodes.navigation.planner_server import PlannerServer
 from linkwright.nodes.navigation.smoother_server import SmootherServer
 from tests.nodes.navigation.scene import Scene, walls
 
+SHARE = Path(linkwright.packages.__file__).parent / "substitutes" / "share"
 COSTMAP = {
     "robot_radius": 0.2,
     "resolution": 0.05,
@@ -100,7 +103,7 @@ async def test_a_path_to_a_pose(scene, server):
     scene.node.create_subscription(get_message("nav_msgs/msg/Path"), "/plan", plans.append, 1)
     status, result = await to_pose(scene, pose(3.0, 2.0, 1.0)).ended()
     assert status == SUCCEEDED
-    found = poses_of(result.path)
+    found = poses_of(result.path.poses)
     assert found[0, :2] == pytest.approx(scene.pose[:2])
     assert found[-1] == pytest.approx([3.0, 2.0, 1.0])
     assert result.path.header.frame_id == "map"
@@ -113,7 +116,7 @@ async def test_it_may_begin_elsewhere_and_end_in_another_frame(scene, server):
     await server()
     start = pose(0.5, 2.5)
     status, result = await to_pose(scene, pose(1.5, 0.0, frame="base_link"), start=start, use_start=True).ended()
-    found = poses_of(result.path)
+    found = poses_of(result.path.poses)
     assert status == SUCCEEDED
     assert found[[0, -1], :2] == pytest.approx(np.array([[0.5, 2.5], [2.5, 1.0]]))
 
@@ -123,7 +126,7 @@ async def test_a_path_through_poses(scene, server):
     goals = [pose(1.0, 2.0), pose(3.0, 2.0), pose(3.0, 1.0, 2.0)]
     goal = Goal(scene, "ComputePathThroughPoses", "compute_path_through_poses", {"goals": goals})
     status, result = await goal.ended()
-    found = poses_of(result.path)
+    found = poses_of(result.path.poses)
     assert status == SUCCEEDED
     assert found[-1] == pytest.approx([3.0, 1.0, 2.0])
     for each in goals[:2]:
@@ -233,6 +236,16 @@ async def test_a_server_that_is_not_active_takes_no_goals(scene, graph):
     node.close()
 
 
+@pytest.mark.parametrize("kind", [PlannerServer, SmootherServer])
+async def test_parameters_of_nav2_bringup_load_without_a_warning(graph, log, kind):
+    file = SHARE / "nav2_bringup" / "params" / "nav2_params.yaml"
+    options = NodeOptions(arguments=["--ros-args", "--params-file", str(file)], parameters={"autostart_node": True})
+    node = kind(graph, options)
+    assert node.node.is_active
+    assert not [each.text for each in log if each.level >= LogLevel.WARN or "are not read" in each.text]
+    node.close()
+
+
 async def test_in_a_container_the_costmap_has_the_parameters_of_its_process(scene, graph):
     rules = ParameterRules()
     rules.set("/global_costmap/global_costmap", "robot_radius", 0.33)
@@ -287,7 +300,7 @@ async def test_a_path_is_smoothed(scene, server):
     status, result = await smooth(scene, CORNER, check_for_collisions=True).ended()
     assert status == SUCCEEDED
     assert result.was_completed
-    found = poses_of(result.path)
+    found = poses_of(result.path.poses)
     assert found[[0, -1], :2] == pytest.approx(np.array(CORNER)[[0, -1], :2])
     assert np.hypot(found[20, 0] - 2.0, found[20, 1] - 1.0) > 0.01
     assert np.abs(np.diff(found[:-1, 2])).max() < 1.0

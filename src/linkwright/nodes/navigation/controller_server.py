@@ -23,6 +23,7 @@ from linkwright.nodes.navigation.costmap import CostmapNode, make_costmap
 from linkwright.nodes.navigation.followers import make_follower, make_goal_checker, make_progress_checker
 from linkwright.nodes.navigation.goals import GoalServer
 from linkwright.nodes.navigation.managed import ManagedNode, ManagedServer
+from linkwright.nodes.navigation.paths import poses_of
 from linkwright.nodes.navigation.plugins import texts_of
 from linkwright.nodes.options import NodeOptions, create_node_of, starting
 from linkwright.nodes.settings import positive
@@ -316,15 +317,6 @@ class ControllerServer(ManagedServer):
         """End it."""
         super().close()
         self._node.costmap.destroy_node()
-
-
-def poses_of(messages: Any) -> NDArray[np.float64]:
-    """x, y (metres) and yaw (radians) of geometry_msgs/PoseStamped, of shape (poses, 3)."""
-    rows = []
-    for each in messages:
-        position, turn = each.pose.position, each.pose.orientation
-        rows.append((position.x, position.y, rpy_from_quaternion((turn.x, turn.y, turn.z, turn.w))[2]))
-    return np.array(rows, np.float64).reshape(-1, 3)
 
 
 def _chosen(plugins: dict[str, Any], name: str, what: str, code: str) -> Any:

@@ -29,13 +29,12 @@ from linkwright.navigation.grids.library import load_scipy
 from linkwright.nodes.navigation.costmap_layers import (
     DEFAULT_LAYERS,
     Surroundings,
-    accept,
-    declared_freely,
     follow,
     make_layers,
 )
 from linkwright.nodes.navigation.costmap_messages import CostmapPublisher, raw_message
 from linkwright.nodes.navigation.managed import ManagedNode
+from linkwright.nodes.navigation.plugins import take_unread, texts_of
 from linkwright.nodes.options import NodeOptions
 from linkwright.nodes.settings import bad_value
 
@@ -53,7 +52,6 @@ _PARAMETERS: dict[str, Any] = {
     "observation_sources": "",
     "origin_x": 0.0,
     "origin_y": 0.0,
-    "plugins": list(DEFAULT_LAYERS),
     "publish_frequency": 1.0,
     "resolution": 0.1,
     "robot_base_frame": "base_link",
@@ -85,7 +83,7 @@ class CostmapNode(ManagedNode):
         """Declare the parameters that do not belong to a layer."""
         for name, value in _PARAMETERS.items():
             self.declare_parameter(name, value)
-        self._filters: list[str] = declared_freely(self, "filters") or []
+        self._filters: list[str] = texts_of(self, "filters", [])
         self.transforms = BufferCore(logger=self.get_logger().get_child("tf2"))
         TransformListener(self.transforms, self)
         self._shared: Surroundings | None = None
@@ -174,7 +172,7 @@ class CostmapNode(ManagedNode):
         footprint = self._read_footprint()
         self._shared = Surroundings(self, self.transforms, self.global_frame, self._on_map)
         self._leave_out_filters()
-        make_layers(self._shared, list(self._value("plugins")))
+        make_layers(self._shared, texts_of(self, "plugins", list(DEFAULT_LAYERS)))
         resolution = self._positive("resolution")
         rows, columns = (max(1, int(self._positive(name) / resolution)) for name in ("height", "width"))
         cells = np.zeros((rows, columns), np.uint8)
@@ -251,7 +249,7 @@ class CostmapNode(ManagedNode):
 
     def _leave_out_filters(self) -> None:
         for name in self._filters:
-            accept(self, name)
+            take_unread(self, name)
         if self._filters:
             named = ", ".join(self._filters)
             self.get_logger().warning(f"there are no filters of costs here: the costmap does without {named}")

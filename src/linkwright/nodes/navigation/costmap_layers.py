@@ -6,12 +6,12 @@ Source: nav2_costmap_2d, Humble and Jazzy.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.geometry.single import rpy_from_quaternion
-from linkwright.graph import Node, Parameter, ParameterDescriptor, TransformException
+from linkwright.graph import Node, Parameter, TransformException
 from linkwright.graph.names.rules import join, split
 from linkwright.graph.transforms.core import BufferCore
 from linkwright.navigation.costmaps.denoise_layer import DenoiseLayer
@@ -23,6 +23,7 @@ from linkwright.navigation.costmaps.static_layer import Interpretation, MapPose,
 from linkwright.navigation.costmaps.voxel_layer import MOST_LEVELS, VoxelLayer, Voxels
 from linkwright.navigation.grids.grid import Grid
 from linkwright.nodes.navigation.costmap_sources import MapTopic, SensorTopic
+from linkwright.nodes.navigation.plugins import declared, take_unread, value_of
 from linkwright.nodes.settings import bad_value
 
 DEFAULT_LAYERS: Final = {
@@ -55,36 +56,9 @@ class Surroundings:
     sensors: list[SensorTopic] = field(default_factory=list)
     layers: dict[str, Layer] = field(default_factory=dict)
 
-    def declared(self, name: str, default: Any) -> Any:
+    def value(self, name: str, default: Any) -> Any:
         """The value of a parameter, which is declared if it is not yet."""
-        return declared(self.node, name, default)
-
-    def table(self, prefix: str, kind: Any, **given: Any) -> Any:
-        """A dataclass with the values of the parameters that are named as its fields."""
-        values = {
-            each.name: self.declared(f"{prefix}.{each.name}", each.default)
-            for each in fields(kind)
-            if each.name not in given
-        }
-        return kind(**values, **given)
-
-
-def declared(node: Node, name: str, default: Any) -> Any:
-    """The value of a parameter, which is declared with a default if it is not yet."""
-    if not node.has_parameter(name):
-        node.declare_parameter(name, default)
-    return node.get_parameter(name).value
-
-
-def accept(node: Node, prefix: str) -> None:
-    """Have the parameters of something that we do not have, so that they are not told to be unknown."""
-    for name in [each for each in node.undeclared_overrides() if each.startswith(f"{prefix}.")]:
-        declared_freely(node, name)
-
-
-def declared_freely(node: Node, name: str) -> Any:
-    """The value of a parameter of any type, such as a list that may be empty; None where none is given."""
-    return node.declare_parameter(name, None, ParameterDescriptor(dynamic_typing=True)).value
+        return value_of(self.node, name, default)
 
 
 def make_layers(shared: Surroundings, names: list[str]) -> None:
@@ -102,22 +76,22 @@ def make_layers(shared: Surroundings, names: list[str]) -> None:
     }
     node = shared.node
     for name in names:
-        kind = shared.declared(f"{name}.plugin", DEFAULT_LAYERS.get(name, ""))
+        kind = shared.value(f"{name}.plugin", DEFAULT_LAYERS.get(name, ""))
         if not kind:
             message = phrase("parameter '{name}' of '{node}' is not given", name=f"{name}.plugin", node=node.get_name())
             raise LinkwrightError(Diagnostic("NODE431", message))
         maker = makers.get(kind.removeprefix("nav2_costmap_2d::"))
         if maker is None:
-            accept(node, name)
+            take_unread(node, name)
             node.get_logger().warning(f"there is no layer {kind} here: the costmap does without '{name}'")
             continue
         node.get_logger().info(f'Using plugin "{name}"')
         layer = maker(shared, name)
-        layer.enabled = shared.declared(f"{name}.enabled", True)
+        layer.enabled = shared.value(f"{name}.enabled", True)
         shared.layers[name] = layer
     given = [each.removesuffix(".plugin") for each in node.undeclared_overrides() if each.endswith(".plugin")]
     for name in given:
-        accept(node, name)
+        take_unread(node, name)
     if given:
         node.get_logger().info(f"layers that 'plugins' does not name are not there: {', '.join(given)}")
 
@@ -144,13 +118,13 @@ def follow(shared: Surroundings, changed: list[Parameter]) -> bool:
 
 def _static(shared: Surroundings, name: str) -> Layer:
     interpretation = Interpretation(
-        track_unknown_space=shared.declared("track_unknown_space", False),
-        unknown_cost_value=shared.declared("unknown_cost_value", 255) % 256,
-        lethal_threshold=max(0, min(100, shared.declared("lethal_cost_threshold", 100))),
-        trinary=shared.declared("trinary_costmap", True),
+        track_unknown_space=shared.value("track_unknown_space", False),
+        unknown_cost_value=shared.value("unknown_cost_value", 255) % 256,
+        lethal_threshold=max(0, min(100, shared.value("lethal_cost_threshold", 100))),
+        trinary=shared.value("trinary_costmap", True),
     )
-    shared.declared(f"{name}.transform_tolerance", 0.0)
-    topic = shared.declared(f"{name}.map_topic", "") or shared.declared("map_topic", "map")
+    shared.value(f"{name}.transform_tolerance", 0.0)
+    topic = shared.value(f"{name}.map_topic", "") or shared.value("map_topic", "map")
     map_topic: list[MapTopic] = []
 
     def pose() -> MapPose | None:
@@ -165,8 +139,8 @@ def _static(shared: Surroundings, name: str) -> Layer:
 
     layer = StaticLayer(
         interpretation,
-        use_maximum=shared.declared("use_maximum", False),
-        footprint_clearing=shared.declared(f"{name}.footprint_clearing_enabled", False),
+        use_maximum=shared.value("use_maximum", False),
+        footprint_clearing=shared.value(f"{name}.footprint_clearing_enabled", False),
         pose=pose,
     )
     map_topic.append(
@@ -174,8 +148,8 @@ def _static(shared: Surroundings, name: str) -> Layer:
             shared.node,
             _beside(shared.node, topic),
             layer,
-            transient_local=shared.declared(f"{name}.map_subscribe_transient_local", True),
-            updates=shared.declared(f"{name}.subscribe_to_updates", False),
+            transient_local=shared.value(f"{name}.map_subscribe_transient_local", True),
+            updates=shared.value(f"{name}.subscribe_to_updates", False),
             on_map=shared.on_map,
         )
     )
@@ -186,46 +160,46 @@ def _static(shared: Surroundings, name: str) -> Layer:
 def _obstacles(shared: Surroundings, name: str) -> Layer:
     return ObstacleLayer(
         _buffers(shared, name),
-        shared.table(name, Heights),
-        combination_method=shared.declared(f"{name}.combination_method", 1),
-        footprint_clearing=shared.declared(f"{name}.footprint_clearing_enabled", True),
+        declared(shared.node, name, Heights),
+        combination_method=shared.value(f"{name}.combination_method", 1),
+        footprint_clearing=shared.value(f"{name}.footprint_clearing_enabled", True),
     )
 
 
 def _voxels(shared: Surroundings, name: str) -> Layer:
-    if shared.declared(f"{name}.publish_voxel_map", False):
-        shared.node.get_logger().warning(f"'{name}' publishes no voxels, though {name}.publish_voxel_map asks for them")
-    voxels: Voxels = shared.table(name, Voxels)
+    if shared.value(f"{name}.publish_voxel_map", False):
+        shared.node.get_logger().info(f"'{name}' publishes no voxels, though {name}.publish_voxel_map asks for them")
+    voxels: Voxels = declared(shared.node, name, Voxels)
     if not 0 < voxels.z_voxels <= MOST_LEVELS:
         known = [str(count) for count in range(1, MOST_LEVELS + 1)]
         raise bad_value(f"{name}.z_voxels", voxels.z_voxels, shared.node.get_name(), known)
     return VoxelLayer(
         _buffers(shared, name),
-        shared.table(name, Heights),
+        declared(shared.node, name, Heights),
         voxels,
-        combination_method=shared.declared(f"{name}.combination_method", 1),
-        footprint_clearing=shared.declared(f"{name}.footprint_clearing_enabled", True),
+        combination_method=shared.value(f"{name}.combination_method", 1),
+        footprint_clearing=shared.value(f"{name}.footprint_clearing_enabled", True),
     )
 
 
 def _buffers(shared: Surroundings, name: str) -> list[ObservationBuffer]:
-    shared.declared(f"{name}.tf_filter_tolerance", 0.05)
+    shared.value(f"{name}.tf_filter_tolerance", 0.05)
     buffers = []
-    for source in shared.declared(f"{name}.observation_sources", "").split():
+    for source in shared.value(f"{name}.observation_sources", "").split():
         prefix = f"{name}.{source}"
-        kind = shared.declared(f"{prefix}.data_type", "LaserScan")
+        kind = shared.value(f"{prefix}.data_type", "LaserScan")
         if kind not in _KINDS:
             raise bad_value(f"{prefix}.data_type", kind, shared.node.get_name(), _KINDS)
-        buffer = ObservationBuffer(shared.table(prefix, Source))
+        buffer = ObservationBuffer(declared(shared.node, prefix, Source))
         topic = SensorTopic(
             shared.node,
-            _beside(shared.node, shared.declared(f"{prefix}.topic", source)),
+            _beside(shared.node, shared.value(f"{prefix}.topic", source)),
             kind,
             buffer,
             shared.transforms,
             shared.frame,
-            sensor_frame=shared.declared(f"{prefix}.sensor_frame", ""),
-            inf_is_valid=shared.declared(f"{prefix}.inf_is_valid", False),
+            sensor_frame=shared.value(f"{prefix}.sensor_frame", ""),
+            inf_is_valid=shared.value(f"{prefix}.inf_is_valid", False),
         )
         shared.topics.append(topic)
         shared.sensors.append(topic)
@@ -234,12 +208,12 @@ def _buffers(shared: Surroundings, name: str) -> list[ObservationBuffer]:
 
 
 def _inflation(shared: Surroundings, name: str) -> Layer:
-    return InflationLayer(shared.table(name, Inflation))
+    return InflationLayer(declared(shared.node, name, Inflation))
 
 
 def _denoise(shared: Surroundings, name: str) -> Layer:
     return DenoiseLayer(
-        shared.declared(f"{name}.minimal_group_size", 2), shared.declared(f"{name}.group_connectivity_type", 8)
+        shared.value(f"{name}.minimal_group_size", 2), shared.value(f"{name}.group_connectivity_type", 8)
     )
 
 

@@ -25,9 +25,9 @@ def path_message(poses: NDArray[np.float64], frame: str, stamp: Any) -> Any:
     return path
 
 
-def poses_of(path: Any) -> NDArray[np.float64]:
-    """x, y (metres) and yaw (radians) of the poses of a nav_msgs/Path, of shape (n, 3)."""
-    return np.array([pose_of(each) for each in path.poses], np.float64).reshape(-1, 3)
+def poses_of(stamped: Any) -> NDArray[np.float64]:
+    """x, y (metres) and yaw (radians) of geometry_msgs/PoseStamped, of shape (n, 3)."""
+    return np.array([pose_of(each) for each in stamped], np.float64).reshape(-1, 3)
 
 
 def pose_of(stamped: Any) -> tuple[float, float, float]:

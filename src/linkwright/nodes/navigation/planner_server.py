@@ -245,7 +245,7 @@ class PlannerNode(ManagedNode):
 
     def _is_path_valid(self, request: Any, response: Any) -> Any:
         """Whether the robot can go on along a path from where it is."""
-        poses = poses_of(request.path)
+        poses = poses_of(request.path.poses)
         here = self.costmap.robot_pose() if self.is_active else None
         response.is_valid = bool(len(poses))
         if not len(poses) or here is None:

@@ -88,7 +88,7 @@ class SmootherNode(ManagedNode):
             self._fail("FAILED_TO_SMOOTH_PATH", "Costmap is not available")
         else:
             values = {each.name: self.get_parameter(f"{name}.{each.name}").value for each in fields(Smoothing)}
-            poses = poses_of(request.path)
+            poses = poses_of(request.path.poses)
             points, _ = smoothed(poses[:, :2], Smoothing(**values), self._costmap)
             poses = np.column_stack((points, directions(points, poses[-1, 2])))
             path = path_message(poses, request.path.header.frame_id, request.path.header.stamp)
