@@ -68,6 +68,34 @@ describe("CopyBatch", () => {
     batch.dispose();
   });
 
+  it("draws what the camera sees, whichever camera draws, and knows all copies still", () => {
+    const parent = new Group();
+    const batch = new CopyBatch(parent, cubeGeometry());
+    batch.begin(3);
+    for (const x of [5, -5, 7]) batch.add(new Matrix4().makeTranslation(x, 0, 0));
+    batch.end();
+    const mesh = parent.children[0] as Mesh<BufferGeometry, ShaderMaterial>;
+    const { slots } = mesh.material.uniforms as { slots: { value: DataTexture } };
+    const drawn = (towards: number): number[] => {
+      const camera = new PerspectiveCamera();
+      camera.lookAt(towards, 0, 0);
+      camera.updateMatrixWorld();
+      (mesh as unknown as { onBeforeRender(...args: unknown[]): void }).onBeforeRender(null, null, camera);
+      const count = mesh.geometry.drawRange.count / cubeGeometry().index!.count;
+      return Array.from({ length: count }, (_, slot) => (slots.value.image.data as Float32Array)[slot * 16 + 3]!);
+    };
+    expect(drawn(1)).toEqual([5, 7]);
+    expect(drawn(-1)).toEqual([-5]);
+    expect(batch.size).toBe(3);
+    expect(bounds(batch).max[0]).toBe(7.5);
+    expect(batch.pick(new Raycaster(new Vector3(-10, 0, 0), new Vector3(1, 0, 0)))?.copy).toBe(1);
+    batch.begin(1);
+    batch.add(new Matrix4().makeTranslation(6, 0, 0));
+    batch.end();
+    expect(drawn(1)).toEqual([6]);
+    batch.dispose();
+  });
+
   it("puts copies where their matrices say", () => {
     const parent = new Group();
     const batch = new CopyBatch(parent, cubeGeometry());

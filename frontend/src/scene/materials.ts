@@ -52,6 +52,11 @@ export function blend(material: Material, seeThrough: boolean): void {
   material.needsUpdate = true;
 }
 
+/** What lets lines and marks in the plane of a surface be seen on it. */
+export function behind(isBehind: boolean): { polygonOffset: boolean; polygonOffsetFactor: number; polygonOffsetUnits: number } {
+  return { polygonOffset: isBehind, polygonOffsetFactor: 1, polygonOffsetUnits: 1 };
+}
+
 /** Whether lines are seen through: all of them, or some, by the alpha of their colours r g b a. */
 export function areSeenThrough(opacity: number, colors: BufferAttribute | InterleavedBufferAttribute | undefined): boolean {
   if (opacity < 1) return true;
@@ -86,9 +91,7 @@ export class MaterialPool {
         map: look.map,
         vertexColors: look.vertexColors,
         side: look.doubleSided ? DoubleSide : FrontSide,
-        polygonOffset: look.behind === true,
-        polygonOffsetFactor: 1,
-        polygonOffsetUnits: 1,
+        ...behind(look.behind === true),
       };
       material = surface ? reflecting(style, surface) : new MeshLambertMaterial(style);
       this.materials.set(key, material);

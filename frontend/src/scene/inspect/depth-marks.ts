@@ -24,8 +24,8 @@ export class DepthMarks {
   private levels: number[] = [];
 
   constructor(parent: Object3D) {
-    this.axes = new CopyBatch(parent, axesGeometry(1, 0.06, 8), true);
-    this.balls = new CopyBatch(parent, ballGeometry(12), true);
+    this.axes = new CopyBatch(parent, axesGeometry(1, 0.06, 8), { isOverlay: true });
+    this.balls = new CopyBatch(parent, ballGeometry(12), { isOverlay: true });
     parent.add(this.labels.root);
   }
 

@@ -37,10 +37,10 @@ export class MassMarks {
   private totals: Vector3[] = [];
 
   constructor(parent: Object3D) {
-    this.boxes = new CopyBatch(parent, cubeGeometry(), true);
-    this.ellipsoids = new CopyBatch(parent, ballGeometry(24), true);
+    this.boxes = new CopyBatch(parent, cubeGeometry(), { isOverlay: true });
+    this.ellipsoids = new CopyBatch(parent, ballGeometry(24), { isOverlay: true });
     this.edges = new VertexStream(parent, "lines");
-    this.balls = new CopyBatch(parent, quartered(ballGeometry(16)), true);
+    this.balls = new CopyBatch(parent, quartered(ballGeometry(16)), { isOverlay: true });
     parent.add(this.labels.root);
   }
 

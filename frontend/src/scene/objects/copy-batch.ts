@@ -4,23 +4,34 @@ import {
   BufferGeometry,
   DataTexture,
   FloatType,
+  Frustum,
   Matrix4,
   Mesh,
   RGBAFormat,
+  Sphere,
   Vector3,
   type Camera,
   type Object3D,
   type Raycaster,
   type ShaderMaterial,
 } from "three";
+import { behind } from "../materials";
 import { slotMaterial, SLOTS_PER_ROW, TEXELS_PER_SLOT } from "./slot-material";
 
 const FLOATS_PER_SLOT = TEXELS_PER_SLOT * 4;
 const WHITE = 0xffffff;
-/** More copies than these are drawn in the order in which they were added, though they can be seen through. */
-const MOST_SORTED = 1000;
+/** More copies than these are all drawn, in the order in which they were added. */
+const MOST_ARRANGED = 1000;
 /** After everything but labels. */
 const OVERLAY_ORDER = 5;
+
+/** What copies are drawn over, or behind. */
+export interface CopyPlace {
+  /** Over everything; for shapes that do not hide parts of themselves. */
+  readonly isOverlay?: boolean;
+  /** Lines and marks in the same plane are seen on them. */
+  readonly isBehind?: boolean;
+}
 
 /** Which copy a ray met, and where in the fixed frame, m. */
 export interface CopyHit {
@@ -36,7 +47,8 @@ export interface CopyHit {
  * normals and colours (`paint` of geometries.ts), which each copy's colour is multiplied with.
  *
  * The copies' vertices stand in one buffer and each finds its matrix in a texture. GPU instancing would be shorter, but
- * software renderers take some 50 microseconds for every instance: 500 frames would draw at 6 frames a second.
+ * software renderers take some 50 microseconds for every instance: 500 frames would draw at 6 frames a second. For them, too,
+ * copies that a camera does not see are left out: their vertices cost as much as others'.
  */
 export class CopyBatch {
   private readonly mesh: CopyMesh;
@@ -45,24 +57,27 @@ export class CopyBatch {
   private capacity = 0;
   private count = 0;
   private seeThrough = false;
-  /** Which copy stands in which slot, where they were sorted. */
-  private order: number[] | null = null;
+  /** What the slots of all copies hold. */
+  private all = new Float32Array(0);
+  /** Which copies stand in the slots; null for all, in their order. */
+  private arranged: readonly number[] | null = null;
+  private isUploaded = false;
 
   constructor(
     parent: Object3D,
     private readonly shape: BufferGeometry,
-    /** Drawn over everything; for shapes that do not hide parts of themselves. */
-    private readonly isOverlay = false,
+    private readonly place: CopyPlace = {},
   ) {
     this.slots = { value: slotTexture(0) };
     this.mesh = new CopyMesh(new BufferGeometry(), slotMaterial(this.slots), (box) => this.expandBox(box));
-    if (isOverlay) {
+    Object.assign(this.mesh.material, behind(place.isBehind === true));
+    if (place.isOverlay) {
       this.mesh.material.depthTest = this.mesh.material.depthWrite = false;
       this.mesh.material.transparent = true; // opaque things are drawn before, whatever their order
       this.mesh.renderOrder = OVERLAY_ORDER;
     }
     this.mesh.visible = false;
-    this.mesh.onBeforeRender = (_renderer, _scene, camera) => this.sort(camera);
+    this.mesh.onBeforeRender = (_renderer, _scene, camera) => this.arrange(camera);
     // The copies are all over the place: a bounding sphere of them costs more than drawing them.
     this.mesh.frustumCulled = false;
     this.mesh.matrixAutoUpdate = false;
@@ -79,18 +94,19 @@ export class CopyBatch {
   begin(expected: number): void {
     this.count = 0;
     this.seeThrough = false;
-    this.order = null;
+    this.arranged = null;
     if (expected <= this.capacity) return;
     this.capacity = Math.ceil(expected * 1.25);
     this.mesh.geometry.dispose();
     this.mesh.geometry = copies(this.shape, this.capacity);
     this.slots.value.dispose();
     this.slots.value = slotTexture(Math.ceil(this.capacity / SLOTS_PER_ROW));
+    this.all = new Float32Array(this.texels.length);
   }
 
   /** `matrix` in the parent's frame; `grey` 1 is all grey; `color` is 0xrrggbb. */
   add(matrix: Matrix4, grey = 0, alpha = 1, color = WHITE): void {
-    const data = this.slots.value.image.data as Float32Array;
+    const { all: data } = this;
     const at = this.count * FLOATS_PER_SLOT;
     const m = matrix.elements;
     for (let row = 0; row < 3; row++) {
@@ -108,8 +124,8 @@ export class CopyBatch {
     this.mesh.visible = this.count > 0;
     this.mesh.boundingBox = null;
     geometry.setDrawRange(0, this.count * (this.shape.index?.count ?? 0));
-    if (this.count > 0) this.slots.value.needsUpdate = true;
-    if (this.isOverlay || material.transparent === this.seeThrough) return;
+    this.isUploaded = false;
+    if (this.place.isOverlay || material.transparent === this.seeThrough) return;
     material.transparent = this.seeThrough;
     material.depthWrite = !this.seeThrough;
     material.needsUpdate = true;
@@ -131,7 +147,7 @@ export class CopyBatch {
       this.matrixOf(copy, this.probe.matrixWorld).premultiply(matrixWorld);
       const [hit] = ray.intersectObject(this.probe, false);
       if (hit && (best === null || hit.distance < best.distance)) {
-        best = { copy: this.order?.[copy] ?? copy, distance: hit.distance, point: hit.point };
+        best = { copy, distance: hit.distance, point: hit.point };
       }
     }
     return best;
@@ -145,34 +161,54 @@ export class CopyBatch {
     this.shape.dispose();
   }
 
-  /** Copies that can be seen through are drawn from the farthest to the nearest. */
-  private sort(camera: Camera): void {
-    if (!this.seeThrough || this.isOverlay || this.count < 2 || this.count > MOST_SORTED) return;
-    if (!this.shape.boundingBox) this.shape.computeBoundingBox();
-    const middle = this.shape.boundingBox?.getCenter(new Vector3()) ?? new Vector3();
-    const view = new Matrix4().multiplyMatrices(camera.matrixWorldInverse, this.mesh.matrixWorld);
-    const matrix = new Matrix4();
-    const at = new Vector3();
-    const heights = Array.from({ length: this.count }, (_, slot) => {
-      return at.copy(middle).applyMatrix4(this.matrixOf(slot, matrix)).applyMatrix4(view).z;
-    });
-    if (heights.every((height, slot) => slot === 0 || (heights[slot - 1] ?? 0) <= height)) return;
-    const sorted = heights.map((_, slot) => slot).sort((a, b) => (heights[a] ?? 0) - (heights[b] ?? 0));
-    const data = this.slots.value.image.data as Float32Array;
-    const before = data.slice(0, this.count * FLOATS_PER_SLOT);
-    sorted.forEach((slot, to) => {
-      data.set(before.subarray(slot * FLOATS_PER_SLOT, (slot + 1) * FLOATS_PER_SLOT), to * FLOATS_PER_SLOT);
-    });
-    const { order } = this;
-    this.order = sorted.map((slot) => order?.[slot] ?? slot);
+  /** Puts into the slots what a camera sees; what can be seen through from the farthest to the nearest. */
+  private arrange(camera: Camera): void {
+    const wanted = this.count > MOST_ARRANGED ? null : this.seen(camera);
+    if (this.isUploaded && areSame(wanted, this.arranged)) return;
+    const { texels, all } = this;
+    if (wanted === null) texels.set(all.subarray(0, this.count * FLOATS_PER_SLOT));
+    else {
+      wanted.forEach((copy, slot) => {
+        texels.set(all.subarray(copy * FLOATS_PER_SLOT, (copy + 1) * FLOATS_PER_SLOT), slot * FLOATS_PER_SLOT);
+      });
+    }
+    this.mesh.geometry.setDrawRange(0, (wanted?.length ?? this.count) * (this.shape.index?.count ?? 0));
     this.slots.value.needsUpdate = true;
+    this.arranged = wanted;
+    this.isUploaded = true;
+  }
+
+  /** The copies that a camera sees, in the order in which they are drawn. */
+  private seen(camera: Camera): number[] {
+    if (!this.shape.boundingSphere) this.shape.computeBoundingSphere();
+    const whole = this.shape.boundingSphere ?? new Sphere();
+    const view = new Matrix4().multiplyMatrices(camera.matrixWorldInverse, this.mesh.matrixWorld);
+    const frustum = new Frustum().setFromProjectionMatrix(camera.projectionMatrix);
+    const found: { copy: number; height: number }[] = [];
+    const [matrix, sphere] = [new Matrix4(), new Sphere()];
+    for (let copy = 0; copy < this.count; copy++) {
+      sphere.copy(whole).applyMatrix4(this.matrixOf(copy, matrix).premultiply(view));
+      if (frustum.intersectsSphere(sphere)) found.push({ copy, height: sphere.center.z });
+    }
+    if (this.seeThrough && !this.place.isOverlay) found.sort((a, b) => a.height - b.height);
+    return found.map(({ copy }) => copy);
+  }
+
+  private get texels(): Float32Array {
+    return this.slots.value.image.data as Float32Array;
   }
 
   private matrixOf(copy: number, matrix: Matrix4): Matrix4 {
-    const data = this.slots.value.image.data as Float32Array;
-    const rows = data.subarray(copy * FLOATS_PER_SLOT, copy * FLOATS_PER_SLOT + 12);
-    return matrix.fromArray([...rows, 0, 0, 0, 1]).transpose();
+    const { all } = this;
+    const at = copy * FLOATS_PER_SLOT;
+    const row = (i: number): [number, number, number, number] => [all[i] ?? 0, all[i + 1] ?? 0, all[i + 2] ?? 0, all[i + 3] ?? 0];
+    return matrix.set(...row(at), ...row(at + 4), ...row(at + 8), 0, 0, 0, 1);
   }
+}
+
+function areSame(some: readonly number[] | null, others: readonly number[] | null): boolean {
+  if (some === null || others === null) return some === others;
+  return some.length === others.length && some.every((each, i) => each === others[i]);
 }
 
 /** A mesh whose bounds are those of its copies, wherever three.js asks for them. */

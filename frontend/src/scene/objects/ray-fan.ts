@@ -4,15 +4,21 @@ import type { LidarScene } from "../../protocol";
 /** Rays farther apart are drawn as wide as this, with gaps between them, rad. */
 const WIDEST = 0.035;
 const COLOR = [0.25, 0.6, 1] as const;
-/** How much of what is behind is covered: where rays begin, where they hit something, and where others begin. */
-const BEGIN = 0.18;
-const HIT = 0.04;
-const BEGIN_OF_MISS = 0.06;
-const CORNERS = 4;
+/** How much of what is behind is covered where rays begin, and where they hit something. */
+const BEGIN = 0.3;
+const HIT = 0.4;
+/** So much of a ray is seen to begin, and before a hit so many metres of it, or a share where it is short. */
+const GLOW = 0.4;
+const RIM = 0.2;
+const RIM_SHARE = 0.1;
+/** Of a ray: both sides where it begins, where that has faded, where it comes into view again, and where it hits. */
+const CORNERS = 8;
+const FACES = [0, 1, 2, 2, 1, 3, 4, 5, 6, 6, 5, 7];
 
 /**
- * The rays of a lidar as a faint area, which each ray fills half way to its neighbours, from the nearest distance that is
- * measured to what it met; rays that met nothing fade away. Rows above each other are the fainter the more there are.
+ * The rays of a lidar as areas that each ray fills half way to its neighbours: a glow around the lidar, which fades, and a
+ * rim before what the rays hit. What is between is left to the world, and costs nothing: where the processor draws, each
+ * pixel that is seen through costs as much as several others. Rows are the fainter the more there are.
  */
 export class RayFan {
   readonly root: Mesh<BufferGeometry, MeshBasicMaterial>;
@@ -29,8 +35,8 @@ export class RayFan {
     const colors = new BufferAttribute(new Float32Array(rays * CORNERS * 4), 4).setUsage(DynamicDrawUsage);
     for (let corner = 0; corner < rays * CORNERS; corner++) colors.setXYZ(corner, ...COLOR);
     geometry.setAttribute("position", positions).setAttribute("color", colors);
-    geometry.setIndex(Array.from({ length: rays }, (_, ray) => [0, 1, 2, 2, 1, 3].map((each) => ray * CORNERS + each)).flat());
-    const look = { vertexColors: true, transparent: true, depthWrite: false, side: DoubleSide } as const;
+    geometry.setIndex(Array.from({ length: rays }, (_, ray) => FACES.map((each) => ray * CORNERS + each)).flat());
+    const look = { vertexColors: true, transparent: true, depthWrite: false, side: DoubleSide, forceSinglePass: true } as const;
     this.root = new Mesh(geometry, new MeshBasicMaterial(look));
     this.root.frustumCulled = this.root.visible = false;
     this.sides = sidesOf(lidar);
@@ -46,13 +52,16 @@ export class RayFan {
       const range = ranges[ray] ?? Infinity;
       const reached = Math.min(Math.max(range, nearest), farthest);
       const isHit = range < farthest;
+      const rim = Math.max(nearest, reached - Math.min(RIM, RIM_SHARE * reached));
+      const lengths = [nearest, nearest + GLOW * (reached - nearest), rim, reached];
+      const alphas = [BEGIN, 0, 0, isHit ? HIT : 0];
       for (let corner = 0; corner < CORNERS; corner++) {
-        const [at, isFar] = [ray * CORNERS + corner, corner >= 2];
-        const length = isFar ? reached : nearest;
+        const at = ray * CORNERS + corner;
+        const length = lengths[corner >> 1] ?? 0;
         const side = (ray * 2 + (corner & 1)) * 3;
         const [x = 0, y = 0, z = 0] = this.sides.subarray(side, side + 3);
         position.setXYZ(at, length * x, length * y, length * z);
-        color.setW(at, share * (isFar ? (isHit ? HIT : 0) : isHit ? BEGIN : BEGIN_OF_MISS));
+        color.setW(at, share * (alphas[corner >> 1] ?? 0));
       }
     }
     position.needsUpdate = color.needsUpdate = true;

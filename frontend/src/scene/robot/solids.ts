@@ -1,8 +1,8 @@
 import { Vector3, type BufferGeometry, type Camera, type Matrix4, type Object3D } from "three";
 import { CopyBatch } from "../objects/copy-batch";
-import { paint, smallSphere, unitBox, unitCone, unitCylinder, unitSphere } from "../objects/geometries";
+import { paint, smallSphere, unitBox, unitCone, unitCylinder, unitPlane, unitSphere } from "../objects/geometries";
 
-const GEOMETRIES = { box: unitBox, cylinder: unitCylinder, cone: unitCone, sphere: unitSphere } as const;
+const GEOMETRIES = { box: unitBox, cylinder: unitCylinder, cone: unitCone, sphere: unitSphere, plane: unitPlane } as const;
 
 const place = new Vector3();
 
@@ -26,7 +26,7 @@ interface Sphere {
 }
 
 /**
- * Draws boxes, cylinders, cones and spheres that hide what is behind them; used as `CopyBatch`: `begin`, `add` each, `end`,
+ * Draws boxes, cylinders, cones, spheres and planes that hide what is behind them; used as `CopyBatch`: `begin`, `add` each, `end`,
  * and before each frame `look`. Spheres have ten times the corners of the others, which without a GPU took two
  * fifths of the time of a frame: those that look small are drawn with fewer.
  */
@@ -38,8 +38,10 @@ export class Solids {
 
   constructor(parent: Object3D) {
     const kinds = Object.keys(GEOMETRIES) as SolidKind[];
-    const batch = (shape: BufferGeometry): CopyBatch => new CopyBatch(parent, paint(shape.clone(), 1, 1, 1));
-    this.batches = new Map(kinds.map((kind) => [kind, batch(GEOMETRIES[kind])]));
+    const batch = (shape: BufferGeometry, isBehind = false): CopyBatch => {
+      return new CopyBatch(parent, paint(shape.clone(), 1, 1, 1), { isBehind });
+    };
+    this.batches = new Map(kinds.map((kind) => [kind, batch(GEOMETRIES[kind], kind === "plane")]));
     this.small = batch(smallSphere);
   }
 
