@@ -9,7 +9,7 @@ PACKAGE = 'my_robot_gazebo'
 SHARE = Path('share') / PACKAGE
 
 # Installed with all the folders inside them, so that a new file or folder needs no change here.
-SHARED_FOLDERS = ['config', 'launch', 'models', 'rviz', 'worlds']
+SHARED_FOLDERS = ['config', 'launch', 'maps', 'models', 'rviz', 'worlds']
 
 
 def shared_files():

@@ -1,0 +1,99 @@
+"""How particles move when odometry says that the robot did: the models of nav2_amcl.
+
+Source: "Probabilistic Robotics" (Thrun, Burgard, Fox), section 5.4, with the noise of nav2_amcl.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import atan2, cos, hypot, pi, sin, sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+Poses = NDArray[np.float64]
+"""x and y in metres and yaw in radians, of shape (n, 3)."""
+
+_STANDS_STILL = 0.01
+"""Metres up to which a motion has no direction."""
+
+
+@dataclass(frozen=True, slots=True)
+class Noise:
+    """How wrong odometry is: ``alpha1`` to ``alpha5`` of nav2.
+
+    Attributes:
+        turn_of_turn: error of turning for turning.
+        turn_of_drive: error of turning for driving.
+        drive_of_drive: error of driving for driving.
+        drive_of_turn: error of driving for turning.
+        strafe: error of driving sideways, of what can do that.
+    """
+
+    turn_of_turn: float = 0.2
+    turn_of_drive: float = 0.2
+    drive_of_drive: float = 0.2
+    drive_of_turn: float = 0.2
+    strafe: float = 0.2
+
+
+Pose = tuple[float, float, float]
+"""x and y in metres and yaw in radians."""
+
+MotionModel = Callable[[Poses, Pose, Pose, Noise, np.random.Generator], None]
+"""Moves particles in place: particles, the pose by odometry before, and after, the noise, and what draws it."""
+
+
+def turned_by(angle: float) -> float:
+    """An angle between -pi and pi."""
+    return atan2(sin(angle), cos(angle))
+
+
+def differential(
+    particles: Poses,
+    before: Pose,
+    after: Pose,
+    noise: Noise,
+    random: np.random.Generator,
+) -> None:
+    """Move particles as a robot does that turns, drives and turns."""
+    x, y, turn = after[0] - before[0], after[1] - before[1], turned_by(after[2] - before[2])
+    drive = hypot(x, y)
+    first = 0.0 if drive < _STANDS_STILL else turned_by(atan2(y, x) - before[2])
+    second = turned_by(turn - first)
+    # Driving backwards is no half turn.
+    first_size, second_size = (min(abs(each), abs(turned_by(each - pi))) for each in (first, second))
+    count = len(particles)
+    drive_sigma = sqrt(
+        noise.drive_of_drive * drive**2 + noise.drive_of_turn * first_size**2 + noise.drive_of_turn * second_size**2
+    )
+    first_sigma = sqrt(noise.turn_of_turn * first_size**2 + noise.turn_of_drive * drive**2)
+    second_sigma = sqrt(noise.turn_of_turn * second_size**2 + noise.turn_of_drive * drive**2)
+    heading = particles[:, 2] + first - random.normal(0.0, first_sigma, count)
+    way = drive - random.normal(0.0, drive_sigma, count)
+    particles[:, 0] += way * np.cos(heading)
+    particles[:, 1] += way * np.sin(heading)
+    particles[:, 2] = heading + second - random.normal(0.0, second_sigma, count)
+
+
+def omnidirectional(
+    particles: Poses,
+    before: Pose,
+    after: Pose,
+    noise: Noise,
+    random: np.random.Generator,
+) -> None:
+    """Move particles as a robot does that drives in any direction and turns."""
+    x, y, turn = after[0] - before[0], after[1] - before[1], turned_by(after[2] - before[2])
+    drive = hypot(x, y)
+    count = len(particles)
+    drive_sigma = sqrt(noise.drive_of_drive * drive**2 + noise.turn_of_turn * turn**2)
+    turn_sigma = sqrt(noise.drive_of_turn * turn**2 + noise.turn_of_drive * drive**2)
+    strafe_sigma = sqrt(noise.turn_of_turn * turn**2 + noise.strafe * drive**2)
+    bearing = turned_by(atan2(y, x) - before[2]) + particles[:, 2]
+    way = drive + random.normal(0.0, drive_sigma, count)
+    sideways = random.normal(0.0, strafe_sigma, count)
+    particles[:, 0] += way * np.cos(bearing) + sideways * np.sin(bearing)
+    particles[:, 1] += way * np.sin(bearing) - sideways * np.cos(bearing)
+    particles[:, 2] += turn + random.normal(0.0, turn_sigma, count)

@@ -1,0 +1,203 @@
+"""An adaptive particle filter: as many particles as what they know needs (KLD sampling), as nav2_amcl has it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import ceil, sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.navigation.grids.library import load_scipy
+from linkwright.navigation.localization.motion import Poses
+
+_BIN = np.array((0.5, 0.5, np.pi / 18.0))
+"""Metres, metres and radians within which poses count as one."""
+_TURNS = 36
+_CONVERGED = 0.5
+"""Metres from their mean within which all particles of a filter are that has converged."""
+
+
+@dataclass(frozen=True, slots=True)
+class FilterSettings:
+    """How many particles there are, and when new ones are made anywhere.
+
+    Attributes:
+        min_particles: at least.
+        max_particles: at most.
+        pf_err: how wrong the distribution may be.
+        pf_z: upper quantile for that.
+        recovery_alpha_slow: how fast the slow mean of likelihoods follows; 0 for never making particles anywhere.
+        recovery_alpha_fast: how fast the fast one does.
+    """
+
+    min_particles: int = 500
+    max_particles: int = 2000
+    pf_err: float = 0.05
+    pf_z: float = 0.99
+    recovery_alpha_slow: float = 0.0
+    recovery_alpha_fast: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Estimate:
+    """Where the robot is most likely.
+
+    Attributes:
+        pose: x and y in metres and yaw in radians, the mean of the likeliest cluster.
+        weight: of that cluster, 0 to 1.
+        covariance: of all particles, of shape (3, 3).
+    """
+
+    pose: tuple[float, float, float]
+    weight: float
+    covariance: NDArray[np.float64]
+
+
+class ParticleFilter:
+    """Weighted poses.
+
+    Args:
+        settings: how many there are.
+        seed: of all that is drawn; the same gives the same.
+
+    Attributes:
+        particles: of shape (n, 3).
+        weights: of shape (n,); their sum is 1.
+    """
+
+    def __init__(self, settings: FilterSettings, seed: int = 0) -> None:
+        self.settings = settings
+        self.random = np.random.default_rng(seed)
+        self.particles: Poses = np.zeros((settings.max_particles, 3))
+        self.weights: NDArray[np.float64] = np.full(settings.max_particles, 1.0 / settings.max_particles)
+        self._slow = self._fast = 0.0
+
+    def begin(self, particles: Poses) -> None:
+        """Have these particles, all alike."""
+        self.particles = particles
+        self.weights = np.full(len(particles), 1.0 / len(particles))
+        self._slow = self._fast = 0.0
+
+    def begin_at(self, pose: tuple[float, float, float], covariance: NDArray[np.float64]) -> None:
+        """Have particles around a pose: as many as there may be, with a covariance of shape (3, 3)."""
+        count = self.settings.max_particles
+        values, axes = np.linalg.eigh((covariance + covariance.T) / 2.0)
+        drawn = self.random.normal(size=(count, 3)) * np.sqrt(np.maximum(values, 0.0))
+        self.begin(np.array(pose) + drawn @ axes.T)
+
+    def weigh(self, likelihoods: NDArray[np.float64]) -> None:
+        """Take in how likely each particle is."""
+        weights = self.weights * likelihoods
+        total = float(weights.sum())
+        if not total > 0.0:
+            self.weights = np.full(len(weights), 1.0 / len(weights))
+            return
+        # The mean likelihood; nav2 divides it by the number of particles once more, and so takes fewer for worse.
+        slow, fast = self.settings.recovery_alpha_slow, self.settings.recovery_alpha_fast
+        self._slow = total if self._slow == 0.0 else self._slow + slow * (total - self._slow)
+        self._fast = total if self._fast == 0.0 else self._fast + fast * (total - self._fast)
+        self.weights = weights / total
+
+    def resample(self, anywhere: Callable[[int], Poses]) -> None:
+        """Draw particles anew by their weights, as many as they need.
+
+        Args:
+            anywhere: makes so many particles that come from nowhere, where the scans have come to fit less.
+        """
+        settings, random = self.settings, self.random
+        lost = max(0.0, 1.0 - self._fast / self._slow) if self._slow > 0.0 else 0.0
+        most = settings.max_particles
+        sums = np.cumsum(self.weights)
+        chosen = np.minimum(np.searchsorted(sums, random.uniform(0.0, sums[-1], most), side="right"), len(sums) - 1)
+        drawn = self.particles[chosen]
+        if lost > 0.0:
+            new = np.flatnonzero(random.uniform(size=most) < lost)
+            drawn[new] = anywhere(len(new))
+            self._slow = self._fast = 0.0
+        slow, fast = self._slow, self._fast
+        self.begin(drawn[: self._needed(drawn)].copy())
+        self._slow, self._fast = slow, fast
+
+    def has_converged(self) -> bool:
+        """Whether all particles are near their mean."""
+        away: NDArray[np.float64] = np.abs(self.particles[:, :2] - self.particles[:, :2].mean(axis=0))
+        return bool(away.max() <= _CONVERGED)
+
+    def estimate(self) -> Estimate:
+        """Where the robot is most likely."""
+        clusters = _clusters(self.particles)
+        weights = np.bincount(clusters, self.weights)
+        best = int(weights.argmax())
+        members = clusters == best
+        x, y, yaw, _ = _mean(self.particles[members], self.weights[members])
+        return Estimate((x, y, yaw), float(weights[best]), self._covariance())
+
+    def _covariance(self) -> NDArray[np.float64]:
+        x, y, _, length = _mean(self.particles, self.weights)
+        away = self.particles[:, :2] - (x, y)
+        covariance = np.zeros((3, 3))
+        covariance[:2, :2] = (away * self.weights[:, None]).T @ away
+        covariance[2, 2] = -2.0 * np.log(min(1.0, max(length, 1e-12)))
+        return covariance
+
+    def _needed(self, drawn: Poses) -> int:
+        """How many of the drawn particles are needed: the first number that is more than their bins ask for."""
+        _, first = np.unique(_bins(drawn)[0], return_index=True)
+        new = np.zeros(len(drawn), np.int64)
+        new[first] = 1
+        bins = np.cumsum(new)
+        limits = np.array([self._limit(count) for count in range(int(bins[-1]) + 1)])
+        enough = np.flatnonzero(np.arange(1, len(drawn) + 1) > limits[bins])
+        return int(enough[0]) + 1 if len(enough) else len(drawn)
+
+    def _limit(self, bins: int) -> int:
+        """How many particles so many bins need: Fox, "KLD-sampling", the approximation of Wilson and Hilferty."""
+        settings = self.settings
+        if bins <= 1:
+            return settings.max_particles
+        b = 2.0 / (9.0 * (bins - 1))
+        needed = ceil((bins - 1) / (2.0 * settings.pf_err) * (1.0 - b + sqrt(b) * settings.pf_z) ** 3)
+        return min(max(needed, settings.min_particles), settings.max_particles)
+
+
+def _bins(particles: Poses) -> tuple[NDArray[np.int64], int]:
+    """A number for the bin of each particle, and by how much it grows from one bin along x to the next.
+
+    Along y it grows by the number of bins in a turn, along yaw by 1, beginning anew after a turn. Around all there is a
+    rim of empty bins.
+    """
+    bins: NDArray[np.int64] = np.floor(particles / _BIN).astype(np.int64)
+    bins[:, :2] -= bins[:, :2].min(axis=0) - 1
+    along_x = (int(bins[:, 1].max()) + 2) * _TURNS
+    return bins[:, 0] * along_x + bins[:, 1] * _TURNS + bins[:, 2] % _TURNS, along_x
+
+
+def _clusters(particles: Poses) -> NDArray[np.int64]:
+    """The cluster of each particle: bins that touch belong together."""
+    numbers, along_x = _bins(particles)
+    bins, where = np.unique(numbers, return_inverse=True)
+    yaw = bins % _TURNS
+    here = np.arange(len(bins))
+    pairs = []
+    for way in (along_x + _TURNS, along_x, along_x - _TURNS, _TURNS, 0):  # the others are these from the other side
+        for turn in (-1, 0, 1):
+            beside = bins - yaw + way + (yaw + turn) % _TURNS
+            at = np.minimum(np.searchsorted(bins, beside), len(bins) - 1)
+            found = bins[at] == beside
+            pairs.append(np.stack((here[found], at[found])))
+    edges = np.concatenate(pairs, axis=1)
+    matrix = load_scipy("sparse").coo_matrix((np.ones(edges.shape[1]), edges), shape=(len(bins), len(bins)))
+    _, labels = load_scipy("sparse.csgraph").connected_components(matrix, directed=False)
+    clusters: NDArray[np.int64] = np.asarray(labels, np.int64)[where.reshape(-1)]
+    return clusters
+
+
+def _mean(particles: Poses, weights: NDArray[np.float64]) -> tuple[float, float, float, float]:
+    """Weighted mean of x, y and yaw, and how much the yaws agree, 0 to 1."""
+    total = float(weights.sum())
+    shares = weights / total if total > 0.0 else np.full(len(weights), 1.0 / len(weights))
+    x, y = shares @ particles[:, :2]
+    c, s = float(shares @ np.cos(particles[:, 2])), float(shares @ np.sin(particles[:, 2]))
+    return float(x), float(y), float(np.arctan2(s, c)), float(np.hypot(c, s))

@@ -1,0 +1,150 @@
+"""Scans and motions of amcl: known answers."""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+import pytest
+
+from linkwright.geometry.single import IDENTITY, Transform, quaternion_from_rpy
+from linkwright.messages import get_message
+from linkwright.navigation.grids.grid import FREE, OCCUPIED, UNKNOWN, Grid
+from linkwright.navigation.localization.beams import Beams, beams_of_scan
+from linkwright.navigation.localization.models import MODELS, BeamSkipping, LaserSettings, MapLikelihoods
+from linkwright.navigation.localization.motion import MotionModel, Noise, differential, omnidirectional
+
+_QUIET = Noise(0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+def room(yaw: float = 0.0) -> MapLikelihoods:
+    """A room of 6 by 4 metres with walls, its corner at (0, 0)."""
+    cells = np.full((80, 120), FREE, np.int8)
+    cells[[0, -1]] = cells[:, [0, -1]] = OCCUPIED
+    return MapLikelihoods(Grid(cells=cells, resolution=0.05, yaw=yaw), LaserSettings())
+
+
+def beams_in_room(x: float, y: float, yaw: float, count: int = 36) -> Beams:
+    """What a laser in the middle of the robot sees there."""
+    angles = np.linspace(-pi, pi, count, endpoint=False)
+    along = np.stack((np.cos(angles + yaw), np.sin(angles + yaw)), axis=-1)
+    walls = np.where(along > 0, (np.array((5.975, 3.975)) - (x, y)), (np.array((0.025, 0.025)) - (x, y)))
+    along = np.where(np.abs(along) < 1e-9, np.copysign(1e-9, walls), along)
+    ranges = (walls / along).min(axis=1)
+    ends = ranges[:, None] * np.stack((np.cos(angles), np.sin(angles)), axis=-1)
+    return Beams((0.0, 0.0), ends, ranges, 12.0)
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_the_true_pose_is_the_likeliest(model: str) -> None:
+    offsets = np.array([(x, y, yaw) for x in (-0.4, 0, 0.4) for y in (-0.4, 0, 0.4) for yaw in (-0.3, 0, 0.3)])
+    poses = np.array((2.0, 1.5, 0.4)) + offsets
+    likelihoods = room().likelihoods(model, poses, beams_in_room(2.0, 1.5, 0.4))
+    assert likelihoods.argmax() == 13
+    assert (likelihoods > 0.0).all()
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_it_is_so_on_a_turned_map(model: str) -> None:
+    turned = room(yaw=pi / 2)
+    poses = np.array([(-1.5, 2.0, 0.4 + pi / 2), (-1.5, 2.0, 0.4), (-2.5, 2.0, 0.4 + pi / 2)])
+    assert turned.likelihoods(model, poses, beams_in_room(2.0, 1.5, 0.4)).argmax() == 0
+
+
+def test_likelihoods_are_those_of_the_formula() -> None:
+    settings = LaserSettings(z_hit=0.6, z_rand=0.4, sigma_hit=0.1)
+    cells = np.full((20, 40), FREE, np.int8)
+    cells[:, 30] = OCCUPIED
+    likelihoods = MapLikelihoods(Grid(cells=cells, resolution=0.1), settings)
+    beams = Beams((0.0, 0.0), np.array([[1.0, 0.0]]), np.array([1.0]), 8.0)
+    measured = likelihoods.likelihoods("likelihood_field", np.array([[2.05, 1.05, 0.0], [1.85, 1.05, 0.0]]), beams)
+    chances = 0.6 * np.exp(-0.5 * (np.array([0.0, 0.2]) / 0.1) ** 2) + 0.4 / 8.0
+    assert measured == pytest.approx(1.0 + chances**3, abs=1e-6)
+    product = likelihoods.likelihoods("likelihood_field_prob", np.array([[2.05, 1.05, 0.0], [1.85, 1.05, 0.0]]), beams)
+    assert product[1] / product[0] == pytest.approx(chances[1] / chances[0], rel=1e-5)
+
+
+def test_beams_that_met_nothing_say_nothing_and_those_that_leave_the_map_are_far() -> None:
+    beams = Beams((0.0, 0.0), np.array([[12.0, 0.0]]), np.array([12.0]), 12.0)
+    assert room().likelihoods("likelihood_field", np.array([[2.0, 2.0, 0.0]]), beams).tolist() == [1.0]
+    assert room().fit((2.0, 2.0, 0.0), beams) is None
+    assert room().fit((500.0, -300.0, 0.0), beams_in_room(2.0, 2.0, 0.0)) == 0.0
+    assert room().fit((2.0, 2.0, 0.0), beams_in_room(2.0, 2.0, 0.0)) == 1.0
+
+
+def test_beams_that_few_particles_explain_are_skipped() -> None:
+    beams = beams_in_room(2.0, 1.5, 0.0)
+    beams.ends[:6] *= 0.4  # somebody stands there
+    poses = np.array([(2.0, 1.5, 0.0), (2.1, 1.5, 0.0), (1.4, 1.5, 0.0)])
+    likelihoods = room()
+    plain = likelihoods.likelihoods("likelihood_field_prob", poses, beams)
+    skipped = likelihoods.likelihoods("likelihood_field_prob", poses, beams, BeamSkipping())
+    without = Beams((0.0, 0.0), beams.ends[6:], beams.ranges[6:], 12.0)
+    assert skipped == pytest.approx(likelihoods.likelihoods("likelihood_field_prob", poses, without), rel=1e-5)
+    assert plain[2] > 1.5 * skipped[2]
+
+
+def test_random_poses_are_in_free_cells() -> None:
+    cells = np.full((10, 10), UNKNOWN, np.int8)
+    cells[3, 7] = FREE
+    poses = MapLikelihoods(Grid(cells=cells, resolution=1.0), LaserSettings()).random_poses(
+        50, np.random.default_rng(1)
+    )
+    assert (np.floor(poses[:, :2]) == (7, 3)).all()
+    assert np.ptp(poses[:, 2]) > 4.0
+
+
+def _scan(ranges: list[float]) -> object:
+    return get_message("sensor_msgs/msg/LaserScan")(
+        angle_min=-pi / 2, angle_max=pi / 2, angle_increment=pi / 2, range_min=0.1, range_max=5.0, ranges=ranges
+    )
+
+
+def test_beams_are_those_of_the_scan_in_the_frame_of_the_robot() -> None:
+    pose: Transform = (0.5, 0.0, 0.3, *quaternion_from_rpy((0.0, 0.0, pi / 2)))
+    beams = beams_of_scan(_scan([1.0, 2.0, 3.0]), pose, 60)
+    assert beams.ends == pytest.approx(np.array([[1.5, 0.0], [0.5, 2.0], [-2.5, 0.0]]))
+    assert beams.angles == pytest.approx([0.0, pi / 2, pi])
+
+
+def test_a_laser_that_hangs_upside_down_sees_the_other_way_round() -> None:
+    upside_down: Transform = (0.0, 0.0, 0.3, *quaternion_from_rpy((pi, 0.0, 0.0)))
+    beams = beams_of_scan(_scan([1.0, 2.0, 3.0]), upside_down, 60)
+    assert beams.ends == pytest.approx(np.array([[0.0, 1.0], [2.0, 0.0], [0.0, -3.0]]), abs=1e-12)
+
+
+def test_beams_that_are_none_or_too_short_or_too_long() -> None:
+    nan, inf = float("nan"), float("inf")
+    assert beams_of_scan(_scan([nan, 0.05, inf]), IDENTITY, 60).ranges.tolist() == [5.0, 5.0]
+    assert beams_of_scan(_scan([1.0, 3.0, 4.5]), IDENTITY, 60, 2.0, 4.0).ranges.tolist() == [4.0, 3.0, 4.0]
+    assert len(beams_of_scan(_scan([1.0, 3.0, 4.5]), IDENTITY, 1).ranges) == 1
+    assert len(beams_of_scan(_scan([]), IDENTITY, 60).ranges) == 0
+
+
+@pytest.mark.parametrize("model", [differential, omnidirectional])
+def test_without_noise_particles_move_as_odometry_says(model: MotionModel) -> None:
+    particles = np.array([[0.0, 0.0, 0.0], [5.0, 5.0, pi / 2]])
+    model(particles, (1.0, 1.0, 0.0), (2.0, 1.5, 0.5), _QUIET, np.random.default_rng(0))
+    assert particles == pytest.approx(np.array([[1.0, 0.5, 0.5], [4.5, 6.0, pi / 2 + 0.5]]))
+
+
+def test_driving_back_is_no_half_turn() -> None:
+    random = np.random.default_rng(0)
+    particles = np.zeros((4000, 3))
+    differential(particles, (0.0, 0.0, 0.0), (-1.0, 0.0, 0.0), Noise(0.2, 0.0, 0.0, 0.0), random)
+    assert particles == pytest.approx(np.tile((-1.0, 0.0, 0.0), (4000, 1)), abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("model", "noise", "column", "sigma"),
+    [
+        (differential, Noise(0.0, 0.0, 0.04, 0.0), 0, 0.2),
+        (omnidirectional, Noise(0.0, 0.0, 0.04, 0.0), 0, 0.2),
+        (omnidirectional, Noise(0.0, 0.0, 0.0, 0.0, 0.04), 1, 0.2),
+        (omnidirectional, Noise(0.0, 0.04, 0.0, 0.0), 2, 0.2),
+    ],
+)
+def test_noise_is_as_large_as_said(model: MotionModel, noise: Noise, column: int, sigma: float) -> None:
+    particles = np.zeros((20_000, 3))
+    model(particles, (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), noise, np.random.default_rng(0))
+    assert particles[:, column].std() == pytest.approx(sigma, rel=0.03)

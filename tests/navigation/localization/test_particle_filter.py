@@ -1,0 +1,119 @@
+"""The particle filter: how many particles, which are kept, where the robot is."""
+
+from __future__ import annotations
+
+from math import ceil, pi, sqrt
+
+import numpy as np
+import pytest
+
+from linkwright.navigation.localization.motion import Noise, Poses, differential
+from linkwright.navigation.localization.particle_filter import FilterSettings, ParticleFilter
+from tests.navigation.localization.test_models import beams_in_room, room
+
+
+def _nowhere(count: int) -> Poses:
+    raise AssertionError(count)
+
+
+def test_particles_begin_with_the_mean_and_covariance_that_are_given() -> None:
+    particles = ParticleFilter(FilterSettings(max_particles=20_000))
+    covariance = np.array([[0.25, 0.1, 0.0], [0.1, 0.16, 0.0], [0.0, 0.0, 0.04]])
+    particles.begin_at((1.0, -2.0, 3.0), covariance)
+    assert particles.particles.mean(axis=0) == pytest.approx([1.0, -2.0, 3.0], abs=0.02)
+    assert np.cov(particles.particles.T) == pytest.approx(covariance, abs=0.01)
+    estimate = particles.estimate()
+    assert estimate.pose == pytest.approx((1.0, -2.0, 3.0), abs=0.02)
+    assert estimate.covariance[:2, :2] == pytest.approx(covariance[:2, :2], abs=0.01)
+    assert estimate.covariance[2, 2] == pytest.approx(0.04, abs=0.005)
+
+
+def test_as_many_particles_are_kept_as_their_bins_ask_for() -> None:
+    settings = FilterSettings(min_particles=100, max_particles=5000)
+    particles = ParticleFilter(settings)
+    bins = 40
+    places = np.column_stack((np.arange(bins) * 0.5 + 0.25, np.full(bins, 0.25), np.full(bins, 0.01)))
+    particles.begin(np.repeat(places, 100, axis=0))
+    particles.resample(_nowhere)
+    b = 2.0 / (9.0 * (bins - 1))
+    assert len(particles.particles) == ceil((bins - 1) / 0.1 * (1.0 - b + sqrt(b) * 0.99) ** 3) + 1
+    particles.begin(np.repeat(places[:2], 100, axis=0))
+    particles.resample(_nowhere)
+    assert len(particles.particles) == 101
+
+
+def test_particles_are_drawn_by_their_weights() -> None:
+    particles = ParticleFilter(FilterSettings())
+    particles.begin(np.array([(0.25, 0.25, 0.01), (3.25, 0.25, 0.01), (6.25, 0.25, 0.01)]))
+    particles.weigh(np.array([1.0, 0.0, 3.0]))
+    particles.resample(_nowhere)
+    found, counts = np.unique(particles.particles[:, 0], return_counts=True)
+    assert found.tolist() == [0.25, 6.25]
+    assert counts[1] / counts.sum() == pytest.approx(0.75, abs=0.05)
+
+
+def test_the_estimate_is_the_mean_of_the_likeliest_cluster() -> None:
+    particles = ParticleFilter(FilterSettings())
+    here = np.random.default_rng(0).normal((2.0, 1.0, pi), (0.2, 0.2, 0.2), (600, 3))  # across the turn's end
+    here[:, 2] = (here[:, 2] + pi) % (2 * pi) - pi
+    there = np.random.default_rng(1).normal((8.0, 5.0, 0.0), 0.1, (400, 3))
+    particles.begin(np.concatenate((here, there)))
+    estimate = particles.estimate()
+    assert estimate.weight == pytest.approx(0.6, abs=0.01)
+    assert estimate.pose[:2] == pytest.approx((2.0, 1.0), abs=0.03)
+    assert abs(estimate.pose[2]) == pytest.approx(pi, abs=0.03)
+    assert not particles.has_converged()
+    particles.begin(there)
+    assert particles.has_converged()
+
+
+def test_particles_come_from_anywhere_when_scans_fit_less_than_before() -> None:
+    particles = ParticleFilter(FilterSettings(recovery_alpha_slow=0.001, recovery_alpha_fast=0.5))
+    particles.begin(np.tile((1.0, 1.0, 0.0), (1000, 1)))
+    asked: list[int] = []
+
+    def anywhere(count: int) -> Poses:
+        asked.append(count)
+        return np.full((count, 3), 9.0)
+
+    for likelihood in (8.0, 8.0, 1.0):
+        particles.weigh(np.full(len(particles.particles), likelihood))
+        particles.resample(anywhere)
+    assert len(asked) == 1
+    assert asked[0] / 2000 == pytest.approx(1 - 4.5 / 7.993, abs=0.05)
+
+
+def test_likelihoods_of_nothing_leave_all_alike() -> None:
+    particles = ParticleFilter(FilterSettings())
+    particles.weigh(np.zeros(2000))
+    assert particles.weights == pytest.approx(1.0 / 2000)
+
+
+def test_a_pose_that_is_half_a_metre_wrong_is_put_right_while_driving() -> None:
+    """In a room, scans exact, odometry too: off by 0.5 m and 0.3 rad at first."""
+    likelihoods = room()
+    particles = ParticleFilter(FilterSettings())
+    true = np.array((1.5, 1.2, 0.2))
+    particles.begin_at((1.8, 0.8, 0.5), np.diag((0.25, 0.25, (pi / 12) ** 2)))
+    for _ in range(12):
+        before = (float(true[0]), float(true[1]), float(true[2]))
+        true += (0.25 * np.cos(true[2]), 0.25 * np.sin(true[2]), 0.05)
+        after = (float(true[0]), float(true[1]), float(true[2]))
+        differential(particles.particles, before, after, Noise(), particles.random)
+        particles.weigh(likelihoods.likelihoods("likelihood_field", particles.particles, beams_in_room(*after)))
+        particles.resample(_nowhere)
+    x, y, yaw = particles.estimate().pose
+    assert np.hypot(x - true[0], y - true[1]) < 0.1
+    assert abs(yaw - true[2]) < 0.1
+
+
+def test_twice_the_same_gives_the_same() -> None:
+    def run() -> list[list[float]]:
+        particles = ParticleFilter(FilterSettings(), seed=7)
+        particles.begin_at((2.0, 1.5, 0.0), np.eye(3) * 0.1)
+        particles.weigh(room().likelihoods("likelihood_field", particles.particles, beams_in_room(2.0, 1.5, 0.0)))
+        particles.resample(_nowhere)
+        drawn: list[list[float]] = particles.particles.tolist()
+        return drawn
+
+    assert run() == run()

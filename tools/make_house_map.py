@@ -1,0 +1,73 @@
+"""Write the map of the house, ``robots/my_robot_gazebo/maps/house.yaml`` and its image.
+
+Usage: python tools/make_house_map.py
+
+An exact laser at the height of mbot's looks around from many places in the house that can be reached from the origin.
+Its rays make cells free, and their ends make them occupied, as with a mapper that makes no errors.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from linkwright.navigation.grids.grid import FREE, OCCUPIED, UNKNOWN, Grid
+from linkwright.navigation.grids.marking import ray_counts
+from linkwright.navigation.maps.map_files import SavedAs, save_map
+from linkwright.packages import PackageFinder
+from linkwright.sdf.resources import ResourceFinder
+from linkwright.simulation.casting import GROUPS, cast
+from linkwright.simulation.simulation import Simulation
+from linkwright.testing.scenes import read_world
+
+PACKAGE = Path(__file__).resolve().parent.parent / "robots" / "my_robot_gazebo"
+HEIGHT = 0.215
+"""Of the laser of mbot_gazebo.xacro above the ground, in metres."""
+RAYS = 2880
+REACH = 20.0
+APART = 10
+"""Cells between two places from which it looks."""
+INSIDE = np.array((4.9, 3.9))
+"""Metres from the origin to the walls around the house, along x and y; its front door stands open."""
+
+
+def house_map() -> Grid:
+    """The map: 5 cm cells, the frame of the world."""
+    world = read_world(str(PACKAGE / "worlds" / "house.world")).world
+    simulation = Simulation(world, ResourceFinder(PackageFinder(start=[PACKAGE])))
+    grid = Grid(cells=np.full((180, 220), UNKNOWN, np.int8), resolution=0.05, x=-5.5, y=-4.5)
+    shape = (grid.rows, grid.columns)
+    hits, passes = np.zeros(shape, np.int64), np.zeros(shape, np.int64)
+    angles = np.linspace(-np.pi, np.pi, RAYS, endpoint=False)
+    rays = np.column_stack((np.cos(angles), np.sin(angles), np.zeros(RAYS)))
+    groups = np.ones(GROUPS, np.uint8)
+    waiting, seen = [grid.cells_of(np.zeros(2))], set()
+    while waiting:
+        cell = waiting.pop()
+        if tuple(cell) in seen:
+            continue
+        seen.add(tuple(cell))
+        place = grid.centres_of(cell)
+        origin = np.array((*place, HEIGHT))
+        distances, _ = cast(simulation.model, simulation.data, origin, rays, groups, apart_from=-1, reach=REACH)
+        met = distances > 0.0
+        # A little into what was hit: a wall that ends where cells do belongs to one of them.
+        ends = place + (np.where(met, distances + 0.002, REACH))[:, None] * rays[:, :2]
+        hit, passed = ray_counts(shape, cell, grid.cells_of(ends), met)
+        hits += hit
+        passes += passed
+        for way in ((APART, 0), (-APART, 0), (0, APART), (0, -APART)):
+            beside = cell + way
+            between = np.linspace(cell, beside, APART + 1).astype(int)
+            inside = (np.abs(grid.centres_of(beside)) < INSIDE).all()
+            if inside and not hits[tuple(between.T)].any() and passes[tuple(between.T)].all():
+                waiting.append(beside)
+    # A ray that grazes a wall goes through its cells, too: what was hit as a rule is occupied.
+    grid.cells[passes > 0] = FREE
+    grid.cells[hits > 0.1 * passes] = OCCUPIED
+    return grid
+
+
+if __name__ == "__main__":
+    save_map(house_map(), SavedAs(name=str(PACKAGE / "maps" / "house"), free_thresh=0.196))
