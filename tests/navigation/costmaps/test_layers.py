@@ -16,6 +16,7 @@ from linkwright.navigation.costmaps.inflation_layer import Inflation, InflationL
 from linkwright.navigation.costmaps.layered import LayeredCostmap
 from linkwright.navigation.costmaps.observations import ObservationBuffer, Source
 from linkwright.navigation.costmaps.obstacle_layer import Heights, ObstacleLayer
+from linkwright.navigation.costmaps.range_layer import RangeLayer, RangeSettings, Reading
 from linkwright.navigation.costmaps.static_layer import Interpretation, StaticLayer
 from linkwright.navigation.costmaps.voxel_layer import VoxelLayer, Voxels
 from linkwright.navigation.grids.grid import Grid
@@ -288,6 +289,64 @@ def test_without_a_map_it_is_not_current():
     scene.update(HERE, 0)
     assert scene.is_current(0)
     assert not scene.update(HERE, 0)
+
+
+# --- ranges -----------------------------------------------------------------------------------------------------------
+
+
+class Sonar:
+    """A sensor that measures one distance, and a costmap."""
+
+    def __init__(self, **settings) -> None:
+        self.layer = RangeLayer(RangeSettings(**settings))
+        self.costmap = costmap(self.layer)
+
+    def measure(self, distance: float, *, free: bool = False, times: int = 5) -> np.ndarray:
+        for _ in range(times):
+            self.layer.take(Reading(1.05, 2.05, 0.0, distance, 0.5, free, SECOND))
+        self.costmap.update(HERE, SECOND)
+        return self.costmap.costmap.grid.cells
+
+
+def test_what_a_sonar_measures_again_and_again_becomes_an_obstacle_and_goes():
+    sonar = Sonar()
+    assert sonar.measure(1.0)[20, 20] == LETHAL
+    assert not sonar.costmap.costmap.grid.cells[20, 10:18].any()
+    cells = sonar.measure(2.0, times=12)
+    assert cells[20, 20] == FREE
+    assert cells[20, 30] == LETHAL
+
+
+def test_a_sonar_says_nothing_of_what_it_does_not_see():
+    sonar = Sonar()
+    marked = np.argwhere(sonar.measure(1.0) == LETHAL)
+    angles = np.arctan2(marked[:, 0] - 20, marked[:, 1] - 10)
+    assert np.abs(angles).max() <= 0.25 + 0.05
+    assert (marked[:, 1] > 15).all()
+    assert (sonar.layer.seen.cells[:, :10] == 127).all()
+
+
+def test_a_sonar_that_meets_nothing_frees_its_view():
+    sonar = Sonar()
+    sonar.measure(1.0)
+    assert not (sonar.measure(2.0, free=True, times=1)[18:23, 15:28] == LETHAL).any()
+
+
+def test_a_sonar_that_is_silent_for_too_long_is_told():
+    sonar = Sonar(no_readings_timeout=1.0)
+    assert not sonar.costmap.is_current(SECOND)
+    sonar.measure(1.0)
+    assert sonar.costmap.is_current(2 * SECOND)
+    assert not sonar.costmap.is_current(3 * SECOND)
+
+
+def test_likelihoods_are_forgotten():
+    sonar = Sonar()
+    sonar.measure(1.0)
+    sonar.costmap.clear_around(HERE, 9.0)
+    sonar.costmap.update(HERE, SECOND)
+    assert not sonar.costmap.costmap.grid.cells.any()
+    assert (sonar.layer.seen.cells == 127).all()
 
 
 # --- specks -----------------------------------------------------------------------------------------------------------

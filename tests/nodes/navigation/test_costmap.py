@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from linkwright.graph import DESCRIPTION_QOS, Parameter
+from linkwright.graph import DESCRIPTION_QOS, SENSOR_DATA_QOS, Parameter
 from linkwright.graph.lifecycle.states import TransitionCallbackReturn
 from linkwright.messages import get_message, get_service
 from linkwright.navigation.costmaps.costmap import FREE, INSCRIBED, LETHAL
@@ -144,6 +144,23 @@ async def test_a_local_costmap_moves_with_the_robot(scene, start):
     assert node.costmap.cost_at(np.array([1.8, 1.0])) == LETHAL
 
 
+async def test_what_a_sonar_measures(scene, start):
+    node = start(
+        plugins=["sonar"],
+        **{"sonar.plugin": "nav2_costmap_2d::RangeSensorLayer", "sonar.topics": ["sonar"]},
+    )
+    kind = get_message("sensor_msgs/msg/Range")
+    publisher = scene.node.create_publisher(kind, "/sonar", SENSOR_DATA_QOS)
+    for _ in range(5):
+        message = kind(field_of_view=0.5, min_range=0.1, max_range=3.0, range=1.0)
+        message.header.frame_id, message.header.stamp = "base_link", scene.stamp()
+        publisher.publish(message)
+        scene.tell_pose()
+        await scene.run(0.2)
+    assert node.costmap.cost_at(np.array([2.0, 1.0])) == LETHAL
+    assert node.costmap.cost_at(np.array([1.5, 1.0])) == FREE
+
+
 async def test_others_hear_of_it(scene, start):
     maps, parts, raw, outlines = [], [], [], []
     for kind, topic, heard in (
@@ -222,13 +239,13 @@ async def test_what_is_not_had_is_left_out_with_a_line(scene, start, log):
         plugins=["static_layer", "sonar"],
         filters=["keepout_filter"],
         **{
-            "sonar.plugin": "nav2_costmap_2d::RangeSensorLayer",
+            "sonar.plugin": "my_package::Sonar",
             "sonar.topics": ["/sonar"],
             "keepout_filter.enabled": True,
         },
     )
     told = [each.text for each in log]
-    assert "there is no layer nav2_costmap_2d::RangeSensorLayer here: the costmap does without 'sonar'" in told
+    assert "there is no layer my_package::Sonar here: the costmap does without 'sonar'" in told
     assert "there are no filters of costs here: the costmap does without keepout_filter" in told
     assert "layers that 'plugins' does not name are not there: obstacle_layer" in told
     assert not [each for each in told if "is no parameter" in each or "are not read" in each]

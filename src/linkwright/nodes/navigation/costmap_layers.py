@@ -19,11 +19,12 @@ from linkwright.navigation.costmaps.inflation_layer import Inflation, InflationL
 from linkwright.navigation.costmaps.layer import Layer
 from linkwright.navigation.costmaps.observations import ObservationBuffer, Source
 from linkwright.navigation.costmaps.obstacle_layer import Heights, ObstacleLayer
+from linkwright.navigation.costmaps.range_layer import RangeLayer, RangeSettings
 from linkwright.navigation.costmaps.static_layer import Interpretation, MapPose, StaticLayer
 from linkwright.navigation.costmaps.voxel_layer import MOST_LEVELS, VoxelLayer, Voxels
 from linkwright.navigation.grids.grid import Grid
-from linkwright.nodes.navigation.costmap_sources import MapTopic, SensorTopic
-from linkwright.nodes.navigation.plugins import declared, take_unread, value_of
+from linkwright.nodes.navigation.costmap_sources import MapTopic, PointsTopic, RangeTopic, SensorTopic
+from linkwright.nodes.navigation.plugins import declared, take_unread, texts_of, value_of
 from linkwright.nodes.settings import bad_value
 
 DEFAULT_LAYERS: Final = {
@@ -73,6 +74,7 @@ def make_layers(shared: Surroundings, names: list[str]) -> None:
         "VoxelLayer": _voxels,
         "InflationLayer": _inflation,
         "DenoiseLayer": _denoise,
+        "RangeSensorLayer": _ranges,
     }
     node = shared.node
     for name in names:
@@ -191,7 +193,7 @@ def _buffers(shared: Surroundings, name: str) -> list[ObservationBuffer]:
         if kind not in _KINDS:
             raise bad_value(f"{prefix}.data_type", kind, shared.node.get_name(), _KINDS)
         buffer = ObservationBuffer(declared(shared.node, prefix, Source))
-        topic = SensorTopic(
+        topic = PointsTopic(
             shared.node,
             _beside(shared.node, shared.value(f"{prefix}.topic", source)),
             kind,
@@ -209,6 +211,17 @@ def _buffers(shared: Surroundings, name: str) -> list[ObservationBuffer]:
 
 def _inflation(shared: Surroundings, name: str) -> Layer:
     return InflationLayer(declared(shared.node, name, Inflation))
+
+
+def _ranges(shared: Surroundings, name: str) -> Layer:
+    layer = RangeLayer(declared(shared.node, name, RangeSettings))
+    shared.value(f"{name}.inflate_cone", 1.0)
+    shared.value(f"{name}.input_sensor_type", "ALL")
+    for topic in texts_of(shared.node, f"{name}.topics", []):
+        listening = RangeTopic(shared.node, _beside(shared.node, topic), layer, shared.transforms, shared.frame)
+        shared.topics.append(listening)
+        shared.sensors.append(listening)
+    return layer
 
 
 def _denoise(shared: Surroundings, name: str) -> Layer:

@@ -6,6 +6,7 @@ when the costmap is updated: of a sensor whose points count only until there are
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Callable
 from math import ceil
@@ -28,6 +29,7 @@ from linkwright.graph import (
 from linkwright.graph.transforms.core import BufferCore
 from linkwright.messages import get_message
 from linkwright.navigation.costmaps.observations import ObservationBuffer
+from linkwright.navigation.costmaps.range_layer import RangeLayer, Reading
 from linkwright.navigation.costmaps.static_layer import StaticLayer
 from linkwright.navigation.grids.grid import Grid
 from linkwright.navigation.grids.occupancy import BadGridError, grid_of
@@ -41,7 +43,60 @@ _LITTLE = 1e-4
 """By which a ray that met nothing ends before the range of its sensor, in metres."""
 
 
-class SensorTopic:
+class SensorTopic(ABC):
+    """A topic of a sensor, whose messages wait until their place is known.
+
+    Args:
+        node: listens.
+        topic: its name.
+        kind: of its messages, in sensor_msgs.
+        transforms: where sensors are.
+        frame: of the costmap.
+    """
+
+    def __init__(self, node: Node, topic: str, kind: str, transforms: BufferCore, frame: str) -> None:
+        self._transforms, self._frame = transforms, frame
+        self._waiting: deque[Any] = deque(maxlen=_WAITING)
+        message = get_message(f"sensor_msgs/msg/{kind}")
+        self._subscription = node.create_subscription(message, topic, self._hear, SENSOR_DATA_QOS)
+
+    def destroy(self) -> None:
+        """Leave the topic."""
+        self._subscription.destroy()
+
+    def take_in(self) -> None:
+        """Give the layer what came and has a place."""
+        waiting = list(self._waiting)
+        placed = [(message, pose) for message in waiting if (pose := self._pose(message)) is not None]
+        if not placed:
+            return
+        later = waiting[waiting.index(placed[-1][0]) + 1 :]
+        self._waiting.clear()
+        self._waiting.extend(later)
+        for message, pose in placed if self.all_count else placed[-1:]:
+            self._observe(message, pose)
+
+    @property
+    @abstractmethod
+    def all_count(self) -> bool:
+        """Whether messages count that others came after."""
+
+    @abstractmethod
+    def _observe(self, message: Any, pose: Transform) -> None:
+        """Give the layer what was seen from a pose in the frame of the costmap."""
+
+    def _hear(self, message: Any) -> None:
+        self._waiting.append(message)
+
+    def _pose(self, message: Any) -> Transform | None:
+        header = message.header
+        try:
+            return self._transforms.lookup(self._frame, header.frame_id, header.stamp.nanoseconds)[0]
+        except TransformException:
+            return None
+
+
+class PointsTopic(SensorTopic):
     """A topic of scans or clouds, for a layer of obstacles.
 
     Args:
@@ -67,40 +122,16 @@ class SensorTopic:
         sensor_frame: str = "",
         inf_is_valid: bool = False,
     ) -> None:
+        super().__init__(node, topic, kind, transforms, frame)
         self.buffer = buffer
-        self._transforms, self._frame = transforms, frame
         self._sensor_frame = sensor_frame
         self._inf_is_valid = inf_is_valid
         self._points: Callable[[Any], NDArray[np.float64] | None] = self._of_scan if kind == "LaserScan" else points_of
-        self._waiting: deque[Any] = deque(maxlen=_WAITING)
-        message = get_message(f"sensor_msgs/msg/{kind}")
-        self._subscription = node.create_subscription(message, topic, self._hear, SENSOR_DATA_QOS)
 
-    def destroy(self) -> None:
-        """Leave the topic."""
-        self._subscription.destroy()
-
-    def take_in(self) -> None:
-        """Give the buffer what came and has a place."""
-        waiting = list(self._waiting)
-        placed = [(message, pose) for message in waiting if (pose := self._pose(message)) is not None]
-        if not placed:
-            return
-        later = waiting[waiting.index(placed[-1][0]) + 1 :]
-        self._waiting.clear()
-        self._waiting.extend(later)
-        for message, pose in placed if self.buffer.source.observation_persistence else placed[-1:]:
-            self._observe(message, pose)
-
-    def _hear(self, message: Any) -> None:
-        self._waiting.append(message)
-
-    def _pose(self, message: Any) -> Transform | None:
-        header = message.header
-        try:
-            return self._transforms.lookup(self._frame, header.frame_id, header.stamp.nanoseconds)[0]
-        except TransformException:
-            return None
+    @property
+    def all_count(self) -> bool:
+        """Whether points persist."""
+        return bool(self.buffer.source.observation_persistence)
 
     def _observe(self, message: Any, pose: Transform) -> None:
         points = self._points(message)
@@ -122,6 +153,36 @@ class SensorTopic:
         if self._inf_is_valid:
             scan.ranges[np.isposinf(scan.ranges)] = scan.range_max - _LITTLE
         return points_of_scan(scan)[0].astype(np.float64)
+
+
+class RangeTopic(SensorTopic):
+    """A topic of single distances, for a layer of ranges."""
+
+    def __init__(self, node: Node, topic: str, layer: RangeLayer, transforms: BufferCore, frame: str) -> None:
+        super().__init__(node, topic, "Range", transforms, frame)
+        self._layer = layer
+
+    @property
+    def all_count(self) -> bool:
+        """Likelihoods are learnt from all."""
+        return True
+
+    def _observe(self, message: Any, pose: Transform) -> None:
+        least, most, distance = message.min_range, message.max_range, message.range
+        free = self._layer.settings.clear_on_max_reading
+        if least == most:  # of a sensor that tells only whether there is something
+            if not np.isinf(distance) or (distance > 0.0 and not free):
+                return
+            free, distance = distance > 0.0, least
+        elif not least <= distance <= most:
+            return
+        else:
+            free = free and distance >= most
+        ahead = rotation_matrix(pose[3:])[:, 0]
+        yaw = float(np.arctan2(ahead[1], ahead[0]))
+        flat = float(np.hypot(ahead[0], ahead[1]))
+        stamp_ns = message.header.stamp.nanoseconds
+        self._layer.take(Reading(pose[0], pose[1], yaw, distance * flat, message.field_of_view, free, stamp_ns))
 
 
 class MapTopic:

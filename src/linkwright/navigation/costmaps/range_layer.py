@@ -1,0 +1,163 @@
+"""The layer of sensors that measure one distance over a wide angle, such as sonars: how likely there is something.
+
+Source: nav2_costmap_2d ``RangeSensorLayer``. Different on purpose: only cells within the field of view change.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass
+from math import ceil
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.navigation.costmaps.costmap import FREE, LETHAL, UNKNOWN
+from linkwright.navigation.costmaps.layer import Moment, SeenLayer, Window
+from linkwright.navigation.grids.grid import Grid
+
+_CERTAIN: Final = 254.0
+_EVEN: Final = 127
+"""Of a cell of which nothing is known: it is as likely occupied as free."""
+_HIT: Final = 233
+"""Of the cell in the middle of where something was measured."""
+_LEAST: Final = 0.02
+"""Likelihoods count as no less, and no nearer to 1, so that nothing is certain for ever."""
+_BEYOND: Final = 1.2
+"""As far behind what was measured, as a factor, cells are looked at."""
+_NANOSECONDS = 1e9
+
+
+@dataclass(frozen=True, kw_only=True)
+class RangeSettings:
+    """What readings mean; names and defaults are nav2's.
+
+    Attributes:
+        phi: from about this distance on readings say little, in metres.
+        clear_threshold: cells that are less likely occupied are free.
+        mark_threshold: cells that are more likely occupied are obstacles.
+        clear_on_max_reading: whether a sensor that measures its greatest distance sees that there is nothing.
+        no_readings_timeout: so long the sensors may be silent until the costmap is not to be believed, in seconds; 0
+            for ever.
+    """
+
+    phi: float = 1.2
+    clear_threshold: float = 0.2
+    mark_threshold: float = 0.8
+    clear_on_max_reading: bool = False
+    no_readings_timeout: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """What a sensor measured.
+
+    Attributes:
+        x, y: of the sensor in the frame of the costmap, in metres.
+        yaw: where it looks, in radians.
+        distance: what it measured, in metres.
+        field_of_view: its whole width, in radians.
+        free: whether it saw that there is nothing up to there.
+        time_ns: when.
+    """
+
+    x: float
+    y: float
+    yaw: float
+    distance: float
+    field_of_view: float
+    free: bool
+    time_ns: int
+
+
+class RangeLayer(SeenLayer):
+    """Likelihoods, which readings change: in `seen`, 0 is free for sure and 254 occupied for sure."""
+
+    def __init__(self, settings: RangeSettings) -> None:
+        super().__init__()
+        self.settings = settings
+        self._readings: deque[Reading] = deque()
+        self._heard_ns: int | None = None
+
+    def take(self, reading: Reading) -> None:
+        """Something was measured."""
+        self._readings.append(reading)
+        self._heard_ns = reading.time_ns
+
+    def match(self, grid: Grid, default: int) -> None:  # noqa: ARG002
+        """Keep what is still in the costmap after it moved."""
+        super().match(grid, _EVEN)
+
+    def clear(self, window: Window, *, outside: bool) -> None:
+        """Nothing is known in a window, or in all the rest."""
+        super().clear(window, outside=outside)
+        self.seen.cells[self.seen.cells == UNKNOWN] = _EVEN
+
+    def is_current(self, time_ns: int) -> bool:
+        """Whether a sensor was heard lately enough."""
+        most = self.settings.no_readings_timeout
+        return not most or (self._heard_ns is not None and (time_ns - self._heard_ns) / _NANOSECONDS <= most)
+
+    def changed(self, window: Window, moment: Moment, grid: Grid) -> Window:  # noqa: ARG002
+        """What new readings are about."""
+        window = window.joined(self.take_extra())
+        while self._readings:
+            window = window.joined(self._learn(self._readings.popleft(), grid))
+        return window
+
+    def write(self, grid: Grid, window: Window, moment: Moment) -> None:  # noqa: ARG002
+        """Obstacles and free cells, where that is likely enough."""
+        likely, below = self.seen.cells[window.cells], grid.cells[window.cells]
+        below[(likely < self.settings.clear_threshold * _CERTAIN) & (below == UNKNOWN)] = FREE
+        below[likely > self.settings.mark_threshold * _CERTAIN] = LETHAL
+
+    def _learn(self, reading: Reading, grid: Grid) -> Window:
+        """Change likelihoods by Bayes' rule."""
+        reach = ceil(_BEYOND * reading.distance / grid.resolution) + 1
+        row, column = grid.cells_of(np.array((reading.x, reading.y))).tolist()
+        window = Window(row - reach, column - reach, row + reach + 1, column + reach + 1).within(grid)
+        rows, columns = np.mgrid[window.top : window.bottom, window.left : window.right]
+        centres = grid.centres_of(np.stack((rows, columns), axis=-1))
+        x, y = centres[..., 0] - reading.x, centres[..., 1] - reading.y
+        angle = np.abs((np.arctan2(y, x) - reading.yaw + np.pi) % (2.0 * np.pi) - np.pi)
+        half = max(reading.field_of_view / 2.0, np.finfo(float).tiny)
+        distance = np.hypot(x, y)
+        if not reading.free:
+            hit = (
+                reading.x + reading.distance * np.cos(reading.yaw),
+                reading.y + reading.distance * np.sin(reading.yaw),
+            )
+            target = grid.cells_of(np.array(hit))
+            if grid.has(target):
+                self.seen.cells[target[0], target[1]] = _HIT
+        measured = self._likelihood(distance, angle / half, reading, grid.resolution)
+        known = self.seen.cells[window.cells]
+        prior = np.clip(known / _CERTAIN, _LEAST, 1.0 - _LEAST)
+        occupied, free = measured * prior, (1.0 - measured) * (1.0 - prior)
+        posterior = np.round(_CERTAIN * occupied / (occupied + free))
+        self.seen.cells[window.cells] = np.where(angle <= half, posterior, known)
+        return window
+
+    def _likelihood(
+        self, distance: NDArray[np.float64], aside: NDArray[np.float64], reading: Reading, resolution: float
+    ) -> NDArray[np.float64]:
+        """How likely a cell is occupied, by a reading alone.
+
+        Args:
+            distance: of cells from the sensor, in metres.
+            aside: how far from the middle of its view they are, 1 at its rim.
+            reading: what it measured.
+            resolution: side of a cell, in metres.
+        """
+        if reading.free:
+            return np.where(distance <= reading.distance, 0.0, 0.5)
+        weight = (1.0 - np.tanh(2.0 * (distance - self.settings.phi))) / 2.0 * np.maximum(1.0 - aside**2, 0.0)
+        blur = max(resolution * reading.distance, np.finfo(float).tiny)
+        before = reading.distance - distance
+        rising = weight * 0.5 * ((2.0 * blur - before) / blur) ** 2 + (1.0 - weight) * 0.5
+        there = weight * (0.5 - 0.5 * (before / blur) ** 2) + 0.5
+        found = np.where(before > 2.0 * blur, (1.0 - weight) * 0.5, rising)
+        found = np.where(before > blur, found, there)
+        likelihood: NDArray[np.float64] = np.where(before > -blur, found, 0.5)
+        return likelihood
