@@ -10,6 +10,7 @@ from math import nan
 
 from linkwright.control.hardware.description import ComponentDescription, HardwareDescription, InterfaceDescription
 from linkwright.control.hardware.interfaces import CommandInterface, StateInterface
+from linkwright.control.hardware.timing import Timing
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.extensions import extensions
 from linkwright.graph.lifecycle.states import UNCONFIGURED, LifecycleState
@@ -40,12 +41,14 @@ class Hardware:
         description, logger: see above.
         states, commands: its interfaces; a state begins with its initial value, or NaN.
         state: where in its life it is.
+        timings: what measures reading and writing; None while nobody wants to know.
     """
 
     def __init__(self, description: HardwareDescription, logger: Logger) -> None:
         self.description = description
         self.logger = logger
         self.state: LifecycleState = UNCONFIGURED
+        self.timings: tuple[Timing, Timing] | None = None
         self.states: list[StateInterface] = []
         self.commands: list[CommandInterface] = []
         for component in description.components:

@@ -223,7 +223,10 @@ class Resources:
         for hardware in self.components.values():
             if hardware.state is INACTIVE or hardware.state is ACTIVE:
                 try:
-                    hardware.read(time_ns, period_s)
+                    if hardware.timings is None:
+                        hardware.read(time_ns, period_s)
+                    else:
+                        hardware.timings[0].measure(hardware.read, time_ns, period_s)
                 except Exception as error:  # noqa: BLE001
                     failed.append(self._fail(hardware, "reading", error))
         return failed
@@ -234,7 +237,10 @@ class Resources:
         for hardware in self.components.values():
             if hardware.state is ACTIVE:
                 try:
-                    hardware.write(time_ns, period_s)
+                    if hardware.timings is None:
+                        hardware.write(time_ns, period_s)
+                    else:
+                        hardware.timings[1].measure(hardware.write, time_ns, period_s)
                 except Exception as error:  # noqa: BLE001
                     failed.append(self._fail(hardware, "writing", error))
         return failed

@@ -8,6 +8,7 @@ from typing import Any
 
 from linkwright.control.controllers.controller import Controller
 from linkwright.control.hardware.interfaces import POSITION, Interfaces
+from linkwright.control.hardware.timing import Timing
 from linkwright.graph.lifecycle.states import ACTIVE, INACTIVE
 
 
@@ -22,6 +23,7 @@ class Loaded:
         period_ns: the time between two updates; 0 for every one of the manager's.
         next_ns: when the next is due.
         before: the last finite values of its commands.
+        timing: what measures its updates; None while nobody wants to know.
     """
 
     name: str
@@ -31,6 +33,7 @@ class Loaded:
     period_ns: int = 0
     next_ns: int = 0
     before: list[float] = field(default_factory=list)
+    timing: Timing | None = None
 
     @property
     def is_active(self) -> bool:

@@ -438,7 +438,10 @@ class ControllerManager:
             else:
                 step_s = period_s
             try:
-                loaded.controller.step(time_ns, step_s)
+                if loaded.timing is None:
+                    loaded.controller.step(time_ns, step_s)
+                else:
+                    loaded.timing.measure(loaded.controller.step, time_ns, step_s)
             except Exception as error:  # noqa: BLE001  # a fault of a controller must not end the others
                 self._fail(loaded, error)  # `_active` is another list then
                 continue

@@ -12,9 +12,10 @@ from linkwright.control.controllers.registry import controller_types
 from linkwright.control.hardware.component import Hardware
 from linkwright.control.manager.loaded import Loaded
 from linkwright.control.manager.manager import ControllerManager
+from linkwright.control.manager.statistics import StatisticsTopics
 from linkwright.graph.lifecycle.states import ACTIVE, FINALIZED, INACTIVE, UNCONFIGURED, LifecycleState
 from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile, ReliabilityPolicy
-from linkwright.messages import get_message
+from linkwright.messages import get_message, is_before_iron
 from linkwright.simulation.plugins.node import PluginNode
 
 _PACKAGE = "controller_manager_msgs"
@@ -35,6 +36,7 @@ class ManagerServices:
         self._manager = manager
         self._activity = node.publisher(f"{_PACKAGE}/msg/ControllerManagerActivity", "~/activity", _LATCHED)
         self._diagnostics = node.publisher("diagnostic_msgs/msg/DiagnosticArray", "/diagnostics")
+        self._statistics = None if is_before_iron() else StatisticsTopics(manager, node)
         manager.on_change = self.publish_activity
         answers: dict[str, Callable[[Any, Any], Any]] = {
             "ListControllers": self._list_controllers,
@@ -68,7 +70,9 @@ class ManagerServices:
         self._activity.publish(message)
 
     def publish_diagnostics(self) -> None:
-        """Publish whether all is active, for whom it may concern."""
+        """Publish whether all is active, and how long it takes, for whom it may concern; each second."""
+        if self._statistics is not None:
+            self._statistics.publish()
         if not self._diagnostics.is_wanted:
             return
         message = get_message("diagnostic_msgs/msg/DiagnosticArray")()

@@ -1,0 +1,73 @@
+"""How long controllers and hardware take, and how regularly they run: ``~/statistics/...`` of the controller manager.
+
+Source: controller_manager of ros2_control from Jazzy on (topics, names, units: execution times in microseconds,
+periodicity in Hz). Other than there nothing is measured while nobody listens, so that counting begins within a second
+after somebody does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from linkwright.control.hardware.timing import Timing
+from linkwright.control.manager.manager import ControllerManager
+from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile
+from linkwright.messages import get_message
+from linkwright.simulation.plugins.node import PluginNode
+
+_LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+_PACKAGE = "pal_statistics_msgs/msg"
+
+
+class StatisticsTopics:
+    """Publishes the statistics of a manager.
+
+    Args:
+        manager: the manager.
+        node: its node.
+    """
+
+    def __init__(self, manager: ControllerManager, node: PluginNode) -> None:
+        self._manager = manager
+        self._full = node.publisher(f"{_PACKAGE}/Statistics", "~/statistics/full")
+        self._names = node.publisher(f"{_PACKAGE}/StatisticsNames", "~/statistics/names", _LATCHED)
+        self._values = node.publisher(f"{_PACKAGE}/StatisticsValues", "~/statistics/values")
+        self._known: list[str] = []
+        self._version = 0
+
+    def publish(self) -> None:
+        """Publish them, which is to be done each second; without listeners stop measuring."""
+        wanted = self._full.is_wanted or self._values.is_wanted
+        timings = dict(self._timings(wanted=wanted))
+        if not wanted:
+            return
+        told = {f"{name}/{kind}": value for name, timing in timings.items() for kind, value in timing.items()}
+        stamp = self._manager.node.get_clock().now().to_msg()
+        if list(told) != self._known:
+            self._known, self._version = list(told), self._version + 1
+            names = get_message(f"{_PACKAGE}/StatisticsNames")(names=self._known, names_version=self._version)
+            names.header.stamp = stamp
+            self._names.publish(names)
+        values: Any = get_message(f"{_PACKAGE}/StatisticsValues")(
+            values=list(told.values()), names_version=self._version
+        )
+        values.header.stamp = stamp
+        self._values.publish(values)
+        if self._full.is_wanted:
+            one = get_message(f"{_PACKAGE}/Statistic")
+            full = get_message(f"{_PACKAGE}/Statistics")(statistics=[one(*each) for each in told.items()])
+            full.header.stamp = stamp
+            self._full.publish(full)
+
+    def _timings(self, *, wanted: bool) -> Iterator[tuple[str, Timing]]:
+        """Have all be measured, or none; those that are, by the beginnings of their names."""
+        for name, loaded in self._manager.controllers.items():
+            loaded.timing = (loaded.timing or Timing()) if wanted else None
+            if loaded.timing is not None:
+                yield f"{name}.stats", loaded.timing
+        for name, hardware in self._manager.resources.components.items():
+            hardware.timings = (hardware.timings or (Timing(), Timing())) if wanted else None
+            if hardware.timings is not None:
+                for cycle, timing in zip(("read_cycle", "write_cycle"), hardware.timings, strict=True):
+                    yield f"{name}.stats/{cycle}", timing

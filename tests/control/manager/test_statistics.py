@@ -1,0 +1,64 @@
+"""~/statistics of the manager: how long controllers and hardware take, for whom it may concern."""
+
+from __future__ import annotations
+
+from math import sqrt
+
+import pytest
+
+from linkwright.control.hardware.timing import Timing
+from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile
+from tests.control.manager.test_ros2_control_node import CONTROL, ask, go_on, start
+
+LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+def test_the_statistics_of_what_is_done_regularly():
+    timing = Timing()
+    for time_ns in (0, 10_000_000, 20_000_000, 40_000_000):
+        timing.measure(lambda *_: None, time_ns, 0.01)
+    told = dict(timing.items())
+    assert told["periodicity/sample_count"] == 2.0
+    assert (told["periodicity/min"], told["periodicity/max"]) == pytest.approx((50.0, 100.0))
+    assert told["periodicity/average"] == pytest.approx(75.0)
+    assert told["periodicity/standard_deviation"] == pytest.approx(sqrt(625.0))
+    assert told["periodicity/current_value"] == pytest.approx(50.0)
+    assert told["execution_time/sample_count"] == 4.0
+    assert told["execution_time/min"] >= 0.0
+
+
+async def test_they_are_published_each_second_while_somebody_listens(graph, clock, tmp_path, monkeypatch):
+    monkeypatch.setenv("ROS_DISTRO", "jazzy")
+    running = start(graph, tmp_path, CONTROL)
+    node = graph.create_node("audience")
+    assert (await ask(graph, node, "load_controller", name="broadcaster")).ok
+    assert (await ask(graph, node, "configure_controller", name="broadcaster")).ok
+    assert (await ask(graph, node, "switch_controller", activate_controllers=["broadcaster"], strictness=2)).ok
+    await go_on(graph, clock, 150)
+    loaded = running._manager.controllers["broadcaster"]
+    assert loaded.timing is None
+    values, full, names = [], [], []
+    kind = "pal_statistics_msgs/msg/Statistics"
+    subscription = node.create_subscription(f"{kind}Values", "/controller_manager/statistics/values", values.append, 10)
+    node.create_subscription(f"{kind}Names", "/controller_manager/statistics/names", names.append, LATCHED)
+    listening = node.create_subscription(kind, "/controller_manager/statistics/full", full.append, 10)
+    await go_on(graph, clock, 250)
+    assert loaded.timing is not None
+    assert len(names) == 1
+    assert len(names[0].names) == len(values[-1].values)
+    assert names[0].names_version == values[-1].names_version == 1
+    told = {each.name: each.value for each in full[-1].statistics}
+    assert told["broadcaster.stats/periodicity/average"] == pytest.approx(100.0)
+    assert told["broadcaster.stats/execution_time/sample_count"] >= 99.0
+    assert told["arm.stats/read_cycle/periodicity/average"] == pytest.approx(100.0)
+    assert told["arm.stats/write_cycle/execution_time/min"] >= 0.0
+    for each in (subscription, listening):
+        node.destroy_subscription(each)
+    await go_on(graph, clock, 150)
+    assert loaded.timing is None
+
+
+async def test_humble_has_no_such_topics(graph, tmp_path, monkeypatch):
+    monkeypatch.setenv("ROS_DISTRO", "humble")
+    start(graph, tmp_path, CONTROL)
+    assert not [name for name, _ in graph.get_topic_names_and_types() if "statistics" in name]
