@@ -49,7 +49,10 @@ class Robot:
     def tell_odometry(self, odometry: np.ndarray) -> None:
         pose = (odometry[0], odometry[1], 0.0, *quaternion_from_rpy((0.0, 0.0, float(odometry[2]))))
         stamp_ns = self.test.clock.now_ns()
-        self._tf.publish(TFMessage(batch=TransformBatch(("odom",), ("base_footprint",), stamp_ns, np.array([pose]))))
+        self.send(TransformBatch(("odom",), ("base_footprint",), stamp_ns, np.array([pose])))
+
+    def send(self, batch: TransformBatch) -> None:
+        self._tf.publish(TFMessage(batch=batch))
 
     def scan(self, pose: np.ndarray) -> Any:
         x, y, _, roll, _, yaw = self.mounting
@@ -368,3 +371,48 @@ def test_the_graph_is_shown(test):
     nodes, edges, others = markers.last.markers
     assert len(edges.points) == 2 * (len(nodes.points) - 1) > 4
     assert others.action == others.DELETE
+
+
+def test_where_time_jumps_back_the_map_begins_anew(test):
+    clock = test.create_node("clock").create_publisher(get_message("rosgraph_msgs/msg/Clock"), "/clock", 10)
+    node = start(test, use_sim_time=True)
+    robot, poses = Robot(test), test.record("/pose")
+
+    def at(seconds: float, pose: np.ndarray) -> None:
+        clock.publish(get_message("rosgraph_msgs/msg/Clock")(clock=Time.from_nanoseconds(round(seconds * 1e9))))
+        test.settle()
+        stamp = Time.from_nanoseconds(round(seconds * 1e9))
+        batch = TransformBatch(
+            ("odom",), ("base_footprint",), round(seconds * 1e9), np.array([(*pose[:2], 0, 0, 0, 0, 1)])
+        )
+        robot.send(batch)
+        message = robot.scan(PATH[0] + pose)
+        message.header.stamp = stamp
+        robot.scans.publish(message)
+        test.settle()
+
+    for number in range(5):
+        at(100.0 + number, np.array((0.5 * number, 0.0, 0.0)))
+    assert len(node._work[0].mapper.scans) == 5
+    at(1.0, np.zeros(3))
+    at(2.0, np.array((0.5, 0.0, 0.0)))
+    assert any("Time has jumped back" in line for line in said(test, "WARN"))
+    assert len(node._work[0].mapper.scans) == 2
+    assert poses.last.header.stamp.sec == 2
+
+
+def test_the_synchronous_node_forgets_what_waits(test):
+    node = start(test, SyncSlamToolbox)
+    robot = Robot(test)
+    robot.go(PATH[:4], between(PATH[0], PATH[:4]))
+    node._work[0].queue.append((None, np.zeros(3)))
+    assert call(test, "clear_queue", "slam_toolbox/srv/ClearQueue").status
+    assert not node._work[0].queue
+
+
+def test_a_launch_file_of_jazzy_starts_it_by_a_parameter(test, monkeypatch):
+    monkeypatch.setenv("ROS_DISTRO", "jazzy")
+    start(test, autostart_node=True)
+    maps = test.record("/map")
+    Robot(test).go(PATH[:3], between(PATH[0], PATH[:3]))
+    assert len(maps) > 0

@@ -1,7 +1,8 @@
 """The executables of slam_toolbox: async, sync, localization, and map_and_localization.
 
 They follow slam_toolbox 2.6 (Humble), whose nodes work as soon as they start, and 2.8 (Jazzy), whose nodes are managed;
-``ROS_DISTRO`` says which. What makes the map is Linkwright's own (`linkwright.navigation.slam`). Other than there:
+``ROS_DISTRO`` says which. Jazzy's go up by themselves where ``autostart_node`` is true, as our launch files have it.
+What makes the map is Linkwright's own (`linkwright.navigation.slam`). Other than there:
 
 - All solver plugins are one: Gauss-Newton on sparse matrices. Least squares end each match, so that
   ``fine_search_angle_offset`` changes nothing; nor does ``use_scan_barycenter``.
@@ -83,7 +84,8 @@ class AsyncSlamToolbox(SingleNode):
             return
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         with starting(self._node):
-            self._node.declare_parameter("use_lifecycle_manager", False)
+            for name in ("use_lifecycle_manager", "autostart_node"):  # of Jazzy's
+                self._node.declare_parameter(name, False)
             self._work = self.open(self._node)
             tell_unknown(self._node)
         self._work[0].start()

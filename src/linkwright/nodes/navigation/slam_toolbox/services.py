@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -80,7 +81,7 @@ class ToolboxServices:
             self._refuse(f"serialize_map: '{path}' cannot be written: {error.strerror or error}")
             response.result = response.RESULT_FAILED_TO_WRITE_FILE
             return response
-        self._logger.info(f"wrote {len(self._toolbox.mapper.scans)} scans and their graph to {path}")
+        self._logger.info(f"wrote {len(self._toolbox.mapper.scans)} scans and their graph to {path.absolute()}")
         response.result = response.RESULT_SUCCESS
         return response
 
@@ -112,7 +113,7 @@ class ToolboxServices:
             response.result = response.RESULT_NO_MAP_RECEIEVD
             return response
         name = request.name.data or f"map_{self._toolbox.node.get_clock().now_ns() // 1_000_000_000}"
-        self._logger.info(f"SlamToolbox: Saving map as {name}.")
+        self._logger.info(f"SlamToolbox: Saving map as {Path(name).absolute()}.")
         try:
             save_map(grid, SavedAs(name=name), self._logger.warning)
             response.result = response.RESULT_SUCCESS

@@ -286,7 +286,9 @@ class Toolbox:
         assert self._taken is not None, "a scan was taken"
         self._map_to_odom = compose(outcome.pose, inverse(self._taken))
         if outcome.loops:
-            self.node.get_logger().info(f"closed a loop after {len(self.mapper.scans)} scans")
+            self.node.get_logger().info(
+                f"closed a loop after {len(self.mapper.scans)} scans", throttle_duration_sec=_COMPLAINTS
+            )
         message = get_message("geometry_msgs/msg/PoseWithCovarianceStamped")()
         message.header.frame_id = self.settings.map_frame
         message.header.stamp = Time.from_nanoseconds(self.mapper.latest_ns)

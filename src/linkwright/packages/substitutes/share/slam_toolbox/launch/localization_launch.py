@@ -3,7 +3,7 @@
 
 from ament_index_python.packages import get_package_share_path
 from launch.actions import DeclareLaunchArgument
-from launch.substitutions import LaunchConfiguration
+from launch.substitutions import AndSubstitution, LaunchConfiguration, NotSubstitution
 from launch_ros.actions import Node
 
 from launch import LaunchDescription
@@ -35,6 +35,10 @@ def generate_launch_description():
                     {
                         "use_sim_time": LaunchConfiguration("use_sim_time"),
                         "use_lifecycle_manager": LaunchConfiguration("use_lifecycle_manager"),
+                        "autostart_node": AndSubstitution(
+                            LaunchConfiguration("autostart"),
+                            NotSubstitution(LaunchConfiguration("use_lifecycle_manager")),
+                        ),
                     },
                 ],
             ),
