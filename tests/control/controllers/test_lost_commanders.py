@@ -1,0 +1,70 @@
+"""Controllers whose commander is lost: what moves for ever stops, positions and efforts are held."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.control.controllers.registry import controller_class
+from linkwright.messages import get_message
+from tests.outside import Outside, Stranger
+
+Array, Stamped = get_message("std_msgs/msg/Float64MultiArray"), get_message("geometry_msgs/msg/TwistStamped")
+FORWARD = "forward_command_controller/ForwardCommandController"
+WHEELS = {"left_wheel_names": ["left"], "right_wheel_names": ["right"], "wheel_separation": 0.4, "wheel_radius": 0.1}
+
+
+@pytest.mark.parametrize(
+    ("kind", "interface", "after"),
+    [
+        (FORWARD, "velocity", 0.0),
+        ("velocity_controllers/JointGroupVelocityController", "velocity", 0.0),
+        (FORWARD, "position", 0.5),
+        (FORWARD, "effort", 0.5),
+    ],
+)
+async def test_velocities_end_and_positions_and_efforts_are_held(stand, kind, interface, after):
+    stand.joint("hip", commands=(interface,))
+    more = {"interface_name": interface} if kind == FORWARD else {}
+    controller = stand.start(controller_class(kind), "hips", joints=["hip"], **more)
+    driver = Stranger(Outside(stand.graph), "/hips/commands", msg_type="std_msgs/msg/Float64MultiArray")
+    driver.send(Array(data=[0.5]))
+    await stand.step(controller)
+    assert stand.commands[f"hip/{interface}"].value == 0.5
+    driver.be_lost()
+    await stand.step(controller)
+    assert stand.commands[f"hip/{interface}"].value == after
+    told = [each.text for each in stand.log if "was lost" in each.text]
+    assert len(told) == (after == 0.0)
+
+
+async def test_a_drive_stops_before_its_time_out(stand):
+    for side in ("left", "right"):
+        stand.joint(side, commands=("velocity",), position=0.0)
+    drive = controller_class("diff_drive_controller/DiffDriveController")
+    controller = stand.start(drive, "base", cmd_vel_timeout=10.0, **WHEELS)
+    driver = Stranger(Outside(stand.graph), "/base/cmd_vel", msg_type="geometry_msgs/msg/TwistStamped")
+    message = Stamped()
+    message.twist.linear.x = 1.0
+    driver.send(message)
+    await stand.step(controller, count=3)
+    assert [each.value for each in stand.commands.values()] == pytest.approx([10.0, 10.0])
+    driver.be_lost()
+    await stand.step(controller)
+    assert [each.value for each in stand.commands.values()] == [0.0, 0.0]
+    (told,) = [each.text for each in stand.log if "was lost" in each.text]
+    assert told.startswith("'/driver', which commanded by '/base/cmd_vel', was lost")
+
+
+async def test_nothing_is_said_of_a_command_that_has_ended(stand):
+    for side in ("left", "right"):
+        stand.joint(side, commands=("velocity",), position=0.0)
+    drive = controller_class("diff_drive_controller/DiffDriveController")
+    controller = stand.start(drive, "base", cmd_vel_timeout=0.05, **WHEELS)
+    driver = Stranger(Outside(stand.graph), "/base/cmd_vel", msg_type="geometry_msgs/msg/TwistStamped")
+    message = Stamped()
+    message.twist.linear.x = 1.0
+    driver.send(message)
+    await stand.step(controller, count=20)
+    driver.be_lost()
+    await stand.step(controller)
+    assert not [each.text for each in stand.log if "was lost" in each.text]
