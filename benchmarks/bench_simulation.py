@@ -23,7 +23,7 @@ from benchmarks.bullet import BulletWorld, bullet_world
 from benchmarks.measure import LINKWRIGHT, Row, commands, peak_memory, show
 from benchmarks.robots import REPOSITORY, SHIPPED
 from linkwright.descriptions import DescriptionLibrary
-from linkwright.graph import Graph
+from linkwright.graph import Graph, Node
 from linkwright.messages import get_message
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.server.entities import entity_from
@@ -71,6 +71,7 @@ class Case:
         pixels: width and height of pictures.
         way: how pictures are made, as ``MUJOCO_GL`` says it.
         bullet: whether pybullet has the same world.
+        drives: whether the robots drive in circles, and somebody listens to their odometry and transforms.
     """
 
     what: str
@@ -83,6 +84,7 @@ class Case:
     pixels: tuple[int, int] = (640, 480)
     way: str = ""
     bullet: bool = False
+    drives: bool = False
 
     @property
     def is_here(self) -> bool:
@@ -124,6 +126,7 @@ CASES = (
     ),
     Case("10 mbots, nobody listens", robots=10, bullet=True),
     Case("100 mbots, nobody listens", robots=100, bullet=True),
+    Case("100 mbots that drive, odometry and tf received", "1000 ms", robots=100, drives=True),
     *(Case(f"{count} boxes at rest", robots=0, boxes=count, bullet=True) for count in (10, 100, 1000)),
 )
 
@@ -148,6 +151,8 @@ async def _row(case: Case) -> Row:
     listener = graph.create_node("listener")
     for topic, kind in (case.topics or {}).items():
         listener.create_subscription(get_message(kind), topic, lambda _: None, 10)
+    if case.drives:
+        _drive(listener, case.robots)
     try:
         with _made_by(case.way):
             for _ in range(NANOSECONDS // _SLICE):  # things fall to the ground
@@ -224,6 +229,18 @@ def _server(graph: Graph, case: Case) -> SimulationServer:
         row, column = divmod(number, 40)
         simulation.spawn(box, f"box{number}", (row * 0.5, column * 0.5, 0.125, 0.0, 0.0, 0.0, 1.0))
     return server
+
+
+def _drive(node: Node, robots: int) -> None:
+    """Have robots drive in circles, and listen to where they are."""
+    twist, listened = get_message("geometry_msgs/msg/Twist"), {"odom": _LISTENED["/odom"], "tf": _LISTENED["/tf"]}
+    for number in range(robots):
+        begin = f"/mbot{number}/" if number else "/"
+        message = twist()
+        message.linear.x, message.angular.z = 0.3, 0.3
+        node.create_publisher(twist, f"{begin}cmd_vel", 10).publish(message)
+        for name, kind in listened.items():
+            node.create_subscription(get_message(kind), begin + name, lambda _: None, 10)
 
 
 async def _pass(graph: Graph, server: SimulationServer) -> float:

@@ -7,7 +7,6 @@ would come late each time, and each seventh be missed. A timer of the kernel tha
 
 from __future__ import annotations
 
-import ctypes
 import heapq
 import os
 import sys
@@ -16,7 +15,12 @@ import weakref
 from asyncio import AbstractEventLoop
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 from itertools import count
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ctypes import Array, c_long
 
 _CLOCK_MONOTONIC = 1
 _ABSOLUTE = 1
@@ -31,13 +35,18 @@ def fine_alarms(loop: AbstractEventLoop) -> FineAlarms | None:
 
 
 def _made(loop: AbstractEventLoop) -> FineAlarms | None:
-    if sys.platform != "linux" or ctypes.sizeof(ctypes.c_long) != 8:  # the layout of times is another one there
+    if sys.platform != "linux":
+        return None
+    import ctypes  # here, as most programs have no use for it: it takes longer than all of this file
+
+    if ctypes.sizeof(ctypes.c_long) != 8:  # the layout of times is another one there
         return None
     libc = ctypes.PyDLL(None)  # its calls are short: the interpreter's lock is kept meanwhile
     file = libc.timerfd_create(_CLOCK_MONOTONIC, os.O_NONBLOCK | os.O_CLOEXEC)
     if file < 0:
         return None
-    alarms = FineAlarms(libc.timerfd_settime, file)
+    period_and_next = (ctypes.c_long * 4)()  # each in seconds and nanoseconds
+    alarms = FineAlarms(partial(libc.timerfd_settime, file, _ABSOLUTE, period_and_next, None), period_and_next)
     try:
         loop.add_reader(file, alarms.run)
     except NotImplementedError:
@@ -64,14 +73,14 @@ class FineAlarms:
     It is set anew after each time it rings, which also makes its file unreadable again: nothing need be read.
 
     Args:
-        set_time: ``timerfd_settime`` of the C library.
-        file: the timer, of monotonic time.
+        set_timer: gives the kernel the setting.
+        setting: of the timer, by monotonic time: the seconds and nanoseconds of its period, which has none, and of when
+            it rings next.
     """
 
-    def __init__(self, set_time: Callable[..., int], file: int) -> None:
-        self._set_time = set_time
-        self._file = file
-        self._setting = (ctypes.c_long * 4)()  # period and next time, each seconds and nanoseconds
+    def __init__(self, set_timer: Callable[[], int], setting: Array[c_long]) -> None:
+        self._set_timer = set_timer
+        self._setting = setting
         self._alarms: list[_FineAlarm] = []
         self._numbers = count()
         self._is_running = False
@@ -106,7 +115,7 @@ class FineAlarms:
         setting = self._setting
         # A time of 0 would stop it, as none does; one that has gone by rings at once.
         setting[2], setting[3] = divmod(self._alarms[0].steady_ns, _NANOSECONDS) if self._alarms else (0, 0)
-        self._set_time(self._file, _ABSOLUTE, setting, None)
+        self._set_timer()
 
 
 _of_loops: weakref.WeakKeyDictionary[AbstractEventLoop, FineAlarms | None] = weakref.WeakKeyDictionary()
