@@ -9,6 +9,7 @@ REPOSITORY = Path(__file__).resolve().parents[1]
 PACKAGE = REPOSITORY / "robots" / "my_robot_description"
 GAZEBO_PACKAGE = REPOSITORY / "robots" / "my_robot_gazebo"
 CONTROL_PACKAGE = REPOSITORY / "robots" / "my_robot_control"
+NAVIGATION_PACKAGE = REPOSITORY / "robots" / "my_robot_navigation"
 PUBLISHED = (REPOSITORY.parent / "shared" / "tutorial" / "my_robot_description").resolve()
 """The tutorial's package as published, where it is at hand: it is not part of the repository."""
 TUTORIAL_PACKAGES = [PACKAGE, *([PUBLISHED] if PUBLISHED.is_dir() else [])]

@@ -17,6 +17,8 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 
+from tests.docs.pages import DOCS, blocks
+
 
 class Servers(Node):
     """What nav2 offers, as far as it is asked for here."""
@@ -69,7 +71,7 @@ class Servers(Node):
         handle.publish_feedback(feedback)
         if handle.is_cancel_requested:
             handle.canceled()
-        elif handle.request.pose.pose.position.x < 0.0:
+        elif handle.request.pose.pose.position.x < -5.0:
             handle.abort()
         else:
             handle.succeed()
@@ -128,7 +130,7 @@ def test_a_robot_is_placed_and_sent_somewhere(navigator):
 
 
 def test_what_fails_and_what_is_canceled_is_told(navigator):
-    assert navigator.goToPose(pose(-1.0))
+    assert navigator.goToPose(pose(-9.0))
     assert finished(navigator) == TaskResult.FAILED
     assert navigator.status == GoalStatus.STATUS_ABORTED
     assert navigator.goToPose(pose(9.0))
@@ -145,3 +147,16 @@ def test_spinning_plans_and_costmaps(navigator, servers):
     navigator.clearAllCostmaps()
     assert servers.cleared == ["local", "global"]
     navigator.destroyNode()
+
+
+@pytest.mark.parametrize("page", [DOCS / "tutorial-navigation.md", DOCS / "zh" / "tutorial-navigation.md"])
+@pytest.mark.usefixtures("servers")
+def test_the_program_of_the_tutorial_goes_to_all_rooms(page, monkeypatch, capsys):
+    (program,) = [block for block in blocks(page) if block.title == "patrol.py"]
+    monkeypatch.setattr(rclpy, "init", lambda: None)
+    monkeypatch.setattr(rclpy, "shutdown", lambda: None)
+    names = {"__name__": "patrol"}
+    exec(program.text, names)  # a page of ours
+    names["main"]()
+    rooms = [line for line in capsys.readouterr().out.splitlines() if line.startswith("in the")]
+    assert rooms == ["in the bedroom", "in the study", "in the living room"]

@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Installs the launch file, the parameters and what RViz shows."""
+
+from pathlib import Path
+
+from setuptools import find_packages, setup
+
+PACKAGE = 'my_robot_navigation'
+SHARE = Path('share') / PACKAGE
+
+setup(
+    name=PACKAGE,
+    version='0.1.0',
+    packages=find_packages(exclude=['test']),
+    data_files=[
+        # The marker through which ROS 2 finds an installed package by its name.
+        ('share/ament_index/resource_index/packages', ['resource/' + PACKAGE]),
+        (str(SHARE), ['package.xml']),
+        (str(SHARE / 'launch'), [str(path) for path in sorted(Path('launch').glob('*.launch.py'))]),
+        (str(SHARE / 'config'), ['config/nav2_params.yaml']),
+        (str(SHARE / 'rviz'), ['rviz/navigation.rviz']),
+    ],
+    install_requires=['setuptools'],
+    zip_safe=True,
+    author='The Linkwright authors',
+    author_email='maintainers@linkwright.dev',
+    maintainer='The Linkwright authors',
+    maintainer_email='maintainers@linkwright.dev',
+    description='mbot goes to poses in the house: parameters for nav2 and a launch file.',
+    license='Apache-2.0',
+    entry_points={'console_scripts': []},
+)

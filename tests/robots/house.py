@@ -1,0 +1,109 @@
+"""mbot in the house with nav2's servers, with the parameters of my_robot_navigation: all in one thread, in lock-step."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import yaml
+
+from linkwright.graph import ActionClient
+from linkwright.graph.actions.goal import GoalStatus
+from linkwright.messages import get_action
+from linkwright.nodes import NodeOptions
+from linkwright.nodes.navigation.amcl import Amcl
+from linkwright.nodes.navigation.behavior_server import BehaviorServer
+from linkwright.nodes.navigation.bt_navigator import BtNavigator
+from linkwright.nodes.navigation.controller_server import ControllerServer
+from linkwright.nodes.navigation.map_server import MapServer
+from linkwright.nodes.navigation.planner_server import PlannerServer
+from linkwright.testing import SteppedSimulation
+from tests.places import GAZEBO_PACKAGE, NAVIGATION_PACKAGE
+
+WORLD = GAZEBO_PACKAGE / "worlds" / "house.world"
+ROBOT = "package://my_robot_description/urdf/mbot_gazebo.xacro"
+STEP = 0.1
+
+
+def flat(nested: dict[str, Any], prefix: str = "") -> dict[str, Any]:
+    """Parameters by names with dots."""
+    found: dict[str, Any] = {}
+    for name, value in nested.items():
+        found.update(flat(value, f"{prefix}{name}.") if isinstance(value, dict) else {prefix + name: value})
+    return found
+
+
+class House(SteppedSimulation):
+    """The house, mbot in its middle, and the servers."""
+
+    def __init__(self) -> None:
+        super().__init__(WORLD, ROBOT, arguments={"laser": True}, robot_state_publisher=True, period=0.02)
+        self._told = yaml.safe_load((NAVIGATION_PACKAGE / "config" / "nav2_params.yaml").read_text())
+        self.touched: set[str] = set()
+
+    def __enter__(self) -> House:
+        super().__enter__()
+        MapServer(self.graph, self._options("map_server", yaml_filename=str(GAZEBO_PACKAGE / "maps" / "house.yaml")))
+        Amcl(self.graph, self._options("amcl"))
+        PlannerServer(self.graph, self._options("planner_server", "global_costmap"))
+        ControllerServer(self.graph, self._options("controller_server", "local_costmap"))
+        BehaviorServer(self.graph, self._options("behavior_server"))
+        BtNavigator(self.graph, self._options("bt_navigator"))
+        self._kind = get_action("nav2_msgs/action/NavigateToPose")
+        self._client = ActionClient(self.node, self._kind, "navigate_to_pose")
+        self.go_on(3.0)
+        return self
+
+    def _options(self, name: str, costmap: str = "", **more: Any) -> NodeOptions:
+        given = flat(self._told[name]["ros__parameters"])
+        options = NodeOptions(parameters={**given, "autostart_node": True, **more})
+        if costmap:
+            for key, value in flat(self._told[costmap][costmap]["ros__parameters"]).items():
+                options.for_others.set(f"/{costmap}/{costmap}", key, value)
+        return options
+
+    def go_on(self, seconds: float) -> None:
+        """Let time pass, and note what mbot's body and wheels touch but the ground."""
+        for _ in range(round(seconds / STEP)):
+            self.advance(STEP)
+            model, data = self.simulation.model, self.simulation.data
+            for first, second in np.array(data.contact.geom[: data.ncon]).reshape(-1, 2):
+                names = [str(model.geom(int(each)).name) for each in (first, second)]
+                if any("mbot" in name for name in names):
+                    other = next((name for name in names if "mbot" not in name), "itself")
+                    if not any(each in other for each in ("ground", "floor")):
+                        self.touched.add(other)
+
+    def send(self, x: float, y: float, yaw: float = 0.0) -> list[Any]:
+        """Send mbot to a pose; the list gets the result, the handle of the goal is `goal`."""
+        goal = self._kind.Goal()
+        goal.pose.header.frame_id = "map"
+        goal.pose.pose.position.x, goal.pose.pose.position.y = float(x), float(y)
+        goal.pose.pose.orientation.z, goal.pose.pose.orientation.w = math.sin(yaw / 2), math.cos(yaw / 2)
+        results: list[Any] = []
+
+        def accepted(future: Any) -> None:
+            self.goal = future.result()
+            self.goal.get_result_async().add_done_callback(lambda answer: results.append(answer.result()))
+
+        self._client.send_goal_async(goal).add_done_callback(accepted)
+        return results
+
+    def go_to(self, x: float, y: float, yaw: float = 0.0, *, seconds: float = 120.0) -> GoalStatus:
+        """Go to a pose; what became of it."""
+        results = self.send(x, y, yaw)
+        for _ in range(round(seconds)):
+            self.go_on(1.0)
+            if results:
+                return GoalStatus(results[0].status)
+        return GoalStatus.EXECUTING
+
+    def place(self) -> tuple[float, float]:
+        """Where mbot really is."""
+        x, y, *_ = self.robot_pose()
+        return x, y
+
+    def said(self) -> list[str]:
+        """What the nodes logged."""
+        return [record.text for record in self.log]
