@@ -10,6 +10,7 @@ from linkwright.nodes.topic_tools.expressions import RelayField, Transform
 from linkwright.nodes.topic_tools.mux import Demux, Mux
 from linkwright.nodes.topic_tools.relay import Delay, Drop, Relay, Throttle
 from linkwright.testing.stepped import AsyncSteppedGraph
+from tests.outside import Outside, Stranger
 
 
 @pytest.fixture
@@ -262,3 +263,23 @@ async def test_parameters_that_a_node_does_not_have_are_named_once(test):
     start(test, Relay, input_topic="a", lasy=True, robot_model="x")
     assert said(test, "WARN") == ["'lasy' is no parameter of this node; did you mean 'lazy'?"]
     assert said(test, "INFO") == ["parameters that this node does not have are not read: robot_model"]
+
+
+@pytest.mark.parametrize(
+    ("kind", "words"), [(Relay, ["drive", "cmd_vel"]), (Throttle, ["messages", "drive", "1000.0", "cmd_vel"])]
+)
+async def test_a_stop_is_sent_when_who_sent_the_last_velocity_is_lost(test, kind, words):
+    twist = get_message("geometry_msgs/msg/Twist")
+    start(test, kind, *words)
+    test.node.create_publisher(twist, "drive", 10)
+    driven = test.record("/cmd_vel", twist)
+    await test.settle()
+    driver = Stranger(Outside(test.graph), "/drive")
+    message = twist()
+    message.linear.x = 0.3
+    driver.send(message)
+    driver.be_lost()
+    await test.settle()
+    assert driven.last.linear.x == 0.0
+    (told,) = said(test, "WARN")
+    assert told.endswith("was lost (killed, crashed or out of reach): a stop is sent to '/cmd_vel'")

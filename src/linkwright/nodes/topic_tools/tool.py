@@ -1,7 +1,7 @@
 """What the programs of topic_tools have in common: a topic whose type the graph tells, and one to publish on.
 
 Differences from topic_tools 1.3: a change of the graph is seen at once and not within 100 ms, and a source that comes
-back with another type is subscribed to anew.
+back with another type is subscribed to anew, and a stop is sent when who sent the last velocity is lost.
 """
 
 from __future__ import annotations
@@ -11,9 +11,12 @@ from collections.abc import Callable, Mapping
 from typing import Any, ClassVar
 
 from linkwright.graph import DEFAULT_QOS, Graph, Publisher, QoSProfile, Subscription
+from linkwright.graph.endpoints.commander import Commander
+from linkwright.graph.endpoints.info import EndpointInfo
 from linkwright.graph.qos.compatibility import fit
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 from linkwright.nodes.settings import options_from_words, tell_unknown, words_of
+from linkwright.nodes.teleop.standstill import VELOCITIES, send_stop
 
 
 class TopicTool(SingleNode, ABC):
@@ -85,7 +88,21 @@ class TopicTool(SingleNode, ABC):
         if self._lazy and not (self._publisher and self._publisher.get_subscription_count()):
             self._unsubscribe()
         elif self._subscription is None:
-            self._subscription = self._node.create_subscription(kind, self._input, self._hear, qos)
+            self._subscription = self._subscribed(kind, qos)
+
+    def _subscribed(self, kind: str, qos: QoSProfile) -> Subscription[Any]:
+        if kind not in VELOCITIES:
+            return self._node.create_subscription(kind, self._input, self._hear, qos)
+        commander = Commander(self._stop_output)
+        hear = commander.taking(self._hear)
+        subscription: Subscription[Any] = self._node.create_subscription(kind, self._input, hear, qos)
+        commander.watch(subscription)
+        return subscription
+
+    def _stop_output(self, lost: EndpointInfo) -> None:
+        """Have who obeys velocities that are handed on stop: who sent them is lost."""
+        if self._publisher is not None and self._publisher.type_name in VELOCITIES:
+            send_stop(self._node, self._publisher, lost)
 
     def _sources(self) -> list[Any]:
         return self._node.get_publishers_info_by_topic(self._input)
