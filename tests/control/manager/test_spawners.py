@@ -69,6 +69,14 @@ async def test_a_parameter_file_of_its_own_and_other_names_of_topics(graph, tmp_
     running.close()
 
 
+@pytest.mark.parametrize("words", [("", "broadcaster"), ("broadcaster", "--namespace", "", "-c", "controller_manager")])
+async def test_words_that_a_launch_file_leaves_empty(graph, tmp_path, words):
+    running = start(graph, tmp_path, CONTROL)
+    assert await run(graph, Spawner, *words) == 0
+    assert states(running) == {"broadcaster": "active"}
+    running.close()
+
+
 async def test_what_fails_is_told(graph, tmp_path, said):
     running = start(graph, tmp_path, CONTROL)
     assert await run(graph, Spawner, "nobody") == 1

@@ -129,6 +129,16 @@ class ManagerProgram(SingleNode):
             self.finished.set_result(status)
 
 
+def _said(parser: argparse.ArgumentParser, words: Sequence[str]) -> list[str]:
+    """The words of a command line without those that launch files leave empty, unless they are values of options."""
+    flags = [action for action in parser._actions if action.nargs == 0]
+    valueless = {"", *(option for action in flags for option in action.option_strings)}
+    before = ["", *words]
+    return [
+        word for word, last in zip(words, before, strict=False) if word or (last[:1] == "-" and last not in valueless)
+    ]
+
+
 def parsed(parser: argparse.ArgumentParser, words: Sequence[str]) -> argparse.Namespace:
     """The options of a command line.
 
@@ -143,6 +153,6 @@ def parsed(parser: argparse.ArgumentParser, words: Sequence[str]) -> argparse.Na
     # argparse ends the program where a required option is missing, in Python up to 3.12 also with exit_on_error=False.
     parser.error = refuse  # type: ignore[method-assign]
     try:
-        return parser.parse_args([word for word in words if word])
+        return parser.parse_args(_said(parser, words))
     except argparse.ArgumentError as error:
         refuse(str(error))
