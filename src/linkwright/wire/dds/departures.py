@@ -21,8 +21,11 @@ from linkwright.graph.names.identity import NodeIdentity
 if TYPE_CHECKING:
     from linkwright.wire.dds.remote import RemoteEndpoint, RemoteGraph
 
-GRACE = 0.3
-"""Seconds within which a word of farewell that was sent is heard, whatever came before it."""
+GRACE = 0.4
+"""Seconds after the end of a process within which it is heard that its participant has left."""
+
+FAREWELL_WITHIN = 1.0
+"""Seconds after an endpoint is gone within which it is heard that it was withdrawn, should that come late."""
 
 LOOK_AGAIN = 0.1
 """Seconds after which processes are looked at again."""
@@ -94,7 +97,7 @@ class Departures:
         now, waiting = self._now(), []
         for each in self._gone:
             if each.due is None:
-                each.due = now + GRACE
+                each.due = now + FAREWELL_WITHIN
             if now < each.due:
                 waiting.append(each)
             else:
