@@ -31,8 +31,18 @@ from linkwright.nodes.velocity_topic import VelocityTopic
 
 _DEPTH = 10
 _SECONDS_BETWEEN_COMPLAINTS = 2.0
+_LONGEST_WAIT = 3.0
+"""Seconds for which the robot stands still because something is not known, before the goal is given up."""
 _STALE_PATH_FRAME = 2.0
 """Seconds after which where the path's frame is, is not known any more."""
+
+
+class _NotNowError(Exception):
+    """What is needed to drive is not known at the moment; nav2's name of the code if that stays so, and what it is."""
+
+    def __init__(self, code: str, reason: str) -> None:
+        super().__init__(reason)
+        self.code = code
 
 
 class _GoalError(Exception):
@@ -175,28 +185,29 @@ class ControllerNode(ManagedNode):
             goals.canceled()
             return
         try:
-            if not self.costmap.is_current:
-                self._wait_for_costmap()
-                return
             self._drive(goals)
+        except _NotNowError as problem:
+            self._wait(problem)
         except _GoalError as failure:
             self._fail(failure)
 
-    def _wait_for_costmap(self) -> None:
+    def _wait(self, problem: _NotNowError) -> None:
+        """Stand still until what is needed is known again, or give up."""
         self._publish(STILL)
-        message = "the costmap is not current: the robot waits"
-        self.get_logger().warning(message, throttle_duration_sec=_SECONDS_BETWEEN_COMPLAINTS)
-        if (
-            self._now_ns() - self._good_ns
-            > max(self._value("costmap_update_timeout"), _SECONDS_BETWEEN_COMPLAINTS) * 1e9
-        ):
-            raise _GoalError("CONTROLLER_TIMED_OUT", "Costmap timed out waiting for update")
+        waited = (self._now_ns() - self._good_ns) / 1e9
+        if waited > max(self._value("costmap_update_timeout"), _LONGEST_WAIT):
+            self._fail(_GoalError(problem.code, f"{problem}: given up"))
+        else:
+            message = f"{problem}: the robot waits"
+            self.get_logger().warning(message, throttle_duration_sec=_SECONDS_BETWEEN_COMPLAINTS)
 
     def _drive(self, goals: GoalServer) -> None:
         """Drive for a cycle."""
         now_ns = self._now_ns()
         frame = self._pose(self._path_frame, _STALE_PATH_FRAME)
         pose = self._pose(self.costmap.robot_base_frame, self.costmap.get_parameter("transform_tolerance").value)
+        if not self.costmap.is_current:
+            raise _NotNowError("CONTROLLER_TIMED_OUT", "the costmap is not current")
         x, y, yaw = _seen_from(frame, pose)
         self._path.progress(x, y)
         velocity = self._velocity()
@@ -243,7 +254,7 @@ class ControllerNode(ManagedNode):
         """A frame in that of the costmap.
 
         Raises:
-            _GoalError: it is not known, or has not been for too long.
+            _NotNowError: it is not known, or has not been for too long.
         """
         target = self.costmap.global_frame
         if not frame or frame == target:
@@ -251,12 +262,10 @@ class ControllerNode(ManagedNode):
         try:
             found, stamp_ns = self.costmap.transforms.lookup(target, frame, 0)
         except TransformException as error:
-            raise _GoalError("TF_ERROR", f"Failed to obtain the pose of {frame} in {target}: {error}") from None
+            raise _NotNowError("TF_ERROR", f"Failed to obtain the pose of {frame} in {target}: {error}") from None
         age = (self._now_ns() - stamp_ns) / 1e9
         if stamp_ns and age > most_seconds:
-            raise _GoalError(
-                "TF_ERROR", f"the pose of {frame} in {target} is {age:.2f} s old: nobody sends it any more"
-            )
+            raise _NotNowError("TF_ERROR", f"the pose of {frame} in {target} is {age:.2f} s old")
         return found[0], found[1], rpy_from_quaternion(found[3:])[2]
 
     def _fail(self, failure: _GoalError) -> None:
