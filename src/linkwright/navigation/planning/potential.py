@@ -2,7 +2,8 @@
 
 It is the eikonal equation on a grid, as NavFn solves it: ways go in all directions, not only along rows, columns and
 diagonals. All cells of the front are brought up to date at once, and those whose neighbours got cheaper are looked at
-again, until nothing changes.
+again, until nothing changes. The wave goes on from expensive cells only when it has come as far in cheap ones, as most
+of them are reached for less around them.
 
 Source: Brock and Khatib, High-speed navigation using the global dynamic window approach, ICRA 1999; nav2_navfn_planner
 (what a cell costs).
@@ -11,6 +12,7 @@ Source: Brock and Khatib, High-speed navigation using the global dynamic window 
 from __future__ import annotations
 
 from collections.abc import Generator
+from math import sqrt
 from typing import Final
 
 import numpy as np
@@ -27,6 +29,8 @@ NEUTRAL: Final = 50.0
 _FACTOR: Final = 0.8
 _MOST: Final = 253.0
 """The price of crossing a cell that nobody has seen."""
+_ROUNDS_HELD: Final = 4
+"""So often, in steps of the wave, it is looked which of the expensive cells are due."""
 _SMALLEST_GAIN: Final = 1e-3 * NEUTRAL
 
 
@@ -74,9 +78,13 @@ def potential(
     end = None if target is None else (target[0] + 1) * width + target[1] + 1
     ahead = _least_ahead(price, target) if heuristic and target is not None else None
     least[begin], gain[begin] = 0.0, -np.inf
+    least_step = float(step.min()) / sqrt(2.0)  # from both sides at once
     front = begin + offsets[:, 0]
     front = front[step[front] < np.inf]
-    while front.size:
+    cheapest = float(step.min())
+    held = np.empty(0, np.intp)
+    bound, rounds = 0.0, 0
+    while front.size or held.size:
         yield
         sides = least.take(front + offsets)
         value = _crossed(np.minimum(sides[0], sides[1]), np.minimum(sides[2], sides[3]), step.take(front))
@@ -84,11 +92,23 @@ def potential(
         front, value = front.take(better), value.take(better)
         least[front] = value
         gain[front] = value
+        rounds += 1
+        bound += cheapest
+        late = value > bound
+        if late.any():
+            held = np.concatenate((held, front[late]))
+            front = front[~late]
+        if held.size and (not front.size or not rounds % _ROUNDS_HELD):
+            waiting = least.take(held)
+            bound = max(bound, float(waiting.min()))
+            due = waiting <= bound + _ROUNDS_HELD * cheapest
+            front, held = np.concatenate((front, held[due])), held[~due]
+        value = least.take(front)
         if end is not None and least[end] < np.inf:
             near = (value if ahead is None else value + ahead.take(front)) < least[end]
             front, value = front[near], value[near]
         around = front + offsets
-        around = around[gain.take(around) > value]
+        around = around[gain.take(around) > value + least_step]
         mark[around] = order = np.arange(around.size)
         front = around[mark.take(around) == order]
     result: Floats = least.reshape(rows + 2, width)[1:-1, 1:-1]
