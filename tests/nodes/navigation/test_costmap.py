@@ -90,6 +90,16 @@ async def test_a_map_becomes_costs_as_large_as_the_map(scene, start):
     assert node.is_current
 
 
+async def test_transforms_are_heard_where_its_server_hears_them(graph, scene):
+    """The launch files of nav2 make the topics of transforms relative, for robots in namespaces."""
+    options = NodeOptions(remappings=[("/tf", "tf"), ("/tf_static", "tf_static")])
+    node = make_costmap(scene.node, graph, options, "global_costmap")
+    heard = {each.topic_name for each in node.subscriptions}
+    assert {"/tf", "/tf_static"} <= heard
+    node.leave()
+    node.destroy_node()
+
+
 async def test_it_waits_for_the_place_of_the_robot_and_for_the_map(scene, start):
     node = start()
     await scene.run(0.5)

@@ -19,7 +19,7 @@ from linkwright.graph.command_line.ros_arguments import parse
 from linkwright.graph.names.rules import join
 from linkwright.graph.parameters.rules import ParameterRules
 from linkwright.graph.transforms.core import BufferCore
-from linkwright.graph.transforms.listener import TransformListener
+from linkwright.graph.transforms.listener import DEFAULT_STATIC_TF_TOPIC, DEFAULT_TF_TOPIC, TransformListener
 from linkwright.messages import get_message, get_service, is_before_iron
 from linkwright.navigation.costmaps.costmap import Costmap
 from linkwright.navigation.costmaps.footprints import BadFootprintError, Footprint, circle, placed, read_footprint
@@ -66,6 +66,9 @@ _PARAMETERS: dict[str, Any] = {
     "use_maximum": False,
     "map_topic": "map",
 }
+
+
+_OF_TF = (DEFAULT_TF_TOPIC, DEFAULT_STATIC_TF_TOPIC)
 
 
 class CostmapNode(ManagedNode):
@@ -400,9 +403,20 @@ def make_costmap(server: Node, graph: Graph, options: NodeOptions, name: str) ->
         name,
         namespace=namespace,
         parameters=parameters,
-        remappings=[each for each in remappings if not each[0].startswith("__")],
+        remappings=[_for_tf(server, each) for each in remappings if not each[0].startswith("__")],
         enclave=ros.enclave or "/",
     )
+
+
+def _for_tf(server: Node, rule: tuple[str, str]) -> tuple[str, str]:
+    """A remapping rule for the costmap: transforms are heard where the server hears them, not in its own namespace.
+
+    Source: a costmap of nav2 listens by a node of its process that is not in the costmap's namespace.
+    """
+    source, target = rule
+    if source not in _OF_TF or target.startswith("/"):
+        return rule
+    return source, join(server.get_namespace(), target)
 
 
 def _upright(grid: Grid) -> Grid:
