@@ -22,6 +22,7 @@ DISPLAYS = configuration(
 - {Class: rviz_default_plugins/Pose, Enabled: true, Name: Pose, Topic: {Value: /pose}}
 - {Class: rviz_default_plugins/PoseWithCovariance, Enabled: true, Name: Guess, Topic: {Value: /guess}}
 - {Class: rviz_default_plugins/PoseArray, Enabled: true, Name: Cloud, Topic: {Value: /cloud}}
+- {Class: nav2_rviz_plugins/ParticleCloud, Enabled: true, Name: Particles, Topic: {Value: /particle_cloud}}
 - {Class: rviz_default_plugins/Odometry, Enabled: true, Name: Way, Topic: {Value: /odom}}
 - {Class: rviz_default_plugins/Path, Enabled: true, Name: Plan, Topic: {Value: /plan}, Line Style: Billboards,
    Line Width: 0.1, Pose Style: Axes}
@@ -59,6 +60,9 @@ def published(viewer) -> None:
     guess.pose.covariance = np.diag([0.25, 0.04, 0.01, 0.01, 0.01, 0.01]).ravel()
     viewer.publish("/guess", guess)
     viewer.publish("/cloud", message("geometry_msgs/msg/PoseArray", poses=[pose(x) for x in range(5)]))
+    particle = get_message("nav2_msgs/msg/Particle")
+    particles = [particle(pose=pose(0), weight=0.0), particle(pose=pose(1), weight=0.5)]
+    viewer.publish("/particle_cloud", message("nav2_msgs/msg/ParticleCloud", particles=particles))
     for x in (0, 1, 2):
         mark = message("nav_msgs/msg/Odometry")
         mark.pose.pose = pose(x, -2)
@@ -102,6 +106,7 @@ def test_every_display_draws_its_message_where_it_is(live, open_page):
     assert told["Pose"]["bounds"]["max"] == pytest.approx([2.3, 0.05, 1.05], abs=1e-3)
     assert told["Guess"]["bounds"]["max"] == pytest.approx([1.3, 3.001, 2.001], abs=0.02)
     assert (told["Cloud"]["arrows"], size(told["Cloud"])[:2]) == (0, pytest.approx([4.3, 0.12], abs=1e-3))
+    assert told["Particles"]["bounds"]["max"] == pytest.approx([1.16, 0.032, 3.5], abs=1e-3)
     assert (told["Way"]["arrows"], told["Way"]["contents"]) == (3, 3)
     assert (told["Plan"]["points"], told["Plan"]["axes"], told["Plan"]["wide"]) == (4, 4, True)
     assert told["Plan"]["bounds"]["max"] == pytest.approx([3.3, 3.3, 1.3], abs=1e-3)

@@ -13,6 +13,13 @@ export interface PoseMarks {
   kind: "pose_marks";
 }
 
+/** ParticleCloud: poses as in `PoseMarks`, and how likely each is, shape (N,). */
+export interface ParticleMarks {
+  poses: Float32Array;
+  weights: Float32Array;
+  kind: "particle_marks";
+}
+
 /** Polygon: its corners in the frame of the content, shape (N, 3). */
 export interface PolygonLine {
   points: Float32Array;

@@ -39,7 +39,7 @@ import type {
 } from "./description";
 import type { DisplayProperties, DisplayStatus, PropertyChanged, SetProperty, Tree } from "./displays";
 import type { AskExport, ExportFailed, ExportReady } from "./export";
-import type { EffortRings, PointMarks, PolygonLine, PoseMarks, RangeCone, Screw } from "./geometry";
+import type { EffortRings, ParticleMarks, PointMarks, PolygonLine, PoseMarks, RangeCone, Screw } from "./geometry";
 import type { ImageFrame, OccupancyMap, PictureSize } from "./images";
 import type { CenterJoints, JointPositions, Joints, RandomizeJoints, SetJoint, SetJoints } from "./joints";
 import type { InteractiveMarkerMoved, InteractiveMarkerShape, MarkerFeedback, MarkersChanged } from "./markers";
@@ -265,6 +265,7 @@ export type DataContent =
   | InteractiveMarkerShape
   | MarkersChanged
   | OccupancyMap
+  | ParticleMarks
   | PointMarks
   | PolygonLine
   | PoseMarks

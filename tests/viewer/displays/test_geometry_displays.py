@@ -171,6 +171,32 @@ async def test_all_poses_of_an_array_are_sent():
         assert content.fields["poses"].reshape(-1, 7)[:, 0].tolist() == [1, 2]
 
 
+async def test_particles_of_nav2_bring_how_likely_they_are():
+    parsed = config("PoseArray").text().replace("rviz_default_plugins/PoseArray", "nav2_rviz_plugins/ParticleCloud")
+    async with world(RvizConfig.parse(parsed)) as w:
+        assert rows(w, "ParticleCloud") == {
+            "Topic": "/topic",
+            "Shape": "Arrow (Flat)",
+            "Color": "#ff1900",
+            "Alpha": 1.0,
+            "Min Arrow Length": 0.02,
+            "Max Arrow Length": 0.3,
+            "Arrow Height Scale": 5.0,
+        }
+        w.move_arm()
+        particle = get_message("nav2_msgs/msg/Particle")
+        particles = [particle(pose=pose(1), weight=0.25), particle(pose=pose(2), weight=0.75)]
+        out = publisher(w, "ParticleCloud")
+        out.publish(message("nav2_msgs/msg/ParticleCloud", particles=particles))
+        await w.settle()
+        (content,) = contents(w.display("ParticleCloud"))
+        assert content.fields["poses"].reshape(-1, 7)[:, 0].tolist() == [1, 2]
+        assert content.fields["weights"].tolist() == [0.25, 0.75]
+        out.publish(message("nav2_msgs/msg/ParticleCloud", particles=[particle(weight=math.nan)]))
+        await w.settle()
+        assert w.status("ParticleCloud")["Message"] == INVALID
+
+
 async def test_odometry_drops_a_mark_when_the_robot_went_far_or_turned():
     async with world(config("Odometry")) as w:
         w.move_arm()

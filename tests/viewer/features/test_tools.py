@@ -5,8 +5,10 @@ import math
 import pytest
 import yaml
 
+from linkwright.graph import ActionServer
+from linkwright.messages import get_action
 from linkwright.viewer import RvizConfig
-from linkwright.viewer.config.tools import TOOL_KINDS, tool_name
+from linkwright.viewer.config.tools import TOOL_KINDS, USUAL_TOOLS, tool_name
 from tests.viewer.scene import page, rows_by_id, world
 from tests.waiting import eventually
 
@@ -16,7 +18,7 @@ Visualization Manager:
     - Class: rviz_default_plugins/MoveCamera
     - Class: rviz/SetGoal
       Topic: /move_base_simple/goal
-    - Class: nav2_rviz_plugins/GoalTool
+    - Class: other_plugins/GoalTool
       Secret: kept
     - Class: rviz_default_plugins/SetInitialPose
       Covariance x: 0.04
@@ -45,8 +47,9 @@ def test_names_are_those_of_rviz():
         "2D Pose Estimate",
         "2D Goal Pose",
         "Publish Point",
+        "Nav2 Goal",
     ]
-    assert tool_name("nav2_rviz_plugins/GoalTool") == "Goal Tool"
+    assert tool_name("other_plugins/GoalTool") == "Goal Tool"
 
 
 def test_the_tools_of_a_file_keep_order_classes_and_what_is_unknown():
@@ -66,11 +69,11 @@ def test_the_tools_of_a_file_keep_order_classes_and_what_is_unknown():
 
 def test_a_file_without_tools_has_the_usual_ones_and_lists_them_when_one_changes():
     config = RvizConfig.parse("Visualization Manager: {}\n")
-    assert [entry.cls for entry in config.tools.entries] == list(TOOL_KINDS)
+    assert [entry.cls for entry in config.tools.entries] == list(USUAL_TOOLS)
     assert "Tools" not in config.text()
     config.tools.remove(config.tools.entries[0].id)
     config.tools.add("rviz_default_plugins/Measure")
-    assert [each["Class"] for each in tools_of(config)] == [*list(TOOL_KINDS)[1:], "rviz_default_plugins/Measure"]
+    assert [each["Class"] for each in tools_of(config)] == [*list(USUAL_TOOLS)[1:], "rviz_default_plugins/Measure"]
     with pytest.raises(ValueError, match="no tool"):
         config.tools.add("no/Such")
     while len(config.tools.entries) < 100:
@@ -154,3 +157,36 @@ async def test_tools_are_added_and_removed_for_all_pages(config):
         "SetInitialPose",
         "Measure",
     ]
+
+
+NAV2 = """\
+Visualization Manager:
+  Global Options: {Fixed Frame: base}
+  Tools:
+    - Class: nav2_rviz_plugins/GoalTool
+"""
+
+
+async def test_goals_of_nav2_go_to_its_action_and_the_log_says_when_nobody_takes_them():
+    config = RvizConfig.parse(NAV2)
+    async with world(config) as made, page(made.viewer) as opened:
+        (tool,) = (await opened.opened())["tools"]["tools"]
+        assert (tool["name"], tool["supported"], tool["properties"]) == ("Nav2 Goal", True, [])
+        await opened.send("pose_chosen", tool=tool["id"], x=1.0, y=2.0, yaw=0.0)
+        await eventually(lambda: "navigate_to_pose action server is not available" in made.logged())
+        goals = []
+
+        def drive(handle):
+            goals.append(handle.request)
+            handle.succeed()
+            return get_action("nav2_msgs/action/NavigateToPose").Result()
+
+        navigator = made.graph.create_node("bt_navigator")
+        ActionServer(navigator, "nav2_msgs/action/NavigateToPose", "navigate_to_pose", drive)
+        await made.settle()
+        await opened.send("pose_chosen", tool=tool["id"], x=3.0, y=4.0, yaw=math.pi)
+        await eventually(lambda: goals)
+    (goal,) = goals
+    assert (goal.pose.header.frame_id, goal.behavior_tree) == ("base", "")
+    assert (goal.pose.pose.position.x, goal.pose.pose.position.y) == (3.0, 4.0)
+    assert goal.pose.pose.orientation.z == pytest.approx(1.0)

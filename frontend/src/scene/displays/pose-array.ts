@@ -1,20 +1,12 @@
-import { Matrix4, Vector3, type Box3 } from "three";
+import { Matrix4, type Box3 } from "three";
 import { ArrowBatch } from "../objects/arrow-batch";
 import { AxesBatch } from "../objects/axes-batch";
 import { ThinLines } from "../objects/thin-lines";
 import { ContentDrawing } from "./content-drawing";
 import type { DrawingContext } from "./drawing";
+import { flatArrows } from "./flat-arrows";
 import { colorOf, poseAt } from "./styles";
 
-/** An arrow of three lines, one metre long: back, tip, tip, one barb, tip, the other. */
-const FLAT_ARROW = [
-  [0, 0],
-  [1, 0],
-  [1, 0],
-  [0.75, 0.2],
-  [1, 0],
-  [0.75, -0.2],
-] as const;
 /** Thousands of poses are particles: few corners will do. */
 const SEGMENTS = 8;
 
@@ -69,20 +61,6 @@ export class PoseArrayDrawing extends ContentDrawing<"pose_marks"> {
     this.axes.end();
     this.lines.setStyle(color, alpha);
     const length = rows.number(0.3, "Arrow Length");
-    this.lines.setSegments(shape === "Arrow (Flat)" ? flatArrows(poses, frame, length) : new Float32Array(0));
+    this.lines.setSegments(shape === "Arrow (Flat)" ? flatArrows(poses, frame, () => length) : new Float32Array(0));
   }
-}
-
-function flatArrows(poses: Float32Array, frame: Matrix4, length: number): Float32Array {
-  const count = poses.length / 7;
-  const result = new Float32Array(count * FLAT_ARROW.length * 3);
-  const [matrix, point] = [new Matrix4(), new Vector3()];
-  for (let i = 0; i < count; i++) {
-    poseAt(poses, i, matrix).premultiply(frame);
-    FLAT_ARROW.forEach(([x, y], corner) => {
-      point.set(x * length, y * length, 0).applyMatrix4(matrix);
-      point.toArray(result, (i * FLAT_ARROW.length + corner) * 3);
-    });
-  }
-  return result;
 }

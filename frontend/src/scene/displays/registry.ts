@@ -9,6 +9,7 @@ import { GridCellsDrawing } from "./grid-cells";
 import { GridDrawing } from "./grid";
 import { InteractiveMarkersDrawing } from "./interactive-markers";
 import { MarkersDrawing } from "./markers";
+import { ParticleCloudDrawing } from "./particle-cloud";
 import { PathDrawing } from "./path";
 import { PointStampedDrawing } from "./point-stamped";
 import { PolygonDrawing } from "./polygon";
@@ -27,6 +28,7 @@ export const DRAWINGS: ReadonlyMap<string, DrawingClass> = new Map<string, Drawi
   ["rviz_default_plugins/AccelStamped", ScrewDrawing],
   ["rviz_default_plugins/Effort", EffortDrawing],
   ["rviz_default_plugins/Odometry", PosesDrawing],
+  ["nav2_rviz_plugins/ParticleCloud", ParticleCloudDrawing],
   ["rviz_default_plugins/Path", PathDrawing],
   ["rviz_default_plugins/Polygon", PolygonDrawing],
   ["rviz_default_plugins/Pose", PosesDrawing],

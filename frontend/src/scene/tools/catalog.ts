@@ -16,7 +16,7 @@ export interface ToolEntry {
   readonly make: SceneToolClass;
 }
 
-/** RViz's tools. */
+/** RViz's tools, and nav2's. */
 export const TOOLS: ReadonlyMap<string, ToolEntry> = new Map<string, ToolEntry>([
   ["rviz_default_plugins/Interact", { key: "i", icon: "interact", make: InteractTool }],
   ["rviz_default_plugins/MoveCamera", { key: "m", icon: "move", make: MoveCameraTool }],
@@ -25,5 +25,6 @@ export const TOOLS: ReadonlyMap<string, ToolEntry> = new Map<string, ToolEntry>(
   ["rviz_default_plugins/Measure", { key: "n", icon: "measure", make: MeasureTool }],
   ["rviz_default_plugins/SetInitialPose", { key: "p", icon: "estimate", make: PoseTool }],
   ["rviz_default_plugins/SetGoal", { key: "g", icon: "goal", make: PoseTool }],
+  ["nav2_rviz_plugins/GoalTool", { key: "g", icon: "goal", make: PoseTool }],
   ["rviz_default_plugins/PublishPoint", { key: "u", icon: "frame", make: PublishPointTool }],
 ]);

@@ -18,6 +18,7 @@ const about: Readonly<Record<DisplayIcon, string>> = {
   Marker: "Shapes that a node draws: arrows, boxes, lines, texts, meshes.",
   MarkerArray: "Many shapes that a node draws at once.",
   Odometry: "Where a robot was, as arrows or axes, with their covariance.",
+  ParticleCloud: "Where a robot may be, as amcl tells: the likelier, the larger.",
   Path: "A path that a planner made.",
   PointCloud: "The points of a cloud, in the old message.",
   PointCloud2: "The points of a cloud.",

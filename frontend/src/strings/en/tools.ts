@@ -46,6 +46,7 @@ export const tools = {
       "rviz_default_plugins/Measure": "Measure",
       "rviz_default_plugins/SetInitialPose": "2D Pose Estimate",
       "rviz_default_plugins/SetGoal": "2D Goal Pose",
+      "nav2_rviz_plugins/GoalTool": "Nav2 Goal",
       "rviz_default_plugins/PublishPoint": "Publish Point",
     },
     hints: {

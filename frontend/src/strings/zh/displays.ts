@@ -19,6 +19,7 @@ export const displays: typeof english = {
     Marker: "节点绘制的形状：箭头、方块、线、文字、网格模型。",
     MarkerArray: "节点一次绘制的许多形状。",
     Odometry: "用箭头或坐标轴显示机器人到过的位置及其协方差。",
+    ParticleCloud: "amcl 给出的机器人可能的位姿，可能性越大画得越大。",
     Path: "规划器给出的路径。",
     PointCloud: "旧式消息点云中的点。",
     PointCloud2: "点云中的点。",

@@ -43,6 +43,7 @@ export const tools: typeof english = {
       "rviz_default_plugins/Measure": "测量",
       "rviz_default_plugins/SetInitialPose": "2D 位姿估计",
       "rviz_default_plugins/SetGoal": "2D 目标位姿",
+      "nav2_rviz_plugins/GoalTool": "Nav2 目标",
       "rviz_default_plugins/PublishPoint": "发布点",
     },
     hints: {

@@ -1,7 +1,7 @@
 """RViz's tools: the properties of each class, declared once, and the tools of a .rviz file.
 
 What a tool does with the mouse is the page's: `frontend/src/scene/tools`. Names, topics and defaults are RViz's
-(rviz_default_plugins).
+(rviz_default_plugins) and nav2's (nav2_rviz_plugins).
 """
 
 from __future__ import annotations
@@ -26,11 +26,13 @@ class ToolKind:
         name: on its button, as RViz names it.
         schema: its properties.
         publishes: the type of what it publishes on its ``Topic``; None for one that publishes nothing.
+        action: the name and the type of an action that it sends goals to; None for none.
     """
 
     name: str
     schema: Schema = ()
     publishes: str | None = None
+    action: tuple[str, str] | None = None
 
 
 def _topic(default: str, description: str) -> PropertySpec:
@@ -83,8 +85,12 @@ TOOL_KINDS: dict[str, ToolKind] = {
         ),
         "geometry_msgs/msg/PointStamped",
     ),
+    "nav2_rviz_plugins/GoalTool": ToolKind("Nav2 Goal", action=("navigate_to_pose", "nav2_msgs/action/NavigateToPose")),
 }
-"""The classes in the order of RViz's default toolbar."""
+"""The classes in the order of RViz's default toolbar, then those of other packages."""
+
+USUAL_TOOLS = tuple(cls for cls in TOOL_KINDS if cls.startswith("rviz_default_plugins/"))
+"""The toolbar of a file that lists no tools."""
 
 
 def tool_name(cls: str) -> str:
@@ -136,7 +142,7 @@ class ToolsConfig:
                 self._remember(scalar.text, section)
         self._are_listed = bool(self._entries)
         if not self._entries:
-            for cls in TOOL_KINDS:
+            for cls in USUAL_TOOLS:
                 self._remember(cls, self._new(cls))
 
     @property

@@ -22,7 +22,7 @@ from linkwright.viewer.config.schema import (
 from linkwright.viewer.displays.base.display import DisplayHost
 from linkwright.viewer.displays.base.topic_display import RecentDisplay
 from linkwright.viewer.protocol.binary import Floats
-from linkwright.viewer.protocol.geometry import PoseMarks
+from linkwright.viewer.protocol.geometry import ParticleMarks, PoseMarks
 from linkwright.viewer.protocol.message import DataContent
 
 _ARROW = (("Shape",), "Arrow")
@@ -174,6 +174,34 @@ class PoseArrayDisplay(RecentDisplay):
         """The poses."""
         rows = pose_rows(message.poses)
         return PoseMarks(rows, NO_COVARIANCE) if self.is_finite(rows) else None
+
+
+class ParticleCloudDisplay(RecentDisplay):
+    """Where a robot may be, as nav2's amcl tells: the likelier, the larger (nav2_rviz_plugins)."""
+
+    CLASS = "nav2_rviz_plugins/ParticleCloud"
+    MESSAGE = "nav2_msgs/msg/ParticleCloud"
+    SCHEMA = (
+        topic_spec(description=MESSAGE, filter_size=10),
+        PropertySpec(
+            "Shape",
+            "enum",
+            "Arrow (Flat)",
+            "Whether poses are drawn as arrows of lines, as solid arrows or as axes.",
+            options=("Arrow (Flat)", "Arrow (3D)", "Axes"),
+        ),
+        PropertySpec("Color", "color", "#ff1900", "Colour of the arrows."),
+        alpha("Opacity of the arrows."),
+        length("Min Arrow Length", 0.02, "How long the arrow of a pose that is not likely is, in metres."),
+        length("Max Arrow Length", 0.3, "How long that of one that is certain is, in metres."),
+        PropertySpec("Arrow Height Scale", "float", 5.0, "Metres that what is certain is drawn higher.", minimum=0.0),
+    )
+
+    def content(self, message: Any) -> DataContent | None:
+        """The poses and their weights."""
+        rows = pose_rows(particle.pose for particle in message.particles)
+        weights = np.array([particle.weight for particle in message.particles], dtype=np.float32)
+        return ParticleMarks(rows, weights) if self.is_finite(rows, weights) else None
 
 
 _NORM_TOLERANCE = 10e-3

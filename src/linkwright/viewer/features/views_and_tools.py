@@ -37,6 +37,7 @@ from linkwright.viewer.protocol.views_and_tools import (
 from linkwright.viewer.web.audience import Page
 
 if TYPE_CHECKING:
+    from linkwright.viewer.features.goals import GoalSender
     from linkwright.viewer.visualization.manager import VisualizationManager
 
 
@@ -87,6 +88,7 @@ class ViewsFeature(PageFeature):
 _TOPIC = "Topic"
 _INITIAL_POSE = "rviz_default_plugins/SetInitialPose"
 _POSE_TOOLS = {_INITIAL_POSE: "estimate", "rviz_default_plugins/SetGoal": "goal"}
+_POSE = "geometry_msgs/msg/PoseStamped"
 _POINT_TOOL = "rviz_default_plugins/PublishPoint"
 
 
@@ -96,6 +98,7 @@ class _Shelf:
 
     config: ToolsConfig
     publishers: dict[str, Publisher[Any]] = field(default_factory=dict)
+    goals: dict[str, GoalSender] = field(default_factory=dict)
 
 
 class ToolsFeature(PageFeature):
@@ -166,7 +169,7 @@ class ToolsFeature(PageFeature):
             self.context.node.get_logger().error(f"{tool_name(entry.cls)}: {error}")
 
     def _clear(self, shelf: _Shelf) -> None:
-        for identity in list(shelf.publishers):
+        for identity in [*shelf.publishers, *shelf.goals]:
             self._withdraw(shelf, identity)
 
     # --- settings ----------------------------------------------------------------------------------------------
@@ -211,6 +214,10 @@ class ToolsFeature(PageFeature):
     def _announce(self, shelf: _Shelf, entry: ToolEntry) -> None:
         """Recreate the publisher; without a topic there is none."""
         kind = TOOL_KINDS.get(entry.cls)
+        if kind is not None and kind.action is not None:
+            from linkwright.viewer.features.goals import GoalSender  # not above: few configurations have such a tool
+
+            shelf.goals[entry.id] = GoalSender(self.context.node, *kind.action)
         if kind is None or kind.publishes is None:
             return
         topic = entry.properties.text(_TOPIC).strip()
@@ -225,6 +232,9 @@ class ToolsFeature(PageFeature):
         publisher = shelf.publishers.pop(identity, None)
         if publisher is not None:
             self.context.node.destroy_publisher(publisher)
+        goals = shelf.goals.pop(identity, None)
+        if goals is not None:
+            goals.destroy()
 
     def _find(
         self, manager: VisualizationManager, identity: str, classes: Collection[str]
@@ -235,43 +245,57 @@ class ToolsFeature(PageFeature):
         return None if entry is None or publisher is None or entry.cls not in classes else (entry, publisher)
 
     def _publish_pose(self, manager: VisualizationManager, chosen: PoseChosen) -> None:
+        place = (chosen.x, chosen.y, 0.0, 0.0, 0.0, math.sin(chosen.yaw / 2), math.cos(chosen.yaw / 2))
+        goals = self._shelves[manager].goals.get(chosen.tool)
+        if goals is not None:
+            message, known = self._stamped(manager, _POSE, place)
+            self._tell_pose("goal", message.header, _fill(message.pose, known), known)
+            goals.send(message)
+            return
         found = self._find(manager, chosen.tool, _POSE_TOOLS)
         if found is None:
             return
         entry, publisher = found
-        turned = (0.0, 0.0, math.sin(chosen.yaw / 2), math.cos(chosen.yaw / 2))
-        message, place = self._stamped(manager, entry, (chosen.x, chosen.y, 0.0, *turned))
+        message, known = self._stamped(manager, TOOL_KINDS[entry.cls].publishes, place)
         pose = message.pose
         if entry.cls == _INITIAL_POSE:
             for index, axis in ((0, "x"), (7, "y"), (35, "yaw")):
                 message.pose.covariance[index] = entry.properties.number(f"Covariance {axis}")
             pose = message.pose.pose
-        pose.position.x, pose.position.y, pose.position.z = place[:3]
-        pose.orientation.x, pose.orientation.y, pose.orientation.z, pose.orientation.w = place[3:]
+        self._tell_pose(_POSE_TOOLS[entry.cls], message.header, _fill(pose, known), known)
+        publisher.publish(message)
+
+    def _tell_pose(self, kind: str, header: Any, pose: Any, place: list[float]) -> None:
         self.context.node.get_logger().info(
-            f"Setting {_POSE_TOOLS[entry.cls]} pose: Frame:{message.header.frame_id}, "
+            f"Setting {kind} pose: Frame:{header.frame_id}, "
             f"Position({pose.position.x:g}, {pose.position.y:g}, 0), "
             f"Orientation(0, 0, {pose.orientation.z:g}, {pose.orientation.w:g}) = Angle: {_angle(place):g}"
         )
-        publisher.publish(message)
 
     def _publish_point(self, manager: VisualizationManager, chosen: PointChosen) -> None:
         found = self._find(manager, chosen.tool, (_POINT_TOOL,))
         if found is None:
             return
         entry, publisher = found
-        message, place = self._stamped(manager, entry, (chosen.x, chosen.y, chosen.z, 0.0, 0.0, 0.0, 1.0))
+        kind = TOOL_KINDS[entry.cls].publishes
+        message, place = self._stamped(manager, kind, (chosen.x, chosen.y, chosen.z, 0.0, 0.0, 0.0, 1.0))
         message.point.x, message.point.y, message.point.z = place[:3]
         publisher.publish(message)
 
-    def _stamped(self, manager: VisualizationManager, entry: ToolEntry, pose: Transform) -> tuple[Any, list[float]]:
+    def _stamped(self, manager: VisualizationManager, kind: str | None, pose: Transform) -> tuple[Any, list[float]]:
         """The message of a tool without its pose; and that, given in the Fixed Frame, in the frame of the message."""
-        kind = TOOL_KINDS[entry.cls]
-        assert kind.publishes is not None
-        message = get_message(kind.publishes)()
+        assert kind is not None
+        message = get_message(kind)()
         message.header.frame_id, place = self.context.transforms.known(manager.fixed_frame, pose)
         message.header.stamp = self.context.node.get_clock().now().to_msg()
         return message, place.tolist()
+
+
+def _fill(pose: Any, place: list[float]) -> Any:
+    """Write numbers into a geometry_msgs/msg/Pose, and return that."""
+    pose.position.x, pose.position.y, pose.position.z = place[:3]
+    pose.orientation.x, pose.orientation.y, pose.orientation.z, pose.orientation.w = place[3:]
+    return pose
 
 
 def _angle(pose: list[float]) -> float:

@@ -23,6 +23,13 @@ class PoseMarks(DataContent):
     covariances: Floats
 
 
+class ParticleMarks(DataContent):
+    """ParticleCloud: poses as in `PoseMarks`, and how likely each is, shape (N,)."""
+
+    poses: Floats
+    weights: Floats
+
+
 class PolygonLine(DataContent):
     """Polygon: its corners in the frame of the content, shape (N, 3)."""
 

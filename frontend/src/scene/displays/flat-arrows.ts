@@ -1,0 +1,28 @@
+import { Matrix4, Vector3 } from "three";
+import { poseAt } from "./styles";
+
+/** An arrow of three lines, one metre long: back, tip, tip, one barb, tip, the other. */
+const FLAT_ARROW = [
+  [0, 0],
+  [1, 0],
+  [1, 0],
+  [0.75, 0.2],
+  [1, 0],
+  [0.75, -0.2],
+] as const;
+
+/** Arrows of lines at poses in a frame, as segments in the fixed frame; `lengthOf` each, m. */
+export function flatArrows(poses: Float32Array, frame: Matrix4, lengthOf: (pose: number) => number): Float32Array {
+  const count = poses.length / 7;
+  const result = new Float32Array(count * FLAT_ARROW.length * 3);
+  const [matrix, point] = [new Matrix4(), new Vector3()];
+  for (let i = 0; i < count; i++) {
+    poseAt(poses, i, matrix).premultiply(frame);
+    const length = lengthOf(i);
+    FLAT_ARROW.forEach(([x, y], corner) => {
+      point.set(x * length, y * length, 0).applyMatrix4(matrix);
+      point.toArray(result, (i * FLAT_ARROW.length + corner) * 3);
+    });
+  }
+  return result;
+}
