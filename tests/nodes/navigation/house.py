@@ -108,7 +108,7 @@ def faces(models: tuple[str, ...] = ("walls",), height: float = 0.2) -> np.ndarr
     for model in read_world(str(HOUSE)).world.models:
         for link in model.links if model.name in models else ():
             for collision in link.collisions:
-                size = getattr(collision.geometry, "size", ())
+                size: tuple[float, ...] = getattr(collision.geometry, "size", ())
                 (x, y, z), yaw = collision.pose.pose.xyz, collision.pose.pose.rpy[2]
                 if len(size) != 3 or abs(z - height) > size[2] / 2:
                     continue

@@ -28,6 +28,7 @@ from linkwright.graph.transforms.core import BufferCore
 from linkwright.graph.transforms.listener import TransformListener
 from linkwright.messages import TFMessage, Time, TransformBatch, get_message
 from linkwright.navigation.grids.grid import Grid
+from linkwright.navigation.grids.library import load_scipy
 from linkwright.navigation.grids.occupancy import occupancy_message
 from linkwright.navigation.slam.mapper import Mapper, Outcome
 from linkwright.navigation.slam.occupancy import OccupancyMap
@@ -66,6 +67,8 @@ class Toolbox:
     """
 
     def __init__(self, node: Node, settings: Settings, *, keeps_all: bool, localizes: bool) -> None:
+        for part in ("ndimage", "sparse", "sparse.linalg", "spatial"):
+            load_scipy(part)  # now, and not with the first scan
         self.node, self.settings, self.localizes = node, settings, localizes
         self.mapper = self._new_mapper()
         self.queue: deque[tuple[PlanarScan, Floats]] = deque()

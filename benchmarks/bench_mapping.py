@@ -1,0 +1,95 @@
+"""Mapping our house with odometry of several qualities: how far off pose and walls are, and what a scan costs.
+
+Run it with ``python -m benchmarks mapping``. mbot drives through all rooms in lock-step with the mapper, the tour of
+``tests/nodes/navigation/house.py``. Odometry is made worse by a scale, a turn that comes with the way, and noise. Where
+it says that the robot is at the end is the peer "odometry". Costs are times of the processor, of this thread.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from tests.nodes.navigation import house
+
+from benchmarks.measure import Row
+from linkwright.geometry.single import rpy_from_quaternion
+from linkwright.navigation.slam.poses import between, compose
+from linkwright.nodes import NodeOptions
+from linkwright.nodes.navigation.slam_toolbox.nodes import AsyncSlamToolbox
+
+QUALITIES = {
+    "exact": (1.0, 0.0, 0.0),
+    "2 %, 0.01 rad/m": (1.02, 0.01, 0.02),
+    "5 %, 0.05 rad/m": (1.05, 0.05, 0.1),
+    "10 %, 0.1 rad/m": (1.1, 0.1, 0.2),
+    "-10 %, -0.15 rad/m": (0.9, -0.15, 0.3),
+}
+"""Names, and scale, radians a metre, and noise of `house.Drift`."""
+
+
+@dataclass
+class _Tour:
+    """What a tour gave: metres, radians, and seconds of each step of the mapper and of each scan."""
+
+    odometry_off: float
+    pose_off: float
+    turned_off: float
+    walls_off: np.ndarray
+    step_s: list[float]
+    scans: int
+
+
+def toured(scale: float, yaw_per_metre: float, noise: float) -> _Tour:
+    """Drive and map."""
+    walls, solid = house.faces(), house.faces(("walls", "furniture"))
+    steps: list[float] = []
+    os.environ.pop("ROS_DISTRO", None)
+    with house.simulation() as test:
+        drift = house.Drift(test, scale, yaw_per_metre, noise=noise)
+        options = NodeOptions(parameters={"use_sim_time": True}, remappings=[("/tf", "/drifting_tf")])
+        node: Any = AsyncSlamToolbox(test.graph, options)
+        toolbox = node._work[0]
+        step = toolbox._step
+
+        def timed() -> None:
+            begun = time.thread_time()
+            step()
+            steps.append(time.thread_time() - begun)
+
+        toolbox._next_step.callback = timed
+        house.drive(test, house.TOUR)
+        here = test.robot_pose()
+        true = np.array((here[0], here[1], rpy_from_quaternion(here[3:])[2]))
+        told = between(true, compose(toolbox._map_to_odom, drift.pose))
+        odometry = between(true, drift.pose)
+        occupied = house.occupied_of(toolbox.grid())
+        near = occupied[house.distances(walls, occupied) < 0.2]
+        return _Tour(
+            float(np.hypot(odometry[0], odometry[1])),
+            float(np.hypot(told[0], told[1])),
+            abs(float(told[2])),
+            house.distances(solid, near),
+            steps,
+            len(toolbox.mapper.scans),
+        )
+
+
+def rows() -> list[Row]:
+    """The table."""
+    found = []
+    for name, quality in QUALITIES.items():
+        tour = toured(*quality)
+        about = f"odometry {name}"
+        found += [
+            Row(f"{about}: pose off at the end", 100 * tour.pose_off, "cm", "", {"odometry": 100 * tour.odometry_off}),
+            Row(f"{about}: turned off at the end", float(np.degrees(tour.turned_off)), "deg"),
+            Row(f"{about}: walls off, mean", 100 * float(tour.walls_off.mean()), "cm"),
+            Row(f"{about}: walls off, most", 100 * float(tour.walls_off.max()), "cm", "5"),
+            Row(f"{about}: a scan", 1e3 * sum(tour.step_s) / tour.scans, "ms"),
+            Row(f"{about}: longest step", 1e3 * max(tour.step_s), "ms", "20"),
+        ]
+    return found
