@@ -33,7 +33,7 @@ _DEPTH = 10
 _SECONDS_BETWEEN_COMPLAINTS = 2.0
 _LONGEST_WAIT = 3.0
 """Seconds for which the robot stands still because something is not known, before the goal is given up."""
-_STALE_PATH_FRAME = 2.0
+_STALE_PATH_FRAME = 5.0
 """Seconds after which where the path's frame is, is not known any more."""
 
 
