@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
 import pytest
-from playwright.sync_api import Page
+from playwright.sync_api import Error, Page
 
 from linkwright.graph import ParameterDescriptor
 from linkwright.graph.parameters.parameter import Range
@@ -326,3 +326,38 @@ def test_the_pad_drives_while_it_is_held(page: Page, robot: Robot):
     page.close()
     wait_until(lambda: robot.driven[-1] == (0.0, 0.0))
     wait_until(lambda: robot.live.run(lambda: robot.live.node.graph.count_publishers("/cmd_vel")) == 0)
+
+
+def test_the_pad_lets_go_when_the_finger_leaves_the_tab_is_hidden_or_the_page_crashes(page: Page, robot: Robot):
+    show(page, "Teleop")
+    until(page, f"{MONITOR}.teleop.aim?.subscribers === 1")
+    pad = page.locator(".pad")
+    tools = page.context.new_cdp_session(page)
+    box = pad.bounding_box()
+    finger = {"x": box["x"] + box["width"] / 2, "y": box["y"] + 1}
+
+    def touch(kind: str) -> None:
+        points = [finger] if kind == "touchStart" else []
+        tools.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
+    for end in ("touchEnd", "touchCancel"):
+        touch("touchStart")
+        wait_until(lambda: robot.driven and robot.driven[-1] == (0.5, 0.0))
+        touch(end)
+        wait_until(lambda: robot.driven[-1] == (0.0, 0.0))
+    pad.focus()
+    page.keyboard.down("i")
+    wait_until(lambda: robot.driven[-1] == (0.5, 0.0))
+    page.evaluate("""() => {
+        Object.defineProperty(document, "hidden", { value: true, configurable: true });
+        document.dispatchEvent(new Event("visibilitychange"));
+        delete document.hidden;
+    }""")
+    wait_until(lambda: robot.driven[-1] == (0.0, 0.0))
+    page.keyboard.up("i")
+    page.keyboard.down("j")
+    wait_until(lambda: robot.driven[-1] == (0.0, 1.0))
+    # A page that is gone says nothing more: the server stops the robot.
+    with pytest.raises(Error, match="crash"):
+        page.goto("chrome://crash")
+    wait_until(lambda: robot.driven[-1] == (0.0, 0.0))
