@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -13,7 +14,9 @@ from launch_ros.actions import Node
 
 from linkwright.graph import Graph
 from linkwright.launch.frontend.include import IncludeLaunchDescription
+from linkwright.launch.ros.left_out import drop_left_out
 from linkwright.launch.ros.navigation import Server
+from linkwright.messages import get_message, get_service
 from linkwright.nodes import EXECUTABLES, NodeOptions
 from linkwright.nodes.options import SingleNode, create_node
 from linkwright.packages import PackageFinder, is_substitute
@@ -221,3 +224,31 @@ def test_parameters_are_for_the_nodes_that_are_started() -> None:
     nodes = {name for _, name in (*LOCALIZATION, *NAVIGATION)}
     assert nodes <= {*content}
     assert {*content} - nodes == {"map_saver", "local_costmap", "global_costmap"}
+
+
+async def test_no_manager_waits_for_what_a_launch_file_of_a_user_starts_and_is_not_here(
+    launch: Launch, started: Started
+) -> None:
+    names = ["planner_server", "docking_server", "red/route_server"]
+    launched = await launch(
+        Node(package="opennav_docking", executable="opennav_docking", name="docking_server"),
+        Node(package="nav2_route", executable="route_server"),
+        Node(package="nav2_planner", executable="planner_server"),
+        Node(package="nav2_lifecycle_manager", executable="lifecycle_manager", parameters=[{"node_names": names}]),
+    )
+    assert launched.succeeded
+    assert started.one("lifecycle_manager")[1]["node_names"] == ["planner_server"]
+    assert "'docking_server' is left out, and no lifecycle manager waits for it" in launched.err
+
+
+def test_no_composed_manager_waits_for_it_either() -> None:
+    said: list[str] = []
+    log = SimpleNamespace(caution=lambda _name, text: said.append(text))
+    context = SimpleNamespace(session=SimpleNamespace(left_out={"docking_server"}, log=log))
+    request = get_service("composition_interfaces/srv/LoadNode").Request(package_name="nav2_lifecycle_manager")
+    parameter = get_message("rcl_interfaces/msg/Parameter")(name="node_names")
+    parameter.value.string_array_value = ["bt_navigator", "docking_server"]
+    request.parameters = [parameter]
+    drop_left_out(context, request)
+    assert list(request.parameters[0].value.string_array_value) == ["bt_navigator"]
+    assert len(said) == 1

@@ -69,6 +69,7 @@ class LaunchSession:
         self._crash: BaseException | None = None
         self._scratch: TemporaryDirectory[str] | None = None
         self._included: deque[LaunchDescriptionEntity] = deque()
+        self.left_out: set[str] = set()
         self._omissions = Omissions(log, options.command_to_skip_missing, wanted=options.skip_missing)
         self.processes = ProcessTable(self)
         self.host = NodeHost(self)

@@ -63,6 +63,10 @@ class RunningLaunch(Protocol):
         """The robot descriptions of this launch."""
 
     @property
+    def left_out(self) -> set[str]:
+        """The names, without namespaces, of nodes that were left out since they cannot be had."""
+
+    @property
     def host(self) -> NodeHosting:
         """What runs nodes in the launcher's own process."""
 

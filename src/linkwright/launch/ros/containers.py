@@ -19,6 +19,7 @@ from linkwright.launch.ros.components import (
 )
 from linkwright.launch.ros.deprecated_arguments import with_deprecated_arguments
 from linkwright.launch.ros.executables import Executable, installed_executable
+from linkwright.launch.ros.left_out import drop_left_out, leave_out
 from linkwright.launch.ros.lifecycle import LifecycleEventManager, answered, autostarts
 from linkwright.launch.ros.lifecycle_events import ChangeState
 from linkwright.launch.ros.names import make_namespace_absolute, repeated_name
@@ -104,6 +105,7 @@ class LoadComposableNodes(Action):
         client = launcher.create_client("composition_interfaces/srv/LoadNode", f"{container}/_container/load_node")
         try:
             for description, request in requests:
+                drop_left_out(context, request)
                 response = await answered(context, client, request)
                 if response is None:
                     return
@@ -127,6 +129,7 @@ class LoadComposableNodes(Action):
             error = located(LinkwrightError(Diagnostic("LAUNCH139", problem)), description.place)
             if _is_of_others(context.session.finder, request.package_name, request.plugin_name):
                 unavailable(error)
+                leave_out(context, request.node_name)
             context.session.could_not_start(description, error)
             return
         remark = repeated_name(context, name)

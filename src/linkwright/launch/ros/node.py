@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from linkwright.diagnostics import LinkwrightError
 from linkwright.hosting.plans import HostedPlan, is_viewer
 from linkwright.launch.errors.places import located
+from linkwright.launch.errors.unavailable import is_unavailable
 from linkwright.launch.model.action import Action
 from linkwright.launch.model.actions.execute import ExecuteProcess
 from linkwright.launch.model.context import LaunchContext
@@ -24,6 +25,7 @@ from linkwright.launch.model.substitution import (
 )
 from linkwright.launch.ros.deprecated_arguments import with_deprecated_arguments
 from linkwright.launch.ros.executables import Executable, find_executable, is_hosted
+from linkwright.launch.ros.left_out import leave_out, without_left_out
 from linkwright.launch.ros.names import (
     check_name,
     check_namespace,
@@ -342,7 +344,7 @@ class Node(ExecuteProcess):
             executable,
             name,
             namespace,
-            self.__node_parameters.values(context, full_name),
+            without_left_out(context, package, self.__node_parameters.values(context, full_name)),
             self.__expanded_remappings or [],
             arguments,
             self.viewer_config(context),
@@ -368,6 +370,8 @@ class Node(ExecuteProcess):
         try:
             return self._executable(context.session.finder, package, executable).command
         except LinkwrightError as error:
+            if is_unavailable(error):
+                leave_out(context, executable if self.__node_name is None else self.__expanded_node_name)
             raise located(error, self.place) from error
 
     def _executable(self, finder: PackageFinder, package: str, executable: str) -> Executable:
