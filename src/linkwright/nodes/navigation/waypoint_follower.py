@@ -79,7 +79,7 @@ class WaypointNode(StepNode):
         try:
             yield from self.asked(self._navigation, goal, f"waypoint {self._index} was not reached")
         except StepError as failure:
-            self._missed.append(self._miss(pose))
+            self._missed.append(self._miss(pose, str(failure)))
             if self.get_parameter("stop_on_failure").value:
                 raise
             self.get_logger().warning(f"{failure}; moving to next")
@@ -88,11 +88,11 @@ class WaypointNode(StepNode):
         while self.now_ns() < until_ns:
             yield
 
-    def _miss(self, pose: Any) -> Any:
+    def _miss(self, pose: Any, reason: str) -> Any:
         """A waypoint that was missed, as results tell it: Humble by its index."""
         if is_before_iron():
             return self._index
-        return get_message("nav2_msgs/msg/MissedWaypoint")(index=self._index, goal=pose)
+        return get_message("nav2_msgs/msg/MissedWaypoint")(index=self._index, goal=pose, error_msg=reason)
 
 
 class WaypointFollower(ManagedServer):
