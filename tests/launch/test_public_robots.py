@@ -343,8 +343,12 @@ class TestPrograms:
         bare, sourced = {"A": "b"}, {"ROS_DISTRO": "jazzy"}
         offer_ros_variables(bare)
         offer_ros_variables(sourced)
-        assert bare == {"A": "b", "ROS_DISTRO": "humble", "ROS_VERSION": "2", "ROS_PYTHON_VERSION": "3"}
+        of_ros = {"ROS_DISTRO": "humble", "ROS_VERSION": "2", "ROS_PYTHON_VERSION": "3"}
+        assert bare == {"A": "b", **of_ros, "GZ_SIM_RESOURCE_PATH": ""}
         assert sourced == {"ROS_DISTRO": "jazzy"}
+        models = {"GZ_SIM_RESOURCE_PATH": "/models"}
+        offer_ros_variables(models)
+        assert models["GZ_SIM_RESOURCE_PATH"] == "/models"
 
     def test_a_folder_that_cannot_be_written_offers_nothing(self, tmp_path: Path) -> None:
         blocked = tmp_path / "file"

@@ -67,3 +67,4 @@ def offer_ros_variables(environment: MutableMapping[str, str]) -> None:
     """Set what sourcing a ROS 2 sets and launch files ask for, where none is sourced: we follow Humble."""
     if "ROS_DISTRO" not in environment:
         environment.update(ROS_VARIABLES)
+        environment.setdefault("GZ_SIM_RESOURCE_PATH", "")  # launch files add to it without asking whether it is there
