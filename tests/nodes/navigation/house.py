@@ -11,7 +11,7 @@ import numpy as np
 from linkwright.geometry.single import quaternion_from_rpy, rpy_from_quaternion
 from linkwright.graph import TF_QOS
 from linkwright.messages import TFMessage, TransformBatch
-from linkwright.navigation.grids.grid import OCCUPIED, Grid
+from linkwright.navigation.grids.grid import FREE, OCCUPIED, Grid
 from linkwright.navigation.slam.poses import between, compose
 from linkwright.testing import SteppedSimulation
 from linkwright.testing.scenes import read_world
@@ -128,15 +128,19 @@ def distances(faces: np.ndarray, points: np.ndarray) -> np.ndarray:
     return nearest
 
 
-def points_of(faces: np.ndarray, solid: np.ndarray) -> np.ndarray:
-    """Points of faces, every 5 cm, with 20 cm of empty space in front of them, of shape (n, 2)."""
+def seen_points(faces: np.ndarray, grid: Grid) -> np.ndarray:
+    """Points of faces, every 5 cm, in front of which the map is free for 20 cm, of shape (n, 2)."""
     points = []
     for start, end in faces:
         length = float(np.hypot(*(end - start)))
         along = (end - start) / length
         row = start + np.linspace(0.02, length - 0.02, max(2, round(length / 0.05)))[:, None] * along
-        ahead = row + 0.2 * np.array((along[1], -along[0]))
-        points.append(row[distances(solid, ahead) > 0.15])
+        free = np.ones(len(row), dtype=bool)
+        for distance in (0.1, 0.2):
+            cells = grid.cells_of(row + distance * np.array((along[1], -along[0])))
+            free &= grid.has(cells)
+            free[free] = grid.cells[tuple(cells[free].T)] == FREE
+        points.append(row[free])
     return np.concatenate(points)
 
 
