@@ -20,6 +20,7 @@ ARGUMENTS = {
     "spawner.py": ["a"],
     "unspawner": ["a"],
     "unspawner.py": ["a"],
+    "lifecycle_manager": ["--ros-args", "-p", "node_names:=[a]"],
     "hardware_spawner": ["a", "--activate"],
     "relay": ["a"],
     "throttle": ["messages", "a", "1"],
