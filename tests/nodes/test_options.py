@@ -59,7 +59,12 @@ async def test_every_executable_starts_and_ends(stage, executable, terminal):
     options = NodeOptions(
         name="mine",
         namespace="/robot",
-        parameters={"robot_description": robot(joint("a")), "port": 0, "entity_name": "a"},  # any port, for the bridge
+        parameters={
+            "robot_description": robot(joint("a")),
+            "port": 0,  # any, for the bridge
+            "entity_name": "a",
+            "node_names": ["a"],
+        },
         arguments=ARGUMENTS.get(executable[1], []),
         library=stage.library,
         terminal=terminal,
@@ -77,7 +82,12 @@ async def test_every_executable_starts_and_ends(stage, executable, terminal):
 @pytest.mark.parametrize("executable", EXECUTABLES, ids="/".join)
 async def test_the_name_of_a_node_that_is_given_none_is_known(stage, executable, terminal):
     options = NodeOptions(
-        parameters={"robot_description": robot(joint("a")), "port": 0, "entity_name": "a"},  # any port, for the bridge
+        parameters={
+            "robot_description": robot(joint("a")),
+            "port": 0,  # any, for the bridge
+            "entity_name": "a",
+            "node_names": ["a"],
+        },
         arguments=ARGUMENTS.get(executable[1], []),
         library=stage.library,
         terminal=terminal,
