@@ -57,13 +57,23 @@ def _made(loop: AbstractEventLoop) -> FineAlarms | None:
 
 
 @dataclass(slots=True, order=True)
-class _FineAlarm:
+class ScheduledAlarm:
+    """A call among those that are scheduled, which are in the order of their times.
+
+    Attributes:
+        steady_ns: when it is due.
+        number: of those that are due at the same time, the least comes first.
+        callback: what is called.
+        cancelled: whether it is not called any more.
+    """
+
     steady_ns: int
     number: int
     callback: Callable[[], None] = field(compare=False)
     cancelled: bool = field(default=False, compare=False)
 
     def cancel(self) -> None:
+        """Cancel the call."""
         self.cancelled = True
 
 
@@ -81,13 +91,13 @@ class FineAlarms:
     def __init__(self, set_timer: Callable[[], int], setting: Array[c_long]) -> None:
         self._set_timer = set_timer
         self._setting = setting
-        self._alarms: list[_FineAlarm] = []
+        self._alarms: list[ScheduledAlarm] = []
         self._numbers = count()
         self._is_running = False
 
-    def call_at(self, steady_ns: int, callback: Callable[[], None]) -> _FineAlarm:
+    def call_at(self, steady_ns: int, callback: Callable[[], None]) -> ScheduledAlarm:
         """Schedule a call for a count of ``time.monotonic_ns``; it is never made before this returns."""
-        alarm = _FineAlarm(steady_ns, next(self._numbers), callback)
+        alarm = ScheduledAlarm(steady_ns, next(self._numbers), callback)
         heapq.heappush(self._alarms, alarm)
         if not self._is_running and self._alarms[0] is alarm:
             self._set()

@@ -7,11 +7,10 @@ import time
 from abc import ABC, abstractmethod
 from asyncio import AbstractEventLoop
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from itertools import count
 from typing import Protocol
 
-from linkwright.graph.time.fine_alarms import fine_alarms
+from linkwright.graph.time.fine_alarms import ScheduledAlarm, fine_alarms
 from linkwright.graph.time.values import NANOSECONDS_PER_SECOND, ClockType, Time
 
 _SHORT_NS = 20_000_000
@@ -85,17 +84,6 @@ class SystemClock(Timebase):
         return loop.call_at(steady_ns / NANOSECONDS_PER_SECOND, callback)
 
 
-@dataclass(slots=True, order=True)
-class _JumpAlarm:
-    steady_ns: int
-    number: int
-    callback: Callable[[], None] = field(compare=False)
-    cancelled: bool = field(default=False, compare=False)
-
-    def cancel(self) -> None:
-        self.cancelled = True
-
-
 class JumpClock(Timebase):
     """Time that stands still until a test moves it, so that an hour of timers takes milliseconds.
 
@@ -106,7 +94,7 @@ class JumpClock(Timebase):
     def __init__(self, start_ns: int = 1_700_000_000 * NANOSECONDS_PER_SECOND) -> None:
         self._now_ns = start_ns
         self._steady_ns = 0
-        self._alarms: list[_JumpAlarm] = []
+        self._alarms: list[ScheduledAlarm] = []
         self._numbers = count()
         self._dispatchers: list[Settling] = []
 
@@ -120,7 +108,7 @@ class JumpClock(Timebase):
 
     def call_at(self, loop: AbstractEventLoop, steady_ns: int, callback: Callable[[], None]) -> Alarm:  # noqa: ARG002
         """Call something once when the clock is advanced that far."""
-        alarm = _JumpAlarm(steady_ns, next(self._numbers), callback)
+        alarm = ScheduledAlarm(steady_ns, next(self._numbers), callback)
         heapq.heappush(self._alarms, alarm)
         return alarm
 

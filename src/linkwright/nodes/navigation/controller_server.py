@@ -25,7 +25,7 @@ from linkwright.nodes.navigation.goals import GoalServer
 from linkwright.nodes.navigation.managed import ManagedNode, ManagedServer
 from linkwright.nodes.navigation.paths import poses_of
 from linkwright.nodes.navigation.plugins import texts_of
-from linkwright.nodes.options import NodeOptions, create_node_of, starting
+from linkwright.nodes.options import NodeOptions
 from linkwright.nodes.settings import positive
 from linkwright.nodes.velocity_topic import VelocityTopic
 
@@ -315,12 +315,9 @@ class ControllerServer(ManagedServer):
     NODE = ControllerNode
     _node: ControllerNode
 
-    def __init__(self, graph: Graph, options: NodeOptions) -> None:
-        node, _ = create_node_of(ControllerNode, graph, options, self.DEFAULT_NAME)
-        self._node = node
-        with starting(node):
-            node.costmap = make_costmap(node, graph, options, "local_costmap")
-            node.start_itself()
+    def prepare(self, graph: Graph, options: NodeOptions) -> None:
+        """Make the costmap."""
+        self._node.costmap = make_costmap(self._node, graph, options, "local_costmap")
 
     def close(self) -> None:
         """End it."""

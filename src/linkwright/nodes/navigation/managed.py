@@ -165,7 +165,11 @@ class ManagedServer(SingleNode):
         node, _ = create_node_of(self.NODE, graph, options, self.DEFAULT_NAME)
         self._node: ManagedNode = node
         with starting(node):
+            self.prepare(graph, options)
             node.start_itself()
+
+    def prepare(self, graph: Graph, options: NodeOptions) -> None:
+        """Give the node what it needs before it starts; nothing here."""
 
     def close(self) -> None:
         """End it; who manages it is told."""

@@ -28,7 +28,7 @@ from linkwright.nodes.navigation.managed import ManagedNode, ManagedServer
 from linkwright.nodes.navigation.paths import path_message, pose_of, poses_of
 from linkwright.nodes.navigation.plugins import declared, take_unread, texts_of, type_of
 from linkwright.nodes.navigation.slices import WAIT, SlicedWork
-from linkwright.nodes.options import NodeOptions, create_node_of, starting
+from linkwright.nodes.options import NodeOptions
 
 _NANOSECONDS = 1e9
 _NAVFN: Final = "nav2_navfn_planner/NavfnPlanner"
@@ -272,12 +272,9 @@ class PlannerServer(ManagedServer):
     NODE = PlannerNode
     _node: PlannerNode
 
-    def __init__(self, graph: Graph, options: NodeOptions) -> None:
-        node, _ = create_node_of(PlannerNode, graph, options, self.DEFAULT_NAME)
-        self._node = node
-        with starting(node):
-            node.costmap = make_costmap(node, graph, options, "global_costmap")
-            node.start_itself()
+    def prepare(self, graph: Graph, options: NodeOptions) -> None:
+        """Make the costmap."""
+        self._node.costmap = make_costmap(self._node, graph, options, "global_costmap")
 
     def close(self) -> None:
         """End it."""
