@@ -28,6 +28,9 @@ export class WorldDrawing implements Drawing {
   private readonly displacement = new Displacement();
   private styleIsOld = true;
   private poseIsOld = true;
+  /** The box around all that is seen as it was, and that around the origins of links as well. */
+  private seen = new Box3();
+  private reached = new Box3();
   private readonly lights: WorldLights;
   private readonly sensors = new WorldSensors();
 
@@ -77,7 +80,7 @@ export class WorldDrawing implements Drawing {
     if (this.styleIsOld || this.poseIsOld) {
       this.place(shown);
       this.sensors.place((link) => this.poseOf(link));
-      this.lights.place(this.world(), (link) => this.poseOf(link), () => shown.bounds());
+      this.lights.place(this.world(), (link) => this.poseOf(link), () => this.shadowed(shown));
     }
     this.styleIsOld = this.poseIsOld = false;
     shown.look(context.camera());
@@ -209,6 +212,17 @@ export class WorldDrawing implements Drawing {
     this.shown?.dispose();
     this.lights.dispose();
     this.sensors.dispose();
+  }
+
+  /** The box that shadows are drawn in: all vertices are looked at only when a link has left it, and not for each pose. */
+  private shadowed(shown: RobotDrawing): Box3 {
+    const origins = (this.scene?.links ?? []).flatMap(({ name, visuals }) => (visuals.length > 0 ? shown.placeOf(name) ?? [] : []));
+    if (this.styleIsOld || !origins.every((origin) => this.reached.containsPoint(origin))) {
+      this.seen = shown.bounds();
+      this.reached = this.seen.clone();
+      for (const origin of origins) this.reached.expandByPoint(origin);
+    }
+    return this.seen;
   }
 
   private place(shown: RobotDrawing): void {
