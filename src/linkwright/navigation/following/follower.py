@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -113,7 +113,7 @@ def lengths_along(path: NDArray[np.float64]) -> NDArray[np.float64]:
     return lengths
 
 
-def motions(pose: Pose, velocities: NDArray[np.float64], times: NDArray[np.float64]) -> NDArray[np.float64]:
+def motions(pose: Pose, velocities: NDArray[np.float64], times: NDArray[Any]) -> NDArray[np.float64]:
     """Where a robot is that keeps a velocity: exactly, on circles.
 
     Args:

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Generator
 from math import sqrt
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -79,10 +79,10 @@ def potential(
     ahead = _least_ahead(price, target) if heuristic and target is not None else None
     least[begin], gain[begin] = 0.0, -np.inf
     least_step = float(step.min()) / sqrt(2.0)  # from both sides at once
-    front = begin + offsets[:, 0]
+    front: NDArray[Any] = begin + offsets[:, 0]
     front = front[step[front] < np.inf]
     cheapest = float(step.min())
-    held = np.empty(0, np.intp)
+    held: NDArray[Any] = np.empty(0, np.intp)
     bound, rounds = 0.0, 0
     while front.size or held.size:
         yield
