@@ -8,6 +8,7 @@ if TYPE_CHECKING:
     from linkwright.viewer import RvizConfig
 
 _DISPLAY, _FRAME = "linkwright/World", "world"
+_MAP = "rviz_default_plugins/Map"
 _DISTANCE = 5.0
 """Metres from which an empty world is seen."""
 
@@ -33,9 +34,11 @@ def world_config(name: str, x: float = 0.0, y: float = 0.0) -> RvizConfig:
 
 
 def show_world(config: RvizConfig) -> None:
-    """Add the display of the world to a configuration that has none."""
+    """Add the display of the world to a configuration that has none; switched off where a map would lie under it."""
     if not shows_world(config):
-        config.insert(config.make(_DISPLAY, "World"))
+        world = config.make(_DISPLAY, "World")
+        world.checked = not any(display.cls == _MAP and display.checked for display in config.walk())
+        config.insert(world)
 
 
 def shows_world(config: RvizConfig) -> bool:

@@ -1,0 +1,34 @@
+"""What a page shows of a simulated world."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.hosting.world_config import show_world
+from linkwright.viewer import RvizConfig
+
+CONFIG = """
+Visualization Manager:
+  Displays:
+    - Class: rviz_default_plugins/Map
+      Enabled: {enabled}
+      Name: Map
+  Global Options: {{Fixed Frame: map}}
+"""
+
+
+@pytest.mark.parametrize(("enabled", "checked"), [("true", False), ("false", True)])
+def test_a_world_does_not_cover_the_map_that_a_file_shows(enabled: str, checked: bool) -> None:
+    config = RvizConfig.parse(CONFIG.format(enabled=enabled), "test.rviz")
+    show_world(config)
+    (world,) = [display for display in config.walk() if display.cls == "linkwright/World"]
+    assert world.checked is checked
+
+
+def test_a_world_is_added_once_and_stays_as_the_file_has_it() -> None:
+    config = RvizConfig.parse(CONFIG.format(enabled="true"), "test.rviz")
+    show_world(config)
+    (world,) = [display for display in config.walk() if display.cls == "linkwright/World"]
+    world.checked = True
+    show_world(config)
+    assert [display.checked for display in config.walk() if display.cls == "linkwright/World"] == [True]
