@@ -16,10 +16,13 @@ EXTRAS = {
     "parquet": "pyarrow",
     "ray": "ray",
     "sim": "mujoco",
+    "train": "torch",
+    "vision": "onnxruntime",
+    "voice": "vosk",
 }
 """Name of the extra -> the module that is missing without it."""
 
-APART = frozenset({"parquet", "ray"})
+APART = frozenset({"parquet", "ray", "train"})
 """Extras that ``linkwright[all]`` is without; it has all others (decision 0022)."""
 
 _BY_MODULE = {module: extra for extra, module in EXTRAS.items()}

@@ -1,0 +1,1 @@
+"""Nodes that find things in pictures, and say where they are."""

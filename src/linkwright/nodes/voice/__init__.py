@@ -1,0 +1,1 @@
+"""Nodes that hear commands and carry them out."""

@@ -1,0 +1,1 @@
+"""Commands that are spoken: from sound to words, and from words to what a robot is to do; without ROS."""

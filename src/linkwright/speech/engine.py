@@ -1,0 +1,86 @@
+"""Engines of speech: sound in; words and a confidence out.
+
+They are found through entry points of the group ``linkwright.speech_engines``: each names what is called with
+`EngineOptions`, makes a `SpeechEngine`, and raises LinkwrightError where its library or model is not there.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, phrase
+from linkwright.extensions import extensions
+from linkwright.speech.sound.samples import Samples
+
+_GROUP = "linkwright.speech_engines"
+
+
+@dataclass(frozen=True, slots=True)
+class Heard:
+    """What an engine made of the sound so far.
+
+    Attributes:
+        text: the words. Empty: there was speech, and it is none of the phrases.
+        confidence: of the least certain word, 0 to 1.
+        final: whether the utterance is over; else it may still change.
+        start: of the utterance, in seconds of sound since the engine was made.
+        end: of what was heard.
+    """
+
+    text: str
+    confidence: float
+    final: bool
+    start: float
+    end: float
+
+
+@dataclass(frozen=True, slots=True)
+class EngineOptions:
+    """What an engine is made with.
+
+    Attributes:
+        phrases: all that may be said; nothing else is to be returned as text.
+        language: ``en``, ``zh`` or another of BCP 47, for engines that need to know.
+        model: file or folder of the model, for engines that have one; None takes the engine's usual place.
+    """
+
+    phrases: tuple[str, ...]
+    language: str = "en"
+    model: Path | None = None
+
+
+class SpeechEngine(ABC):
+    """Hears phrases in a stream of sound. One thread at a time calls it."""
+
+    @abstractmethod
+    def hear(self, samples: Samples) -> Sequence[Heard]:
+        """Take the next block of the stream, of any length; what has become known by it, in order."""
+
+    @abstractmethod
+    def finish(self) -> Sequence[Heard]:
+        """The sound has ended, as when a button is let go: what was said until then. The stream may go on after it."""
+
+    def close(self) -> None:  # noqa: B027 - few engines hold anything
+        """Let go of what it holds. Nothing else is called after it."""
+
+
+def engine_names() -> tuple[str, ...]:
+    """The engines that are installed."""
+    return tuple(extensions(_GROUP))
+
+
+def make_engine(name: str, options: EngineOptions) -> SpeechEngine:
+    """An engine by its name.
+
+    Raises:
+        LinkwrightError: VOICE101 there is no such engine; else whatever it raises itself.
+    """
+    found = extensions(_GROUP).get(name)
+    if found is None:
+        message = phrase("there is no speech engine '{name}'", name=name)
+        raise LinkwrightError(Diagnostic("VOICE101", message, hint=did_you_mean(name, engine_names())))
+    engine: SpeechEngine = found.load()(options)
+    return engine

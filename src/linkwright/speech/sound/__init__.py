@@ -1,0 +1,1 @@
+"""Sound as samples: its form, files, features."""

@@ -1,0 +1,46 @@
+"""Detectors: a picture in, boxes out."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.vision.detections import Detections
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """Which detections count. Defaults are those of yolo_ros.
+
+    Attributes:
+        threshold: the least score.
+        iou: how much two boxes of one class may overlap before the less certain goes.
+        most: detections of one picture.
+        classes: names of those wanted; None for all.
+    """
+
+    threshold: float = 0.5
+    iou: float = 0.5
+    most: int = 300
+    classes: frozenset[str] | None = None
+
+
+class Detector(ABC):
+    """Finds things in pictures. One thread at a time calls it."""
+
+    @property
+    @abstractmethod
+    def names(self) -> tuple[str, ...]:
+        """The classes that it knows."""
+
+    @abstractmethod
+    def detect(self, picture: NDArray[np.uint8], limits: Limits) -> Detections:
+        """Find what is in a picture.
+
+        Args:
+            picture: shape ``(height, width, 3)``, red, green, blue.
+            limits: which detections count.
+        """

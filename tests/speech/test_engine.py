@@ -1,0 +1,42 @@
+"""Engines of speech by their names."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright import extensions
+from linkwright.diagnostics import LinkwrightError
+from linkwright.speech.engine import EngineOptions, SpeechEngine, make_engine
+
+
+class Deaf(SpeechEngine):
+    def __init__(self, options: EngineOptions) -> None:
+        self.options = options
+
+    def hear(self, samples):
+        return []
+
+    def finish(self):
+        return []
+
+
+@pytest.fixture(autouse=True)
+def installed(monkeypatch):
+    entry = extensions.EntryPoint("deaf", f"{__name__}:Deaf", "tests")
+    monkeypatch.setattr("linkwright.speech.engine.extensions", lambda group: {"deaf": entry})
+
+
+def test_an_engine_is_made_with_its_options():
+    options = EngineOptions(("forward", "stop"), "en")
+    engine = make_engine("deaf", options)
+    assert isinstance(engine, SpeechEngine)
+    assert engine.options is options
+
+
+def test_an_unknown_engine_is_an_error_that_names_one_that_is_near():
+    with pytest.raises(LinkwrightError) as caught:
+        make_engine("daef", EngineOptions(("stop",)))
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.code == "VOICE101"
+    assert "'daef'" in str(diagnostic.message)
+    assert "'deaf'" in str(diagnostic.hint)

@@ -1,0 +1,21 @@
+"""Detections: what they hold."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from linkwright.vision.detections import Detections
+
+
+def test_each_has_a_name():
+    found = Detections(
+        np.array([[0, 0, 2, 2], [1, 1, 3, 3]], np.float32),
+        np.array([0.9, 0.8], np.float32),
+        np.array([1, 0], np.int32),
+        ("ball", "box"),
+    )
+    assert [found.name(index) for index in range(len(found))] == ["box", "ball"]
+
+
+def test_a_picture_may_have_none():
+    assert len(Detections.none(("ball",))) == 0
