@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The node that the other launch files name, with the parameters of their argument `slam_params_file`."""
+
+from launch.actions import DeclareLaunchArgument
+from launch.substitutions import AndSubstitution, LaunchConfiguration, NotSubstitution
+from launch_ros.actions import Node
+
+from launch import LaunchDescription
+
+ARGUMENTS = {
+    "use_sim_time": ("true", "Whether time is that of the simulation"),
+    "autostart": ("true", "Whether it is activated at once"),
+    "use_lifecycle_manager": ("false", "Whether a lifecycle manager activates it"),
+}
+
+
+def generate_launch_description():
+    """Return the arguments and the node."""
+    managed = LaunchConfiguration("use_lifecycle_manager")
+    return LaunchDescription(
+        [
+            DeclareLaunchArgument("executable", description="Which of slam_toolbox's nodes"),
+            *(
+                DeclareLaunchArgument(name, default_value=default, description=description)
+                for name, (default, description) in ARGUMENTS.items()
+            ),
+            Node(
+                package="slam_toolbox",
+                executable=LaunchConfiguration("executable"),
+                name="slam_toolbox",
+                output="screen",
+                parameters=[
+                    LaunchConfiguration("slam_params_file"),
+                    {
+                        "use_sim_time": LaunchConfiguration("use_sim_time"),
+                        "use_lifecycle_manager": managed,
+                        "autostart_node": AndSubstitution(LaunchConfiguration("autostart"), NotSubstitution(managed)),
+                    },
+                ],
+            ),
+        ]
+    )
