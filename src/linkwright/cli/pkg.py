@@ -26,7 +26,7 @@ class _ListLicenses(argparse.Action):
         parser: argparse.ArgumentParser,
         namespace: argparse.Namespace,
         values: str | Sequence[Any] | None,
-        option_string: str | None = None,  # noqa: ARG002 - argparse passes it
+        option_string: str | None = None,
     ) -> None:
         if values == "?":
             from linkwright.packages.creation.licenses import known_licenses

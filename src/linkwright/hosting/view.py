@@ -273,7 +273,7 @@ class ModelView:
         self.log.caution("launch", reason)
         self._is_over.set()
 
-    def shut_down(self, reason: str) -> None:  # noqa: ARG002 - what was wrong has been told
+    def shut_down(self, reason: str) -> None:
         """End it."""
         self._is_over.set()
 

@@ -262,11 +262,11 @@ class Library:
 class _Trusted:
     """For the files that come with Linkwright: what they name is there, a test has seen to it."""
 
-    def has_message(self, type_name: str) -> bool:  # noqa: ARG002 - the protocol's
+    def has_message(self, type_name: str) -> bool:
         """True."""
         return True
 
-    def hint_for(self, type_name: str) -> Phrase | None:  # noqa: ARG002 - the protocol's
+    def hint_for(self, type_name: str) -> Phrase | None:
         """None."""
         return None
 

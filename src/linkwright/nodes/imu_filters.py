@@ -75,7 +75,7 @@ class _ImuFilter(SingleNode, ABC):
     def _make(self) -> _Filter:
         """The filter, of the rest of the parameters."""
 
-    def _begin(self, acceleration: Vector3, magnetic: Vector3 | None) -> bool:  # noqa: ARG002  # some need them
+    def _begin(self, acceleration: Vector3, magnetic: Vector3 | None) -> bool:
         """Get the first orientation; whether there is one."""
         return True
 

@@ -175,7 +175,7 @@ class JointStatePublisher(SingleNode):
             return SetParametersResult(successful=False, reason=str(error))
         return SetParametersResult(successful=True)
 
-    def _apply_parameters(self, parameters: list[Parameter]) -> None:  # noqa: ARG002  # all are read anew
+    def _apply_parameters(self, parameters: list[Parameter]) -> None:
         before, self._settings = self._settings, self._read_settings()
         if self._settings.rate != before.rate:
             self._timer.timer_period_ns = round(1e9 / self._settings.rate)

@@ -6,6 +6,7 @@ it does not wait.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from math import inf, pi
 from typing import Any
 
@@ -29,7 +30,7 @@ _FLOAT32, _INT32 = 7, 5
 _TINY = float(np.finfo(np.float64).tiny)
 
 
-class _Converter(SingleNode):
+class _Converter(SingleNode, ABC):
     """What both have in common: a target frame, two topics, and work only while somebody listens."""
 
     INPUT: str
@@ -60,12 +61,13 @@ class _Converter(SingleNode):
         self._lazy.close()
         super().close()
 
+    @abstractmethod
     def _declare(self) -> tuple[str, str]:
         """Declare the rest of the parameters; the topics of the input and of the output."""
-        raise NotImplementedError
 
+    @abstractmethod
     def _hear(self, message: Any) -> None:
-        raise NotImplementedError
+        """Turn a message of the input into one of the output."""
 
     def _placed(self, points: NDArray[np.float64], header: Any) -> NDArray[np.float64] | None:
         """Points in the target frame; None where that is not known."""

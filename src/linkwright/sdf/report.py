@@ -60,11 +60,11 @@ class SdfReport(Findings):
         self.error("SDF121", message, element, None if inside else attribute.name, hint=hint)
         return UNREADABLE
 
-    def too_new(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> None:  # noqa: ARG002 - as the protocol has it
+    def too_new(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> None:
         """Files of all versions are read by the words of the newest, so that nothing is too new."""
         raise AssertionError(f"{rule.tag} {attribute.name} is for some versions only")
 
-    def missing_child(self, element: Element, rule: ElementRule, child: ElementRule, owner: Element) -> None:  # noqa: ARG002 - as the protocol has it
+    def missing_child(self, element: Element, rule: ElementRule, child: ElementRule, owner: Element) -> None:
         """A required child is not there."""
         candidates = [each for each in element.elements() if each.tag not in rule.child_rules]
         like = nearest(child.tag, [each.tag for each in candidates], limit=1)
@@ -82,11 +82,11 @@ class SdfReport(Findings):
             hint=hint,
         )
 
-    def empty_choice(self, element: Element, rule: ElementRule, owner: Element) -> None:  # noqa: ARG002 - as the protocol has it
+    def empty_choice(self, element: Element, rule: ElementRule, owner: Element) -> None:
         """SDF has no element whose first child decides."""
         raise AssertionError(rule.tag)
 
-    def unknown_choice(self, child: Element, rule: ElementRule, owner: Element) -> None:  # noqa: ARG002 - as the protocol has it
+    def unknown_choice(self, child: Element, rule: ElementRule, owner: Element) -> None:
         """SDF has no element whose first child decides."""
         raise AssertionError(rule.tag)
 

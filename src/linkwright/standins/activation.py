@@ -49,8 +49,8 @@ class _InterfacesWhenAsked:
     def find_spec(
         self,
         fullname: str,
-        path: Sequence[str] | None = None,  # noqa: ARG002 - the protocol's
-        target: ModuleType | None = None,  # noqa: ARG002 - the protocol's
+        path: Sequence[str] | None = None,
+        target: ModuleType | None = None,
     ) -> ModuleSpec | None:
         """The module, if it is one of interfaces."""
         if not _may_be_interfaces(fullname):
@@ -70,7 +70,7 @@ class _ModulesOfWorkspace:
         self,
         fullname: str,
         path: Sequence[str] | None = None,
-        target: ModuleType | None = None,  # noqa: ARG002 - the protocol's
+        target: ModuleType | None = None,
     ) -> ModuleSpec | None:
         """The module, if a user's file asks for it while a launch is read or runs, and a package has it."""
         from linkwright.packages.active import active_finder

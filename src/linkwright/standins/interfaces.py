@@ -30,8 +30,8 @@ class InterfaceFinder(MetaPathFinder):
     def find_spec(
         self,
         fullname: str,
-        path: Sequence[str] | None = None,  # noqa: ARG002 - the protocol's
-        target: ModuleType | None = None,  # noqa: ARG002 - the protocol's
+        path: Sequence[str] | None = None,
+        target: ModuleType | None = None,
     ) -> ModuleSpec | None:
         """The interface module of this name, or None."""
         return find_spec(fullname)
@@ -48,8 +48,8 @@ class NamespaceFinder(MetaPathFinder):
     def find_spec(
         self,
         fullname: str,
-        path: Sequence[str] | None = None,  # noqa: ARG002 - the protocol's
-        target: ModuleType | None = None,  # noqa: ARG002 - the protocol's
+        path: Sequence[str] | None = None,
+        target: ModuleType | None = None,
     ) -> ModuleSpec | None:
         """The interface module in a namespace package, or None."""
         package, _, kind = fullname.rpartition(".")
@@ -92,7 +92,7 @@ def _interfaces(package: str, kind: str) -> list[str]:
 class _PackageLoader(Loader):
     """Makes the module of a package, which has nothing but its submodules."""
 
-    def create_module(self, spec: ModuleSpec) -> ModuleType | None:  # noqa: ARG002 - the protocol's
+    def create_module(self, spec: ModuleSpec) -> ModuleType | None:
         return None
 
     def exec_module(self, module: ModuleType) -> None:
@@ -112,7 +112,7 @@ class _KindLoader(Loader):
     def __init__(self, names: list[str]) -> None:
         self._names = names
 
-    def create_module(self, spec: ModuleSpec) -> ModuleType | None:  # noqa: ARG002 - the protocol's
+    def create_module(self, spec: ModuleSpec) -> ModuleType | None:
         return None
 
     def exec_module(self, module: ModuleType) -> None:
@@ -145,7 +145,7 @@ class _InterfaceLoader(Loader):
     def __init__(self, type_name: str) -> None:
         self._type_name = type_name
 
-    def create_module(self, spec: ModuleSpec) -> ModuleType | None:  # noqa: ARG002 - the protocol's
+    def create_module(self, spec: ModuleSpec) -> ModuleType | None:
         return None
 
     def exec_module(self, module: ModuleType) -> None:

@@ -162,7 +162,7 @@ class TimeSynchronizer(SimpleFilter):
             for index, (each, queue) in enumerate(zip(fs, self.queues, strict=True))
         ]
 
-    def add(self, msg: Any, my_queue: dict[int, Any], my_queue_index: int | None = None) -> None:  # noqa: ARG002
+    def add(self, msg: Any, my_queue: dict[int, Any], my_queue_index: int | None = None) -> None:
         """Take a message of one of the filters; put out what is complete with it."""
         with self.lock:
             self._keep(msg, my_queue, _time(msg.header.stamp).nanoseconds)

@@ -66,7 +66,7 @@ class _Finder:
     def __init__(self, package: str) -> None:
         self._package = package
 
-    def find_spec(self, name: str, target: ModuleType | None = None) -> ModuleSpec | None:  # noqa: ARG002 - the protocol's
+    def find_spec(self, name: str, target: ModuleType | None = None) -> ModuleSpec | None:
         """The module of this name, or None."""
         return find_spec(name)
 
@@ -89,7 +89,7 @@ class _Loader:
         """Where else a name is that the module does not have, for whoever explains the error."""
         return table.homes(name)
 
-    def create_module(self, spec: ModuleSpec) -> ModuleType | None:  # noqa: ARG002 - the protocol's
+    def create_module(self, spec: ModuleSpec) -> ModuleType | None:
         """None: a module as Python makes it."""
         return None
 

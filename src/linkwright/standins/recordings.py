@@ -118,7 +118,7 @@ class SequentialReader:
         self._stream: Iterator[tuple[str, int, bytes]] = iter(())
         self._next: tuple[str, int, bytes] | None = None
 
-    def open(self, storage_options: StorageOptions, converter_options: ConverterOptions | None = None) -> None:  # noqa: ARG002
+    def open(self, storage_options: StorageOptions, converter_options: ConverterOptions | None = None) -> None:
         """Open a recording: a folder, or a single file.
 
         Raises:
@@ -225,7 +225,7 @@ class SequentialWriter:
     def __init__(self) -> None:
         self._bag: BagWriter | None = None
 
-    def open(self, storage_options: StorageOptions, converter_options: ConverterOptions | None = None) -> None:  # noqa: ARG002
+    def open(self, storage_options: StorageOptions, converter_options: ConverterOptions | None = None) -> None:
         """Begin a recording.
 
         Raises:
@@ -289,7 +289,7 @@ class SequentialCompressionWriter(SequentialWriter):
 class Info:
     """Answers questions about recordings."""
 
-    def read_metadata(self, uri: str, storage_id: str = "") -> BagMetadata:  # noqa: ARG002
+    def read_metadata(self, uri: str, storage_id: str = "") -> BagMetadata:
         """What is known of a recording.
 
         Raises:

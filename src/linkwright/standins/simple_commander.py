@@ -298,7 +298,7 @@ class BasicNavigator(Node):
         message.header.stamp = self.initial_pose.header.stamp
         self.initial_pose_pub.publish(message)
 
-    def _amclPoseCallback(self, msg: Any) -> None:  # noqa: ARG002 - that it came is enough
+    def _amclPoseCallback(self, msg: Any) -> None:
         self.debug("Received amcl pose")
         self.initial_pose_received = True
 

@@ -88,6 +88,6 @@ class Recording:
         )
         self._subscription = self._node.create_subscription(msg_type, self.topic, self._keep, qos)
 
-    def _keep(self, message: Any, info: MessageInfo) -> None:  # noqa: ARG002  # with it the wire's bytes are read, too
+    def _keep(self, message: Any, info: MessageInfo) -> None:
         self.messages.append(message)
         self.times.append(self._graph.timebase.steady_ns() / 1e9)

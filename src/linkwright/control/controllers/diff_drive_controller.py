@@ -160,7 +160,7 @@ class DiffDriveController(Controller[Parameters]):
         for command in self.commands:
             command.value = 0.0
 
-    def update_references(self, time_ns: int, period_s: float) -> None:  # noqa: ARG002
+    def update_references(self, time_ns: int, period_s: float) -> None:
         """Take the command, or stop where there is none."""
         velocity = self._input.velocity(time_ns) or (0.0, 0.0, 0.0)
         forward, turning = self.references

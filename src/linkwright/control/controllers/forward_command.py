@@ -67,7 +67,7 @@ class _Forwarding(Controller[P], Generic[P]):
         """Forget the last command."""
         self._wanted = None
 
-    def update(self, time_ns: int, period_s: float) -> None:  # noqa: ARG002
+    def update(self, time_ns: int, period_s: float) -> None:
         """Pass the last command on."""
         wanted = self._wanted
         if wanted is None:

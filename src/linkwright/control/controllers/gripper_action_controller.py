@@ -173,12 +173,12 @@ class Gripper(Controller[P]):
         self._wanted = request.command.position
         self._max_effort = request.command.max_effort
 
-    def _command(self, error: float, velocity: float, period_s: float) -> float:  # noqa: ARG002
+    def _command(self, error: float, velocity: float, period_s: float) -> float:
         """Command, and give the effort that is told: here the greatest one."""
         self.commands[0].value = self._wanted
         return self._max_effort
 
-    def _report(self, message: Any, position: float, velocity: float, effort: float) -> Any:  # noqa: ARG002
+    def _report(self, message: Any, position: float, velocity: float, effort: float) -> Any:
         """Fill in a result or a feedback."""
         message.position, message.effort = position, effort
         return message

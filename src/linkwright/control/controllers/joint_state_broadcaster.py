@@ -77,7 +77,7 @@ class JointStateBroadcaster(Controller[Parameters]):
             for place in range(3)
         ]
 
-    def update(self, time_ns: int, period_s: float) -> None:  # noqa: ARG002
+    def update(self, time_ns: int, period_s: float) -> None:
         """Publish, as far as anybody listens."""
         if self._output.is_wanted:
             self._output.publish(self._joint_states(self._header(time_ns)))

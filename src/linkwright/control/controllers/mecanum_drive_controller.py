@@ -145,7 +145,7 @@ class MecanumDriveController(Controller[Parameters]):
         for command in self.commands:
             command.value = 0.0
 
-    def update_references(self, time_ns: int, period_s: float) -> None:  # noqa: ARG002
+    def update_references(self, time_ns: int, period_s: float) -> None:
         """Take the command, if there is one."""
         velocity = self._input.velocity(time_ns) or (nan, nan, nan)
         for reference, value in zip(self.references, velocity, strict=True):

@@ -45,6 +45,6 @@ class _Call:
     def __init__(self, call: Callable[[], object]) -> None:
         self._call = call
 
-    def publish(self, message: None) -> None:  # noqa: ARG002 - the place of a message
+    def publish(self, message: None) -> None:
         """Do it."""
         self._call()

@@ -170,7 +170,7 @@ class SensorBroadcaster(Controller[P]):
         self._kind = get_message(self.TYPE)
         self._output = self.node.publisher(self.TYPE, self.TOPIC)
 
-    def update(self, time_ns: int, period_s: float) -> None:  # noqa: ARG002
+    def update(self, time_ns: int, period_s: float) -> None:
         """Publish."""
         if self._output.is_wanted:
             self._output.publish(self.message(self._kind, self.header(time_ns), [each.value for each in self.states]))

@@ -194,7 +194,7 @@ class SteeringController(Controller[P], Generic[P]):
         for command in self.commands[: self.JOINTS[0]]:
             command.value = 0.0
 
-    def update_references(self, time_ns: int, period_s: float) -> None:  # noqa: ARG002
+    def update_references(self, time_ns: int, period_s: float) -> None:
         """Take the command, if there is one."""
         velocity = self._input.velocity(time_ns) or (nan, nan, nan)
         forward, turning = self.references

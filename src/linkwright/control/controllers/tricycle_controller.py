@@ -170,7 +170,7 @@ class TricycleController(Controller[Parameters]):
             told = get_message("ackermann_msgs/msg/AckermannDrive")(steering_angle=angle, speed=speed)
             self._output.publish(told)
 
-    def _reset(self, request: Any, response: Any) -> Any:  # noqa: ARG002
+    def _reset(self, request: Any, response: Any) -> Any:
         self._odometry.odometer.reset()
         return response
 

@@ -161,7 +161,7 @@ class JointLimiter:
         lower, upper = limits.position
         return _within(wanted, min(0.0, (lower - position) / period_s), max(0.0, (upper - position) / period_s))
 
-    def _effort(self, wanted: float, period_s: float) -> float:  # noqa: ARG002
+    def _effort(self, wanted: float, period_s: float) -> float:
         limits, safety = self._limits, self._limits.safety
         low, high = -limits.effort, limits.effort
         position, velocity = self._state(POSITION), self._state(VELOCITY)
@@ -178,7 +178,7 @@ class JointLimiter:
                 high = 0.0 if velocity > fastest else high
         return _within(wanted, low, high)
 
-    def _acceleration(self, wanted: float, period_s: float) -> float:  # noqa: ARG002
+    def _acceleration(self, wanted: float, period_s: float) -> float:
         velocity = self._state(VELOCITY) or 0.0
         slows = wanted * velocity < 0.0
         greatest = self._limits.deceleration if slows else self._limits.acceleration

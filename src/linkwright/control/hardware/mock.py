@@ -94,7 +94,7 @@ class GenericSystem(Hardware):
                     if command.name not in names:
                         self.commands.append(command)
 
-    def prepare_switch(self, start: Collection[str], stop: Collection[str]) -> None:  # noqa: ARG002
+    def prepare_switch(self, start: Collection[str], stop: Collection[str]) -> None:
         """With dynamics, exactly one of position, velocity and acceleration of a joint."""
         if not self._dynamic:
             return
@@ -111,14 +111,14 @@ class GenericSystem(Hardware):
                     f"Got multiple ({len(modes)}) starting interfaces for joint '{name}' - this is not supported!"
                 )
 
-    def perform_switch(self, start: Collection[str], stop: Collection[str]) -> None:  # noqa: ARG002
+    def perform_switch(self, start: Collection[str], stop: Collection[str]) -> None:
         """With dynamics, the joints are moved by those interfaces from now on."""
         for name, joint in self._joints.items():
             for mode in _MODES:
                 if self._dynamic and f"{name}/{mode}" in start:
                     joint.mode = mode
 
-    def read(self, time_ns: int, period_s: float) -> None:  # noqa: ARG002
+    def read(self, time_ns: int, period_s: float) -> None:
         """Let the states follow."""
         if self._disabled:
             return

@@ -123,14 +123,14 @@ class SimulatedSystem(Hardware):
                 if f"{name}/{kind}" in start:
                     joint.set_mode(kind)
 
-    def read(self, time_ns: int, period_s: float) -> None:  # noqa: ARG002
+    def read(self, time_ns: int, period_s: float) -> None:
         """Read joints and sensors."""
         for joint in self._joints.values():
             joint.read()
         for sensor in self._sensors:
             sensor.read()
 
-    def write(self, time_ns: int, period_s: float) -> None:  # noqa: ARG002
+    def write(self, time_ns: int, period_s: float) -> None:
         """Move the joints."""
         for joint in self._joints.values():
             joint.write(period_s)

@@ -13,27 +13,27 @@ from linkwright.graph.lifecycle.states import LifecycleState, TransitionCallback
 class ManagedEntity:
     """Is notified of the transitions of its node; what it returns decides how they continue."""
 
-    def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:  # noqa: ARG002  # for who overrides it
+    def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
         """The node is configured, coming from a state."""
         return TransitionCallbackReturn.SUCCESS
 
-    def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:  # noqa: ARG002
+    def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
         """The node is cleaned up."""
         return TransitionCallbackReturn.SUCCESS
 
-    def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:  # noqa: ARG002
+    def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
         """The node is shut down."""
         return TransitionCallbackReturn.SUCCESS
 
-    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:  # noqa: ARG002
+    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """The node is activated."""
         return TransitionCallbackReturn.SUCCESS
 
-    def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:  # noqa: ARG002
+    def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """The node is deactivated."""
         return TransitionCallbackReturn.SUCCESS
 
-    def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:  # noqa: ARG002
+    def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
         """A transition of the node failed with an error."""
         return TransitionCallbackReturn.SUCCESS
 
@@ -44,12 +44,12 @@ class SimpleManagedEntity(ManagedEntity):
     def __init__(self) -> None:
         self._enabled = False
 
-    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:  # noqa: ARG002
+    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Be enabled."""
         self._enabled = True
         return TransitionCallbackReturn.SUCCESS
 
-    def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:  # noqa: ARG002
+    def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Be not."""
         self._enabled = False
         return TransitionCallbackReturn.SUCCESS

@@ -44,11 +44,11 @@ class CallbackGroup:
 class ReentrantCallbackGroup(CallbackGroup):
     """Everything may run at any time, also one callback several times at once."""
 
-    def can_execute(self, entity: Any) -> bool:  # noqa: ARG002  # a group's signature
+    def can_execute(self, entity: Any) -> bool:
         """Always."""
         return True
 
-    def beginning_execution(self, entity: Any) -> bool:  # noqa: ARG002
+    def beginning_execution(self, entity: Any) -> bool:
         """Always."""
         return True
 
@@ -64,7 +64,7 @@ class MutuallyExclusiveCallbackGroup(CallbackGroup):
         self._active: Any = None
         self._turn = [None]  # a token: whoever pops it may run; faster than a lock
 
-    def can_execute(self, entity: Any) -> bool:  # noqa: ARG002
+    def can_execute(self, entity: Any) -> bool:
         """Whether no member runs."""
         return self._active is None
 

@@ -106,7 +106,7 @@ class JumpClock(Timebase):
         """Nanoseconds advanced so far."""
         return self._steady_ns
 
-    def call_at(self, loop: AbstractEventLoop, steady_ns: int, callback: Callable[[], None]) -> Alarm:  # noqa: ARG002
+    def call_at(self, loop: AbstractEventLoop, steady_ns: int, callback: Callable[[], None]) -> Alarm:
         """Call something once when the clock is advanced that far."""
         alarm = ScheduledAlarm(steady_ns, next(self._numbers), callback)
         heapq.heappush(self._alarms, alarm)

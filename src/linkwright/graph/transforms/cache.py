@@ -89,7 +89,7 @@ class StaticCache(FrameCache):
     def __init__(self) -> None:
         self._sample: Sample | None = None
 
-    def add(self, stamp_ns: int, sample: Sample) -> bool:  # noqa: ARG002  # it holds at all times
+    def add(self, stamp_ns: int, sample: Sample) -> bool:
         """Take in a transform, instead of the one so far."""
         self._sample = sample
         return True
@@ -98,7 +98,7 @@ class StaticCache(FrameCache):
         """Number of the parent and pose, the same at all times."""
         return self.parent_at(time_ns), cast("Sample", self._sample).pose()
 
-    def parent_at(self, time_ns: int) -> int:  # noqa: ARG002  # it holds at all times
+    def parent_at(self, time_ns: int) -> int:
         """Number of the parent, the same at all times."""
         if self._sample is None:
             raise NoDataError

@@ -78,7 +78,7 @@ class BufferCore:
         """Take in a static transform; see `set_transform`."""
         self._set_message(transform, authority, static=True)
 
-    def update(self, message: Any, *, static: bool, now_ns: int = 0, authority: str = "default_authority") -> None:  # noqa: ARG002
+    def update(self, message: Any, *, static: bool, now_ns: int = 0, authority: str = "default_authority") -> None:
         """Take in a tf2_msgs/msg/TFMessage.
 
         Args:

@@ -319,7 +319,7 @@ class _Streams(asyncio.SubprocessProtocol):
     def pipe_data_received(self, fd: int, data: bytes) -> None:
         self._process.take(fd, data)
 
-    def pipe_connection_lost(self, fd: int, exc: Exception | None) -> None:  # noqa: ARG002 - asyncio's interface
+    def pipe_connection_lost(self, fd: int, exc: Exception | None) -> None:
         self._process.stream_closed(fd)
 
     def process_exited(self) -> None:
@@ -336,7 +336,7 @@ class _Terminal(asyncio.Protocol):
     def data_received(self, data: bytes) -> None:
         self._process.take(self._number, data)
 
-    def connection_lost(self, exc: Exception | None) -> None:  # noqa: ARG002 - asyncio's interface
+    def connection_lost(self, exc: Exception | None) -> None:
         self._process.stream_closed(self._number)
 
 

@@ -90,7 +90,7 @@ class MarkupPlace(Place):
         """The text of the file."""
         return self.text
 
-    def span(self, source: SourceText | None = None) -> Span:  # noqa: ARG002 - the interface of places
+    def span(self, source: SourceText | None = None) -> Span:
         """The lines and columns of the piece."""
         return self.text.span(self.start, self.end)
 

@@ -65,7 +65,7 @@ class MarkupEntity(Entity):
             ros_error=ValueError(f"{ros_text} `{self._type_name}`: {{{listed}}}"),
         )
 
-    def _place_of_part(self, name: str) -> Place | None:  # noqa: ARG002 - the interface
+    def _place_of_part(self, name: str) -> Place | None:
         return self._place
 
     def _missing(self, name: str, present: Collection[str], ros_error: str) -> NoReturn:

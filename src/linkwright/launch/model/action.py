@@ -58,7 +58,7 @@ class Action(LaunchDescriptionEntity):
         following = self.execute(context)
         return None if following is None else as_entities(following)
 
-    def execute(self, context: LaunchContext) -> Any:  # noqa: ARG002 - the interface of actions
+    def execute(self, context: LaunchContext) -> Any:
         """Do the work; may return entities to be visited next."""
         return None
 

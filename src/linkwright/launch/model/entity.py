@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 class LaunchDescriptionEntity(Placed):
     """Something a launch description holds."""
 
-    def visit(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity] | None:  # noqa: ARG002
+    def visit(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity] | None:
         """Do the work and return the entities to be visited next."""
         return None
 

@@ -39,7 +39,7 @@ class TextSubstitution(Substitution):
         """The text in quotes."""
         return f"'{self.text}'"
 
-    def perform(self, context: LaunchContext) -> str:  # noqa: ARG002 - the interface of substitutions
+    def perform(self, context: LaunchContext) -> str:
         """The text."""
         return self.text
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 _CONTAINER = {"container_name": "ros_gz_container", "create_own_container": "False", "use_composition": "False"}
 
 
-class _OneNode(Action):
+class _OneNode(Action, ABC):
     """An action that starts a node, made of texts.
 
     Args:
@@ -58,8 +59,9 @@ class _OneNode(Action):
         node.place = self.place
         return [node]
 
+    @abstractmethod
     def _node(self, texts: Mapping[str, str]) -> Node:
-        raise NotImplementedError
+        """The node that the texts describe."""
 
 
 def _text(value: Any) -> Any:

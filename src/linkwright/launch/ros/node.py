@@ -219,7 +219,7 @@ class Node(ExecuteProcess):
         self.__expanded_node_namespace = given.get("ns", self.__expanded_node_namespace).removeprefix("__ns:=")
         return added
 
-    def viewer_config(self, context: LaunchContext) -> Callable[[], RvizConfig] | None:  # noqa: ARG002
+    def viewer_config(self, context: LaunchContext) -> Callable[[], RvizConfig] | None:
         """What makes the configuration of a viewer; None has its command line say which."""
         return None
 
@@ -404,7 +404,7 @@ class _Assigned(Substitution):
         """Which word it is."""
         return f"LocalVar('ros_specific_arguments['{self._what}']')"
 
-    def perform(self, context: LaunchContext) -> str:  # noqa: ARG002 - the interface of substitutions
+    def perform(self, context: LaunchContext) -> str:
         """The word."""
         return self._word()
 

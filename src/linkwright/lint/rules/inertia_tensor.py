@@ -181,7 +181,7 @@ class IndefiniteInertia(_TensorRule):
     holds_for_parts = True
     kind = "indefinite"
 
-    def finding(self, name: str, inertial: Inertial, flaw: Flaw) -> Finding:  # noqa: ARG002 - as the others have it
+    def finding(self, name: str, inertial: Inertial, flaw: Flaw) -> Finding:
         return self.report(
             phrase("the inertia tensor of link '{name}' is not positive definite", name=name),
             part(inertial, "inertia"),

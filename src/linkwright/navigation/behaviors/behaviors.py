@@ -92,7 +92,7 @@ class Spin(Behavior):
         self._before = start[2]
         self._turned = 0.0
 
-    def _step(self, pose: Pose, elapsed: float, is_free: IsFree) -> Step:  # noqa: ARG002 - the base's
+    def _step(self, pose: Pose, elapsed: float, is_free: IsFree) -> Step:
         self._turned += wrapped(pose[2] - self._before)
         self._before = pose[2]
         left = abs(self._angle) - copysign(self._turned, self._turned * self._angle)
@@ -125,7 +125,7 @@ class DriveStraight(Behavior):
         self._look_ahead = look_ahead
         self._start = start
 
-    def _step(self, pose: Pose, elapsed: float, is_free: IsFree) -> Step:  # noqa: ARG002 - the base's
+    def _step(self, pose: Pose, elapsed: float, is_free: IsFree) -> Step:
         traveled = hypot(pose[0] - self._start[0], pose[1] - self._start[1])
         left = abs(self._distance) - traveled
         if left <= 0.0:
@@ -143,7 +143,7 @@ class Wait(Behavior):
         super().__init__(0.0)
         self._seconds = seconds
 
-    def _step(self, pose: Pose, elapsed: float, is_free: IsFree) -> Step:  # noqa: ARG002 - the base's
+    def _step(self, pose: Pose, elapsed: float, is_free: IsFree) -> Step:
         return Step(Outcome.DONE if elapsed >= self._seconds else Outcome.RUNNING)
 
 

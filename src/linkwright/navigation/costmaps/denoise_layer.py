@@ -29,11 +29,11 @@ class DenoiseLayer(Layer):
         if group_connectivity_type != _ALL_NEIGHBOURS:
             self._together[[0, 0, 2, 2], [0, 2, 0, 2]] = False
 
-    def changed(self, window: Window, moment: Moment, grid: Grid) -> Window:  # noqa: ARG002
+    def changed(self, window: Window, moment: Moment, grid: Grid) -> Window:
         """What changed, and as far around it as a small group reaches."""
         return window.padded(self._least, grid)
 
-    def write(self, grid: Grid, window: Window, moment: Moment) -> None:  # noqa: ARG002
+    def write(self, grid: Grid, window: Window, moment: Moment) -> None:
         """Free small groups; those that the edge of the window cuts are judged by what is around it."""
         if self._least <= 1:
             return

@@ -127,7 +127,7 @@ class Layer(ABC):
     def clear(self, window: Window, *, outside: bool) -> None:  # noqa: B027  # of those that can be cleared
         """Forget what was seen in a window, or all the rest."""
 
-    def is_current(self, time_ns: int) -> bool:  # noqa: ARG002  # for those that wait for something
+    def is_current(self, time_ns: int) -> bool:
         """Whether it has what it needs in order to be believed."""
         return True
 

@@ -85,7 +85,7 @@ class RangeLayer(SeenLayer):
         self._readings.append(reading)
         self._heard_ns = reading.time_ns
 
-    def match(self, grid: Grid, default: int) -> None:  # noqa: ARG002
+    def match(self, grid: Grid, default: int) -> None:
         """Keep what is still in the costmap after it moved."""
         super().match(grid, _EVEN)
 
@@ -99,14 +99,14 @@ class RangeLayer(SeenLayer):
         most = self.settings.no_readings_timeout
         return not most or (self._heard_ns is not None and (time_ns - self._heard_ns) / _NANOSECONDS <= most)
 
-    def changed(self, window: Window, moment: Moment, grid: Grid) -> Window:  # noqa: ARG002
+    def changed(self, window: Window, moment: Moment, grid: Grid) -> Window:
         """What new readings are about."""
         window = window.joined(self.take_extra())
         while self._readings:
             window = window.joined(self._learn(self._readings.popleft(), grid))
         return window
 
-    def write(self, grid: Grid, window: Window, moment: Moment) -> None:  # noqa: ARG002
+    def write(self, grid: Grid, window: Window, moment: Moment) -> None:
         """Obstacles and free cells, where that is likely enough."""
         likely, below = self.seen.cells[window.cells], grid.cells[window.cells]
         below[(likely < self.settings.clear_threshold * _CERTAIN) & (below == UNKNOWN)] = FREE

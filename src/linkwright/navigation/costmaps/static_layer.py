@@ -94,7 +94,7 @@ class StaticLayer(Layer):
         self._news = True
         return True
 
-    def match(self, grid: Grid, default: int) -> None:  # noqa: ARG002
+    def match(self, grid: Grid, default: int) -> None:
         """Everything is to be written again."""
         self._news = True
 
@@ -102,7 +102,7 @@ class StaticLayer(Layer):
         """Everything is to be written again."""
         self._news = True
 
-    def is_current(self, time_ns: int) -> bool:  # noqa: ARG002
+    def is_current(self, time_ns: int) -> bool:
         """Whether there is a map, and where it is is known."""
         return self.map is not None and (self._placed is not None or self._news)
 

@@ -47,7 +47,7 @@ class SimpleGoalChecker(GoalChecker):
         """There is another goal."""
         self._is_there = False
 
-    def is_reached(self, pose: Pose, goal: Pose, velocity: Velocity) -> bool:  # noqa: ARG002 - the base's
+    def is_reached(self, pose: Pose, goal: Pose, velocity: Velocity) -> bool:
         """Whether the goal is reached."""
         if not self._is_there:
             if hypot(pose[0] - goal[0], pose[1] - goal[1]) > self._told.xy_goal_tolerance:

@@ -65,7 +65,7 @@ class _AssistedTeleop(Behavior):
         super().__init__(allowance)
         self._seconds, self._asked = seconds, asked
 
-    def _step(self, pose: Pose, elapsed: float, is_free: IsFree) -> Step:  # noqa: ARG002 - the base's
+    def _step(self, pose: Pose, elapsed: float, is_free: IsFree) -> Step:
         return Step(Outcome.RUNNING, slowed(pose, self._asked(), self._seconds, is_free))
 
 

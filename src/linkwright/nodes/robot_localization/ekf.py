@@ -267,7 +267,7 @@ class EkfNode(SingleNode):
             )
         return response
 
-    def _on_enable(self, request: Any, response: Any) -> Any:  # noqa: ARG002  # it is empty
+    def _on_enable(self, request: Any, response: Any) -> Any:
         if self._enabled:
             self._node.get_logger().warning(
                 "Asking for enabling filter service, but the filter was already enabled! Use param disabled_at_startup."

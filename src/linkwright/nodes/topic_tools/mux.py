@@ -115,7 +115,7 @@ class _Switch(TopicTool):
         logger.warning(f"tried to delete non-subscribed topic {topic} from {name}")
         return response
 
-    def _list(self, request: Any, response: Any) -> Any:  # noqa: ARG002  # it is empty
+    def _list(self, request: Any, response: Any) -> Any:
         response.topics = list(self._topics)
         return response
 

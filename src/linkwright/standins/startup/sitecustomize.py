@@ -35,7 +35,7 @@ class StandIns:
         self._real_ros: bool | None = None
         self._searching = False
 
-    def find_spec(self, name: str, path: object = None, target: object = None) -> ModuleSpec | None:  # noqa: ARG002
+    def find_spec(self, name: str, path: object = None, target: object = None) -> ModuleSpec | None:
         """The stand-in of a module that nobody else has."""
         if self._searching or name.startswith("_"):
             return None
@@ -91,7 +91,7 @@ class SourceFolders:
     def __init__(self, stand_ins: StandIns) -> None:
         self._stand_ins = stand_ins
 
-    def find_spec(self, name: str, path: object = None, target: object = None) -> ModuleSpec | None:  # noqa: ARG002
+    def find_spec(self, name: str, path: object = None, target: object = None) -> ModuleSpec | None:
         """The stand-in, or the module of interfaces in a package, that is nothing but a folder."""
         package, _, kind = name.rpartition(".")
         if not package:

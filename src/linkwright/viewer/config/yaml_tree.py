@@ -433,7 +433,7 @@ def _serialized(node: yaml.Node, dumper: Any) -> str:
 class _IndentingDumper(yaml.SafeDumper):
     """Indents the items of a sequence."""
 
-    def increase_indent(self, flow: bool = False, indentless: bool = False) -> None:  # noqa: ARG002
+    def increase_indent(self, flow: bool = False, indentless: bool = False) -> None:
         super().increase_indent(flow, False)
 
 

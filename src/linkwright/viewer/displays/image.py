@@ -95,7 +95,7 @@ class ImageTopicDisplay(TopicDisplay):
         shrink = partial(self._compressor.compressed, content)
         self.send(content, frame=frame.removeprefix("/"), pose=pose, stamp_ns=stamp_ns, shrink=shrink)
 
-    def reduction(self, width: int, height: int) -> int:  # noqa: ARG002 - of this many pixels
+    def reduction(self, width: int, height: int) -> int:
         """Of how many pixels along a side pages are sent the mean."""
         return 1
 
@@ -208,7 +208,7 @@ class ImageDisplay(ImageTopicDisplay):
             return self.SCHEMA
         return (_TOPIC_SPEC, *(replace(spec, hidden=True) for spec in _RANGE_SPECS))
 
-    def take_image(self, message: Any, pose: Pose | None) -> None:  # noqa: ARG002 - images have no place
+    def take_image(self, message: Any, pose: Pose | None) -> None:
         """Show an image."""
         if self._is_hidden:
             self._unsubscribe()

@@ -73,7 +73,7 @@ class MarkerDisplay(TopicDisplay):
             PropertySpec(_NAMESPACES, "bool", True, "Set the boxes of all namespaces.", children=boxes),
         )
 
-    def take(self, message: Any, pose: Pose | None) -> None:  # noqa: ARG002
+    def take(self, message: Any, pose: Pose | None) -> None:
         """Do what a marker says."""
         self._do(message)
         while len(self._arriving) > self.most_waiting():
@@ -236,7 +236,7 @@ class MarkerArrayDisplay(MarkerDisplay):
     MESSAGE = "visualization_msgs/msg/MarkerArray"
     SCHEMA = (topic_spec(default="visualization_marker_array", description="visualization_msgs/msg/MarkerArray"),)
 
-    def take(self, message: Any, pose: Pose | None) -> None:  # noqa: ARG002
+    def take(self, message: Any, pose: Pose | None) -> None:
         """Do what the markers say, one after the other."""
         self._check_duplicates(message.markers)
         for marker in message.markers:

@@ -252,7 +252,7 @@ class PointsDisplay(CloudDisplay):
             BadCloudError: there are none to be had.
         """
 
-    def placed(self, points: Points, message: Any, pose: Pose) -> tuple[Points, Pose]:  # noqa: ARG002
+    def placed(self, points: Points, message: Any, pose: Pose) -> tuple[Points, Pose]:
         """The points of a message and the pose of the frame that they are in; a scanner may move while it scans."""
         return points, pose
 

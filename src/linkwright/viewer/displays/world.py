@@ -211,7 +211,7 @@ class WorldDisplay(TopicDisplay):
 
     # --- descriptions ------------------------------------------------------------------------------------------
 
-    def take(self, message: Any, pose: Pose | None) -> None:  # noqa: ARG002 - descriptions are in no frame
+    def take(self, message: Any, pose: Pose | None) -> None:
         """Read a description; as long as it is read the one before is shown."""
         self._cancel()
         self._reading = asyncio.get_running_loop().create_task(self._read(message.data))

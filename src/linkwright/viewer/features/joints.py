@@ -55,7 +55,7 @@ class JointsFeature(PageFeature):
             return [Joints(None)]
         return [self._controls(self._panel), JointPositions(self._panel.positions())]
 
-    def receive(self, page: Page, message: SetJoint | SetJoints | RandomizeJoints | CenterJoints) -> None:  # noqa: ARG002
+    def receive(self, page: Page, message: SetJoint | SetJoints | RandomizeJoints | CenterJoints) -> None:
         """Do what a page asks for. Joints that are not, or only follow another, are passed over."""
         panel = self._panel
         if panel is None:

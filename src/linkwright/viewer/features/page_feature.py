@@ -60,7 +60,7 @@ class PageFeature:
         """Messages for a page that opens now."""
         return []
 
-    def configured(self, manager: VisualizationManager) -> list[ServerMessage]:  # noqa: ARG002
+    def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
         """Messages about a configuration, for a page that opens, or for all its pages when another file was opened."""
         return []
 

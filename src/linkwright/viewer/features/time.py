@@ -99,7 +99,7 @@ class TimeFeature(PageFeature):
         manager.publish(TimeReset())
         self._tell_all()
 
-    def _jumped(self, jump: TimeJump) -> None:  # noqa: ARG002  # whichever: what is shown is of another time
+    def _jumped(self, jump: TimeJump) -> None:
         def reset() -> None:
             for manager in self.managers.all():
                 self._reset(manager)

@@ -34,7 +34,7 @@ class ScanShadowsFilter(ScanFilter):
             )
             raise LinkwrightError(Diagnostic("NODE433", message))
 
-    def apply(self, scan: Scan, lookup: Lookup) -> Scan:  # noqa: ARG002  # points beside each other need no frames
+    def apply(self, scan: Scan, lookup: Lookup) -> Scan:
         """See the class."""
         ranges = scan.ranges.astype(np.float64)
         edges = self._edges(ranges, scan.angle_increment)
@@ -80,7 +80,7 @@ class SpeckleFilter(ScanFilter):
             )
             raise LinkwrightError(Diagnostic("NODE433", message))
 
-    def apply(self, scan: Scan, lookup: Lookup) -> Scan | None:  # noqa: ARG002  # points beside each other need no frames
+    def apply(self, scan: Scan, lookup: Lookup) -> Scan | None:
         """See the class."""
         ranges, window = scan.ranges.astype(np.float64), self.filter_window
         if len(ranges) <= window + 1:

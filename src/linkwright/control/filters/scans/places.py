@@ -22,7 +22,7 @@ class AngularBoundsFilter(ScanFilter):
     lower_angle: float = 0.0
     upper_angle: float = 0.0
 
-    def apply(self, scan: Scan, lookup: Lookup) -> Scan | None:  # noqa: ARG002  # angles are those of the scan
+    def apply(self, scan: Scan, lookup: Lookup) -> Scan | None:
         """See the class."""
         angles = scan.angles
         inside = np.flatnonzero((angles >= self.lower_angle) & (angles <= self.upper_angle))
@@ -45,7 +45,7 @@ class AngularBoundsInPlaceFilter(ScanFilter):
     lower_angle: float = 0.0
     upper_angle: float = 0.0
 
-    def apply(self, scan: Scan, lookup: Lookup) -> Scan:  # noqa: ARG002  # angles are those of the scan
+    def apply(self, scan: Scan, lookup: Lookup) -> Scan:
         """See the class."""
         angles = scan.angles
         return _beyond(scan, (angles > self.lower_angle) & (angles < self.upper_angle))
@@ -62,7 +62,7 @@ class SectorFilter(ScanFilter):
     clear_inside: bool = True
     invert: bool = False
 
-    def apply(self, scan: Scan, lookup: Lookup) -> Scan:  # noqa: ARG002  # angles are those of the scan
+    def apply(self, scan: Scan, lookup: Lookup) -> Scan:
         """See the class."""
         width, offset = self.angle_max - self.angle_min, scan.angles - self.angle_min
         if width < 0.0:

@@ -24,7 +24,7 @@ class RangeFilter(ScanFilter):
     lower_replacement_value: float = nan
     upper_replacement_value: float = nan
 
-    def apply(self, scan: Scan, lookup: Lookup) -> Scan:  # noqa: ARG002  # a filter of values needs no frames
+    def apply(self, scan: Scan, lookup: Lookup) -> Scan:
         """See the class."""
         lower, upper = self.lower_threshold, self.upper_threshold
         if self.use_message_range_limits:
@@ -46,7 +46,7 @@ class IntensityFilter(ScanFilter):
     filter_override_range: bool = True
     filter_override_intensity: bool = False
 
-    def apply(self, scan: Scan, lookup: Lookup) -> Scan:  # noqa: ARG002  # a filter of values needs no frames
+    def apply(self, scan: Scan, lookup: Lookup) -> Scan:
         """See the class."""
         count = len(scan.intensities)
         outside = (scan.intensities <= self.lower_threshold) | (scan.intensities >= self.upper_threshold)
@@ -65,7 +65,7 @@ class InterpolationFilter(ScanFilter):
     At an end of the scan the other side counts as just below ``range_max``.
     """
 
-    def apply(self, scan: Scan, lookup: Lookup) -> Scan:  # noqa: ARG002  # a filter of values needs no frames
+    def apply(self, scan: Scan, lookup: Lookup) -> Scan:
         """See the class."""
         far = scan.range_max - 0.01
         valid = (scan.ranges > scan.range_min) & (scan.ranges < scan.range_max)
@@ -84,7 +84,7 @@ class MaskFilter(ScanFilter):
 
     masks: Mapping[str, Any]
 
-    def apply(self, scan: Scan, lookup: Lookup) -> Scan:  # noqa: ARG002  # a filter of values needs no frames
+    def apply(self, scan: Scan, lookup: Lookup) -> Scan:
         """See the class."""
         places = [int(place) for place in self.masks.get(scan.frame, ()) if 0 <= int(place) < len(scan.ranges)]
         scan.ranges[places] = nan
@@ -104,7 +104,7 @@ class ArrayFilter(ScanFilter):
         self._ranges = _windows(self.range_filter_chain)
         self._intensities = _windows(self.intensity_filter_chain)
 
-    def apply(self, scan: Scan, lookup: Lookup) -> Scan:  # noqa: ARG002  # a filter of values needs no frames
+    def apply(self, scan: Scan, lookup: Lookup) -> Scan:
         """See the class."""
         for window in self._ranges:
             scan.ranges = window.add(scan.ranges)

@@ -65,7 +65,7 @@ class Executable:
         self.final_cwd: str | None = None
         self.final_env: dict[str, str] | None = None
 
-    def prepare(self, context: LaunchContext, action: Any = None) -> None:  # noqa: ARG002 - the interface in ROS
+    def prepare(self, context: LaunchContext, action: Any = None) -> None:
         """Work out the final command, environment, folder and name."""
         command = [perform_substitutions(context, part) for part in self.cmd]
         self.final_cmd = [*self.prefix_words(context, command), *command]

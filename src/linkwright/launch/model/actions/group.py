@@ -83,6 +83,6 @@ class GroupAction(Action):
             setting = [ResetEnvironment(), ResetLaunchConfigurations(self._configurations)]
         return [*opening, *setting, *self.__actions, PopEnvironment(), PopLaunchConfigurations()]
 
-    def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:  # noqa: ARG002
+    def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
         """The actions, to be visited next."""
         return self.get_sub_entities()

@@ -34,7 +34,7 @@ class ReadyToTest(Action):
         """Have a function called when it is executed."""
         self._callbacks.append(callback)
 
-    def execute(self, context: LaunchContext) -> None:  # noqa: ARG002 - each action gets it
+    def execute(self, context: LaunchContext) -> None:
         """Emit the event."""
         for callback in self._callbacks:
             callback()

@@ -107,7 +107,7 @@ class TimerAction(Action):
                 seconds, event, self._actions, cancel_on_shutdown=cancels, schedule=self._schedule(context)
             )
 
-    def _schedule(self, context: LaunchContext) -> Schedule | None:  # noqa: ARG002 - for classes with a time of their own
+    def _schedule(self, context: LaunchContext) -> Schedule | None:
         """What counts the time; None for the launch's own loop."""
         return None
 

@@ -80,7 +80,7 @@ class ModellingFeature(PageFeature):
             self._available = self._is_available()
         return [self._state()]
 
-    def page_gone(self, page: Page) -> None:  # noqa: ARG002
+    def page_gone(self, page: Page) -> None:
         """Stop listening after the last page; what was edited stays."""
         if self._listening and len(self.context.pages) == 0:
             self._listening = False
