@@ -14,10 +14,10 @@ from linkwright.diagnostics import LinkwrightError, Severity
 from linkwright.diagnostics.extras import APART, EXTRAS, install_hint, missing_extra
 from linkwright.geometry.mesh_parts import read_parts
 from linkwright.geometry.meshes import read_mesh
+from linkwright.images import BadImageError
+from linkwright.images.image_files import file_pixels
 from linkwright.lint.engine import examine
 from linkwright.urdf.diagram import render
-from linkwright.viewer.images import BadImageError
-from linkwright.viewer.images.image_files import file_pixels
 from tests.places import REPOSITORY
 
 if sys.version_info >= (3, 11):

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.viewer.images.decoding import demosaiced, from_packed
+from linkwright.images.decoding import demosaiced, from_packed
 
 DEPTHS = ("8U", "8S", "16U", "16S", "32S", "32F", "64F")
 """OpenCV's names of number types; the place of each is its number."""

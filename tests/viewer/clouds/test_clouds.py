@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from linkwright.images import Picture
 from linkwright.messages import get_message
 from linkwright.viewer.clouds import (
     BadCloudError,
@@ -20,7 +21,6 @@ from linkwright.viewer.clouds import (
     supported_transformers,
     swept,
 )
-from linkwright.viewer.images import Picture
 from tests.work import lines_run
 
 PointCloud2 = get_message("sensor_msgs/msg/PointCloud2")

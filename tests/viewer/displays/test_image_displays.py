@@ -9,8 +9,8 @@ import numpy as np
 from linkwright.messages import get_message
 from linkwright.viewer import RvizConfig
 from linkwright.viewer.protocol.images import PictureSize
+from tests.images.test_images import Image, image
 from tests.viewer.contents import contents
-from tests.viewer.images.test_images import Image, image
 from tests.viewer.scene import page, world
 from tests.waiting import eventually
 

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from linkwright.images import Picture
 from linkwright.viewer.clouds.points import BadCloudError, Points
-from linkwright.viewer.images import Picture
 
 _SHADOW_DISTANCE = 0.01
 """A point hides the one behind it when it is nearer by more than this, metres."""

@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from linkwright.graph import HistoryPolicy, QoSProfile, ReliabilityPolicy
+from linkwright.images import RAW, TRANSPORTS, BadImageError, ImageSource, RangeFinder, Unpacker, picture_of
 from linkwright.viewer.clouds import BadCloudError, DepthCamera, DepthCloudBuilder, Points
 from linkwright.viewer.config.rviz_config import DisplayConfig
 from linkwright.viewer.config.schema import Path, PropertySpec, Schema
@@ -17,7 +18,6 @@ from linkwright.viewer.displays.base.display import DisplayHost, Pose
 from linkwright.viewer.displays.base.topic_display import SideTopic, camera_info_topic
 from linkwright.viewer.displays.cloud_properties import POSITION_TRANSFORMER, STYLE_SPECS, TRANSFORMER_SPECS
 from linkwright.viewer.displays.point_clouds import CloudDisplay
-from linkwright.viewer.images import RAW, TRANSPORTS, BadImageError, ImageSource, RangeFinder, Unpacker, picture_of
 
 RELIABILITY = "Reliability Policy"
 DEPTH_TOPIC, DEPTH_TRANSPORT = "Depth Map Topic", "Depth Map Transport Hint"

@@ -11,15 +11,9 @@ from typing import Any, Literal
 import numpy as np
 
 from linkwright.graph import QoSProfile
-from linkwright.viewer.config.property_store import qos_of
-from linkwright.viewer.config.rviz_config import DisplayConfig
-from linkwright.viewer.config.schema import Path, PropertySpec, Schema, topic_spec
-from linkwright.viewer.displays.base.display import DisplayHost, Pose, ViewerDisplay
-from linkwright.viewer.displays.base.topic_display import TOPIC, SideTopic, TopicDisplay, camera_info_topic
-from linkwright.viewer.images import (
+from linkwright.images import (
     COMPRESSED,
     BadImageError,
-    ImageCompressor,
     ImageSource,
     Range,
     RangeFinder,
@@ -28,6 +22,12 @@ from linkwright.viewer.images import (
     has_range,
     picture_of,
 )
+from linkwright.viewer.config.property_store import qos_of
+from linkwright.viewer.config.rviz_config import DisplayConfig
+from linkwright.viewer.config.schema import Path, PropertySpec, Schema, topic_spec
+from linkwright.viewer.displays.base.display import DisplayHost, Pose, ViewerDisplay
+from linkwright.viewer.displays.base.topic_display import TOPIC, SideTopic, TopicDisplay, camera_info_topic
+from linkwright.viewer.image_compression import ImageCompressor
 from linkwright.viewer.protocol.images import CameraModel, ImageFrame, PictureSize
 
 _ENCODINGS: dict[int, Literal["grey", "rgb", "rgba"]] = {1: "grey", 3: "rgb", 4: "rgba"}

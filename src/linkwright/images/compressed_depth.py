@@ -19,8 +19,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.viewer.images.decoding import BadImageError
-from linkwright.viewer.images.image_files import MOST_PIXELS, RawImage, encoding_of, file_pixels
+from linkwright.images.decoding import BadImageError
+from linkwright.images.image_files import MOST_PIXELS, RawImage, encoding_of, file_pixels
 
 _HEADER = struct.Struct("<iff")
 _RVL_SIZE = struct.Struct("<II")

@@ -9,8 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from linkwright.viewer.images.compressed_depth import unpacked_depth
-from linkwright.viewer.images.image_files import unpacked
+from linkwright.images.compressed_depth import unpacked_depth
+from linkwright.images.image_files import unpacked
 
 RAW, COMPRESSED, COMPRESSED_DEPTH, _THEORA = "raw", "compressed", "compressedDepth", "theora"
 TRANSPORTS = (RAW, COMPRESSED, COMPRESSED_DEPTH, _THEORA)

@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
+from linkwright.images import BadImageError, Picture, Range, RangeFinder, has_range, picture_of
 from linkwright.messages import get_message
-from linkwright.viewer.images import BadImageError, Picture, Range, RangeFinder, has_range, picture_of
 from tests.work import lines_run
 
 Image = get_message("sensor_msgs/msg/Image")

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.diagnostics.extras import install_hint
-from linkwright.viewer.images.decoding import BadImageError
+from linkwright.images.decoding import BadImageError
 
 MOST_PIXELS = 1 << 24
 """No image with more pixels is unpacked here: a small file can claim any size."""

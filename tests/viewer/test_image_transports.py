@@ -11,9 +11,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from linkwright.images import BadImageError, ImageSource, Unpacker
+from linkwright.images.compressed_depth import BadRvlError, decoded
 from linkwright.messages import get_message
-from linkwright.viewer.images import BadImageError, ImageCompressor, ImageSource, Unpacker
-from linkwright.viewer.images.compressed_depth import BadRvlError, decoded
+from linkwright.viewer.image_compression import ImageCompressor
 from linkwright.viewer.protocol.images import ImageFrame
 from tests.viewer.contents import contents
 from tests.viewer.displays import test_cloud_displays as clouds
