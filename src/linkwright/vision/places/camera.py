@@ -1,0 +1,124 @@
+"""How pixels look into the world: a pinhole, and a lens that distorts.
+
+Source: sensor_msgs/msg/CameraInfo; OpenCV's camera model, whose coefficients these are; axes of REP 103: x to the
+right, y down, z into the picture. Pixel coordinates are those of boxes: pixel 0 is from 0 to 1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+_TURNS = 20
+"""How often a distorted point is improved on the way back to the undistorted one."""
+_MIDDLE = 0.5
+"""Of a pixel: CameraInfo's centre counts from the middle of pixel 0, boxes from its edge."""
+_MOST_COEFFICIENTS = 8
+_LENSES = ("", "plumb_bob", "rational_polynomial")
+
+
+@dataclass(frozen=True, slots=True)
+class CameraModel:
+    """A camera.
+
+    Attributes:
+        width, height: of its pictures, pixels.
+        fx, fy: focal lengths, pixels.
+        cx, cy: where the optical axis goes through the picture, pixels.
+        distortion: k1, k2, p1, p2, k3, k4, k5, k6 of the lens; fewer, or none, for a simpler one.
+    """
+
+    width: int
+    height: int
+    fx: float
+    fy: float
+    cx: float
+    cy: float
+    distortion: tuple[float, ...] = ()
+
+    def scaled(self, width: int, height: int) -> CameraModel:
+        """The same view in a picture of another size."""
+        if (width, height) == (self.width, self.height):
+            return self
+        across, down = width / self.width, height / self.height
+        return replace(
+            self,
+            width=width,
+            height=height,
+            fx=self.fx * across,
+            fy=self.fy * down,
+            cx=self.cx * across,
+            cy=self.cy * down,
+        )
+
+    def rays(self, pixels: Floats) -> Floats:
+        """Where pixels look.
+
+        Args:
+            pixels: shape ``(n, 2)``, columns and rows.
+
+        Returns:
+            Shape ``(n, 3)``: x, y, z with z = 1, in the optical frame.
+        """
+        x = (pixels[:, 0] - self.cx) / self.fx
+        y = (pixels[:, 1] - self.cy) / self.fy
+        if any(self.distortion):
+            x, y = self._undistorted(x, y)
+        return np.stack([x, y, np.ones_like(x)], axis=-1)
+
+    def pixels(self, points: Floats) -> Floats:
+        """Where points of the optical frame are in the picture: shapes ``(n, 3)`` and ``(n, 2)``; z must not be 0."""
+        x, y = points[:, 0] / points[:, 2], points[:, 1] / points[:, 2]
+        if any(self.distortion):
+            radial, across, down = self._bent(x, y)
+            x, y = x * radial + across, y * radial + down
+        return np.stack([x * self.fx + self.cx, y * self.fy + self.cy], axis=-1)
+
+    def _undistorted(self, x: Floats, y: Floats) -> tuple[Floats, Floats]:
+        straight_x, straight_y = x, y
+        for _ in range(_TURNS):
+            radial, across, down = self._bent(straight_x, straight_y)
+            straight_x, straight_y = (x - across) / radial, (y - down) / radial
+        return straight_x, straight_y
+
+    def _bent(self, x: Floats, y: Floats) -> tuple[Floats, Floats, Floats]:
+        k1, k2, p1, p2, k3, k4, k5, k6 = (*self.distortion, *[0.0] * (_MOST_COEFFICIENTS - len(self.distortion)))
+        square = x * x + y * y
+        above = 1 + square * (k1 + square * (k2 + square * k3))
+        below = 1 + square * (k4 + square * (k5 + square * k6))
+        across = 2 * p1 * x * y + p2 * (square + 2 * x * x)
+        down = p1 * (square + 2 * y * y) + 2 * p2 * x * y
+        return above / below, across, down
+
+
+def camera_model(
+    width: int, height: int, k: Sequence[float], d: Sequence[float] = (), p: Sequence[float] = (), lens: str = ""
+) -> CameraModel:
+    """The camera of a CameraInfo's entries, for pictures as they come from the camera (``image_raw``).
+
+    Args:
+        width: of its pictures.
+        height: of its pictures.
+        k: nine numbers, row by row, of the picture that is distorted; zeros where the camera is not calibrated.
+        d: the lens's coefficients.
+        p: twelve numbers, of the rectified picture; they count where k says nothing.
+        lens: the distortion model, ``plumb_bob`` or ``rational_polynomial``.
+
+    Raises:
+        ValueError: there is no focal length, no size, or a distortion model that is not known.
+    """
+    if width <= 0 or height <= 0:
+        raise ValueError(f"the camera's pictures are {width} x {height} pixels")
+    if len(k) and k[0] > 0 and k[4] > 0:
+        if any(d) and lens not in _LENSES:
+            raise ValueError(f"the distortion model '{lens}' is not known; it is one of plumb_bob, rational_polynomial")
+        lens_is = tuple(float(each) for each in d[:_MOST_COEFFICIENTS])
+        return CameraModel(width, height, float(k[0]), float(k[4]), float(k[2]) + _MIDDLE, k[5] + _MIDDLE, lens_is)
+    if len(p) and p[0] > 0 and p[5] > 0:
+        return CameraModel(width, height, float(p[0]), float(p[5]), float(p[2]) + _MIDDLE, p[6] + _MIDDLE)
+    raise ValueError("the camera has no focal length: both K and P are zero")

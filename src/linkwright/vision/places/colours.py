@@ -1,0 +1,92 @@
+"""What colour a thing in a picture is, in words."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.vision.places.camera import Floats
+
+COLOURS = ("red", "orange", "yellow", "green", "cyan", "blue", "purple", "pink", "brown", "white", "grey", "black")
+"""The words, in English."""
+
+_HUES = ((16, "red"), (42, "orange"), (70, "yellow"), (165, "green"), (195, "cyan"), (262, "blue"), (292, "purple"))
+"""Up to which hue, in degrees, a colour is called so; then pink, and red again."""
+_PINK_HUES = (292, 340)
+_GREY_SATURATION, _GREY_CHROMA = 0.22, 0.10
+_BLACK, _WHITE = 0.16, 0.72
+_DARK_ORANGE = 0.55
+_LEAST_SHARE = 0.35
+"""Of the middle of a box that has one colour, so that the thing is called so."""
+_MIDDLE = 0.7
+_MOST_PIXELS = 40
+"""Along a side: of larger boxes only so many pixels are looked at."""
+
+
+def colour_of(picture: NDArray[np.uint8], box: NDArray[np.floating]) -> str | None:
+    """The colour of what is in a box, one of `COLOURS`.
+
+    The ellipse in the middle of the box counts, where the thing is; the most frequent colour of its pixels is the
+    thing's. Bright colours win over white, grey and black, of which there is some in each picture: glints, shadows.
+
+    Args:
+        picture: shape ``(height, width, 3)``, red, green, blue.
+        box: left, top, right, bottom, pixels.
+
+    Returns:
+        None where the box is outside of the picture, or has many colours.
+    """
+    height, width = picture.shape[:2]
+    middle = np.array([box[0] + box[2], box[1] + box[3]], np.float64) / 2
+    half = np.array([box[2] - box[0], box[3] - box[1]], np.float64) / 2 * _MIDDLE
+    steps = np.linspace(-1, 1, _MOST_PIXELS)
+    columns = np.floor(middle[0] + half[0] * steps).astype(int)
+    rows = np.floor(middle[1] + half[1] * steps).astype(int)
+    inside = (np.square(steps)[:, None] + np.square(steps)[None, :]) <= 1.0
+    inside &= ((rows >= 0) & (rows < height))[:, None] & ((columns >= 0) & (columns < width))[None, :]
+    if not inside.any():
+        return None
+    sampled = picture[rows.clip(0, height - 1)[:, None], columns.clip(0, width - 1)[None, :]][inside]
+    names = named_colours(sampled)
+    counts = np.bincount(names, minlength=len(COLOURS)) / len(names)
+    bright = counts.copy()
+    bright[[COLOURS.index(each) for each in ("white", "grey", "black")]] = 0
+    best = int(np.argmax(bright))
+    if bright[best] >= _LEAST_SHARE:
+        return COLOURS[best]
+    best = int(np.argmax(counts))
+    return COLOURS[best] if counts[best] >= _LEAST_SHARE else None
+
+
+def named_colours(pixels: NDArray[np.uint8]) -> NDArray[np.intp]:
+    """The places in `COLOURS` of pixels: red, green, blue, shape ``(n, 3)``."""
+    values = pixels.astype(np.float64) / 255
+    most, least = values.max(axis=1), values.min(axis=1)
+    chroma = most - least
+    saturation = chroma / np.maximum(most, 1e-9)
+    hue = _hue(values, most, chroma)
+    found = np.full(len(values), COLOURS.index("red"), np.intp)
+    for limit, name in reversed(_HUES):
+        found[hue < limit] = COLOURS.index(name)
+    found[(hue >= _PINK_HUES[0]) & (hue < _PINK_HUES[1])] = COLOURS.index("pink")
+    found[hue >= _PINK_HUES[1]] = COLOURS.index("red")
+    pale_red = (found == COLOURS.index("red")) & (saturation < 0.55) & (most > 0.7)
+    found[pale_red] = COLOURS.index("pink")
+    found[(found == COLOURS.index("orange")) & (most < _DARK_ORANGE)] = COLOURS.index("brown")
+    grey = (saturation < _GREY_SATURATION) | (chroma < _GREY_CHROMA)
+    found[grey] = COLOURS.index("grey")
+    found[grey & (most >= _WHITE)] = COLOURS.index("white")
+    found[(grey & (most < 0.3)) | (most < _BLACK)] = COLOURS.index("black")
+    return found
+
+
+def _hue(values: Floats, most: Floats, chroma: Floats) -> Floats:
+    """In degrees, 0 for red and for grey."""
+    red, green, blue = values.T
+    safe = np.maximum(chroma, 1e-9)
+    sixths = np.where(
+        most == red,
+        ((green - blue) / safe) % 6,
+        np.where(most == green, (blue - red) / safe + 2, (red - green) / safe + 4),
+    )
+    return np.where(chroma > 0, sixths * 60, 0.0)

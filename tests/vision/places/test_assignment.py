@@ -1,0 +1,36 @@
+"""The assignment of least cost."""
+
+from __future__ import annotations
+
+from itertools import permutations
+
+import numpy as np
+import pytest
+
+from linkwright.vision.places.assignment import assign
+
+
+def least(costs, most):
+    """By trying all: how much the best assignment costs, where each that stays alone costs `most`."""
+    rows, columns = costs.shape
+    padded = np.full((rows, columns + rows), most)
+    padded[:, :columns] = np.where(costs <= most, costs, np.inf)
+    return min(padded[range(rows), order].sum() for order in permutations(range(columns + rows), rows))
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_it_costs_least(seed):
+    numbers = np.random.default_rng(seed)
+    costs = numbers.random(numbers.integers(1, 5, 2))
+    costs[numbers.random(costs.shape) < 0.2] = np.inf
+    pairs = assign(costs, 0.8)
+    assert len({row for row, _ in pairs}) == len({column for _, column in pairs}) == len(pairs)
+    assert all(costs[pair] <= 0.8 for pair in pairs)
+    alone = len(costs) - len(pairs)
+    assert sum(costs[pair] for pair in pairs) + 0.8 * alone == pytest.approx(least(costs, 0.8))
+
+
+def test_nobody_and_nothing():
+    assert assign(np.zeros((0, 3)), 1.0) == []
+    assert assign(np.zeros((3, 0)), 1.0) == []
+    assert assign(np.full((2, 2), np.inf), 1.0) == []

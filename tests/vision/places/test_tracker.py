@@ -1,0 +1,101 @@
+"""Which thing is which, on trajectories that are made up."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from linkwright.vision.detections import Detections
+from linkwright.vision.places.tracker import Tracker, TrackerSettings
+
+NAMES = ("ball", "crate")
+PERIOD = 1 / 30
+
+
+def found(*things):
+    """Detections of (centre x, centre y, size, score, class)."""
+    if not things:
+        return Detections.none(NAMES)
+    boxes = [[x - size / 2, y - size / 2, x + size / 2, y + size / 2] for x, y, size, *_ in things]
+    scores = [each[3] if len(each) > 3 else 0.9 for each in things]
+    classes = [each[4] if len(each) > 4 else 0 for each in things]
+    return Detections(np.array(boxes, np.float32), np.array(scores, np.float32), np.array(classes, np.int32), NAMES)
+
+
+def test_a_thing_that_moves_keeps_its_id_which_it_gets_when_seen_twice():
+    tracker = Tracker()
+    ids = [tracker.update(found((100 + 4 * step, 200, 40)), step * PERIOD)[0] for step in range(60)]
+    assert ids[0] == 0
+    assert set(ids[1:]) == {1}
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_two_that_cross_keep_their_ids_with_noise(seed):
+    numbers = np.random.default_rng(seed)
+    tracker = Tracker()
+    met = {"right": set(), "left": set()}
+    for step in range(120):
+        noise = numbers.normal(0, 1, 4)
+        right = (100 + 3 * step + noise[0], 200 + noise[1], 40)
+        left = (460 - 3 * step + noise[2], 212 + noise[3], 40)
+        hidden = abs(right[0] - left[0]) < 20  # the nearer one covers the other
+        ids = tracker.update(found(right) if hidden else found(right, left), step * PERIOD)
+        if step > 2 and not hidden:
+            met["right"].add(ids[0])
+            met["left"].add(ids[1])
+    assert met == {"right": {min(met["right"])}, "left": {min(met["left"])}}
+    assert met["right"] != met["left"]
+
+
+def test_who_is_away_for_a_moment_comes_back_and_after_long_is_another():
+    tracker = Tracker()
+    ids = []
+    for step in range(200):
+        gone = 30 <= step < 50 or 90 <= step < 150
+        result = tracker.update(found() if gone else found((100 + step, 200, 40)), step * PERIOD)
+        ids += result
+    assert [key for key in dict.fromkeys(ids) if key] == [1, 2], "ids are never used again"
+    assert ids[28:32] == [1, 1, 1, 1]
+
+
+def test_a_detection_of_low_score_keeps_a_track_and_begins_none():
+    tracker = Tracker(TrackerSettings(high=0.5, low=0.1, new=0.6))
+    for step in range(5):
+        tracker.update(found((100, 100, 40)), step * PERIOD)
+    weak = [tracker.update(found((100, 100, 40, 0.2), (300, 300, 40, 0.2)), step * PERIOD) for step in range(5, 60)]
+    assert all(ids == [1, 0] for ids in weak)
+    assert tracker.update(found((100, 100, 40, 0.05)), 2.0) == [0]
+
+
+def test_a_flash_gets_no_id_and_classes_do_not_mix():
+    tracker = Tracker()
+    assert tracker.update(found((100, 100, 40)), 0.0) == [0]
+    assert tracker.update(found((100, 100, 40, 0.9, 1)), PERIOD) == [0]
+    assert tracker.update(found((100, 100, 40, 0.9, 1)), 2 * PERIOD) == [1]
+
+
+def test_time_that_jumps_back_begins_anew_and_ids_go_on():
+    tracker = Tracker()
+    for step in range(3):
+        tracker.update(found((100, 100, 40)), 10 + step * PERIOD)
+    assert tracker.update(found((100, 100, 40)), 0.0) == [0]
+    assert tracker.update(found((100, 100, 40)), PERIOD) == [2]
+
+
+def test_pictures_that_come_seldom():
+    tracker = Tracker()
+    ids = [tracker.update(found((100 + 10 * step, 200, 60)), step * 0.2)[0] for step in range(20)]
+    assert set(ids[1:]) == {1}
+
+
+def test_thirty_things_cross_a_picture():
+    numbers = np.random.default_rng(7)
+    start, speed = numbers.uniform(0, 2000, (30, 2)), numbers.uniform(-60, 60, (30, 2))
+    tracker, switches, before = Tracker(), 0, None
+    for step in range(90):
+        places = start + speed * step * PERIOD + numbers.normal(0, 0.5, (30, 2))
+        ids = np.array(tracker.update(found(*[(x, y, 40) for x, y in places]), step * PERIOD))
+        if before is not None and step > 2:
+            switches += int((ids != before).sum())
+        before = ids
+    assert switches == 0
