@@ -44,6 +44,7 @@ GROUPS = {
         "shell": "open a shell in which ros2, xacro, check_urdf, urdf_to_graphviz, rviz2 and colcon exist",
         "completion": "print what makes TAB complete command lines in bash, zsh or fish",
         "bag": "record topics, play recordings and tell what is in them",
+        "models": "fetch models for speech and vision that others trained, check and remove them",
     },
     "the running graph, as ros2 does": {
         "topic": "list, print, publish and measure topics",

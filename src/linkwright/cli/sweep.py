@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import os
-import sys
 import time
 import traceback
 from pathlib import Path
@@ -13,6 +12,7 @@ from typing import TYPE_CHECKING
 from linkwright.assignments import parse_assignments
 from linkwright.cli.endings import FINDINGS, FINE, say
 from linkwright.cli.numbers import positive_int
+from linkwright.cli.progress import ProgressLine
 from linkwright.diagnostics import Diagnostic, LinkwrightError, counted, display_path, phrase
 from linkwright.diagnostics.translation import localized
 from linkwright.interruption import INTERRUPTED
@@ -129,26 +129,20 @@ def _rerun(scenario: Scenario, row: int) -> int:
 
 
 class _Progress:
-    """One line of a terminal that says how far a sweep has come; elsewhere nothing."""
+    """Says how far a sweep has come, and counts what it made."""
 
     def __init__(self) -> None:
         self.made = 0
-        self._shown = sys.stderr.isatty()
-        self._line = ""
+        self._line = ProgressLine()
 
     def tell(self, done: int, count: int, failed: int) -> None:
         """Show how many are done."""
         self.made += 1
-        if self._shown:
-            text = phrase("{done} of {count} runs, {failed} failed", done=done, count=count, failed=failed)
-            self._line = localized(text)
-            sys.stderr.write(f"\r{self._line}\x1b[K")
-            sys.stderr.flush()
+        self._line.show(phrase("{done} of {count} runs, {failed} failed", done=done, count=count, failed=failed))
 
     def end(self) -> None:
         """Leave the line."""
-        if self._line:
-            sys.stderr.write("\r\x1b[K")
+        self._line.end()
 
 
 def _tell(table: Table, seconds: float, made: int) -> None:

@@ -106,6 +106,12 @@ def _graph(kind: str) -> Callable[[Asked], Iterable[str]]:
     return lambda _: names_of(kind)
 
 
+def _models(_: Asked) -> Iterable[str]:
+    from linkwright.model_files import model_table
+
+    return model_table()
+
+
 def _files(_: Asked) -> Iterable[str]:
     return [FILES]
 
@@ -117,6 +123,7 @@ _KINDS: dict[str, Callable[[Asked], Iterable[str]]] = {
     "LAUNCH_FILE": _launch_files,
     "LAUNCH_ARGUMENT": _launch_arguments,
     "NAME:=VALUE": _description_arguments,
+    "MODEL": _models,
     "TOPIC": _graph("topics"),
     "NODE": _graph("nodes"),
     "CONTAINER": _graph("nodes"),

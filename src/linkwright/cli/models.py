@@ -1,0 +1,195 @@
+"""``linkwright models``: models for speech and vision that others trained: fetching, checking, removing them."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from linkwright.cli.endings import FINE, say
+from linkwright.cli.nested import SubVerb, configure_nested, run_nested
+from linkwright.cli.progress import ProgressLine
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, phrase, term
+from linkwright.diagnostics.translation import localized
+
+if TYPE_CHECKING:
+    from linkwright.model_files import ModelEntry
+
+_BAR = 30
+_MEGA = 1_000_000
+
+
+def configure_list(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    parser.add_argument("--json", action="store_true", help="print a JSON list with all that is known of each")
+
+
+def run_list(arguments: argparse.Namespace) -> int:
+    """Print the models that there are, and which have been fetched."""
+    from linkwright.model_files import is_installed, model_table, models_folder
+
+    if arguments.json:
+        rows = [
+            {
+                "name": each.name,
+                "kind": each.kind,
+                "megabytes": each.megabytes,
+                "licence": each.licence,
+                "address": each.address,
+                "purpose": each.purpose,
+                "path": str(models_folder() / each.place) if is_installed(each) else None,
+            }
+            for each in model_table().values()
+        ]
+        print(json.dumps(rows, indent=2, ensure_ascii=False))
+        return FINE
+    width = max(map(len, model_table()))
+    for each in model_table().values():
+        state = phrase("fetched") if is_installed(each) else phrase("not fetched")
+        size = f"{each.megabytes} MB"
+        print(
+            f"{each.name:{width}}  {each.kind:6}  {size:>6}  {each.licence}  {localized(state)}: "
+            f"{localized(term(each.purpose))}"
+        )
+    return FINE
+
+
+def configure_get(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    _add_name(parser)
+    parser.add_argument(
+        "--from",
+        dest="source",
+        metavar="SOURCE",
+        help="a file or folder that has it, or the address of a mirror (default: the address of its makers)",
+    )
+    parser.add_argument(
+        "--to", metavar="FOLDER", type=Path, help="put it below this folder, where only you look for it"
+    )
+
+
+def run_get(arguments: argparse.Namespace) -> int:
+    """Fetch a model, and print where it is."""
+    from linkwright.model_files import install, is_installed, model_entry, models_folder
+
+    entry = model_entry(arguments.name)
+    folder: Path = arguments.to or models_folder()
+    if is_installed(entry, folder):
+        place = folder / entry.place
+        if not _wrong_with(entry, place):
+            print(place)
+            return FINE
+        say(localized(phrase("'{path}' is not whole, and is fetched again", path=place)))
+    say(
+        localized(
+            phrase(
+                "{name}: about {megabytes} MB from {source}, licence {licence}",
+                name=entry.name,
+                megabytes=entry.megabytes,
+                source=arguments.source or entry.address,
+                licence=entry.licence,
+            )
+        )
+    )
+    line = ProgressLine()
+    try:
+        place = install(
+            entry, arguments.source, arguments.to, lambda done, total: line.show(_progress(entry, done, total))
+        )
+    finally:
+        line.end()
+    print(place)
+    return FINE
+
+
+def _progress(entry: ModelEntry, done: int, total: int | None) -> Phrase:
+    whole = total or entry.megabytes * _MEGA
+    filled = min(_BAR, done * _BAR // max(whole, 1))
+    return phrase(
+        "{bar} {done} of {total} MB",
+        bar="#" * filled + "." * (_BAR - filled),
+        done=f"{done / _MEGA:.1f}",
+        total=f"{whole / _MEGA:.1f}",
+    )
+
+
+def configure_path(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    _add_name(parser)
+
+
+def run_path(arguments: argparse.Namespace) -> int:
+    """Print where a model is."""
+    from linkwright.model_files import find_model, model_entry
+
+    print(find_model(model_entry(arguments.name)))
+    return FINE
+
+
+def configure_check(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    parser.add_argument("names", metavar="MODEL", nargs="*", help="their names (default: all that have been fetched)")
+
+
+def run_check(arguments: argparse.Namespace) -> int:
+    """Say of models whether they are what their makers gave out."""
+    from linkwright.model_files import find_model, is_installed, model_entry, model_table
+
+    entries = [model_entry(name) for name in arguments.names]
+    wrong: list[Diagnostic] = []
+    for entry in entries or [each for each in model_table().values() if is_installed(each)]:
+        found = _wrong_with(entry, find_model(entry))
+        wrong += found
+        if not found:
+            print(localized(phrase("{name}: as its makers gave it out", name=entry.name)))
+    if wrong:
+        raise LinkwrightError(*wrong)
+    return FINE
+
+
+def _wrong_with(entry: ModelEntry, place: Path) -> Sequence[Diagnostic]:
+    from linkwright.model_files import checked
+
+    try:
+        checked(entry, place)
+    except LinkwrightError as error:
+        return error.diagnostics
+    return ()
+
+
+def configure_remove(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    _add_name(parser)
+
+
+def run_remove(arguments: argparse.Namespace) -> int:
+    """Take a model away."""
+    from linkwright.model_files import model_entry, remove
+
+    print(localized(phrase("Removed {path}", path=remove(model_entry(arguments.name)))))
+    return FINE
+
+
+def _add_name(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("name", metavar="MODEL", help="its name, as `linkwright models list` prints it")
+
+
+VERBS = {
+    "list": SubVerb(configure_list, run_list, help="list the models that there are, with size, licence and purpose"),
+    "get": SubVerb(configure_get, run_get, help="fetch a model, or take it from a file, a folder or a mirror"),
+    "path": SubVerb(configure_path, run_path, help="print where a model is that has been fetched"),
+    "check": SubVerb(configure_check, run_check, help="see whether models are what their makers gave out"),
+    "remove": SubVerb(configure_remove, run_remove, help="take a model away"),
+}
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Declare the commands."""
+    configure_nested(parser, VERBS)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the command that was named."""
+    return run_nested(arguments)

@@ -1,0 +1,17 @@
+"""Models that others trained, fetched when a user asks for them: which there are, where they lie, their sums."""
+
+from linkwright.model_files.installed import checked, find_model, is_installed, models_folder, remove
+from linkwright.model_files.installing import install
+from linkwright.model_files.table import ModelEntry, model_entry, model_table
+
+__all__ = [
+    "ModelEntry",
+    "checked",
+    "find_model",
+    "install",
+    "is_installed",
+    "model_entry",
+    "model_table",
+    "models_folder",
+    "remove",
+]

@@ -1,0 +1,80 @@
+"""Taking a model out of an archive: the files that the table names, and nothing else that may be in it."""
+
+from __future__ import annotations
+
+import zipfile
+import zlib
+from collections.abc import Generator, Iterator
+from contextlib import closing
+from pathlib import Path
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, foreign, phrase
+from linkwright.model_files.fetching import cannot_write
+from linkwright.model_files.installed import by_hand
+from linkwright.model_files.table import ModelEntry
+
+_MOST_BYTES = 1 << 29
+"""Of a model that is unpacked. Those of the table have a tenth of it."""
+
+_AT_ONCE = 1 << 20
+
+
+def unpack(entry: ModelEntry, archive: Path, target: Path) -> None:
+    """Write the files of a model that a ZIP archive has; no path of the archive is ever used for writing.
+
+    Args:
+        entry: the model.
+        archive: the file.
+        target: the folder to write them to; it is made.
+
+    Raises:
+        LinkwrightError: MODEL105 it is no such archive, lacks a file or holds too much; MODEL106 it cannot be written.
+    """
+    try:
+        with zipfile.ZipFile(archive) as opened:
+            left = _MOST_BYTES
+            for name in entry.files:
+                with closing(_blocks(opened, f"{entry.folder}/{name}")) as blocks:
+                    left -= _write(target / name, blocks, left, entry, archive)
+    except KeyError as error:
+        raise _unusable(entry, archive, phrase("it lacks '{file}'", file=str(error.args[0]))) from None
+    except (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, NotImplementedError, OSError) as error:
+        raise _unusable(entry, archive, foreign(error)) from None
+
+
+def _blocks(opened: zipfile.ZipFile, name: str) -> Generator[bytes, None, None]:
+    try:
+        found = opened.getinfo(name)
+    except KeyError:
+        raise KeyError(name) from None
+    with opened.open(found) as member:
+        while block := member.read(_AT_ONCE):
+            yield block
+
+
+def _write(path: Path, blocks: Iterator[bytes], most: int, entry: ModelEntry, archive: Path) -> int:
+    """Write a file; how long it is."""
+    size = 0
+    _append(path, b"")
+    for block in blocks:
+        size += len(block)
+        if size > most:
+            raise _unusable(entry, archive, phrase("what is in it is too large"))
+        _append(path, block)
+    return size
+
+
+def _append(path: Path, block: bytes) -> None:
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with path.open("ab") as file:
+            file.write(block)
+    except OSError as error:
+        raise cannot_write(path, error) from None
+
+
+def _unusable(entry: ModelEntry, archive: Path, problem: Phrase) -> LinkwrightError:
+    message = phrase(
+        "'{path}' is no archive of the model '{name}': {problem}", path=archive, name=entry.name, problem=problem
+    )
+    return LinkwrightError(Diagnostic("MODEL105", message, hint=by_hand(entry)))

@@ -1,0 +1,118 @@
+"""Where models lie, whether they are whole, and taking them away."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import shutil
+from pathlib import Path
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, foreign, phrase
+from linkwright.model_files.table import ModelEntry
+
+_AT_ONCE = 1 << 20
+
+
+def models_folder() -> Path:
+    """Where models are put: ``XDG_DATA_HOME/linkwright/models`` or ``~/.local/share/linkwright/models``.
+
+    They are no cache: who is offline cannot get them again.
+    """
+    base = os.environ.get("XDG_DATA_HOME")
+    return (Path(base) if base else Path.home() / ".local" / "share") / "linkwright" / "models"
+
+
+def is_installed(entry: ModelEntry, folder: Path | None = None) -> bool:
+    """Whether a model is there; what is there has been checked when it was put there.
+
+    Args:
+        entry: the model.
+        folder: where it would be; `models_folder` when left out.
+    """
+    return ((folder or models_folder()) / entry.place).exists()
+
+
+def find_model(entry: ModelEntry) -> Path:
+    """The folder or file of an installed model.
+
+    Raises:
+        LinkwrightError: MODEL102 it is not installed.
+    """
+    if not is_installed(entry):
+        message = phrase("the model '{name}' has not been fetched", name=entry.name)
+        hint = phrase(
+            "run `linkwright models get {name}`, about {megabytes} MB", name=entry.name, megabytes=entry.megabytes
+        )
+        raise LinkwrightError(Diagnostic("MODEL102", message, hint=hint))
+    return models_folder() / entry.place
+
+
+def remove(entry: ModelEntry) -> Path:
+    """Take an installed model away; returns where it was.
+
+    Raises:
+        LinkwrightError: MODEL102 it is not installed, MODEL106 it cannot be removed.
+    """
+    place = find_model(entry)
+    try:
+        if place.is_dir() and not place.is_symlink():
+            shutil.rmtree(place)
+        else:
+            place.unlink()
+    except OSError as error:
+        message = phrase("cannot remove '{path}': {reason}", path=place, reason=foreign(error.strerror or error))
+        raise LinkwrightError(Diagnostic("MODEL106", message)) from None
+    return place
+
+
+def by_hand(entry: ModelEntry) -> Phrase:
+    """How to get a model where fetching it fails."""
+    return phrase(
+        "download {address} with a browser, then run `linkwright models get {name} --from FILE`",
+        address=entry.address,
+        name=entry.name,
+    )
+
+
+def checked(entry: ModelEntry, place: Path) -> None:
+    """See that a model in some place is what its makers gave out.
+
+    Args:
+        entry: the model.
+        place: its folder or file.
+
+    Raises:
+        LinkwrightError: MODEL104 a file is another one, MODEL105 one is not there.
+    """
+    if not entry.folder:
+        check_sum(entry, place, entry.sha256)
+        return
+    for name, expected in entry.files.items():
+        check_sum(entry, place / name, expected)
+
+
+def check_sum(entry: ModelEntry, path: Path, expected: str | None) -> None:
+    """See that a file of a model has the sum that it must have.
+
+    Raises:
+        LinkwrightError: MODEL104 it has not, MODEL105 it cannot be read.
+    """
+    if expected is None:
+        return
+    found = hashlib.sha256()
+    try:
+        with path.open("rb") as file:
+            while block := file.read(_AT_ONCE):
+                found.update(block)
+    except OSError as error:
+        message = phrase(
+            "of the model '{name}', '{path}' cannot be read: {reason}",
+            name=entry.name,
+            path=path,
+            reason=foreign(error.strerror or error),
+        )
+        raise LinkwrightError(Diagnostic("MODEL105", message, hint=by_hand(entry))) from None
+    if found.hexdigest() != expected:
+        message = phrase("'{path}' is not what belongs to the model '{name}'", path=path, name=entry.name)
+        sums = phrase("its SHA-256 is {found}, and {expected} is right", found=found.hexdigest(), expected=expected)
+        raise LinkwrightError(Diagnostic("MODEL104", message, notes=(Note(sums),), hint=by_hand(entry)))

@@ -1,0 +1,20 @@
+from __future__ import annotations
+
+import pytest
+
+from tests.model_files.shop import open_shop
+
+
+@pytest.fixture
+def shop():
+    with open_shop() as opened:
+        yield opened
+
+
+@pytest.fixture(autouse=True)
+def home(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
+    for name in ("http_proxy", "https_proxy", "all_proxy"):
+        monkeypatch.delenv(name, raising=False)
+        monkeypatch.delenv(name.upper(), raising=False)
+    return tmp_path / "data" / "linkwright" / "models"

@@ -1,0 +1,268 @@
+"""Models come from their makers, mirrors, files and folders; whole and checked, or not at all."""
+
+from __future__ import annotations
+
+import io
+import sys
+import zipfile
+from dataclasses import replace
+
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.model_files import checked, find_model, install, is_installed, remove
+from tests.full_disk import full_disk, needs_limits
+from tests.model_files.shop import ARCHIVE, FILES, PACKED, SINGLE, archive
+
+
+def silent(done, total):
+    pass
+
+
+def get(entry, source=None, folder=None):
+    return install(entry, None if source is None else str(source), folder, silent)
+
+
+def refused(*given):
+    with pytest.raises(LinkwrightError) as caught:
+        get(*given)
+    (diagnostic,) = caught.value.diagnostics
+    return diagnostic
+
+
+def below(folder):
+    return {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
+
+
+def test_an_archive_is_fetched_unpacked_and_checked(shop, home):
+    entry = shop.of(PACKED, "toy.zip", ARCHIVE)
+    seen = []
+    place = install(entry, None, None, lambda done, total: seen.append((done, total)))
+    assert place == home / "toy-1.0" == find_model(entry)
+    assert {name: (place / name).read_bytes() for name in FILES} == FILES
+    assert below(home) == {f"toy-1.0/{name}" for name in FILES}
+    assert seen[-1] == (len(ARCHIVE), len(ARCHIVE))
+    assert [done for done, _ in seen] == sorted(done for done, _ in seen)
+
+
+def test_a_model_that_is_one_file(shop, home):
+    entry = shop.of(SINGLE, "net.tflite", b"network" * 1_000)
+    assert get(entry).read_bytes() == b"network" * 1_000
+    assert below(home) == {"net.tflite"}
+    assert remove(entry) == home / "net.tflite"
+    assert not is_installed(entry)
+
+
+def test_a_connection_that_breaks_goes_on_where_it_was(shop, home):
+    entry = shop.of(PACKED, "toy.zip", ARCHIVE)
+    shop.breaks = [200, 100, 0]
+    get(entry)
+    assert shop.asked == [None, "bytes=200-", "bytes=300-", "bytes=300-"]
+    assert below(home) == {f"toy-1.0/{name}" for name in FILES}
+
+
+def test_a_connection_that_always_breaks_is_given_up_and_the_next_call_goes_on(shop, home):
+    entry = shop.of(PACKED, "toy.zip", ARCHIVE)
+    shop.breaks = [150, 0, 0, 0]
+    diagnostic = refused(entry)
+    assert diagnostic.code == "MODEL103"
+    assert entry.address in str(diagnostic.message)
+    assert "--from FILE" in str(diagnostic.hint)
+    assert not is_installed(entry)
+    shop.asked.clear()
+    get(entry)
+    assert shop.asked == ["bytes=150-"]
+
+
+def test_a_server_that_cannot_begin_in_the_middle_sends_all_again(shop):
+    entry = shop.of(PACKED, "toy.zip", ARCHIVE)
+    shop.ranges, shop.breaks = False, [200]
+    assert (get(entry) / "conf" / "model.conf").read_bytes() == FILES["conf/model.conf"]
+
+
+def test_what_another_file_left_is_fetched_anew(shop, home):
+    entry = shop.of(PACKED, "toy.zip", ARCHIVE)
+    home.mkdir(parents=True)
+    (home / ".toy.zip.part").write_bytes(b"of another version")
+    get(entry)
+    assert shop.asked == ["bytes=18-", None]
+
+
+def test_a_part_that_is_longer_than_the_file_is_fetched_anew(shop, home):
+    entry = shop.of(PACKED, "toy.zip", ARCHIVE)
+    home.mkdir(parents=True)
+    (home / ".toy.zip.part").write_bytes(bytes(len(ARCHIVE) + 1))
+    get(entry)
+    assert shop.asked == [f"bytes={len(ARCHIVE) + 1}-", None]
+
+
+def test_a_part_that_is_whole_is_not_fetched_again(shop, home):
+    entry = shop.of(PACKED, "toy.zip", ARCHIVE)
+    home.mkdir(parents=True)
+    (home / ".toy.zip.part").write_bytes(ARCHIVE)
+    get(entry)
+    assert shop.asked == [f"bytes={len(ARCHIVE)}-"]
+
+
+def test_a_file_with_another_sum_does_not_count_and_leaves_nothing(shop, home):
+    entry = shop.of(PACKED, "toy.zip", archive({**FILES, "am/final.mdl": b"another"}))
+    diagnostic = refused(entry)
+    assert diagnostic.code == "MODEL104"
+    assert PACKED.sha256 in str(diagnostic.notes[0].message)
+    assert below(home) == set()
+
+
+def test_without_the_archives_sum_those_of_its_files_hold(shop, home):
+    entry = replace(shop.of(PACKED, "toy.zip", archive({**FILES, "am/final.mdl": b"another"})), sha256=None)
+    diagnostic = refused(entry)
+    assert diagnostic.code == "MODEL104"
+    assert "final.mdl" in str(diagnostic.message)
+    assert below(home) == set()
+
+
+def test_no_such_file_on_the_server(shop, home):
+    entry = replace(PACKED, address=f"{shop.address}/toy.zip")
+    diagnostic = refused(entry)
+    assert diagnostic.code == "MODEL103"
+    assert "404" in str(diagnostic.message)
+    assert below(home) == set()
+
+
+def test_nobody_listens(shop, home):
+    diagnostic = refused(replace(PACKED, address="http://127.0.0.1:9/toy.zip"))
+    assert diagnostic.code == "MODEL103"
+    assert "toy.zip" in str(diagnostic.hint)
+    assert below(home) == set()
+
+
+def test_more_than_the_model_is_not_fetched(shop, home):
+    entry = shop.of(PACKED, "toy.zip", bytes(2_000_001))
+    assert refused(entry).code == "MODEL103"
+    assert below(home) == set()
+
+
+def test_a_mirror_is_an_address_of_a_file_or_a_folder(shop, tmp_path):
+    entry = replace(PACKED, address="http://127.0.0.1:9/models/toy.zip")
+    shop.files["toy.zip"] = ARCHIVE
+    assert get(entry, f"{shop.address}/toy.zip", tmp_path / "a").is_dir()
+    assert get(entry, f"{shop.address}/", tmp_path / "b").is_dir()
+
+
+@pytest.mark.parametrize("form", ["file", "folder with it", "unpacked", "above unpacked"])
+def test_models_come_from_files_and_folders(form, tmp_path, home):
+    entry = replace(PACKED, address="http://127.0.0.1:9/toy.zip")
+    given = tmp_path / "given"
+    given.mkdir()
+    (given / "toy.zip").write_bytes(ARCHIVE)
+    if "unpacked" in form:
+        (given / "toy.zip").unlink()
+        zipfile.ZipFile(io.BytesIO(ARCHIVE)).extractall(given)
+    source = {"file": given / "toy.zip", "unpacked": given / "toy-1.0"}.get(form, given)
+    assert get(entry, source) == home / "toy-1.0"
+    checked(entry, home / "toy-1.0")
+    assert source.exists()
+
+
+@pytest.mark.parametrize("source", ["nowhere", "."])
+def test_a_source_without_the_model(source, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    diagnostic = refused(PACKED, source)
+    assert diagnostic.code == "MODEL107"
+
+
+def test_nothing_but_the_models_files_leaves_an_archive(tmp_path, home):
+    packed = tmp_path / "toy.zip"
+    packed.write_bytes(
+        archive(**{"../outside": b"x", "/absolute": b"x", "toy-1.0/../../up": b"x", "toy-1.0/more": b"x"})
+    )
+    get(replace(PACKED, sha256=None), packed)
+    assert below(tmp_path) == {"toy.zip", *(f"data/linkwright/models/toy-1.0/{name}" for name in FILES)}
+
+
+def test_a_bomb_is_stopped(tmp_path, home, monkeypatch):
+    monkeypatch.setattr("linkwright.model_files.archives._MOST_BYTES", 10_000)
+    packed = tmp_path / "toy.zip"
+    packed.write_bytes(ARCHIVE)
+    diagnostic = refused(PACKED, packed)
+    assert diagnostic.code == "MODEL105"
+    assert "too large" in str(diagnostic.message)
+    assert below(home) == set()
+
+
+@pytest.mark.parametrize(
+    "data",
+    [b"no archive", ARCHIVE[:-30], archive({"am/final.mdl": FILES["am/final.mdl"]}), b""],
+    ids=["text", "cut", "lacks", "empty"],
+)
+def test_what_is_no_archive_of_the_model(data, tmp_path, home):
+    packed = tmp_path / "toy.zip"
+    packed.write_bytes(data)
+    assert refused(replace(PACKED, sha256=None), packed).code == "MODEL105"
+    assert below(home) == set()
+
+
+def test_a_damaged_archive(tmp_path, home):
+    packed = tmp_path / "toy.zip"
+    at = ARCHIVE.index(b"acoustic" * 3)
+    packed.write_bytes(ARCHIVE[:at] + b"X" + ARCHIVE[at + 1 :])
+    assert refused(replace(PACKED, sha256=None), packed).code == "MODEL105"
+    assert below(home) == set()
+
+
+@needs_limits
+@pytest.mark.parametrize("room", [100, len(ARCHIVE) - 5_000])
+def test_a_full_disk_leaves_the_model_that_was_there(room, shop, home):
+    entry = shop.of(PACKED, "toy.zip", ARCHIVE)
+    old = home / "toy-1.0" / "am"
+    old.mkdir(parents=True)
+    (old / "final.mdl").write_bytes(b"old")
+    with full_disk(room):
+        diagnostic = refused(entry)
+    assert diagnostic.code == "MODEL106"
+    assert (old / "final.mdl").read_bytes() == b"old"
+    assert below(home) - {".toy.zip.part"} == {"toy-1.0/am/final.mdl"}
+    get(entry)
+    assert below(home) == {f"toy-1.0/{name}" for name in FILES}
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a file where a folder is wanted is another error there")
+def test_a_folder_that_cannot_be_made(tmp_path):
+    (tmp_path / "file").write_text("")
+    assert refused(PACKED, None, tmp_path / "file" / "models").code == "MODEL106"
+
+
+def test_a_break_by_the_user_keeps_what_came_and_leaves_no_draft(shop, home):
+    entry = shop.of(PACKED, "toy.zip", ARCHIVE)
+
+    def interrupt(done, total):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        install(entry, None, None, interrupt)
+    assert below(home) == {".toy.zip.part"}
+    get(entry)
+    assert below(home) == {f"toy-1.0/{name}" for name in FILES}
+
+
+def test_an_installed_model_that_changed_is_found_out(home, tmp_path):
+    packed = tmp_path / "toy.zip"
+    packed.write_bytes(ARCHIVE)
+    place = get(PACKED, packed)
+    (place / "conf" / "model.conf").write_bytes(b"--beam=1\n")
+    with pytest.raises(LinkwrightError) as caught:
+        checked(PACKED, place)
+    assert caught.value.diagnostics[0].code == "MODEL104"
+    (place / "conf" / "model.conf").unlink()
+    with pytest.raises(LinkwrightError) as caught:
+        checked(PACKED, place)
+    assert caught.value.diagnostics[0].code == "MODEL105"
+    get(PACKED, packed)
+    checked(PACKED, place)
+
+
+def test_a_model_that_was_not_fetched_says_how():
+    with pytest.raises(LinkwrightError) as caught:
+        find_model(PACKED)
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.code == "MODEL102"
+    assert "linkwright models get toy" in str(diagnostic.hint)

@@ -1,0 +1,32 @@
+"""The table of models says all that is needed to fetch them, and nothing that cannot be checked."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.model_files import model_entry, model_table
+
+
+@pytest.mark.parametrize("entry", model_table().values(), ids=list(model_table()))
+def test_every_model_can_be_fetched_and_checked(entry):
+    assert entry.kind in ("speech", "vision")
+    assert entry.address.startswith("https://")
+    assert entry.licence == "Apache-2.0"
+    assert entry.sha256 or entry.files
+    assert bool(entry.folder) == bool(entry.files)
+    for each in (entry.sha256, *entry.files.values()):
+        assert each is None or re.fullmatch("[0-9a-f]{64}", each)
+    for name in entry.files:
+        assert ".." not in name.split("/")
+        assert not name.startswith("/")
+
+
+def test_a_name_that_is_not_there_is_told_with_one_that_is_near():
+    with pytest.raises(LinkwrightError) as caught:
+        model_entry("vosk-cn")
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.code == "MODEL101"
+    assert "vosk-en" in str(diagnostic.hint) or "vosk-zh" in str(diagnostic.hint)
