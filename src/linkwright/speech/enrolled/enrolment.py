@@ -1,0 +1,100 @@
+"""Enrolling: whether what was said can serve as an example of a word, told in words where it cannot."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from linkwright.diagnostics import Diagnostic, Phrase, Severity, phrase
+from linkwright.speech.enrolled.words import MOST_WORDS, Take, Words, name_problem, rounded
+from linkwright.speech.sound.activity import speech_span
+from linkwright.speech.sound.samples import Samples
+from linkwright.speech.sound.spectra import HOP, WINDOW, mel_frames
+
+_SHORTEST, _LONGEST = 15, 300  # frames: 0.15 s and 3 s
+_QUIETEST = 60.0  # effective value of the loudest 50 ms, in steps of 16 bits: -55 dB of full scale
+_LEAST_ABOVE_NOISE = 8.0  # dB, mean of the bands of the loudest frames
+_CLIPPED_SHARE = 0.01
+_CLIPPED_AT = 32_700
+_BESIDE = 2  # frames that are kept before and after
+
+
+def enrol(words: Words, name: str, samples: Samples) -> tuple[Diagnostic, ...]:
+    """Take a word said once into the words.
+
+    Args:
+        words: gets the take, unless a finding is an error.
+        name: the phrase that the word stands for.
+        samples: a recording with the word in it once, and best some tenths of a second of silence around it.
+
+    Returns:
+        What is wrong with it. Errors, for which it is not taken: VOICE204 the name cannot be used; VOICE205 nothing is
+        heard, or too little above the noise; VOICE206 it is too short or too long; VOICE207 it is overdriven.
+    """
+    reason = name_problem(name)
+    if reason is not None:
+        return (_refused("VOICE204", phrase("a word cannot be called '{name}': {reason}", name=name, reason=reason)),)
+    if len(words.names) >= MOST_WORDS and name not in words.names:
+        reason = phrase("there are {most} words already", most=MOST_WORDS)
+        return (_refused("VOICE204", phrase("a word cannot be called '{name}': {reason}", name=name, reason=reason)),)
+    powers = mel_frames(samples)
+    first, last, noise = speech_span(powers)
+    finding = _unfit(name, samples, first, last)
+    if finding is None and np.quantile(_above(powers[first:last], noise), 0.9) < _LEAST_ABOVE_NOISE:
+        finding = _refused(
+            "VOICE205",
+            phrase("'{name}' is hardly louder than what is heard beside it", name=name),
+            phrase("speak louder or nearer to the microphone, or where it is quieter"),
+        )
+    if finding is not None:
+        return (finding,)
+    first, last = max(0, first - _BESIDE), min(len(powers), last + _BESIDE)
+    words.add(name, Take(rounded(powers[first:last]), rounded(noise)))
+    return ()
+
+
+def _above(powers: np.ndarray, noise: np.ndarray) -> np.ndarray:
+    return np.asarray(np.mean(10.0 * np.log10(np.maximum(powers, 1.0) / noise), axis=1))
+
+
+def _unfit(name: str, samples: Samples, first: int, last: int) -> Diagnostic | None:
+    """What is wrong with the sound itself."""
+    said = samples[first * HOP : (last - 1) * HOP + WINDOW].astype(np.float64) if last > first else np.zeros(0)
+    loudest = 0.0
+    if len(said):
+        blocks = said[: max(1, len(said) // (5 * HOP)) * 5 * HOP]
+        loudest = max(
+            float(np.sqrt(np.mean(part**2))) for part in np.array_split(blocks, max(1, len(said) // (5 * HOP)))
+        )
+    if loudest < _QUIETEST:
+        return _refused(
+            "VOICE205",
+            phrase("nothing is heard in what was recorded for '{name}'", name=name),
+            phrase("see that the right microphone is chosen and not muted, and speak louder"),
+        )
+    if last - first < _SHORTEST:
+        return _refused(
+            "VOICE206",
+            phrase(
+                "what was said for '{name}' is too short: {seconds} s", name=name, seconds=f"{(last - first) / 100:.2f}"
+            ),
+            phrase("words of two syllables and more are told apart best"),
+        )
+    if last - first > _LONGEST:
+        return _refused(
+            "VOICE206",
+            phrase(
+                "what was said for '{name}' is too long: {seconds} s", name=name, seconds=f"{(last - first) / 100:.1f}"
+            ),
+            phrase("say the word once, within {seconds} s", seconds=_LONGEST // 100),
+        )
+    if np.mean(np.abs(said) >= _CLIPPED_AT) > _CLIPPED_SHARE:
+        return _refused(
+            "VOICE207",
+            phrase("what was said for '{name}' is overdriven: its loudest parts are cut off", name=name),
+            phrase("speak more softly or farther from the microphone, or turn its level down"),
+        )
+    return None
+
+
+def _refused(code: str, message: Phrase, hint: Phrase | None = None) -> Diagnostic:
+    return Diagnostic(code, message, severity=Severity.ERROR, hint=hint)

@@ -1,0 +1,101 @@
+"""Where somebody speaks: frames against a noise floor that follows what is heard.
+
+The floor of each band follows its power while nobody speaks, down faster than up. While somebody speaks it rises only
+to the least that the band had in the last 0.8 s (minimum statistics, after R. Martin): so a fan that is switched on
+is speech for no longer than that.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.speech.sound.spectra import BANDS, Powers
+
+HANGOVER = 40
+"""Frames without speech after which an utterance is over: 0.4 s, longer than the closure of a plosive."""
+
+_LEAST_POWER = 1.0  # below the noise of any microphone at 16 bits
+_BEGINS, _GOES_ON = 4.0, 2.5  # dB above the floor, mean of all bands, of the last frames
+_MOST_OF_A_BAND = 25.0  # dB: one band alone, as of a whistle, is no speech
+_SMOOTHED = 3  # frames
+_TO_BEGIN = 4  # frames in a row
+_WATCHED = 80  # frames in which the least is looked for
+_OVER_THE_LEAST = 1.4  # the mean of noise over its least, of sums of three frames
+_UP, _DOWN = 0.03, 0.1
+
+
+class VoiceActivity:
+    """Follows a stream frame by frame.
+
+    Attributes:
+        speaking: whether the frame that came last belongs to an utterance, its hangover included.
+        quiet_frames: how many frames came since the last with speech.
+        floor: power of the noise, shape ``(BANDS,)``.
+    """
+
+    def __init__(self) -> None:
+        self.speaking = False
+        self.quiet_frames = 0
+        self.floor: NDArray[np.float64] = np.full(BANDS, _LEAST_POWER)
+        self._last: deque[NDArray[np.float64]] = deque(maxlen=_SMOOTHED)
+        self._watched: deque[NDArray[np.float64]] = deque(maxlen=_WATCHED)
+        self._seen = 0
+        self._loud = 0
+
+    def step(self, frame: NDArray[np.float64]) -> bool:
+        """Take the next frame, shape ``(BANDS,)``; `speaking` after it."""
+        self._last.append(frame)
+        smooth = np.maximum(sum(self._last) / len(self._last), _LEAST_POWER)
+        self._watched.append(smooth)
+        self._seen += 1
+        if self._seen == 1:
+            self.floor = smooth
+        above = float(np.mean(np.clip(10.0 * np.log10(smooth / self.floor), 0.0, _MOST_OF_A_BAND)))
+        loud = above > (_GOES_ON if self.speaking else _BEGINS)
+        self._loud = self._loud + 1 if loud else 0
+        self.quiet_frames = 0 if loud else self.quiet_frames + 1
+        if self._loud >= _TO_BEGIN:
+            self.speaking = True
+        elif self.quiet_frames >= HANGOVER:
+            self.speaking = False
+        self._follow(smooth, loud)
+        return self.speaking
+
+    def end(self) -> None:
+        """The utterance is over, whatever comes next."""
+        self.speaking = False
+        self._loud = 0
+
+    def _follow(self, smooth: NDArray[np.float64], loud: bool) -> None:
+        lower = smooth < self.floor
+        up = 0.0 if loud else max(_UP, 1.0 / self._seen)
+        rate = np.where(lower, _DOWN, up)
+        self.floor = self.floor + rate * (smooth - self.floor)
+        if self._seen % 10 == 0 and len(self._watched) == _WATCHED:
+            self.floor = np.maximum(self.floor, _OVER_THE_LEAST * np.min(self._watched, axis=0))
+
+
+def speech_span(powers: Powers) -> tuple[int, int, NDArray[np.float64]]:
+    """Where the longest stretch of speech lies in a sound that is all there.
+
+    Returns:
+        The first frame of it, the frame after its last, and the floor of the noise, shape ``(BANDS,)``; the two
+        frames are the same where there is no speech.
+    """
+    if len(powers) < _TO_BEGIN:
+        return 0, 0, np.full(BANDS, _LEAST_POWER)
+    smooth = np.maximum(powers, _LEAST_POWER)
+    smooth[1:-1] = (smooth[:-2] + smooth[1:-1] + smooth[2:]) / 3.0
+    floor = np.maximum(_LEAST_POWER, _OVER_THE_LEAST * np.quantile(smooth, 0.1, axis=0))
+    above = np.mean(np.clip(10.0 * np.log10(smooth / floor), 0.0, _MOST_OF_A_BAND), axis=1)
+    loud = np.flatnonzero(above > _BEGINS)
+    if not len(loud):
+        return 0, 0, floor
+    cuts = np.flatnonzero(np.diff(loud) > HANGOVER) + 1
+    longest = max(np.split(loud, cuts), key=len)
+    if len(longest) < _TO_BEGIN:
+        return 0, 0, floor
+    return int(longest[0]), int(longest[-1]) + 1, floor

@@ -1,0 +1,84 @@
+"""From any rate of samples to the one that is used everywhere, without aliases: a polyphase filter, in blocks.
+
+The filter is a sinc in a Kaiser window whose pass band ends at 0.92 of half the lower rate; what lies above that half
+is at least 60 dB down. Output begins with the first sample of the input: the filter's delay is taken out.
+"""
+
+from __future__ import annotations
+
+from math import ceil, gcd
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.speech.sound.samples import RATE, Samples
+
+LOWEST_RATE = 4_000
+HIGHEST_RATE = 384_000
+
+_PASSED = 0.92
+_KAISER = 7.0
+_ZEROS = 32  # of the sinc, on each side
+_AT_ONCE = 8_192  # samples that come out of one multiplication
+
+
+class Resampler:
+    """Takes a stream of any rate, gives the same sound at `RATE`.
+
+    Args:
+        rate: of what comes in, in samples a second, `LOWEST_RATE` to `HIGHEST_RATE`.
+    """
+
+    def __init__(self, rate: int) -> None:
+        if not LOWEST_RATE <= rate <= HIGHEST_RATE:
+            raise ValueError(f"a rate of {rate} is not within {LOWEST_RATE} and {HIGHEST_RATE}")
+        common = gcd(rate, RATE)
+        self._up, self._down = RATE // common, rate // common
+        cutoff = _PASSED * min(1.0, RATE / rate)
+        half = ceil(_ZEROS / cutoff)
+        offsets = np.arange(-half + 1, half + 1)[None, :] - np.arange(self._up)[:, None] / self._up
+        window = np.i0(_KAISER * np.sqrt(np.maximum(0.0, 1.0 - (offsets / half) ** 2))) / np.i0(_KAISER)
+        table = cutoff * np.sinc(cutoff * offsets) * window
+        self._table = table / table.sum(axis=1, keepdims=True)
+        self._half = half
+        self._kept = np.zeros(half - 1)
+        self._position = 0  # of the next output, in 1/up of an input sample, counted from the first that is kept
+
+    def feed(self, values: NDArray[np.floating]) -> Samples:
+        """The next block of the stream, shape ``(n,)``, full scale at 1; the samples that follow from it.
+
+        They come late by the half of the filter: 2 ms and less at usual rates; `flush` gives the rest.
+        """
+        self._kept = np.concatenate((self._kept, np.asarray(values, dtype=np.float64)))
+        taps = self._table.shape[1]
+        ready = (len(self._kept) - taps) * self._up
+        count = max(0, (ready - self._position) // self._down + 1)
+        found = np.empty(count)
+        windows = np.lib.stride_tricks.sliding_window_view(self._kept, taps) if count else self._kept[None]
+        for first in range(0, count, _AT_ONCE):
+            at = self._position + self._down * np.arange(first, min(count, first + _AT_ONCE))
+            found[first : first + len(at)] = np.einsum("ij,ij->i", windows[at // self._up], self._table[at % self._up])
+        self._position += count * self._down
+        passed = min(self._position // self._up, len(self._kept))
+        self._kept = self._kept[passed:]
+        self._position -= passed * self._up
+        return to_samples(found)
+
+    def flush(self) -> Samples:
+        """What is still in the filter when the stream has ended."""
+        return self.feed(np.zeros(self._half + 1))
+
+
+def resample(values: NDArray[np.floating], rate: int) -> Samples:
+    """A whole sound, shape ``(n,)``, full scale at 1, at `RATE`; as long as it was, to a sample."""
+    if rate == RATE:
+        return to_samples(values)
+    resampler = Resampler(rate)
+    length = ceil(len(values) * RATE / rate)
+    return np.concatenate((resampler.feed(values), resampler.flush()))[:length]
+
+
+def to_samples(values: NDArray[np.floating]) -> Samples:
+    """Values with full scale at 1 as 16 bits; what is beyond full scale is clipped, what is no number is silence."""
+    steps = np.rint(np.nan_to_num(values, nan=0.0) * 32_768.0)
+    return np.asarray(np.clip(steps, -32_768, 32_767), dtype=np.int16)

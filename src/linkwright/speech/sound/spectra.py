@@ -1,0 +1,79 @@
+"""Short-time spectra on the mel scale, from a stream: what voice activity and recognition are computed from.
+
+Windows of 25 ms every 10 ms, a first-order pre-emphasis, 26 triangular bands from 80 to 7600 Hz of equal width on the
+mel scale (O'Shaughnessy's, as in HTK).
+"""
+
+from __future__ import annotations
+
+from math import log10
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.speech.sound.samples import RATE, Samples
+
+HOP = RATE // 100
+"""Samples from a frame to the next: 10 ms."""
+
+WINDOW = RATE // 40
+"""Samples that a frame is computed from: 25 ms."""
+
+BANDS = 26
+
+Powers: TypeAlias = NDArray[np.float64]
+"""Power of each band, shape ``(frames, BANDS)``; 1: white noise of one step of 16 bits, effective."""
+
+_FFT = 512
+_LOWEST, _HIGHEST = 80.0, 7600.0  # Hz
+_PRE_EMPHASIS = 0.97
+
+
+class MelFrames:
+    """Frames of a stream, whatever the lengths of the blocks that it comes in."""
+
+    def __init__(self) -> None:
+        self._kept: NDArray[np.float64] = np.zeros(0)
+        self._last = 0.0
+
+    def feed(self, samples: Samples) -> Powers:
+        """The next block; the frames that it completes, perhaps none."""
+        if not len(samples):
+            return np.zeros((0, BANDS))
+        values = samples.astype(np.float64)
+        emphasised = values.copy()
+        emphasised[0] -= _PRE_EMPHASIS * self._last
+        emphasised[1:] -= _PRE_EMPHASIS * values[:-1]
+        self._last = float(values[-1])
+        self._kept = np.concatenate((self._kept, emphasised))
+        count = (len(self._kept) - WINDOW) // HOP + 1
+        if count <= 0:
+            return np.zeros((0, BANDS))
+        frames = np.lib.stride_tricks.sliding_window_view(self._kept, WINDOW)[: (count - 1) * HOP + 1 : HOP]
+        spectrum = np.abs(np.fft.rfft(frames * _SHAPE, _FFT)) ** 2
+        self._kept = self._kept[count * HOP :]
+        powers: Powers = spectrum @ _FILTERS
+        return powers
+
+
+def mel_frames(samples: Samples) -> Powers:
+    """The frames of a whole sound."""
+    return MelFrames().feed(samples)
+
+
+def _filters() -> NDArray[np.float64]:
+    """The bands, shape ``(_FFT // 2 + 1, BANDS)``; each sums to 1, so that white noise is equally strong in all."""
+    lowest, highest = (2595.0 * log10(1.0 + hertz / 700.0) for hertz in (_LOWEST, _HIGHEST))
+    mel = np.linspace(lowest, highest, BANDS + 2)
+    edges = 700.0 * (10.0 ** (mel / 2595.0) - 1.0)
+    hertz = np.arange(_FFT // 2 + 1) * RATE / _FFT
+    rising = (hertz[:, None] - edges[None, :-2]) / np.diff(edges)[:-1]
+    falling = (edges[None, 2:] - hertz[:, None]) / np.diff(edges)[1:]
+    bands = np.maximum(0.0, np.minimum(rising, falling))
+    return np.asarray(bands / bands.sum(axis=0))
+
+
+_WINDOWED = np.hamming(WINDOW)
+_SHAPE = _WINDOWED / np.sqrt(np.sum(_WINDOWED**2))
+_FILTERS = _filters()

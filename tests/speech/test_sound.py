@@ -1,0 +1,184 @@
+"""Sound: WAV files in all forms, resampling, spectra, and where somebody speaks."""
+
+from __future__ import annotations
+
+import struct
+
+import numpy as np
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.speech.sound.activity import VoiceActivity, speech_span
+from linkwright.speech.sound.resampling import Resampler, resample
+from linkwright.speech.sound.samples import RATE
+from linkwright.speech.sound.spectra import BANDS, HOP, MelFrames, mel_frames
+from linkwright.speech.sound.wav import parse_wav, read_wav, write_wav
+from tests.speech.voices import WORDS, say
+
+
+def tone(hertz, rate=RATE, seconds=0.5, level=0.5):
+    return level * np.sin(2 * np.pi * hertz * np.arange(int(rate * seconds)) / rate)
+
+
+def wav(sound, *, kind=1, channels=1, rate=RATE, bits=16, extensible=False, before=b""):
+    form = struct.pack("<HHIIHH", 0xFFFE if extensible else kind, channels, rate, 0, channels * bits // 8, bits)
+    if extensible:
+        form += struct.pack("<HHIH", 22, bits, 0, kind) + bytes(14)
+    body = before + b"fmt " + struct.pack("<I", len(form)) + form + b"data" + struct.pack("<I", len(sound)) + sound
+    return b"RIFF" + struct.pack("<I", 4 + len(body)) + b"WAVE" + body
+
+
+def encoded(values, kind, bits):
+    if kind == 3:
+        return values.astype(f"<f{bits // 8}").tobytes()
+    if bits == 8:
+        return np.rint(values * 127 + 128).astype(np.uint8).tobytes()
+    whole = np.rint(values * (2 ** (bits - 1) - 1)).astype("<i4")
+    if bits == 24:
+        return whole.reshape(-1, 1).view(np.uint8)[:, :3].tobytes()
+    return whole.astype(f"<i{bits // 8}").tobytes()
+
+
+@pytest.mark.parametrize(("kind", "bits"), [(1, 8), (1, 16), (1, 24), (1, 32), (3, 32), (3, 64)])
+@pytest.mark.parametrize("extensible", [False, True])
+def test_wav_files_of_all_depths_hold_the_same_sound(kind, bits, extensible):
+    data = wav(encoded(tone(440), kind, bits), kind=kind, bits=bits, extensible=extensible)
+    expected = np.rint(tone(440) * 32768)
+    assert np.abs(parse_wav(data, "a.wav") - expected).max() <= (260 if bits == 8 else 2)
+
+
+def test_channels_are_averaged():
+    both = np.stack((tone(440), -tone(440)), axis=1).reshape(-1)
+    assert not parse_wav(wav(encoded(both, 1, 16), channels=2), "a.wav").any()
+
+
+def test_chunks_that_are_not_needed_are_passed_over_with_their_padding():
+    data = wav(encoded(tone(440), 1, 16), before=b"LIST" + struct.pack("<I", 3) + b"abc\0")
+    assert len(parse_wav(data, "a.wav")) == RATE // 2
+
+
+def test_a_file_that_was_cut_off_gives_what_is_there():
+    assert len(parse_wav(wav(encoded(tone(440), 1, 16))[:-1001], "a.wav")) == RATE // 2 - 501
+
+
+def test_what_is_written_is_read(tmp_path):
+    samples = say(WORDS["stop"])
+    write_wav(tmp_path / "stop.wav", samples)
+    assert np.array_equal(read_wav(tmp_path / "stop.wav"), samples)
+
+
+@pytest.mark.parametrize(
+    ("data", "why"),
+    [
+        (b"", "does not begin"),
+        (b"OggS" + bytes(60), "does not begin"),
+        (wav(b"")[:12], "no samples"),
+        (b"RIFF\0\0\0\0WAVEdata\0\0\0\0", "before what says their form"),
+        (wav(bytes(8), kind=7, bits=8), "mu-law of 8 bits"),
+        (wav(bytes(8), kind=0x1234, bits=8), "0x1234"),
+        (wav(bytes(8), bits=12), "PCM of 12 bits"),
+        (wav(bytes(8), channels=0), "0 channels"),
+        (wav(bytes(8), rate=0), "0 Hz"),
+        (wav(bytes(8), rate=10_000_000), "10000000 Hz"),
+    ],
+)
+def test_a_file_that_is_no_wav_file_is_one_error_that_says_why(data, why):
+    with pytest.raises(LinkwrightError) as caught:
+        parse_wav(data, "a.wav")
+    (finding,) = caught.value.diagnostics
+    assert finding.code == "VOICE402"
+    assert "'a.wav'" in str(finding.message)
+    assert why in str(finding.message)
+    assert finding.hint is not None
+
+
+def test_a_file_that_is_not_there_is_one_error(tmp_path):
+    with pytest.raises(LinkwrightError) as caught:
+        read_wav(tmp_path / "none.wav")
+    assert caught.value.diagnostics[0].code == "VOICE401"
+
+
+@pytest.mark.parametrize("rate", [8_000, 11_025, 22_050, 44_100, 48_000, 96_000])
+def test_a_tone_is_the_same_tone_at_another_rate(rate):
+    found = resample(tone(1000, rate), rate)
+    assert abs(len(found) - RATE // 2) <= 2
+    middle = slice(500, 7000)
+    assert np.abs(found / 32768 - tone(1000)[: len(found)])[middle].max() < 1e-3
+
+
+@pytest.mark.parametrize("hertz", [8_200, 9_000, 12_000, 20_000])
+def test_what_is_above_half_the_rate_does_not_come_back_as_an_alias(hertz):
+    found = resample(tone(hertz, 48_000), 48_000) / 32768
+    assert np.sqrt(np.mean(found[500:7000] ** 2)) < 1e-3
+
+
+@pytest.mark.parametrize("length", [1, 100, 777, 4410])
+def test_a_stream_is_resampled_as_the_whole(length):
+    values = np.random.default_rng(1).normal(size=20_000) / 10
+    resampler = Resampler(44_100)
+    parts = [resampler.feed(values[at : at + length]) for at in range(0, len(values), length)]
+    found = np.concatenate((*parts, resampler.flush()))
+    whole = resample(values, 44_100)
+    assert np.abs(found[: len(whole)].astype(int) - whole).max() <= 1
+
+
+def test_values_beyond_full_scale_are_clipped_and_no_numbers_are_silence():
+    assert resample(np.array([2.0, -2.0, np.nan, 0.5]), RATE).tolist() == [32767, -32768, 0, 16384]
+
+
+@pytest.mark.parametrize("length", [1, 159, 160, 1600, 5000])
+def test_frames_do_not_depend_on_the_blocks_that_the_stream_comes_in(length):
+    samples = say(WORDS["forward"], silence=0.1)
+    if length == 1:
+        samples = samples[:1000]
+    stream = MelFrames()
+    parts = [stream.feed(samples[at : at + length]) for at in range(0, len(samples), length)]
+    assert np.allclose(np.concatenate(parts), mel_frames(samples))
+
+
+def test_a_tone_is_strongest_in_its_band():
+    strongest = [int(mel_frames(np.rint(tone(hertz) * 32768).astype(np.int16)).mean(axis=0).argmax()) for hertz in
+                 (150, 500, 1000, 2000, 4000, 7000)]  # fmt: skip
+    assert strongest == sorted(set(strongest))
+    assert strongest[0] <= 1
+    assert strongest[-1] == BANDS - 1
+
+
+def test_no_samples_are_no_frames():
+    assert mel_frames(np.zeros(0, np.int16)).shape == (0, BANDS)
+    assert mel_frames(np.zeros(100, np.int16)).shape == (0, BANDS)
+
+
+@pytest.mark.parametrize("noise", [0.0, 3.0, 100.0])
+def test_speech_is_found_where_it_is(noise):
+    samples = say(WORDS["forward"], silence=0.6, noise=noise)
+    first, last, _ = speech_span(mel_frames(samples))
+    assert abs(first * HOP - 0.6 * RATE) < 0.06 * RATE
+    assert abs(last * HOP - (len(samples) - 0.6 * RATE)) < 0.08 * RATE
+
+
+def spoken(samples):
+    activity = VoiceActivity()
+    return np.array([activity.step(frame) for frame in mel_frames(samples)])
+
+
+@pytest.mark.parametrize("noise", [0.0, 3.0, 100.0])
+def test_voice_activity_begins_with_the_word_and_ends_after_its_hangover(noise):
+    samples = say(WORDS["forward"], silence=1.0, noise=noise)
+    changes = np.flatnonzero(np.diff(spoken(samples).astype(int)))
+    assert len(changes) == 2
+    assert 95 <= changes[0] <= 110
+    assert 0.3 <= changes[1] / 100 - (len(samples) / RATE - 1.0) <= 0.5
+
+
+@pytest.mark.parametrize("level", [0.0, 1.0, 30.0, 1000.0])
+def test_steady_noise_is_no_speech(level):
+    samples = np.rint(level * np.random.default_rng(2).normal(size=10 * RATE)).astype(np.int16)
+    assert not spoken(samples).any()
+
+
+def test_a_fan_that_is_switched_on_is_speech_for_no_longer_than_two_seconds():
+    rng = np.random.default_rng(3)
+    levels = np.where(np.arange(8 * RATE) < 2 * RATE, 5.0, 300.0)
+    found = spoken(np.rint(levels * rng.normal(size=8 * RATE)).astype(np.int16))
+    assert not found[450:].any()
