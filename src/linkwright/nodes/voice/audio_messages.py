@@ -1,0 +1,162 @@
+"""Sound as audio_common_msgs: writing it, and reading it in whatever form a publisher has it.
+
+audio_capture publishes the samples of all channels in turn, in GStreamer's formats (``S16LE``), and says on
+``audio_info`` which. Who hears no AudioInfo takes 16 kHz, mono, S16LE, audio_capture's own defaults.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, phrase
+from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from linkwright.messages import get_message
+from linkwright.speech.sound.resampling import HIGHEST_RATE, LOWEST_RATE, Resampler, to_samples
+from linkwright.speech.sound.samples import RATE, Samples
+
+AUDIO = "audio_common_msgs/msg/AudioData"
+AUDIO_STAMPED = "audio_common_msgs/msg/AudioDataStamped"
+AUDIO_INFO = "audio_common_msgs/msg/AudioInfo"
+
+AUDIO_DEPTH = 10
+"""Of the queues of `AUDIO` and `AUDIO_STAMPED`, as audio_capture has it."""
+
+INFO_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+WAVE = "wave"
+"""The coding format of samples that are not compressed."""
+
+_MOST_CHANNELS = 64
+_FORMAT = re.compile(r"[SU]8|[SU](16|24|32)(LE|BE)|F(32|64)(LE|BE)")
+
+
+@dataclass(frozen=True, slots=True)
+class AudioForm:
+    """The form of the bytes of AudioData, as an AudioInfo says it.
+
+    Attributes:
+        channels: whose samples come in turn.
+        rate: samples a second of each.
+        sample_format: GStreamer's name, such as ``S16LE``, ``U8`` or ``F32LE``.
+    """
+
+    channels: int = 1
+    rate: int = RATE
+    sample_format: str = "S16LE"
+
+    def __post_init__(self) -> None:
+        """Check that it can be read.
+
+        Raises:
+            LinkwrightError: VOICE411 sound of this form is not read.
+        """
+        if not 1 <= self.channels <= _MOST_CHANNELS:
+            raise _unreadable(phrase("it has {channels} channels", channels=self.channels))
+        if not LOWEST_RATE <= self.rate <= HIGHEST_RATE:
+            raise _unreadable(phrase("its rate is {rate} Hz", rate=self.rate))
+        if _FORMAT.fullmatch(self.sample_format) is None:
+            raise _unreadable(phrase("its samples are '{format}'", format=self.sample_format))
+
+    @classmethod
+    def of(cls, info: Any) -> AudioForm:
+        """What an AudioInfo says.
+
+        Raises:
+            LinkwrightError: VOICE411 sound of this form is not read, such as MP3.
+        """
+        if info.coding_format not in ("", WAVE):
+            raise _unreadable(phrase("it is coded as '{coding}'", coding=info.coding_format))
+        return cls(info.channels, info.sample_rate, info.sample_format)
+
+
+def _unreadable(why: Phrase) -> LinkwrightError:
+    message = phrase("sound of this form is not read: {why}", why=why)
+    hint = phrase("publish it with format 'wave', sample_format 'S16LE', sample_rate 16000 and channels 1")
+    return LinkwrightError(Diagnostic("VOICE411", message, hint=hint))
+
+
+class AudioReader:
+    """Makes a stream of AudioData into the samples that engines take: mono, 16 bits, 16 kHz.
+
+    Args:
+        form: of what comes.
+    """
+
+    def __init__(self, form: AudioForm | None = None) -> None:
+        self._form = form or AudioForm()
+        self._rest = b""
+        self._resampler = None if self._form.rate == RATE else Resampler(self._form.rate)
+
+    @property
+    def form(self) -> AudioForm:
+        """The form of what comes."""
+        return self._form
+
+    def read(self, data: bytes | bytearray | memoryview | NDArray[np.uint8] | Sequence[int]) -> Samples:
+        """The samples that follow from the field ``data`` of the next AudioData; a cut sample waits for its rest."""
+        whole = self._rest + bytes(data)
+        values = _values(whole, self._form)
+        frames = len(values) // self._form.channels
+        used = frames * self._form.channels * _sample_bytes(self._form)
+        self._rest = whole[used:]
+        mono: NDArray[np.float64] = values[: frames * self._form.channels].reshape(frames, -1).mean(axis=1)
+        return to_samples(mono) if self._resampler is None else self._resampler.feed(mono)
+
+
+def _sample_bytes(form: AudioForm) -> int:
+    return int(re.sub(r"\D", "", form.sample_format)) // 8
+
+
+def _values(data: bytes, form: AudioForm) -> NDArray[np.float64]:
+    """The samples as they come, full scale at 1; bytes beyond the last whole one are left out."""
+    size, kind = _sample_bytes(form), form.sample_format[0]
+    order = ">" if form.sample_format.endswith("BE") else "<"
+    data = data[: len(data) // size * size]
+    if kind == "F":
+        return np.frombuffer(data, f"{order}f{size}").astype(np.float64)
+    if size == 3:
+        wide = np.zeros((len(data) // 3, 4), np.uint8)
+        three = np.frombuffer(data, np.uint8).reshape(-1, 3)
+        wide[:, 1:] = three if order == "<" else three[:, ::-1]
+        raw = wide.reshape(-1).view("<i4" if kind == "S" else "<u4").astype(np.float64)
+        size = 4
+    else:
+        raw = np.frombuffer(data, f"{order}{'i' if kind == 'S' else 'u'}{size}").astype(np.float64)
+    full = 2.0 ** (8 * size - 1)
+    return raw / full if kind == "S" else raw / full - 1.0
+
+
+def audio_info(form: AudioForm) -> Any:
+    """The AudioInfo of a form; its bit rate is in kbit/s, as audio_capture has it."""
+    info = get_message(AUDIO_INFO)()
+    info.channels, info.sample_rate, info.sample_format = form.channels, form.rate, form.sample_format
+    info.bitrate = form.channels * form.rate * 8 * _sample_bytes(form) // 1000
+    info.coding_format = WAVE
+    return info
+
+
+def audio_data(data: bytes) -> Any:
+    """An AudioData."""
+    message = get_message(AUDIO)()
+    message.data = np.frombuffer(data, np.uint8)
+    return message
+
+
+def audio_stamped(data: bytes, stamp: Any, frame_id: str = "") -> Any:
+    """An AudioDataStamped.
+
+    Args:
+        data: the samples' bytes.
+        stamp: when the first of them was heard, a builtin_interfaces/Time.
+        frame_id: of the microphone.
+    """
+    message = get_message(AUDIO_STAMPED)()
+    message.header.stamp, message.header.frame_id = stamp, frame_id
+    message.audio.data = np.frombuffer(data, np.uint8)
+    return message
