@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from enum import Enum
 from math import isfinite
 from pathlib import Path
-from typing import Any
 
 import yaml
 
@@ -19,7 +18,6 @@ from linkwright.diagnostics import (
     LinkwrightError,
     Phrase,
     SourceText,
-    Span,
     did_you_mean,
     display_path,
     foreign,
@@ -27,12 +25,11 @@ from linkwright.diagnostics import (
     phrase,
 )
 from linkwright.input_files import read_text
+from linkwright.yaml_documents import YamlDocument
 
 _REQUIRED = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh")
 _TRUE = frozenset({"true", "yes", "on", "y"})
 _FALSE = frozenset({"false", "no", "off", "n"})
-_LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
-_DEEPEST = 50
 
 
 class MapMode(Enum):
@@ -92,7 +89,7 @@ class _Reader:
     """Reads one text."""
 
     def __init__(self, source: SourceText) -> None:
-        self._source = source
+        self._document = YamlDocument(source, "NAV202")
         self._nodes: dict[str, yaml.Node] = {}
 
     def read(self, path: Path) -> MapYaml:
@@ -113,15 +110,7 @@ class _Reader:
         )
 
     def _compose(self) -> None:
-        try:
-            depth = 0
-            for event in yaml.parse(self._source.text, Loader=_LOADER):
-                depth += isinstance(event, yaml.CollectionStartEvent) - isinstance(event, yaml.CollectionEndEvent)
-                if depth > _DEEPEST:
-                    raise self._error(phrase("a map is no such nested YAML"), None)
-            root = yaml.compose(self._source.text, Loader=_LOADER)
-        except yaml.YAMLError as error:
-            raise self._not_yaml(error) from None
+        root = self._document.root
         if not isinstance(root, yaml.MappingNode):
             message = phrase("the YAML of a map must have keys and values: {names}", names=", ".join(_REQUIRED))
             raise self._error(message, root)
@@ -190,17 +179,4 @@ class _Reader:
         return MapMode(text)
 
     def _error(self, message: Phrase, node: yaml.Node | None, hint: Phrase | None = None) -> LinkwrightError:
-        return LinkwrightError(Diagnostic("NAV202", message, self._span(node), hint=hint, source=self._source))
-
-    def _span(self, node: yaml.Node | None) -> Span:
-        if node is None or node.start_mark is None or node.end_mark is None:
-            return self._source.span(0, 0)
-        start, end = node.start_mark, node.end_mark
-        return Span(self._source.name, start.line + 1, start.column + 1, end.line + 1, end.column + 1)
-
-    def _not_yaml(self, error: yaml.YAMLError) -> LinkwrightError:
-        mark = getattr(error, "problem_mark", None)
-        problem = getattr(error, "problem", None) or getattr(error, "reason", None) or str(error)
-        span = None if mark is None else self._source.span(self._source.offset(mark.line + 1, mark.column + 1))
-        message = phrase("not valid YAML: {problem}", problem=foreign(problem))
-        return LinkwrightError(Diagnostic("NAV202", message, span, source=self._source))
+        return self._document.error(message, node, hint)

@@ -1,0 +1,231 @@
+"""Reading what a command does, and checking it against the types of its messages."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from typing import Any, ClassVar
+
+import yaml
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, phrase
+from linkwright.messages import get_action, get_message, get_service, set_fields
+from linkwright.speech.commands.actions import (
+    Action,
+    Amount,
+    CallService,
+    Drive,
+    GoTo,
+    Launch,
+    Publish,
+    ScaleSpeed,
+    SendGoal,
+    SetSpeed,
+    Slot,
+    Stop,
+    Values,
+    filled,
+)
+from linkwright.speech.commands.command_set import Place
+from linkwright.speech.commands.reading import Keys
+from linkwright.yaml_documents import YamlDocument
+
+_SLOT = re.compile(r"\{(\w+)\}")
+_GRIPPER = "control_msgs/action/GripperCommand"
+
+
+class ActionReader:
+    """Reads the action of one command.
+
+    Args:
+        document: it is in.
+        keys: of the command.
+        places: those of the file.
+        samples: a value for each slot that all phrases of the command have.
+
+    Attributes:
+        KINDS: the keys that say what a command does.
+    """
+
+    KINDS: ClassVar[tuple[str, ...]] = (
+        *("drive", "stop", "scale_speed", "set_speed", "go_to"),
+        *("gripper", "action", "service", "publish", "launch"),
+    )
+
+    def __init__(self, document: YamlDocument, keys: Keys, places: Mapping[str, Place], samples: Values) -> None:
+        self._document, self._keys, self._places, self._samples = document, keys, places, samples
+
+    def read(self) -> Action:
+        """The action.
+
+        Raises:
+            LinkwrightError: VOICE302 there is not one action, or it is none; VOICE305 it does not fit its type.
+        """
+        given = [kind for kind in self.KINDS if self._keys.node(kind) is not None]
+        if len(given) != 1:
+            known = ", ".join(self.KINDS)
+            message = (
+                phrase(
+                    "{what} does two things, '{first}' and '{second}'",
+                    what=self._keys.what,
+                    first=given[0],
+                    second=given[1],
+                )
+                if given
+                else phrase("{what} does nothing", what=self._keys.what)
+            )
+            raise self._keys.error(message, None, phrase("it has one of {known}", known=known))
+        readers: dict[str, Callable[[], Action]] = {
+            "drive": self._drive,
+            "stop": self._stop,
+            "scale_speed": self._scale_speed,
+            "set_speed": lambda: SetSpeed(self._amount(self._keys, "set_speed")),
+            "go_to": self._go_to,
+            "gripper": self._gripper,
+            "action": self._action,
+            "service": self._service,
+            "publish": self._publish,
+            "launch": self._launch,
+        }
+        return readers[given[0]]()
+
+    def _below(self, key: str, known: tuple[str, ...]) -> Keys:
+        return Keys(self._document, self._keys.node(key), phrase("'{key}'", key=key), known)
+
+    def _drive(self) -> Action:
+        keys = self._below("drive", ("x", "y", "turn", "duration", "distance", "angle"))
+        limits = [name for name in ("duration", "distance", "angle") if keys.node(name) is not None]
+        x, y, turn = (keys.number(name) for name in ("x", "y", "turn"))
+        if not (x or y or turn):
+            raise keys.error(phrase("'drive' moves nothing: give 'x', 'y' or 'turn'"))
+        if len(limits) > 1:
+            message = phrase(
+                "'drive' ends by '{first}' or by '{second}', not by both", first=limits[0], second=limits[1]
+            )
+            raise keys.error(message)
+        if limits == ["distance"] and not (x or y):
+            raise keys.error(phrase("a turn has no 'distance': give 'angle'"), keys.node("distance"))
+        if limits == ["angle"] and not turn:
+            raise keys.error(phrase("a way that is straight has no 'angle': give 'distance'"), keys.node("angle"))
+        amounts = {name: self._amount(keys, name) for name in limits}
+        return Drive(x, y, turn, **amounts)
+
+    def _stop(self) -> Action:
+        if not self._keys.flag("stop"):
+            raise self._keys.error(phrase("'stop' must be true"), self._keys.node("stop"))
+        return Stop()
+
+    def _scale_speed(self) -> Action:
+        factor = self._keys.number("scale_speed")
+        if not factor > 0.0:
+            raise self._keys.error(
+                phrase("'{key}' must be more than 0", key="scale_speed"), self._keys.node("scale_speed")
+            )
+        return ScaleSpeed(factor)
+
+    def _go_to(self) -> Action:
+        node = self._keys.node("go_to")
+        if isinstance(node, yaml.ScalarNode):
+            keys, key, action = self._keys, "go_to", ""
+        else:
+            keys, key = self._below("go_to", ("place", "action")), "place"
+            action = keys.text("action")
+        text = keys.text(key, needed=True)
+        slot = self._slot(text, keys, key)
+        if slot is None and text not in self._places:
+            message = phrase("there is no place '{name}'", name=text)
+            raise keys.error(message, keys.node(key), did_you_mean(text, list(self._places)))
+        if slot is not None and slot.name != "place":
+            raise keys.error(phrase("'{key}' must be a place", key=key), keys.node(key))
+        return GoTo(slot or text, action or "navigate_to_pose")
+
+    def _gripper(self) -> Action:
+        keys = self._below("gripper", ("action", "position", "max_effort"))
+        goal = {"command": {"position": keys.number("position", needed=True), "max_effort": keys.number("max_effort")}}
+        return SendGoal(keys.text("action", needed=True), _GRIPPER, goal)
+
+    def _action(self) -> Action:
+        keys = self._below("action", ("name", "type", "goal"))
+        name, kind, goal = self._call(keys, "goal", lambda name: get_action(name).Goal)
+        return SendGoal(name, kind, goal)
+
+    def _service(self) -> Action:
+        keys = self._below("service", ("name", "type", "request"))
+        name, kind, request = self._call(keys, "request", lambda name: get_service(name).Request)
+        return CallService(name, kind, request)
+
+    def _publish(self) -> Action:
+        keys = self._below("publish", ("topic", "type", "message"))
+        name, kind, message = self._call(keys, "message", get_message)
+        return Publish(name, kind, message)
+
+    def _launch(self) -> Action:
+        keys = self._below("launch", ("package", "file", "arguments"))
+        package, file = keys.text("package", needed=True), keys.text("file", needed=True)
+        arguments = self._fields(keys, "arguments")
+        for name, value in arguments.items():
+            if not str(name).isidentifier() or isinstance(value, dict | list):
+                raise keys.error(phrase("arguments are names with texts or numbers"), keys.node("arguments"))
+        if file.startswith("-") or package.startswith("-"):
+            raise keys.error(phrase("'launch' names a package and a file"))
+        return Launch(package, file, arguments)
+
+    def _call(self, keys: Keys, fields: str, find: Callable[[str], Any]) -> tuple[str, str, dict[str, Any]]:
+        """Name, type and fields of what is sent, checked with a value in each slot."""
+        name = keys.text("topic" if fields == "message" else "name", needed=True)
+        kind = keys.text("type", needed=True)
+        values = self._fields(keys, fields)
+        at = "type"
+        try:
+            message = find(kind)()
+            at = fields
+            set_fields(message, filled(values, self._samples), expand_header_auto=True, expand_time_now=True)
+        except LinkwrightError as error:
+            found = error.diagnostics[0]
+            span = self._document.span(keys.node(at) or keys.node("type"))
+            source = self._document.source
+            raise LinkwrightError(Diagnostic("VOICE305", found.message, span, hint=found.hint, source=source)) from None
+        return name, kind, values
+
+    def _fields(self, keys: Keys, key: str) -> dict[str, Any]:
+        values = keys.plain(key)
+        if not isinstance(values, dict):
+            raise keys.error(phrase("'{key}' must be keys and values", key=key), keys.node(key))
+        for text in _texts_in(values):
+            for name in _SLOT.findall(text):
+                self._slot(f"{{{name}}}", keys, key)
+        return values
+
+    def _amount(self, keys: Keys, key: str) -> Amount:
+        node = keys.node(key)
+        slot = self._slot(str(node.value), keys, key) if isinstance(node, yaml.ScalarNode) else None
+        if slot is not None:
+            if isinstance(self._samples[slot.name], str):
+                raise keys.error(phrase("'{key}' must be a number or a quantity", key=key), node)
+            return slot
+        value = keys.number(key)
+        if not value > 0.0:
+            raise keys.error(phrase("'{key}' must be more than 0", key=key), node)
+        return value
+
+    def _slot(self, text: str, keys: Keys, key: str) -> Slot | None:
+        """The slot that a text is.
+
+        Raises:
+            LinkwrightError: a phrase of the command does not have it.
+        """
+        match = _SLOT.fullmatch(text)
+        if match is None:
+            return None
+        if match[1] not in self._samples:
+            message = phrase("'{slot}' is not said in every phrase of {what}", slot=text, what=self._keys.what)
+            raise keys.error(message, keys.node(key))
+        return Slot(match[1])
+
+
+def _texts_in(value: Any) -> list[str]:
+    if isinstance(value, dict):
+        return [text for each in value.values() for text in _texts_in(each)]
+    if isinstance(value, list):
+        return [text for each in value for text in _texts_in(each)]
+    return [value] if isinstance(value, str) else []

@@ -1,0 +1,197 @@
+"""The file of commands: YAML with how each is said and what it does, read strictly and told with places."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from linkwright.diagnostics import (
+    Diagnostic,
+    LinkwrightError,
+    Phrase,
+    SourceText,
+    did_you_mean,
+    display_path,
+    foreign,
+    missing_file_hint,
+    phrase,
+)
+from linkwright.input_files import read_text
+from linkwright.speech.commands.action_reading import ActionReader
+from linkwright.speech.commands.command_set import ANY, ByLanguage, Command, CommandSet, Place
+from linkwright.speech.commands.phrases import Template, TemplateError, templates
+from linkwright.speech.commands.quantities import SAYABLE, quantity
+from linkwright.speech.commands.reading import Keys
+from linkwright.speech.commands.words import Words, words_of
+from linkwright.yaml_documents import YamlDocument
+
+DEFAULT_FILE = Path(__file__).with_name("default.yaml")
+"""The commands of a robot that was given none."""
+
+MOST_PHRASES = 5000
+"""Engines get all that can be said, one by one."""
+
+_TOP = ("places", "objects", "said", "yes", "no", "commands")
+_PLACE = ("x", "y", "yaw", "frame", "names")
+
+
+def read_command_file(path: str | Path) -> CommandSet:
+    """Read a file of commands.
+
+    Raises:
+        LinkwrightError: VOICE301 it cannot be read; VOICE302 something in it is wrong; VOICE303 a phrase is;
+            VOICE304 two commands are said alike; VOICE305 a message is none of its type; VOICE306 more can be said
+            than engines take.
+    """
+    path = Path(path)
+    shown = display_path(path)
+    try:
+        text = read_text(path)
+    except FileNotFoundError:
+        message = phrase("file of commands '{shown}' does not exist", shown=shown)
+        raise LinkwrightError(Diagnostic("VOICE301", message, hint=missing_file_hint(path))) from None
+    except (OSError, UnicodeDecodeError) as error:
+        reason = foreign(getattr(error, "strerror", None) or error)
+        message = phrase("file of commands '{shown}' cannot be read: {reason}", shown=shown, reason=reason)
+        raise LinkwrightError(Diagnostic("VOICE301", message)) from None
+    return parse_commands(SourceText(str(path), text))
+
+
+def parse_commands(source: SourceText) -> CommandSet:
+    """The commands in the text of a file; see `read_command_file`."""
+    return _Reader(source).read()
+
+
+class _Reader:
+    """Reads one text."""
+
+    def __init__(self, source: SourceText) -> None:
+        self._document = YamlDocument(source, "VOICE302")
+        self._names: dict[str, dict[Words, str]] = {"place": {}, "object": {}}
+        self._said: dict[str, dict[str, tuple[str, ...]]] = {}
+        self._seen: dict[tuple[Any, ...], str] = {}
+
+    def read(self) -> CommandSet:
+        top = Keys(self._document, self._document.root, phrase("a file of commands"), _TOP)
+        commands = top.mapping("commands")
+        if commands is None:
+            raise top.error(phrase("'commands' is missing: it says what the robot can be told"))
+        places = {name: self._place(name, node) for name, node in self._entries(top, "places")}
+        for name, node in self._entries(top, "objects"):
+            self._name("object", name, node)
+        for slot, node in self._entries(top, "said"):
+            self._add_said(slot, node, top)
+        answers = {name: self._phrases(top.node(name), ()) for name in ("yes", "no")}
+        read = tuple(self._command(intent, node, places) for intent, node in commands)
+        found = CommandSet(read, self._names, self._said, places, answers)
+        self._count(found)
+        return found
+
+    def _entries(self, top: Keys, key: str) -> list[tuple[str, yaml.Node]]:
+        return top.mapping(key) or []
+
+    def _place(self, name: str, node: yaml.Node) -> Place:
+        keys = Keys(self._document, node, phrase("the place '{name}'", name=name), _PLACE)
+        self._name("place", name, keys.node("names"))
+        frame = keys.text("frame") or "map"
+        return Place(keys.number("x", needed=True), keys.number("y", needed=True), keys.number("yaw"), frame)
+
+    def _name(self, slot: str, name: str, node: yaml.Node | None) -> None:
+        """Take in how a place or an object is called; without a word, as its key."""
+        texts = self._texts(node) if node is not None else {ANY: [(name, None)]}
+        said = self._said.setdefault(slot, {})
+        for language, each in texts.items():
+            said[language] = (*said.get(language, ()), *(text for text, _ in each))
+            for text, where in each:
+                words = words_of(text)
+                other = self._names[slot].setdefault(words, name)
+                if other != name:
+                    message = phrase("'{text}' is a name of '{other}', too", text=text, other=other)
+                    raise self._error("VOICE304", message, where)
+
+    def _add_said(self, slot: str, node: yaml.Node, top: Keys) -> None:
+        if slot not in SAYABLE:
+            raise top.error(
+                phrase("there is no slot '{slot}' of quantities", slot=slot), node, did_you_mean(slot, list(SAYABLE))
+            )
+        for language, each in self._texts(node).items():
+            for text, where in each:
+                if quantity(slot, words_of(text)) is None:
+                    raise self._document.error(phrase("'{text}' is no {slot}", text=text, slot=slot), where)
+            usual = SAYABLE[slot].get(language, ())
+            self._said.setdefault(slot, dict(SAYABLE[slot]))[language] = (*usual, *(text for text, _ in each))
+
+    def _command(self, intent: str, node: yaml.Node, places: Mapping[str, Place]) -> Command:
+        what = phrase("the command '{intent}'", intent=intent)
+        keys = Keys(self._document, node, what, ("phrases", "confirm", "response", *ActionReader.KINDS))
+        if keys.node("phrases") is None:
+            raise keys.error(phrase("{what} has no 'phrases': nobody can say it", what=what))
+        phrases = self._phrases(keys.node("phrases"), tuple(self._names), intent)
+        every = [set(template.slots) for each in phrases.values() for template in each]
+        slots = set.intersection(*every) if every else set()
+        samples = {slot: next(iter(self._names[slot].values()), "") if slot in self._names else 1.0 for slot in slots}
+        action = ActionReader(self._document, keys, places, samples).read()
+        if keys.node("stop") is not None and any(every):
+            raise keys.error(phrase("a stop is said without slots"), keys.node("phrases"))
+        return Command(intent, phrases, action, self._question(keys), self._one_text(keys.node("response")))
+
+    def _question(self, keys: Keys) -> ByLanguage:
+        node = keys.node("confirm")
+        if isinstance(node, yaml.ScalarNode) and node.tag == "tag:yaml.org,2002:bool":
+            return {"en": "are you sure?", "zh": "确定吗？"} if keys.flag("confirm") else {}
+        return self._one_text(node)
+
+    def _one_text(self, node: yaml.Node | None) -> dict[str, str]:
+        return {} if node is None else {name: each[0][0] for name, each in self._texts(node).items() if each}
+
+    def _phrases(
+        self, node: yaml.Node | None, slots: Sequence[str], intent: str = ""
+    ) -> dict[str, tuple[Template, ...]]:
+        found: dict[str, tuple[Template, ...]] = {}
+        for language, texts in (self._texts(node) if node is not None else {}).items():
+            for text, where in texts:
+                found[language] = (*found.get(language, ()), *self._templates(text, where, slots, intent))
+        return found
+
+    def _templates(self, text: str, where: yaml.Node | None, slots: Sequence[str], intent: str) -> list[Template]:
+        try:
+            read = templates(text, slots)
+        except TemplateError as error:
+            raise self._error(
+                "VOICE303", phrase("the phrase '{text}': {why}", text=text, why=error.args[0]), where
+            ) from None
+        for template in read:
+            other = self._seen.setdefault((template.pieces, template.slots), intent)
+            if intent and other != intent:
+                message = phrase("'{text}' is said for '{other}', too", text=template.text, other=other)
+                raise self._error("VOICE304", message, where)
+        return read
+
+    def _texts(self, node: yaml.Node) -> dict[str, list[tuple[str, yaml.Node | None]]]:
+        """Language -> texts with their places, of a text, a list of texts, or a mapping of languages to these."""
+        if isinstance(node, yaml.MappingNode):
+            keys = Keys(self._document, node, phrase("texts by language"), None)
+            return {language: keys.texts(language) for language in keys.names()}
+        keys = Keys.of(self._document, ANY, node)
+        return {ANY: keys.texts(ANY)}
+
+    def _count(self, found: CommandSet) -> None:
+        languages = {"en", "zh"}.union(*(command.phrases for command in found.commands))
+        for language in sorted(languages):
+            count = found.phrase_count(language)
+            if count > MOST_PHRASES:
+                message = phrase(
+                    "{count} phrases can be said in '{language}', and engines take {most}",
+                    count=count,
+                    language=language,
+                    most=MOST_PHRASES,
+                )
+                hint = phrase("use fewer parts in brackets, fewer slots in a phrase, or shorter lists under 'said'")
+                raise self._error("VOICE306", message, None, hint)
+
+    def _error(self, code: str, message: Phrase, node: yaml.Node | None, hint: Phrase | None = None) -> LinkwrightError:
+        span = self._document.span(node)
+        return LinkwrightError(Diagnostic(code, message, span, hint=hint, source=self._document.source))

@@ -1,0 +1,145 @@
+"""All commands that a robot knows: what a text means, and what engines are told that can be said."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import prod
+
+from linkwright.speech.commands.actions import Action, Stop
+from linkwright.speech.commands.phrases import Names, Template, Value
+from linkwright.speech.commands.quantities import SAYABLE
+from linkwright.speech.commands.words import has_words, words_of
+
+ANY = "any"
+"""The language of what is said in all of them."""
+
+ByLanguage = Mapping[str, str]
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where a robot can be sent.
+
+    Attributes:
+        x, y: in metres.
+        yaw: in radians.
+        frame: that the pose is in.
+    """
+
+    x: float
+    y: float
+    yaw: float
+    frame: str
+
+
+@dataclass(frozen=True, slots=True)
+class Command:
+    """A command.
+
+    Attributes:
+        intent: its name.
+        phrases: language -> how it is said.
+        action: what it does.
+        question: language -> what is asked before it is done; empty where it is done at once.
+        response: language -> what is answered; empty for the usual.
+    """
+
+    intent: str
+    phrases: Mapping[str, tuple[Template, ...]]
+    action: Action
+    question: ByLanguage
+    response: ByLanguage
+
+
+@dataclass(frozen=True, slots=True)
+class Understood:
+    """A command that was said.
+
+    Attributes:
+        command: which.
+        values: slot -> what was said in it.
+    """
+
+    command: Command
+    values: Mapping[str, Value]
+
+
+@dataclass(frozen=True, slots=True)
+class CommandSet:
+    """The commands of a file.
+
+    Attributes:
+        commands: in the order of the file.
+        names: slot of names -> how each is said -> the name.
+        said: slot -> language -> what can be said in it.
+        places: name -> where it is.
+        answers: ``yes`` and ``no`` -> language -> how it is said.
+    """
+
+    commands: tuple[Command, ...]
+    names: Names
+    said: Mapping[str, Mapping[str, tuple[str, ...]]]
+    places: Mapping[str, Place]
+    answers: Mapping[str, Mapping[str, tuple[Template, ...]]]
+
+    def understand(self, text: str) -> Understood | None:
+        """The command that a text is, in any language; None where it is none.
+
+        Of several the one with the most words that are said as they are written, and of these the first of the file.
+        """
+        words = words_of(text)
+        best: tuple[int, Understood] | None = None
+        for command in self.commands:
+            for template in _all(command.phrases):
+                values = template.values(words, self.names)
+                if values is not None and (best is None or template.literal_count > best[0]):
+                    best = template.literal_count, Understood(command, values)
+        return None if best is None else best[1]
+
+    def is_stop(self, text: str) -> bool:
+        """Whether a stop is said anywhere in a text, whatever is said around it."""
+        words = words_of(text)
+        stops = (each for each in self.commands if isinstance(each.action, Stop))
+        return any(has_words(words, template.pieces[0]) for stop in stops for template in _all(stop.phrases))
+
+    def answer(self, text: str) -> bool | None:
+        """Whether a text is a yes or a no; None where it is neither."""
+        words = words_of(text)
+        for name, is_yes in (("yes", True), ("no", False)):
+            if any(template.values(words, {}) is not None for template in _all(self.answers[name])):
+                return is_yes
+        return None
+
+    def phrases(self, language: str) -> tuple[str, ...]:
+        """All that can be said in a language, for `EngineOptions`."""
+        said = self._said(language)
+        return tuple(dict.fromkeys(text for each in self._templates(language) for text in each.spoken(said)))
+
+    def phrase_count(self, language: str) -> int:
+        """How many there are in a language, without making them."""
+        said = self._said(language)
+        return sum(prod(len(said[slot]) for slot in each.slots) for each in self._templates(language))
+
+    def _said(self, language: str) -> dict[str, tuple[str, ...]]:
+        """Slot -> what can be said in it."""
+        return {
+            slot: tuple(text for name in (language, ANY) for text in texts.get(name, ()))
+            for slot, texts in {**SAYABLE, **self.said}.items()
+        }
+
+    def _templates(self, language: str) -> list[Template]:
+        every = [*(each.phrases for each in self.commands), *self.answers.values()]
+        return [template for phrases in every for name in (language, ANY) for template in phrases.get(name, ())]
+
+
+def chosen(texts: ByLanguage, language: str) -> str:
+    """The text in a language, else in English, else any; empty where there is none."""
+    for name in (language, ANY, "en"):
+        if name in texts:
+            return texts[name]
+    return next(iter(texts.values()), "")
+
+
+def _all(phrases: Mapping[str, tuple[Template, ...]]) -> list[Template]:
+    return [template for each in phrases.values() for template in each]

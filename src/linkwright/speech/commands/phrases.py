@@ -1,0 +1,120 @@
+"""Phrases with slots: ``turn left {angle}``, ``[go|drive] to [the] {place}``.
+
+What stands in brackets may be left out, and of what has a bar between it one is said.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+
+from linkwright.diagnostics import phrase
+from linkwright.speech.commands.quantities import SAYABLE, quantity
+from linkwright.speech.commands.words import Words, words_of
+
+Value = float | str
+"""What is said in a slot: a quantity in metres, radians, seconds or metres a second, or a name of the file."""
+
+Names = Mapping[str, Mapping[Words, str]]
+"""Slot of names -> how each may be said -> the name."""
+
+_OPTIONAL = re.compile(r"\[([^\[\]{}]*)\]")
+_SLOT = re.compile(r"\{(\w*)\}")
+_MANY_OPTIONAL = 6
+
+
+class TemplateError(ValueError):
+    """A phrase is written wrongly; why is its text, a `Phrase`."""
+
+
+@dataclass(frozen=True, slots=True)
+class Template:
+    """A phrase without brackets.
+
+    Attributes:
+        text: as it is written.
+        pieces: what is said as it is written, and between two of them a slot of `slots`; one more than slots.
+        slots: in their order.
+    """
+
+    text: str
+    pieces: tuple[Words, ...]
+    slots: tuple[str, ...]
+
+    @property
+    def literal_count(self) -> int:
+        """How many words are said as they are written."""
+        return sum(map(len, self.pieces))
+
+    def values(self, words: Words, names: Names) -> dict[str, Value] | None:
+        """What is said in the slots; None where the words are not this phrase."""
+        return self._rest(words, 0, names)
+
+    def spoken(self, said: Mapping[str, Sequence[str]]) -> Iterator[str]:
+        """All that can be said.
+
+        Args:
+            said: slot -> what can be said in it.
+        """
+        for chosen in product(*(said.get(slot, ()) for slot in self.slots)):
+            text = self.text
+            for slot, value in zip(self.slots, chosen, strict=True):
+                text = text.replace(f"{{{slot}}}", value)
+            yield text
+
+    def _rest(self, words: Words, at: int, names: Names) -> dict[str, Value] | None:
+        piece = self.pieces[at]
+        if words[: len(piece)] != piece:
+            return None
+        words = words[len(piece) :]
+        if at == len(self.slots):
+            return None if words else {}
+        slot = self.slots[at]
+        for end in range(len(words), 0, -1):
+            value = names[slot].get(words[:end]) if slot in names else quantity(slot, words[:end])
+            if value is None:
+                continue
+            rest = self._rest(words[end:], at + 1, names)
+            if rest is not None:
+                return {slot: value, **rest}
+        return None
+
+
+def templates(text: str, slots: Sequence[str]) -> list[Template]:
+    """The phrases that one with brackets stands for.
+
+    Args:
+        text: the phrase as it is written.
+        slots: those that there are besides the ones of quantities.
+
+    Raises:
+        TemplateError: a bracket is open, a slot is there twice or unknown, or nothing is left to be said.
+    """
+    if len(_OPTIONAL.findall(text)) > _MANY_OPTIONAL:
+        raise TemplateError(phrase("it has more than {most} parts in brackets", most=_MANY_OPTIONAL))
+    found = []
+    for plain in _without_brackets(text):
+        if re.search(r"[\[\]{}]", _SLOT.sub("", plain)):
+            raise TemplateError(phrase("a bracket or brace is not closed, or lies in another one"))
+        used = tuple(_SLOT.findall(plain))
+        for slot in used:
+            if slot not in SAYABLE and slot not in slots:
+                known = ", ".join([*SAYABLE, *slots])
+                raise TemplateError(phrase("there is no slot '{slot}'; there are {known}", slot=slot, known=known))
+        if len(set(used)) < len(used):
+            raise TemplateError(phrase("a slot is there twice"))
+        pieces = tuple(words_of(piece) for piece in _SLOT.split(plain)[::2])
+        if not any(pieces):
+            raise TemplateError(phrase("it needs a word that is no slot"))
+        found.append(Template(" ".join(plain.split()), pieces, used))
+    return found
+
+
+def _without_brackets(text: str) -> list[str]:
+    match = _OPTIONAL.search(text)
+    if match is None:
+        return [text]
+    before, after = text[: match.start()], _without_brackets(text[match.end() :])
+    return [before + said + rest for said in (*match[1].split("|"), "") for rest in after]

@@ -1,0 +1,103 @@
+"""Quantities as they are said: a number and its unit, in metres, radians and seconds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import pi, tau
+
+from linkwright.speech.commands.numbers import AND_FRACTION, number
+from linkwright.speech.commands.words import Words, words_of
+
+
+def _units(table: Mapping[str, float]) -> dict[Words, float]:
+    return {words_of(name): factor for names, factor in table.items() for name in names.split("|")}
+
+
+_DISTANCE = {
+    "metre|metres|meter|meters|m|米|公尺": 1.0,
+    "centimetre|centimetres|centimeter|centimeters|cm|厘米|公分": 0.01,
+    "millimetre|millimetres|millimeter|millimeters|mm|毫米": 0.001,
+    "foot|feet|ft|英尺": 0.3048,
+    "inch|inches|英寸": 0.0254,
+    "yard|yards|码": 0.9144,
+}
+_SPEED = {
+    f"{name} {per}" if name.isascii() else f"{name}{per}": factor
+    for names, factor in _DISTANCE.items()
+    for name in names.split("|")
+    for per in (("per second", "a second") if name.isascii() else ("每秒",))
+} | {"kilometres per hour|kilometers per hour|kilometres an hour|kilometers an hour|公里每小时": 1 / 3.6}
+UNITS: Mapping[str, Mapping[Words, float]] = {
+    "distance": _units(_DISTANCE),
+    "angle": _units(
+        {
+            "degree|degrees|deg|°|度": pi / 180,
+            "radian|radians|rad|弧度": 1.0,
+            "turn|turns|circle|circles|revolution|revolutions|圈|周": tau,
+        }
+    ),
+    "speed": _units(_SPEED),
+    "duration": _units({"second|seconds|s|秒|秒钟": 1.0, "minute|minutes|分钟": 60.0}),
+}
+"""Slots that are a number with a unit -> the units, and what they are in m, rad, m/s and s."""
+
+SAYABLE: Mapping[str, Mapping[str, tuple[str, ...]]] = {
+    "distance": {
+        "en": (
+            *("ten centimetres", "twenty centimetres", "half a metre", "one metre", "a metre", "one and a half metres"),
+            *("two metres", "three metres", "four metres", "five metres", "one foot", "two feet", "three feet"),
+        ),
+        "zh": ("十厘米", "二十厘米", "半米", "一米", "一米半", "一点五米", "两米", "三米", "四米", "五米"),
+    },
+    "angle": {
+        "en": (
+            *("ten degrees", "fifteen degrees", "thirty degrees", "forty five degrees", "sixty degrees"),
+            *("ninety degrees", "one hundred and twenty degrees", "one hundred and eighty degrees"),
+            *("three hundred and sixty degrees", "a quarter turn", "half a turn", "one turn", "two turns"),
+        ),
+        "zh": (
+            *("十度", "十五度", "三十度", "四十五度", "六十度", "九十度", "一百二十度", "一百八十度", "三百六十度"),
+            *("半圈", "一圈", "两圈"),
+        ),
+    },
+    "speed": {
+        "en": ("ten centimetres per second", "twenty centimetres per second", "half a metre per second"),
+        "zh": ("每秒十厘米", "每秒二十厘米", "每秒半米"),
+    },
+    "duration": {
+        "en": ("one second", "two seconds", "three seconds", "five seconds", "ten seconds"),
+        "zh": ("一秒", "两秒", "三秒", "五秒", "十秒"),
+    },
+    "number": {
+        "en": ("one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten"),
+        "zh": ("一", "二", "三", "四", "五", "六", "七", "八", "九", "十"),
+    },
+}
+"""What engines are told that may be said in a slot, by its language: few, so that they take nothing else for it.
+
+Any other number is understood, too, where an engine hears it, or somebody types it.
+"""
+
+_EACH_SECOND: Words = ("每", "秒")
+
+
+def quantity(slot: str, words: Words) -> float | None:
+    """What the words say as a slot of `SAYABLE`, in its unit; None where they do not."""
+    if slot == "number":
+        return number(words)
+    if slot == "speed" and words[:2] == _EACH_SECOND:
+        return _measured(UNITS["distance"], words[2:])
+    return _measured(UNITS[slot], words)
+
+
+def _measured(units: Mapping[Words, float], words: Words) -> float | None:
+    for tail, fraction in [((), 0.0), *AND_FRACTION.items()]:
+        rest = words[: len(words) - len(tail)]
+        if words[len(rest) :] != tail:
+            continue
+        for unit, factor in units.items():
+            if len(rest) > len(unit) and rest[-len(unit) :] == unit:
+                value = number(rest[: -len(unit)])
+                if value is not None and (not fraction or value == int(value)):
+                    return (value + fraction) * factor
+    return None

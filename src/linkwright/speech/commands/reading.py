@@ -1,0 +1,128 @@
+"""Mappings of a YAML file whose keys are known, with errors that name them and their places."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from math import isfinite
+from typing import Any
+
+import yaml
+
+from linkwright.diagnostics import LinkwrightError, Phrase, did_you_mean, phrase
+from linkwright.yaml_documents import YamlDocument
+
+_NULL = "tag:yaml.org,2002:null"
+
+
+class Keys:
+    """A mapping.
+
+    Args:
+        document: it is in.
+        node: what should be the mapping.
+        what: what it is, for messages.
+        known: the keys that there are; None for any.
+
+    Raises:
+        LinkwrightError: it is no mapping, a key is unknown, or there twice.
+    """
+
+    def __init__(
+        self, document: YamlDocument, node: yaml.Node | None, what: Phrase, known: Iterable[str] | None
+    ) -> None:
+        self._document, self._node, self.what = document, node, what
+        self._values: dict[str, yaml.Node] = {}
+        if not isinstance(node, yaml.MappingNode):
+            raise self.error(phrase("{what} must be keys and values", what=what))
+        names = None if known is None else tuple(known)
+        for key, value in node.value:
+            name = str(key.value) if isinstance(key, yaml.ScalarNode) else ""
+            if names is not None and name not in names:
+                hint = did_you_mean(name, names) or phrase("it has {known}", known=", ".join(names))
+                raise self.error(phrase("{what} has no '{key}'", what=what, key=name), key, hint)
+            if name in self._values:
+                raise self.error(phrase("'{key}' is there twice", key=name), key)
+            self._values[name] = value
+
+    @classmethod
+    def of(cls, document: YamlDocument, name: str, value: yaml.Node) -> Keys:
+        """A mapping of one key."""
+        key = yaml.ScalarNode("tag:yaml.org,2002:str", name)
+        pair = yaml.MappingNode("tag:yaml.org,2002:map", [(key, value)])
+        return cls(document, pair, phrase("texts by language"), None)
+
+    def names(self) -> list[str]:
+        """The keys that are there."""
+        return list(self._values)
+
+    def node(self, key: str) -> yaml.Node | None:
+        """What stands under a key; None where there is nothing."""
+        node = self._values.get(key)
+        return None if node is None or node.tag == _NULL else node
+
+    def error(self, message: Phrase, node: yaml.Node | None = None, hint: Phrase | None = None) -> LinkwrightError:
+        """The error for something at a node, or at the mapping."""
+        return self._document.error(message, node or self._node, hint)
+
+    def mapping(self, key: str) -> list[tuple[str, yaml.Node]] | None:
+        """The keys and values of the mapping under a key; None where there is nothing."""
+        node = self.node(key)
+        if node is None:
+            return None
+        inner = Keys(self._document, node, phrase("'{key}'", key=key), None)
+        return [(name, inner._values[name]) for name in inner.names()]
+
+    def text(self, key: str, *, needed: bool = False) -> str:
+        """The text under a key; empty where there is none and none is needed."""
+        node = self.node(key)
+        if node is None and not needed:
+            return ""
+        if not isinstance(node, yaml.ScalarNode) or not node.value:
+            raise self._missing(key, node, phrase("a text"))
+        return str(node.value)
+
+    def number(self, key: str, *, needed: bool = False) -> float:
+        """The number under a key; 0 where there is none and none is needed."""
+        node = self.node(key)
+        if node is None and not needed:
+            return 0.0
+        try:
+            value = float(node.value) if isinstance(node, yaml.ScalarNode) else None
+        except ValueError:
+            value = None
+        if value is None or not isfinite(value):
+            raise self._missing(key, node, phrase("a number"))
+        return value
+
+    def flag(self, key: str) -> bool:
+        """Whether it says true under a key."""
+        node = self.node(key)
+        if not isinstance(node, yaml.ScalarNode) or node.value.lower() not in ("true", "false"):
+            raise self._missing(key, node, phrase("true or false"))
+        return bool(node.value.lower() == "true")
+
+    def texts(self, key: str) -> list[tuple[str, yaml.Node | None]]:
+        """The texts under a key, one or a list, each with its place."""
+        node = self.node(key)
+        items: list[yaml.Node | None] = list(node.value) if isinstance(node, yaml.SequenceNode) else [node]
+        found: list[tuple[str, yaml.Node | None]] = []
+        for item in items:
+            if not isinstance(item, yaml.ScalarNode) or not item.value:
+                raise self._missing(key, item, phrase("a text, or a list of texts"))
+            found.append((str(item.value), item))
+        return found
+
+    def plain(self, key: str) -> Any:
+        """What stands under a key, as lists, mappings, numbers and texts; an empty mapping where there is nothing."""
+        node = self.node(key)
+        if node is None:
+            return {}
+        try:
+            return yaml.constructor.SafeConstructor().construct_document(node)
+        except yaml.YAMLError as error:
+            raise self._missing(key, node, phrase("plain data")) from error
+
+    def _missing(self, key: str, node: yaml.Node | None, wanted: Phrase) -> LinkwrightError:
+        if node is None:
+            return self.error(phrase("{what} needs '{key}', {wanted}", what=self.what, key=key, wanted=wanted))
+        return self.error(phrase("'{key}' must be {wanted}", key=key, wanted=wanted), node)

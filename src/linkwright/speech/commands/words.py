@@ -1,0 +1,23 @@
+"""Words of a text, without what differs between engines: capitals, punctuation, blanks between Chinese characters."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+
+Words = tuple[str, ...]
+"""Of a text: a number in digits, a word, or one Chinese character each."""
+
+_HAN = "\u3007\u3400-\u4dbf\u4e00-\u9fff"
+_WORD = re.compile(rf"\d+(?:\.\d+)?|[{_HAN}]|(?:(?![{_HAN}])[^\W\d_])+(?:['’][^\W\d_]+)*|°")
+
+
+def words_of(text: str) -> Words:
+    """The words of a text: ``Turn left, 90°!`` is turn, left, 90, °, and ``左转 九十度`` is 左, 转, 九, 十, 度."""
+    return tuple(_WORD.findall(unicodedata.normalize("NFKC", text).lower().replace("’", "'")))
+
+
+def has_words(words: Words, wanted: Words) -> bool:
+    """Whether words are in a text one after the other."""
+    length = len(wanted)
+    return any(words[at : at + length] == wanted for at in range(len(words) - length + 1))

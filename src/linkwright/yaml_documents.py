@@ -1,0 +1,58 @@
+"""YAML that a user wrote, as nodes that know their places, and one way to tell of mistakes in it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import yaml
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, SourceText, Span, foreign, phrase
+
+_LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+_DEEPEST = 50
+
+
+class YamlDocument:
+    """One document.
+
+    Args:
+        source: its text.
+        code: of the diagnostics that tell what is wrong in it.
+
+    Attributes:
+        root: its node; None in an empty text.
+
+    Raises:
+        LinkwrightError: it is no YAML, or nested too deeply.
+    """
+
+    def __init__(self, source: SourceText, code: str) -> None:
+        self.source = source
+        self._code = code
+        self.root: yaml.Node | None = self._composed()
+
+    def error(self, message: Phrase, node: yaml.Node | None, hint: Phrase | None = None) -> LinkwrightError:
+        """The error for something at a node; None for the document."""
+        return LinkwrightError(Diagnostic(self._code, message, self.span(node), hint=hint, source=self.source))
+
+    def span(self, node: yaml.Node | None) -> Span:
+        """Where a node begins and ends."""
+        if node is None or node.start_mark is None or node.end_mark is None:
+            return self.source.span(0, 0)
+        start, end = node.start_mark, node.end_mark
+        return Span(self.source.name, start.line + 1, start.column + 1, end.line + 1, end.column + 1)
+
+    def _composed(self) -> yaml.Node | None:
+        try:
+            depth = 0
+            for event in yaml.parse(self.source.text, Loader=_LOADER):
+                depth += isinstance(event, yaml.CollectionStartEvent) - isinstance(event, yaml.CollectionEndEvent)
+                if depth > _DEEPEST:
+                    raise self.error(phrase("nested deeper than {maximum_depth} levels", maximum_depth=_DEEPEST), None)
+            return yaml.compose(self.source.text, Loader=_LOADER)
+        except yaml.YAMLError as error:
+            mark = getattr(error, "problem_mark", None)
+            problem = getattr(error, "problem", None) or getattr(error, "reason", None) or str(error)
+            span = None if mark is None else self.source.span(self.source.offset(mark.line + 1, mark.column + 1))
+            message = phrase("not valid YAML: {problem}", problem=foreign(problem))
+            raise LinkwrightError(Diagnostic(self._code, message, span, source=self.source)) from None

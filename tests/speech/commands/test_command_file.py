@@ -1,0 +1,192 @@
+"""The file of commands: what a text means by the built-in one, and what is wrong in others, with its place."""
+
+from __future__ import annotations
+
+from math import pi
+from pathlib import Path
+
+import pytest
+
+from linkwright.diagnostics import LinkwrightError, SourceText
+from linkwright.speech.commands.actions import Drive, Publish, Slot, filled
+from linkwright.speech.commands.command_file import DEFAULT_FILE, parse_commands, read_command_file
+from linkwright.speech.commands.command_set import CommandSet
+
+UNDERSTOOD = [
+    ("forward", "forward", {}),
+    ("Go forward!", "forward", {}),
+    ("前进", "forward", {}),
+    ("前 进", "forward", {}),
+    ("向前", "forward", {}),
+    ("drive forward half a metre", "forward_by", {"distance": 0.5}),
+    ("forward two feet", "forward_by", {"distance": 0.6096}),
+    ("前进半米", "forward_by", {"distance": 0.5}),
+    ("前进 一 点 五 米", "forward_by", {"distance": 1.5}),
+    ("后退", "backward", {}),
+    ("go back one metre", "backward_by", {"distance": 1.0}),
+    ("left", "left", {}),
+    ("左转", "left", {}),
+    ("turn left ninety degrees", "left_by", {"angle": pi / 2}),
+    ("左转九十度", "left_by", {"angle": pi / 2}),
+    ("向左转 45 度", "left_by", {"angle": pi / 4}),
+    ("右转", "right", {}),
+    ("turn right a quarter turn", "right_by", {"angle": pi / 2}),
+    ("转两圈", "spin", {"angle": 4 * pi}),
+    ("stop", "stop", {}),
+    ("停止", "stop", {}),
+    ("停下", "stop", {}),
+    ("加速", "faster", {}),
+    ("slow down", "slower", {}),
+    ("减速", "slower", {}),
+    ("drive at half a metre per second", "speed", {"speed": 0.5}),
+    ("速度每秒半米", "speed", {"speed": 0.5}),
+    ("go home", "go_to_place", {"place": "home"}),
+    ("回家", "go_to_place", {"place": "home"}),
+    ("go to the red ball", "go_to_object", {"object": "red ball"}),
+    ("去红球那里", "go_to_object", {"object": "red ball"}),
+    ("what do you see", "describe", {}),
+    ("你看见什么", "describe", {}),
+]
+
+NOTHING = [
+    "",
+    "[unk]",
+    "[unk] forward",
+    "forward please",
+    "turn left ninety",
+    "turn left ninety metres",
+    "前进九十度",
+    "go to the moon",
+]
+
+COMMANDS = "commands:\n  ahead:\n    phrases: {phrases}\n    {action}\n"
+
+
+@pytest.fixture(scope="module")
+def commands() -> CommandSet:
+    return read_command_file(DEFAULT_FILE)
+
+
+@pytest.mark.parametrize(("text", "intent", "values"), UNDERSTOOD)
+def test_what_a_text_means(commands: CommandSet, text: str, intent: str, values: dict[str, object]) -> None:
+    found = commands.understand(text)
+    assert found is not None
+    assert (found.command.intent, found.values) == (intent, pytest.approx(values) if "angle" in values else values)
+
+
+@pytest.mark.parametrize("text", NOTHING)
+def test_what_means_nothing(commands: CommandSet, text: str) -> None:
+    assert commands.understand(text) is None
+
+
+@pytest.mark.parametrize("language", ["en", "zh"])
+def test_all_that_engines_are_told_is_understood_and_no_more_than_they_take(
+    commands: CommandSet, language: str
+) -> None:
+    phrases = commands.phrases(language)
+    assert [text for text in phrases if commands.understand(text) is None and commands.answer(text) is None] == []
+    assert len(phrases) == len(set(phrases)) < 500
+    assert {"en": "turn left ninety degrees", "zh": "左转九十度"}[language] in phrases
+
+
+def test_a_stop_is_heard_whatever_is_said_around_it(commands: CommandSet) -> None:
+    assert commands.is_stop("[unk] stop")
+    assert commands.is_stop("快 停 下")
+    assert not commands.is_stop("stopping place")
+    assert not commands.is_stop("forward")
+
+
+def test_answers(commands: CommandSet) -> None:
+    assert [commands.answer(text) for text in ("yes", "是的", "no", "取消", "forward")] == [
+        True,
+        True,
+        False,
+        False,
+        None,
+    ]
+
+
+def read(text: str) -> CommandSet:
+    return parse_commands(SourceText("commands.yaml", text))
+
+
+def test_amounts_are_numbers_or_slots() -> None:
+    phrases = '["go {distance}", "{distance} ahead"]'
+    found = read(COMMANDS.format(phrases=phrases, action='drive: {x: 0.5, distance: "{distance}"}'))
+    assert found.commands[0].action == Drive(x=0.5, distance=Slot("distance"))
+
+
+def test_messages_are_filled_in_with_what_was_said() -> None:
+    text = 'publish: {topic: /n, type: std_msgs/msg/String, message: {data: "{number} times"}}'
+    action = read(COMMANDS.format(phrases='"ring {number}"', action=text)).commands[0].action
+    assert isinstance(action, Publish)
+    assert filled(action.message, {"number": 3.0}) == {"data": "3 times"}
+    assert filled({"a": ["{number}", 1]}, {"number": 3.0}) == {"a": [3.0, 1]}
+
+
+def test_the_phrase_that_says_more_of_itself_is_meant() -> None:
+    text = "places: {hall: {x: 1, y: 2, names: [hall, big hall]}}\ncommands:\n"
+    text += "  a: {phrases: 'go {place}', go_to: '{place}'}\n"
+    found = read(text + "  b: {phrases: go big hall, stop: true}\n")
+    understood = found.understand("go big hall")
+    assert understood is not None
+    assert understood.command.intent == "b"
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "line", "column", "said"),
+    [
+        ("places: {}\n", "VOICE302", 1, 1, "'commands' is missing"),
+        ("- a\n", "VOICE302", 1, 1, "must be keys and values"),
+        ("commands: [\n", "VOICE302", 2, 1, "not valid YAML"),
+        ("command: {}\n", "VOICE302", 1, 1, "has no 'command'"),
+        ("commands:\n  a: {phrases: go}\n", "VOICE302", 2, 6, "does nothing"),
+        ("commands:\n  a: {stop: true}\n", "VOICE302", 2, 6, "has no 'phrases'"),
+        ("commands:\n  a: {phrases: go, stop: true, drive: {x: 1}}\n", "VOICE302", 2, 6, "two things"),
+        (
+            "commands:\n  a: {phrases: go, stop: true}\n  a: {phrases: to, stop: true}\n",
+            "VOICE302",
+            3,
+            3,
+            "there twice",
+        ),
+        ("commands:\n  a: {phrases: go, drive: {x: fast}}\n", "VOICE302", 2, 31, "'x' must be a number"),
+        ("commands:\n  a: {phrases: go, drive: {duration: 2}}\n", "VOICE302", 2, 27, "moves nothing"),
+        ("commands:\n  a: {phrases: go, drive: {x: 1, angle: 2}}\n", "VOICE302", 2, 41, "'distance'"),
+        ("commands:\n  a: {phrases: go, go_to: hall}\n", "VOICE302", 2, 27, "no place 'hall'"),
+        (
+            "commands:\n  a: {phrases: ['go {distance}', go], drive: {x: 1, distance: '{distance}'}}\n",
+            "VOICE302",
+            2,
+            63,
+            "every phrase",
+        ),
+        ("commands:\n  a: {phrases: 'go {metres}', drive: {x: 1}}\n", "VOICE303", 2, 16, "no slot 'metres'"),
+        ("commands:\n  a: {phrases: 'go [ahead', drive: {x: 1}}\n", "VOICE303", 2, 16, "not closed"),
+        ("commands:\n  a: {phrases: '{distance}', drive: {x: 1}}\n", "VOICE303", 2, 16, "no slot"),
+        ("commands:\n  a: {phrases: go, stop: true}\n  b: {phrases: Go, drive: {x: 1}}\n", "VOICE304", 3, 16, "'a'"),
+        ("commands:\n  a: {phrases: go, publish: {topic: /a, type: std_msgs/msg/Strin}}\n", "VOICE305", 2, 47, "Strin"),
+        (
+            "commands:\n  a: {phrases: go, publish: {topic: /a, type: std_msgs/msg/String, message: {text: x}}}\n",
+            *("VOICE305", 2, 77, "text"),
+        ),
+        ("said: {angle: [two metres]}\ncommands:\n  a: {phrases: go, stop: true}\n", "VOICE302", 1, 16, "no angle"),
+        (
+            "commands:\n  a: {phrases: 'a {number} {angle} {distance} {speed} {duration}', drive: {x: 1}}\n",
+            *("VOICE306", 1, 1, "phrases can be said"),
+        ),
+    ],
+)
+def test_what_is_wrong_is_told_with_its_place(text: str, code: str, line: int, column: int, said: str) -> None:
+    with pytest.raises(LinkwrightError) as caught:
+        read(text)
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.span is not None
+    assert (diagnostic.code, diagnostic.span.line, diagnostic.span.column) == (code, line, column)
+    assert said in str(diagnostic.message)
+
+
+def test_a_file_that_is_not_there(tmp_path: Path) -> None:
+    with pytest.raises(LinkwrightError) as caught:
+        read_command_file(tmp_path / "commands.yaml")
+    assert caught.value.diagnostics[0].code == "VOICE301"
