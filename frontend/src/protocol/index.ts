@@ -111,6 +111,7 @@ import type {
   ViewClasses,
   ViewState,
 } from "./views-and-tools";
+import type { SayCommand, Talk, VoiceSaid, VoiceState, WatchVoice } from "./voice";
 import type { WorldPoses, WorldRays, WorldScene } from "./worlds";
 
 export * from "./binary";
@@ -130,6 +131,7 @@ export * from "./session";
 export * from "./simulation";
 export * from "./time";
 export * from "./views-and-tools";
+export * from "./voice";
 export * from "./worlds";
 
 export type ServerMessage =
@@ -182,7 +184,9 @@ export type ServerMessage =
   | TopicMessage
   | Tree
   | ViewClasses
-  | ViewState;
+  | ViewState
+  | VoiceSaid
+  | VoiceState;
 
 export type PageMessage =
   | AddDisplay
@@ -236,6 +240,7 @@ export type PageMessage =
   | SaveConfiguration
   | SaveView
   | SaveWorld
+  | SayCommand
   | SetJoint
   | SetJoints
   | SetModelling
@@ -245,6 +250,7 @@ export type PageMessage =
   | SetToolProperty
   | ShowPanels
   | SpawnModel
+  | Talk
   | Undo
   | UndoWorld
   | UngroupThing
@@ -254,7 +260,8 @@ export type PageMessage =
   | WatchNodeGraph
   | WatchParameters
   | WatchSeries
-  | WatchTopics;
+  | WatchTopics
+  | WatchVoice;
 
 export type DataContent =
   | CellGrid

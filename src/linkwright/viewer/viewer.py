@@ -20,6 +20,7 @@ from linkwright.viewer.features.page_feature import PageFeature, make_features
 from linkwright.viewer.frames.history import FrameHistory
 from linkwright.viewer.protocol.message import PageMessage, ServerMessage, encode
 from linkwright.viewer.protocol.session import PROTOCOL_VERSION, Hello
+from linkwright.viewer.protocol.voice import SoundBlock
 from linkwright.viewer.visualization.manager import Managers, VisualizationManager
 from linkwright.viewer.web.access import Gate
 from linkwright.viewer.web.audience import Audience, Page
@@ -188,7 +189,7 @@ class Viewer:
             feature.page_gone(page)
         self.managers.leave(page)
 
-    def _receive(self, page: Page, message: PageMessage) -> None:
+    def _receive(self, page: Page, message: PageMessage | SoundBlock) -> None:
         if feature := self._receivers.get(type(message)):
             feature.receive(page, message)
 

@@ -7,7 +7,6 @@ from typing import Any, ClassVar
 
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
 from linkwright.viewer.protocol.export import AskExport
-from linkwright.viewer.protocol.message import PageMessage
 from linkwright.viewer.protocol.monitor import (
     AimTeleop,
     AskFields,
@@ -20,26 +19,31 @@ from linkwright.viewer.protocol.monitor import (
     WatchSeries,
     WatchTopics,
 )
+from linkwright.viewer.protocol.voice import SayCommand, SoundBlock, Talk, WatchVoice
 from linkwright.viewer.web.audience import Page
 
-_ANSWERED_BY: dict[type[PageMessage], str] = {
+_ANSWERED_BY: dict[type, str] = {
     AimTeleop: "monitor.teleop:TeleopFeature",
     AskExport: "export.feature:ExportFeature",
     AskFields: "monitor.plots:PlotsFeature",
     Drive: "monitor.teleop:TeleopFeature",
     DumpParameters: "monitor.parameters:ParametersFeature",
+    SayCommand: "voice.feature:VoiceFeature",
     SetParameter: "monitor.parameters:ParametersFeature",
+    SoundBlock: "voice.feature:VoiceFeature",
+    Talk: "voice.feature:VoiceFeature",
     WatchLog: "monitor.log:LogFeature",
     WatchNodeGraph: "monitor.node_graph:NodeGraphFeature",
     WatchParameters: "monitor.parameters:ParametersFeature",
     WatchSeries: "monitor.plots:PlotsFeature",
     WatchTopics: "monitor.topics:TopicsFeature",
+    WatchVoice: "voice.feature:VoiceFeature",
 }
 """Module and class, below this package."""
 
 
 class OnDemandFeatures(PageFeature):
-    """The live panels and the export.
+    """The live panels, the Voice panel and the export.
 
     They speak only to pages that have asked, so they are told of questions, of pages that go, and of the end.
     """

@@ -19,6 +19,7 @@ from linkwright.viewer.protocol.message import (
     redundancy_key,
 )
 from linkwright.viewer.protocol.session import Received
+from linkwright.viewer.protocol.voice import SoundBlock, unpack_sound
 from linkwright.viewer.web.outbox import BULK, TRANSFORMS, InPieces, Line, Made, Outbox, Payload, ScaledData
 
 if TYPE_CHECKING:
@@ -202,7 +203,7 @@ class Audience(PageGroup):
     def __init__(
         self,
         opening: Callable[[Page], list[Payload]],
-        receive: Callable[[Page, PageMessage], None],
+        receive: Callable[[Page, PageMessage | SoundBlock], None],
         gone: Callable[[Page], None],
         logger: Logger,
     ) -> None:
@@ -256,13 +257,17 @@ class Audience(PageGroup):
         patience = _PATIENCE
         pace = Pace(asyncio.get_running_loop().time)
         async for message in socket:
-            if message.type is WSMsgType.BINARY:
-                await socket.close(code=1003, message=b"pages send text only")
-                return
-            if message.type is not WSMsgType.TEXT:
+            if message.type not in (WSMsgType.TEXT, WSMsgType.BINARY):
                 continue
             if (pause := pace.wait()) > 0:
                 await asyncio.sleep(pause)
+            if message.type is WSMsgType.BINARY:
+                sound = unpack_sound(message.data)
+                if sound is None:
+                    await socket.close(code=1003, message=b"pages send text, and sound in blocks")
+                    return
+                self._hand_on(page, sound)
+                continue
             try:
                 decoded = decode(message.data)
             except BadMessageError as error:
@@ -275,9 +280,10 @@ class Audience(PageGroup):
                 if isinstance(decoded, Received):
                     page.received(decoded.count)
                 else:
-                    run_logged(
-                        self._logger, f"'{type(decoded).__name__}' of a page", partial(self._receive, page, decoded)
-                    )
+                    self._hand_on(page, decoded)
+
+    def _hand_on(self, page: Page, message: PageMessage | SoundBlock) -> None:
+        run_logged(self._logger, f"'{type(message).__name__}' of a page", partial(self._receive, page, message))
 
 
 _RATE = 1000.0

@@ -1,0 +1,1 @@
+"""The Voice panel: the microphones of pages, and what is heard and answered."""

@@ -1,0 +1,167 @@
+"""Sound of pages' microphones becomes audio_common_msgs; what is heard and answered comes back."""
+
+from __future__ import annotations
+
+import asyncio
+from functools import partial
+from typing import Any
+
+from linkwright.graph import Publisher, Subscription
+from linkwright.nodes.voice.audio_topics import NAMESPACE, AudioTopics
+from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
+from linkwright.viewer.features.voice.floor import Floor, SoundBudget
+from linkwright.viewer.protocol.voice import (
+    SaidPart,
+    SayCommand,
+    SoundBlock,
+    Talk,
+    Talking,
+    VoiceSaid,
+    VoiceState,
+    WatchVoice,
+)
+from linkwright.viewer.web.audience import Page
+
+_SAID: dict[SaidPart, str] = {
+    "partial": "/voice/partial_text",
+    "text": "/voice/text",
+    "command": "/voice/command",
+    "response": "/voice/response",
+}
+_LISTEN = "/voice/listen"
+_TEXT_INPUT = "/voice/text_input"
+_DEPTH = 10
+_LONGEST_TEXT = 500
+"""Characters of a command; what is longer is cut."""
+
+
+class VoiceFeature(PageFeature):
+    """Publishes what one page says at a time, and tells those that watch what was made of it.
+
+    The topics of sound are there while a page has its microphone open, the others while a page watches.
+    """
+
+    RECEIVES = (WatchVoice, Talk, SayCommand, SoundBlock)
+
+    def __init__(self, viewer: FeatureHost) -> None:
+        super().__init__(viewer)
+        self._node = self.context.node
+        self._watchers: dict[Page, VoiceState | None] = {}
+        """With what each was told last."""
+        self._subscriptions: list[Subscription[Any]] = []
+        self._text_input: Publisher[Any] | None = None
+        self._floor = Floor()
+        self._budgets: dict[Page, SoundBudget] = {}
+        self._cut: set[Page] = set()
+        self._audio: AudioTopics | None = None
+        self._listen: Publisher[Any] | None = None
+        self._holder: Page | None = None
+        self._said = 0
+
+    def receive(self, page: Page, message: WatchVoice | Talk | SayCommand | SoundBlock) -> None:
+        """Publish sound or a text, note who talks, or begin or end to tell a page."""
+        if isinstance(message, SoundBlock):
+            self._hear(page, message)
+        elif isinstance(message, Talk):
+            self._cut.discard(page)
+            self._talk(page, message)
+        elif isinstance(message, WatchVoice):
+            self._watch(page, message.watched)
+        elif self._text_input is not None:
+            self._text_input.publish(self._text_input.msg_type(data=message.text[:_LONGEST_TEXT]))
+
+    def page_gone(self, page: Page) -> None:
+        """A page that is gone does not talk any more."""
+        self._cut.discard(page)
+        self._talk(page, Talk("off"))
+        self._watch(page, False)
+
+    def close(self) -> None:
+        """Leave the topics."""
+        for page in {*self._watchers, *self._budgets}:
+            self.page_gone(page)
+
+    # --- sound -------------------------------------------------------------------------------------------------
+
+    def _talk(self, page: Page, message: Talk) -> None:
+        self._floor.set(page, message.mode)
+        if message.mode == "off":
+            self._budgets.pop(page, None)
+        elif page not in self._budgets:
+            self._budgets[page] = SoundBudget(asyncio.get_running_loop().time)
+        if self._floor and self._audio is None:
+            self._audio = AudioTopics(self._node)
+            self._listen = self._node.create_publisher("std_msgs/msg/Bool", _LISTEN, _DEPTH)
+        self._pass_on()
+        if not self._floor and self._audio is not None:
+            self._audio.close()
+            self._audio = None
+            if self._listen is not None:
+                self._node.destroy_publisher(self._listen)
+                self._listen = None
+        self._review()
+
+    def _pass_on(self) -> None:
+        """Say on the topic that a button is held, or no longer; another page's begins anew."""
+        holder = self._floor.holder
+        if holder is self._holder or self._listen is None:
+            return
+        if self._holder is not None:
+            self._listen.publish(self._listen.msg_type(data=False))
+        if holder is not None:
+            self._listen.publish(self._listen.msg_type(data=True))
+        self._holder = holder
+
+    def _hear(self, page: Page, block: SoundBlock) -> None:
+        budget = self._budgets.get(page)
+        if budget is None:
+            return
+        if not budget.spend(block.samples.size):
+            self._cut.add(page)
+            self._talk(page, Talk("off"))
+        elif page is self._floor.talker and self._audio is not None:
+            self._audio.publish(block.samples)
+
+    # --- what pages are told -----------------------------------------------------------------------------------
+
+    def _watch(self, page: Page, watched: bool) -> None:
+        if not watched:
+            self._watchers.pop(page, None)
+        elif page not in self._watchers:
+            self._watchers[page] = None
+        if self._watchers and not self._subscriptions:
+            self._subscriptions = [
+                self._node.create_subscription("std_msgs/msg/String", topic, partial(self._tell, part), _DEPTH)
+                for part, topic in _SAID.items()
+            ]
+            self._text_input = self._node.create_publisher("std_msgs/msg/String", _TEXT_INPUT, _DEPTH)
+            self.context.graph_changes.listen(self._review)
+        elif not self._watchers and self._subscriptions:
+            self.context.graph_changes.ignore(self._review)
+            for subscription in self._subscriptions:
+                self._node.destroy_subscription(subscription)
+            self._subscriptions.clear()
+            if self._text_input is not None:
+                self._node.destroy_publisher(self._text_input)
+                self._text_input = None
+        self._review()
+
+    def _tell(self, part: SaidPart, message: Any) -> None:
+        self._said += 1
+        for page in self._watchers:
+            page.send(VoiceSaid(self._said, part, message.data[:_LONGEST_TEXT]))
+
+    def _review(self) -> None:
+        """Tell the pages that watch what has changed."""
+        if not self._watchers:
+            return
+        graph = self._node.graph
+        sound = graph.count_subscribers(f"{NAMESPACE}/audio_stamped") + graph.count_subscribers(f"{NAMESPACE}/audio")
+        texts = graph.count_subscribers(_TEXT_INPUT)
+        talker = self._floor.talker
+        for page, told in self._watchers.items():
+            talking: Talking = "nobody" if talker is None else "you" if talker is page else "another"
+            state = VoiceState(talking, sound, texts, page in self._cut)
+            if state != told:
+                self._watchers[page] = state
+                page.send(state)

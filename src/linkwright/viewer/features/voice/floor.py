@@ -1,0 +1,66 @@
+"""Which of several pages talks, and how much."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from linkwright.speech.sound.samples import RATE
+from linkwright.viewer.protocol.voice import TalkMode
+from linkwright.viewer.web.audience import Page
+
+_LEAD = 10.0
+"""Seconds of sound that may come at once, as after a line was stuck."""
+
+_DRIFT = 1.05
+"""How much faster than ours the clock of a page's microphone may be."""
+
+
+class Floor:
+    """The pages that have a microphone open; one of them talks: who holds the button, in the order of holding."""
+
+    def __init__(self) -> None:
+        self._modes: dict[Page, TalkMode] = {}
+
+    def __bool__(self) -> bool:
+        return bool(self._modes)
+
+    def set(self, page: Page, mode: TalkMode) -> None:
+        """A page says what it does with its microphone; it stands behind those that do the same already."""
+        if self._modes.get(page) == mode:
+            return
+        self._modes.pop(page, None)
+        if mode != "off":
+            self._modes[page] = mode
+
+    @property
+    def holder(self) -> Page | None:
+        """The page that holds its button and talks."""
+        return self._first("held")
+
+    @property
+    def talker(self) -> Page | None:
+        """The page whose sound is meant."""
+        return self.holder or self._first("open")
+
+    def _first(self, mode: TalkMode) -> Page | None:
+        return next((page for page, its in self._modes.items() if its == mode), None)
+
+
+class SoundBudget:
+    """How much sound a page may send: as much as time passes.
+
+    Args:
+        clock: seconds.
+    """
+
+    def __init__(self, clock: Callable[[], float]) -> None:
+        self._clock = clock
+        self._at = clock()
+        self._left = _LEAD
+
+    def spend(self, samples: int) -> bool:
+        """Whether so many samples are within the bounds."""
+        now = self._clock()
+        self._left = min(_LEAD, self._left + (now - self._at) * _DRIFT) - samples / RATE
+        self._at = now
+        return self._left >= 0.0

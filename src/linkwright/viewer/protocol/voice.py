@@ -1,0 +1,96 @@
+"""The Voice panel: sound of pages' microphones, what was heard and answered, commands as text.
+
+Sound comes in binary frames, little endian: four uint32 (kind 5, number of samples N, 0, 0), and int16 N, mono at
+16 kHz. A frame has a tenth of a second, or less where the sound ends.
+"""
+
+from __future__ import annotations
+
+import struct
+from dataclasses import dataclass
+from typing import ClassVar, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.viewer.protocol.message import PageMessage, ServerMessage
+
+SOUND_KIND = 5
+MOST_SAMPLES = 1600
+"""Of one frame."""
+
+_HEADER = struct.Struct("<IIII")
+
+
+@dataclass(frozen=True, slots=True)
+class SoundBlock:
+    """Sound of a page's microphone: mono PCM of 16 bits at 16 kHz, shape (n,)."""
+
+    samples: NDArray[np.int16]
+
+
+def unpack_sound(frame: bytes) -> SoundBlock | None:
+    """The sound in a binary frame of a page; None for anything else."""
+    if len(frame) < _HEADER.size:
+        return None
+    kind, count, *_ = _HEADER.unpack_from(frame)
+    if kind != SOUND_KIND or not 0 < count <= MOST_SAMPLES or len(frame) != _HEADER.size + 2 * count:
+        return None
+    return SoundBlock(np.frombuffer(frame, "<i2", count, _HEADER.size).astype(np.int16))
+
+
+class WatchVoice(PageMessage):
+    """What is heard and answered is to be sent, or no longer."""
+
+    watched: bool
+
+
+TalkMode = Literal["off", "ready", "held", "open"]
+
+
+class Talk(PageMessage):
+    """What the page does with its microphone.
+
+    It is off; ready, which publishes nothing yet; or its sound is meant: as long as a button is held, or all of it.
+    """
+
+    mode: TalkMode
+
+
+class SayCommand(PageMessage):
+    """A command as text, as if it had been heard."""
+
+    text: str
+
+
+Talking = Literal["nobody", "you", "another"]
+
+
+class VoiceState(ServerMessage):
+    """Who talks, and who listens in the graph.
+
+    Attributes:
+        talking: whose sound is published. One page talks at a time: the first that holds its button, else the first
+            that listens all the time.
+        sound_listeners: how many subscribe to sound.
+        text_listeners: how many take commands as text.
+        cut: the page sent more sound than time has passed, and has to begin anew.
+    """
+
+    talking: Talking
+    sound_listeners: int
+    text_listeners: int
+    cut: bool
+
+
+SaidPart = Literal["partial", "text", "command", "response"]
+
+
+class VoiceSaid(ServerMessage):
+    """A text of the conversation: what is being heard, was heard, was understood, is answered."""
+
+    NEWEST_OF: ClassVar[tuple[str, ...]] = ("number",)
+
+    number: int
+    part: SaidPart
+    text: str

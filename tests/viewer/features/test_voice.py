@@ -1,0 +1,196 @@
+"""Sound of pages' microphones on topics, and what was heard and answered in pages."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+
+import numpy as np
+import pytest
+
+from linkwright.graph import DurabilityPolicy, QoSProfile
+from linkwright.viewer.features.voice import floor
+from linkwright.viewer.protocol.voice import unpack_sound
+from tests.viewer.scene import Client, World, page, world
+from tests.waiting import eventually
+
+BLOCK = np.arange(1600, dtype=np.int16)
+LATCHED = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+AUDIO = ("/audio/audio", "/audio/audio_stamped", "/audio/audio_info")
+
+
+def frame(samples: np.ndarray, *, kind: int = 5, count: int | None = None) -> bytes:
+    return struct.pack("<IIII", kind, samples.size if count is None else count, 0, 0) + samples.astype("<i2").tobytes()
+
+
+class Ears:
+    """A node that keeps what is on the topics of sound, and says things on those of the conversation."""
+
+    def __init__(self, made: World) -> None:
+        self.made = made
+        self.node = made.graph.create_node("ears")
+        self.blocks: list[list[int]] = []
+        self.held: list[bool] = []
+        self.commands: list[str] = []
+        self.node.create_subscription("audio_common_msgs/msg/AudioDataStamped", "/audio/audio_stamped", self._hear, 100)
+        self.node.create_subscription("std_msgs/msg/Bool", "/voice/listen", lambda m: self.held.append(m.data), 100)
+        self.node.create_subscription(
+            "std_msgs/msg/String", "/voice/text_input", lambda m: self.commands.append(m.data), 100
+        )
+
+    def _hear(self, message) -> None:
+        assert message.header.stamp.sec > 0
+        self.blocks.append(np.frombuffer(bytes(message.audio.data), "<i2").tolist())
+
+    def say(self, topic: str, text: str) -> None:
+        publisher = self.node.create_publisher("std_msgs/msg/String", topic, 10)
+        publisher.publish(publisher.msg_type(data=text))
+
+
+@asynccontextmanager
+async def heard() -> AsyncIterator[tuple[World, Client, Ears]]:
+    async with world() as made, page(made.viewer) as client:
+        await client.opened()
+        yield made, client, Ears(made)
+
+
+def publishers(made: World) -> list[int]:
+    return [made.graph.count_publishers(topic) for topic in (*AUDIO, "/voice/listen")]
+
+
+async def test_sound_is_published_while_the_button_is_held():
+    async with heard() as (made, client, ears):
+        await client.send("talk", mode="ready")
+        await client.socket.send_bytes(frame(BLOCK))
+        await client.send("talk", mode="held")
+        await client.socket.send_bytes(frame(BLOCK))
+        await client.socket.send_bytes(frame(BLOCK[:30]))
+        await client.send("talk", mode="ready")
+        await client.socket.send_bytes(frame(BLOCK))
+        await eventually(lambda: ears.held == [True, False])
+        await made.settle()
+        assert ears.blocks == [BLOCK.tolist(), BLOCK[:30].tolist()]
+
+
+async def test_the_topics_of_sound_are_there_while_a_microphone_is_open():
+    async with heard() as (made, client, _):
+        await client.send("watch_voice", watched=True)
+        await client.until("voice_state", talking="nobody")
+        assert publishers(made) == [0, 0, 0, 0]
+        await client.send("talk", mode="ready")
+        await eventually(lambda: publishers(made) == [1, 1, 1, 1])
+        infos: list = []
+        made.graph.create_node("late").create_subscription(
+            "audio_common_msgs/msg/AudioInfo",
+            "/audio/audio_info",
+            infos.append,
+            QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL),
+        )
+        await eventually(lambda: len(infos) == 1)
+        assert (infos[0].channels, infos[0].sample_rate, infos[0].sample_format) == (1, 16000, "S16LE")
+        assert (infos[0].bitrate, infos[0].coding_format) == (256, "wave")
+        await client.send("talk", mode="off")
+        await eventually(lambda: publishers(made) == [0, 0, 0, 0])
+
+
+async def test_a_page_that_goes_lets_go_of_the_button():
+    async with world() as made:
+        ears = Ears(made)
+        async with page(made.viewer) as client:
+            await client.opened()
+            await client.send("talk", mode="held")
+            await eventually(lambda: ears.held == [True])
+        await eventually(lambda: ears.held == [True, False])
+        assert publishers(made) == [0, 0, 0, 0]
+
+
+async def test_of_two_pages_the_one_talks_that_holds_the_button():
+    async with heard() as (made, first, ears), page(made.viewer) as second:
+        for client in (first, second):
+            await client.send("watch_voice", watched=True)
+            await client.until("voice_state", talking="nobody")
+        await first.send("talk", mode="open")
+        await second.until("voice_state", talking="another")
+        await second.send("talk", mode="held")
+        await first.until("voice_state", talking="another")
+        await second.until("voice_state", talking="you")
+        await first.socket.send_bytes(frame(BLOCK[:5]))
+        await second.socket.send_bytes(frame(BLOCK[:7]))
+        await eventually(lambda: len(ears.blocks) == 1)
+        await second.send("talk", mode="off")
+        await first.until("voice_state", talking="you")
+        await first.socket.send_bytes(frame(BLOCK[:9]))
+        await eventually(lambda: len(ears.blocks) == 2)
+        assert [len(each) for each in ears.blocks] == [7, 9]
+        assert ears.held == [True, False]
+
+
+async def test_the_second_to_hold_a_button_waits_for_the_first():
+    async with heard() as (made, first, ears), page(made.viewer) as second:
+        await second.send("watch_voice", watched=True)
+        await first.send("talk", mode="held")
+        await second.until("voice_state", talking="another")
+        await second.send("talk", mode="held")
+        await second.socket.send_bytes(frame(BLOCK))
+        await first.send("talk", mode="ready")
+        await second.until("voice_state", talking="you")
+        await made.settle()
+        assert ears.held == [True, False, True]
+        assert ears.blocks == []
+
+
+async def test_a_page_that_floods_is_cut_until_it_begins_anew(monkeypatch):
+    monkeypatch.setattr(floor, "_LEAD", 0.05)
+    async with heard() as (_, client, ears):
+        await client.send("watch_voice", watched=True)
+        await client.send("talk", mode="held")
+        await client.until("voice_state", talking="you")
+        await client.socket.send_bytes(frame(BLOCK))
+        await client.until("voice_state", talking="nobody", cut=True)
+        await eventually(lambda: ears.held == [True, False])
+        assert ears.blocks == []
+        await client.send("talk", mode="held")
+        await client.until("voice_state", talking="you", cut=False)
+
+
+def test_as_much_sound_may_come_as_time_passes():
+    now = 0.0
+    budget = floor.SoundBudget(lambda: now)
+    for _ in range(10_000):
+        now += 0.1
+        assert budget.spend(1600)
+    assert all(budget.spend(1600) for _ in range(99))
+    assert not budget.spend(3200)
+
+
+async def test_pages_hear_the_conversation():
+    async with heard() as (made, client, ears):
+        await client.send("watch_voice", watched=True)
+        await client.until("voice_state")
+        for topic in ("partial_text", "text", "command", "response"):
+            part = topic.removesuffix("_text")
+            ears.say(f"/voice/{topic}", f"turn left: {part}")
+            assert (await client.until("voice_said", part=part))["text"] == f"turn left: {part}"
+        await client.send("watch_voice", watched=False)
+        await eventually(lambda: made.graph.count_subscribers("/voice/text") == 0)
+
+
+async def test_commands_are_sent_as_text_and_pages_know_whether_anybody_takes_them():
+    async with heard() as (made, client, ears):
+        await client.send("watch_voice", watched=True)
+        await client.until("voice_state", sound_listeners=1, text_listeners=1)
+        await client.send("say_command", text="前进")
+        await eventually(lambda: ears.commands == ["前进"])
+        ears.node.destroy_node()
+        await client.until("voice_state", sound_listeners=0, text_listeners=0)
+        await client.send("watch_voice", watched=False)
+        await eventually(lambda: made.graph.count_publishers("/voice/text_input") == 0)
+
+
+@pytest.mark.parametrize(
+    "bad",
+    [b"", b"\5", frame(BLOCK, kind=4), frame(BLOCK, count=1599), frame(BLOCK[:0]), frame(np.zeros(1601, np.int16))],
+)
+def test_other_binary_frames_are_no_sound(bad):
+    assert unpack_sound(bad) is None
