@@ -36,6 +36,30 @@ async def test_messages_arrive_in_order_and_never_inside_publish(graph):
     assert publisher.get_subscription_count() == 1
 
 
+async def test_messages_that_are_taken_together_come_in_one_call_of_the_dispatcher(graph):
+    node, order = graph.create_node("node"), []
+    many = node.create_subscription(String, "many", lambda message: order.append(message.data), 10)
+    node.create_subscription(String, "few", lambda message: order.append(message.data), 10)
+    publish_many, publish_few = node.create_publisher(String, "many", 10), node.create_publisher(String, "few", 10)
+    many.take_together()
+    for number in range(3):
+        publish_many.publish(String(f"many {number}"))
+        publish_few.publish(String(f"few {number}"))
+    await graph.settle()
+    assert order == ["many 0", "many 1", "many 2", "few 0", "few 1", "few 2"]
+
+
+async def test_of_messages_that_are_taken_together_those_that_cannot_be_read_are_left_out(graph):
+    node, received = graph.create_node("node"), []
+    subscription = node.create_subscription(String, "many", received.append, 10)
+    subscription.take_together()
+    for message in (String("a"), b"no CDR", String("b")):
+        subscription.receive(message)
+    await graph.settle()
+    assert texts(received) == ["a", "b"]
+    assert subscription.malformed == 1
+
+
 async def test_callbacks_are_not_reentrant(graph):
     node = graph.create_node("echo")
     depth, deepest, seen = 0, 0, []

@@ -85,6 +85,7 @@ class Subscription(TopicEndpoint[M], Entity):
         self._filter: ContentFilter | None = None
         self._on_lost: Callable[[EndpointInfo], object] | None = None
         self._lost: deque[EndpointInfo] = deque()
+        self._together = False
 
     @property
     def what(self) -> str:
@@ -163,6 +164,14 @@ class Subscription(TopicEndpoint[M], Entity):
             self._lost.append(publisher)
             self.announce()
 
+    def take_together(self) -> None:
+        """From now on a call hands the callback all messages that wait, one after the other.
+
+        For callbacks that are soon done and have many messages, as those of tf: with a message a turn, a loop that is
+        busy otherwise would be the length of the queue late.
+        """
+        self._together = True
+
     def lost_outside(self, count: int) -> None:
         """Called by the transport: messages from other processes were lost."""
         if self.events is not None:
@@ -229,11 +238,10 @@ class Subscription(TopicEndpoint[M], Entity):
             message = waiting.popleft()
         except IndexError:
             return self._next_lost()
+        more = [waiting.popleft() for _ in range(len(waiting))] if self._together else ()
         if waiting or self._lost:
             self.announce()
-        if type(message) is self._as_it_is:
-            return partial(self._callback, message)
-        return self._prepared(message)
+        return partial(self._call_for_each, [message, *more]) if more else self._call_for(message)
 
     def set_dispatcher(self, dispatcher: Dispatcher | None) -> None:
         """Have a dispatcher run the callbacks from now on."""
@@ -256,6 +264,17 @@ class Subscription(TopicEndpoint[M], Entity):
     def _next_lost(self) -> Callable[[], object] | None:
         publisher = self._next_of(self._lost)
         return None if publisher is None or self._on_lost is None else partial(self._on_lost, publisher)
+
+    def _call_for_each(self, items: list[Any]) -> None:
+        for item in items:
+            call = self._call_for(item)
+            if call is not None:
+                call()
+
+    def _call_for(self, item: Any) -> Callable[[], object] | None:
+        if type(item) is self._as_it_is:
+            return partial(self._callback, item)
+        return self._prepared(item)
 
     def _prepared(self, item: Any) -> Callable[[], object] | None:
         """The call for CDR bytes, or for a message with metadata."""

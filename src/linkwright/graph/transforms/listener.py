@@ -59,6 +59,8 @@ class TransformListener:
             self._subscriptions.append(
                 node.create_subscription(TFMessage, tf_topic, self.callback, TF_QOS if qos is None else qos)
             )
+        for subscription in self._subscriptions:
+            subscription.take_together()
 
     def unregister(self) -> None:
         """Destroy the subscriptions; the buffer keeps what it has."""

@@ -58,6 +58,7 @@ class Bond:
         self.broken = False
         self._publisher = node.create_publisher(status, TOPIC, _DEPTH)
         self._subscription = node.create_subscription(status, TOPIC, self._heard, _DEPTH)
+        self._subscription.take_together()  # the heartbeats of all bonds of a system come here
         self._timer = node.create_timer(period, self._tick, clock=self._clock)
         self._send(active=True)
 

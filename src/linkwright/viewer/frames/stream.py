@@ -9,6 +9,7 @@ import asyncio
 from collections.abc import Callable, Hashable
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any, Protocol
 
 import numpy as np
@@ -239,10 +240,8 @@ class FrameStream:
 
     def start(self) -> None:
         """Subscribe, and begin."""
-        self._node.create_subscription(TFMessage, "/tf", lambda message: self._take(message, False), TF_QOS)
-        self._node.create_subscription(
-            TFMessage, "/tf_static", lambda message: self._take(message, True), STATIC_TF_SUBSCRIPTION_QOS
-        )
+        for topic, static, qos in (("/tf", False, TF_QOS), ("/tf_static", True, STATIC_TF_SUBSCRIPTION_QOS)):
+            self._node.create_subscription(TFMessage, topic, partial(self._take, static=static), qos).take_together()
         self._history.on_own.append(self._wake)
         self._age()
 
@@ -268,7 +267,7 @@ class FrameStream:
             held = list(self._held.values())
             self._held.clear()
             for message, static in held:
-                self._take(message, static)
+                self._take(message, static=static)
         self.refresh()
 
     def forget(self) -> None:
@@ -299,7 +298,7 @@ class FrameStream:
         """The frame table and the last binary frame, for a page that opens; empty before there is one."""
         return self._table, self._frame
 
-    def _take(self, message: TFMessage, static: bool) -> None:
+    def _take(self, message: TFMessage, *, static: bool) -> None:
         batch = message.batch
         if self._time.paused:
             key = (batch.parents, batch.children, static)
