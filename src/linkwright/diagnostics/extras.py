@@ -25,7 +25,7 @@ EXTRAS = {
 APART = frozenset({"parquet", "ray", "train"})
 """Extras that ``linkwright[all]`` is without; it has all others (decision 0022)."""
 
-_BY_MODULE = {module: extra for extra, module in EXTRAS.items()}
+_BY_MODULE = {**{module: extra for extra, module in EXTRAS.items()}, "cv2": "vision"}
 
 
 def install_hint(extra: str) -> Phrase:

@@ -18,12 +18,14 @@ class Detections:
         scores: shape ``(n,)``, 0 to 1.
         classes: shape ``(n,)``, places in `names`.
         names: of the classes that the detector knows.
+        corners: of things that have four, such as markers: shape ``(n, 4, 2)``, in pixels, in their own order.
     """
 
     boxes: NDArray[np.float32]
     scores: NDArray[np.float32]
     classes: NDArray[np.int32]
     names: tuple[str, ...]
+    corners: NDArray[np.float32] | None = None
 
     def __len__(self) -> int:
         return len(self.scores)

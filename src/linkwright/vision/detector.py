@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from linkwright.diagnostics import Phrase
 from linkwright.vision.detections import Detections
 
 
@@ -34,7 +35,12 @@ class Detector(ABC):
     @property
     @abstractmethod
     def names(self) -> tuple[str, ...]:
-        """The classes that it knows."""
+        """The classes that it knows; empty where only pictures tell, as with texts of QR codes."""
+
+    @property
+    def notes(self) -> tuple[Phrase, ...]:
+        """What who uses it should be told once, such as what of its results is left out."""
+        return ()
 
     @abstractmethod
     def detect(self, picture: NDArray[np.uint8], limits: Limits) -> Detections:

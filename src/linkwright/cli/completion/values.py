@@ -106,6 +106,12 @@ def _graph(kind: str) -> Callable[[Asked], Iterable[str]]:
     return lambda _: names_of(kind)
 
 
+def _detectors(asked: Asked) -> Iterable[str]:
+    from linkwright.vision.detectors.registry import detector_names
+
+    return [*detector_names(), *_files(asked)]
+
+
 def _models(_: Asked) -> Iterable[str]:
     from linkwright.model_files import model_table
 
@@ -130,5 +136,6 @@ _KINDS: dict[str, Callable[[Asked], Iterable[str]]] = {
     "SERVICE": _graph("services"),
     "ACTION": _graph("actions"),
     "TYPE": _types,
-    **dict.fromkeys(("FILE", "FOLDER", "DIR", "OUT", "BAG", "FILE|FOLDER|NAME:=VALUE"), _files),
+    "FILE|NAME": _detectors,
+    **dict.fromkeys(("IMAGE", "FILE", "FOLDER", "DIR", "OUT", "BAG", "FILE|FOLDER|NAME:=VALUE"), _files),
 }

@@ -1,0 +1,139 @@
+"""``linkwright vision detect``: what a detector finds in picture files."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from linkwright.cli.numbers import share
+from linkwright.cli.output import write_output
+from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, foreign, phrase, print_diagnostics
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from linkwright.vision.detections import Detections
+    from linkwright.vision.detector import Detector
+
+_LARGEST_FILE = 200_000_000
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    parser.add_argument("images", metavar="IMAGE", nargs="+", help="PNG and JPEG files")
+    parser.add_argument(
+        "-m", "--model", metavar="FILE|NAME", help="an ONNX file, or a detector: colours, aruco, apriltag, qr, line"
+    )
+    parser.add_argument("--labels", metavar="FILE", type=Path, help="names of the network's classes, one in each line")
+    parser.add_argument("--threshold", metavar="SCORE", type=share, default=0.5, help="the least score, default 0.5")
+    parser.add_argument(
+        "--iou", metavar="SHARE", type=share, default=0.5, help="how much boxes of a class may overlap, default 0.5"
+    )
+    parser.add_argument("--classes", metavar="NAME", action="append", help="only this class; may be given again")
+    parser.add_argument("--device", default="cpu", help="where a network runs: cpu (the default), or cuda:0")
+    parser.add_argument("-o", "--output", metavar="FOLDER", type=Path, help="write the pictures with boxes there")
+    parser.add_argument("--format", choices=("text", "json"), default="text", help="how to print what is found")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Print what is found in each picture; those that cannot be read are told of, and the others go on."""
+    from linkwright.vision.detector import Limits
+    from linkwright.vision.detectors.options import DetectorOptions
+    from linkwright.vision.detectors.registry import DEFAULT_DETECTOR, make_detector
+
+    options = DetectorOptions(labels=arguments.labels, device=arguments.device)
+    detector = make_detector(arguments.model or DEFAULT_DETECTOR, options)
+    for note in detector.notes:
+        print(note, file=sys.stderr)
+    classes = _known_classes(detector, arguments.classes) if arguments.classes else None
+    limits = Limits(arguments.threshold, arguments.iou, classes=classes)
+    problems: list[Diagnostic] = []
+    rows: list[dict[str, object]] = []
+    written: set[str] = set()
+    for name in arguments.images:
+        try:
+            picture = _read(name)
+        except LinkwrightError as error:
+            problems += error.diagnostics
+            continue
+        found = detector.detect(picture, limits)
+        rows.append({"image": name, "width": picture.shape[1], "height": picture.shape[0], "detections": _data(found)})
+        if arguments.format == "text":
+            _print(name, found)
+        if arguments.output is not None:
+            _draw(picture, found, arguments.output, _unused(Path(name).stem, written))
+    if arguments.format == "json":
+        print(json.dumps(rows, indent=2, ensure_ascii=False))
+    print_diagnostics(problems, sys.stderr)
+    return 1 if problems else 0
+
+
+def _known_classes(detector: Detector, wanted: list[str]) -> frozenset[str]:
+    for name in wanted:
+        if detector.names and name not in detector.names:
+            message = phrase("the detector knows no class '{name}'", name=name)
+            hint = did_you_mean(name, detector.names) or phrase("it knows {names}", names=", ".join(detector.names))
+            raise LinkwrightError(Diagnostic("VISION111", message, hint=hint))
+    return frozenset(wanted)
+
+
+def _read(name: str) -> NDArray[np.uint8]:
+    """The pixels of a file, shape (height, width, 3)."""
+    import numpy as np
+
+    from linkwright.images import BadImageError, Picture
+    from linkwright.images.image_files import file_pixels
+    from linkwright.input_files import read_file
+
+    try:
+        pixels = file_pixels(np.frombuffer(read_file(name, _LARGEST_FILE), np.uint8))
+    except (OSError, BadImageError) as error:
+        reason = foreign(error.strerror if isinstance(error, OSError) else error)
+        message = phrase("cannot read the picture '{path}': {reason}", path=name, reason=reason)
+        raise LinkwrightError(Diagnostic("VISION110", message)) from None
+    return Picture((pixels >> 8).astype(np.uint8) if pixels.dtype == np.uint16 else pixels).rgb()
+
+
+def _data(found: Detections) -> list[dict[str, object]]:
+    rows: list[dict[str, object]] = []
+    for index in range(len(found)):
+        box = [round(float(each), 2) for each in found.boxes[index]]
+        row: dict[str, object] = {"class": found.name(index), "score": round(float(found.scores[index]), 4), "box": box}
+        if found.corners is not None:
+            row["corners"] = [[round(float(each), 2) for each in point] for point in found.corners[index]]
+        rows.append(row)
+    return rows
+
+
+def _print(name: str, found: Detections) -> None:
+    if not len(found):
+        print(f"{name}: nothing found")
+    for index in range(len(found)):
+        left, top, right, bottom = found.boxes[index]
+        box = f"{left:.1f} {top:.1f} {right:.1f} {bottom:.1f}"
+        print(f"{name}: {found.name(index)} {found.scores[index]:.2f} [{box}]")
+
+
+def _draw(picture: NDArray[np.uint8], found: Detections, folder: Path, stem: str) -> None:
+    from io import BytesIO
+
+    from PIL import Image
+
+    from linkwright.vision.detectors.drawing import drawn
+
+    file = BytesIO()
+    Image.fromarray(drawn(picture, found)).save(file, "PNG")
+    write_output(folder / f"{stem}_detections.png", file.getvalue())
+
+
+def _unused(stem: str, written: set[str]) -> str:
+    """A name for a result that none before it has."""
+    name, number = stem, 2
+    while name in written:
+        name, number = f"{stem}-{number}", number + 1
+    written.add(name)
+    return name

@@ -1,0 +1,1 @@
+"""Detectors: networks in ONNX files, and those of OpenCV that need no network."""

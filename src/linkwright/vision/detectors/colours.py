@@ -1,0 +1,88 @@
+"""The detector ``colours``: patches of one colour, by their hue, saturation and value."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.vision.detections import Detections
+from linkwright.vision.detector import Detector, Limits
+from linkwright.vision.detectors.library import load_opencv
+from linkwright.vision.detectors.options import DetectorOptions
+from linkwright.vision.detectors.selection import most_certain
+from linkwright.vision.detectors.settings import bad_setting, hsv_range, number
+
+COLOURS: Mapping[str, tuple[int, ...]] = {
+    "red": (172, 110, 60, 6, 255, 255),
+    "orange": (8, 130, 80, 20, 255, 255),
+    "yellow": (22, 110, 80, 35, 255, 255),
+    "green": (40, 80, 50, 85, 255, 255),
+    "blue": (95, 110, 50, 130, 255, 255),
+    "purple": (132, 80, 50, 165, 255, 255),
+}
+"""Colours that are looked for unless others are given."""
+
+
+class ColourDetector(Detector):
+    """Boxes around patches of a colour; the score is how much of its box a patch fills, 0.79 for a ball.
+
+    Settings:
+        ``colours``
+            a mapping from names to six numbers, see `hsv_range`; where the least hue is more than the largest, the
+            range goes through 0, as red does. `COLOURS` unless it is given.
+        ``least_area``
+            of a patch, in pixels; 150 unless it is given.
+
+    Raises:
+        LinkwrightError: VISION101 OpenCV is missing, VISION109 a setting is wrong.
+    """
+
+    def __init__(self, options: DetectorOptions) -> None:
+        load_opencv()
+        given = options.settings.get("colours", COLOURS)
+        if not isinstance(given, Mapping) or not given:
+            raise bad_setting("colours", given)
+        self._ranges = {str(name): hsv_range(f"colours.{name}", value) for name, value in given.items()}
+        self._least_area = number(options.settings, "least_area", 150.0, 1.0, 1e9)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The colours."""
+        return tuple(self._ranges)
+
+    def detect(self, picture: NDArray[np.uint8], limits: Limits) -> Detections:
+        """Find patches."""
+        cv2 = load_opencv()
+        boxes: list[tuple[int, int, int, int]] = []
+        scores: list[float] = []
+        classes: list[int] = []
+        hsv = cv2.cvtColor(picture, cv2.COLOR_RGB2HSV) if picture.size else picture
+        for index, bounds in enumerate(self._ranges.values() if picture.size else ()):
+            mask = mask_of(hsv, bounds)
+            count, _, statistics, _ = cv2.connectedComponentsWithStats(mask, connectivity=8)
+            for left, top, width, height, area in statistics[1:count].tolist():
+                if area >= self._least_area:
+                    boxes.append((left, top, left + width, top + height))
+                    scores.append(area / (width * height))
+                    classes.append(index)
+        return most_certain(boxes, scores, classes, self.names, limits)
+
+
+def mask_of(hsv: NDArray[np.uint8], bounds: tuple[int, ...]) -> NDArray[np.uint8]:
+    """Where a picture has a colour: 255, else 0. Spots smaller than three pixels are left out.
+
+    Args:
+        hsv: shape ``(height, width, 3)``.
+        bounds: see `hsv_range`.
+    """
+    cv2 = load_opencv()
+    low, high = np.array(bounds[:3], np.uint8), np.array(bounds[3:], np.uint8)
+    if bounds[0] <= bounds[3]:
+        mask = cv2.inRange(hsv, low, high)
+    else:
+        mask = cv2.inRange(hsv, low, np.array([179, *bounds[4:]], np.uint8))
+        mask |= cv2.inRange(hsv, np.array([0, *bounds[1:3]], np.uint8), high)
+    opened: NDArray[np.uint8] = cv2.morphologyEx(mask, cv2.MORPH_OPEN, np.ones((3, 3), np.uint8))
+    return opened

@@ -1,0 +1,53 @@
+"""Pictures with what was found in them."""
+
+from __future__ import annotations
+
+from zlib import crc32
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.vision.detections import Detections
+from linkwright.vision.detectors.library import load_opencv
+
+_HUES = 24
+_TEXT_HEIGHT = 12
+"""In pixels of a picture with 480 rows."""
+
+
+def colour_of(name: str) -> tuple[int, int, int]:
+    """Red, green and blue for a class: always the same for the same name."""
+    hue = crc32(name.encode()) % _HUES / _HUES * 6.0
+    rising = hue % 1.0
+    high, up, down = 1.0, rising, 1.0 - rising
+    parts = ((high, up, 0), (down, high, 0), (0, high, up), (0, down, high), (up, 0, high), (high, 0, down))[int(hue)]
+    red, green, blue = (int(55 + 200 * part) for part in parts)
+    return red, green, blue
+
+
+def drawn(picture: NDArray[np.uint8], found: Detections) -> NDArray[np.uint8]:
+    """The picture with a box, a name and a score for each detection.
+
+    Args:
+        picture: shape ``(height, width, 3)``, red, green, blue; it is left as it is.
+        found: what is in it.
+    """
+    cv2 = load_opencv()
+    canvas = np.array(picture, order="C")
+    thick = max(1, round(picture.shape[0] / 300))
+    scale = cv2.getFontScaleFromHeight(cv2.FONT_HERSHEY_SIMPLEX, max(8, _TEXT_HEIGHT * picture.shape[0] // 480))
+    for index in reversed(range(len(found))):  # the most certain last, so that nothing is drawn over it
+        name = found.name(index)
+        colour = colour_of(name)
+        left, top, right, bottom = (int(each) for each in np.rint(found.boxes[index]))
+        if found.corners is not None:
+            cv2.polylines(canvas, [np.rint(found.corners[index]).astype(np.int32)], True, colour, thick)
+        else:
+            cv2.rectangle(canvas, (left, top), (right, bottom), colour, thick)
+        text = f"{name} {found.scores[index]:.2f}"
+        (width, height), below = cv2.getTextSize(text, cv2.FONT_HERSHEY_SIMPLEX, scale, 1)
+        line = max(height + below, top - thick)
+        cv2.rectangle(canvas, (left, line - height - below), (left + width, line), colour, cv2.FILLED)
+        dark = (0, 0, 0) if sum(colour) > 380 else (255, 255, 255)
+        cv2.putText(canvas, text, (left, line - below // 2), cv2.FONT_HERSHEY_SIMPLEX, scale, dark, 1, cv2.LINE_AA)
+    return canvas

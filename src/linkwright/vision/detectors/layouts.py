@@ -1,0 +1,172 @@
+"""How networks of the YOLO family lay out what they found, by the shapes of their outputs and their metadata.
+
+Three forms exist. Networks since v8, and YOLOv5 as exported by Ultralytics' newer program (``yolov5u``), have a column
+for each place of the picture: centre, size and a score for each class. The classic YOLOv5 has a row for each place with
+one number more, how likely there is a thing at all. Networks that were exported with ``nms=True``, and YOLO26 with
+``end2end``, give up to 300 rows that are final: corners, score, class. Segmentation adds coefficients of masks behind
+the scores, and pose estimation key points.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import Enum
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+from linkwright.vision.detectors.metadata import Metadata
+
+_HEADS = ((8, 16, 32), (8, 16, 32, 64), (4, 8, 16, 32), (16, 32))
+"""Strides of the grids that networks look at."""
+_BOXES = {"": "", "detect": "", "segment": "masks", "pose": "key points"}
+"""Tasks whose networks find upright boxes -> what else they find, which is left out."""
+_CORNERS_OF_CENTRES = np.array([[1, 0, -0.5, 0], [0, 1, 0, -0.5], [1, 0, 0.5, 0], [0, 1, 0, 0.5]], np.float32)
+
+
+class Form(Enum):
+    """Where the numbers of a box stand."""
+
+    COLUMNS = "xywh and scores in columns"
+    ROWS = "xywh, objectness and scores in rows"
+    FINAL = "corners, score and class in rows"
+
+
+@dataclass(frozen=True, slots=True)
+class Candidates:
+    """Boxes that a network gave, in pixels of its input.
+
+    Attributes:
+        boxes: shape ``(n, 4)``: left, top, right, bottom.
+        scores: shape ``(n,)``.
+        classes: shape ``(n,)``.
+    """
+
+    boxes: NDArray[np.float32]
+    scores: NDArray[np.float32]
+    classes: NDArray[np.int32]
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """How to read the first output of a network.
+
+    Attributes:
+        form: where the numbers stand.
+        classes: how many it knows; 0 where its outputs do not say, which final boxes do not.
+        left_out: what else it found for each box: ``masks``, ``key points`` or nothing.
+    """
+
+    form: Form
+    classes: int
+    left_out: str = ""
+
+    def candidates(self, output: NDArray[np.float32], threshold: float) -> Candidates:
+        """The boxes with at least some score; of those that are not final many are of the same thing.
+
+        Args:
+            output: shape ``(1, a, b)``.
+            threshold: the least score.
+        """
+        numbers = output[0]
+        if self.form is Form.FINAL:
+            rows = numbers[numbers[:, 4] >= threshold]
+            return Candidates(rows[:, :4].copy(), rows[:, 4].copy(), rows[:, 5].astype(np.int32))
+        if self.form is Form.COLUMNS:
+            scores = numbers[4 : 4 + self.classes]
+            best = scores.max(axis=0)
+            places = np.flatnonzero(best >= threshold)
+            found, best = scores[:, places].argmax(axis=0), best[places]
+            centres = numbers[:4, places]
+        else:
+            rows = numbers[numbers[:, 4] >= threshold]
+            products = rows[:, 5 : 5 + self.classes] * rows[:, 4:5]
+            found, best = products.argmax(axis=1), products.max(axis=1)
+            certain = best >= threshold
+            found, best = found[certain], best[certain]
+            centres = rows[certain, :4].T
+        corners = (_CORNERS_OF_CENTRES @ centres).T
+        return Candidates(np.ascontiguousarray(corners), best, found.astype(np.int32))
+
+
+def find_layout(
+    shapes: Sequence[Sequence[int]], size: tuple[int, int], metadata: Metadata, file: Path, labels: int | None
+) -> Layout:
+    """The layout of a network's outputs.
+
+    Args:
+        shapes: of its outputs, for one picture.
+        size: height and width of that picture.
+        metadata: of its file.
+        file: for messages.
+        labels: how many names a file of labels has, if there is one; it counts more than the metadata.
+
+    Raises:
+        LinkwrightError: VISION106 it finds something else than boxes, or lays them out in no way that is known;
+            VISION107 it has another number of classes than names.
+    """
+    if metadata.task not in _BOXES:
+        message = phrase(
+            "the network in '{file}' is for '{task}', and has no boxes", file=file.name, task=metadata.task
+        )
+        raise LinkwrightError(Diagnostic("VISION106", message, hint=phrase("use one for 'detect'")))
+    more, task = _more_numbers(shapes, metadata)
+    named = labels if labels is not None or metadata.names is None else len(metadata.names)
+    first = shapes[0] if shapes else ()
+    forms = _possible(first, size, more, metadata.suppressed) if len(first) == 3 else []
+    if not forms:
+        shown = " ".join(str(list(shape)) for shape in shapes)
+        message = phrase(
+            "the outputs of '{file}' are not boxes as YOLO has them: {shapes}", file=file.name, shapes=shown
+        )
+        hint = phrase("known are [1, 4 + classes, N], [1, N, 5 + classes] and [1, N, 6]")
+        raise LinkwrightError(Diagnostic("VISION106", message, hint=hint))
+    form, classes = next((each for each in forms if each[1] in (0, named)), forms[0])
+    if named is not None and classes not in (0, named):
+        raise wrong_number(file, classes, named, from_labels=labels is not None)
+    return Layout(form, classes, _BOXES[task])
+
+
+def wrong_number(file: Path, classes: int, named: int, *, from_labels: bool) -> LinkwrightError:
+    """The error for names that are more or fewer than the classes of a network: VISION107."""
+    message = phrase(
+        "the network in '{file}' has {classes} classes, and there are {named} names",
+        file=file.name,
+        classes=classes,
+        named=named,
+    )
+    hint = (
+        phrase("give the labels that it was trained with")
+        if from_labels
+        else phrase("give a file of labels that has as many")
+    )
+    return LinkwrightError(Diagnostic("VISION107", message, hint=hint))
+
+
+def _more_numbers(shapes: Sequence[Sequence[int]], metadata: Metadata) -> tuple[int, str]:
+    """How many numbers stand behind the scores of a box, and of which task."""
+    if metadata.task == "pose":
+        return metadata.key_numbers, "pose"
+    masks = next((shape[1] for shape in shapes[1:] if len(shape) == 4), 0)
+    if metadata.task in ("", "segment") and masks:
+        return masks, "segment"
+    return 0, metadata.task
+
+
+def _possible(shape: Sequence[int], size: tuple[int, int], more: int, suppressed: bool) -> list[tuple[Form, int]]:
+    """The forms that an output of a shape may have, the likeliest first, with their numbers of classes."""
+    batch, first, second = shape
+    if batch != 1:
+        return []
+    places = {sum((size[0] // stride) * (size[1] // stride) for stride in strides) for strides in _HEADS}
+    triples = {3 * each for each in places}
+    if second == 6 + more and (suppressed or first not in places | triples):
+        return [(Form.FINAL, 0)]
+    as_columns, as_rows = (Form.COLUMNS, first - 4 - more), (Form.ROWS, second - 5 - more)
+    found = [as_columns] if second in places or second > first else []
+    if first in triples or first > second:
+        found.insert(len(found) if second in places else 0, as_rows)
+    return [each for each in found if each[1] >= 1]

@@ -1,0 +1,80 @@
+"""Letterbox: a picture scaled into the input of a network, with grey where it has another shape.
+
+As Ultralytics does it (`LetterBox`, `scale_boxes`): one scale for both directions, linear interpolation, the picture in
+the middle, 114 around it. An input of any size is made no larger than it has to be for its stride.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.vision.detectors.library import load_opencv
+
+_GREY = 114
+_LEVELS = np.arange(256, dtype=np.float32) / np.float32(255.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Letterbox:
+    """Where a picture is in the input of a network.
+
+    Attributes:
+        width: of the picture, in pixels.
+        height: of the picture.
+        scale: pixels of the input for one of the picture.
+        left: where the picture begins in the input, in its pixels.
+        top: the same, from above.
+    """
+
+    width: int
+    height: int
+    scale: float
+    left: int
+    top: int
+
+    def boxes_in_picture(self, boxes: NDArray[np.float32]) -> NDArray[np.float32]:
+        """Boxes of the input, shape ``(n, 4)``, in pixels of the picture, and within it."""
+        offset = np.array([self.left, self.top, self.left, self.top], np.float32)
+        placed = (boxes - offset) / np.float32(self.scale)
+        limits = np.array([self.width, self.height, self.width, self.height], np.float32)
+        within: NDArray[np.float32] = np.clip(placed, np.float32(0), limits)
+        return within
+
+
+def letterboxed(
+    picture: NDArray[np.uint8], size: tuple[int, int], multiple: int | None
+) -> tuple[NDArray[np.uint8], Letterbox]:
+    """A picture as the input of a network.
+
+    Args:
+        picture: shape ``(height, width, 3)``.
+        size: height and width of the input.
+        multiple: None for an input of exactly this size; else the input is as small as the picture lets it be, and its
+            sides are less than `size` by a multiple of this.
+
+    Returns:
+        The input, shape ``(rows, columns, 3)``, and where the picture is in it.
+    """
+    cv2 = load_opencv()
+    height, width = picture.shape[:2]
+    scale = min(size[0] / height, size[1] / width)
+    rows, columns = max(1, round(height * scale)), max(1, round(width * scale))
+    vertical, horizontal = size[0] - rows, size[1] - columns
+    if multiple is not None:
+        vertical, horizontal = vertical % multiple, horizontal % multiple
+    top, left = round(vertical / 2 - 0.1), round(horizontal / 2 - 0.1)
+    scaled = picture
+    if (rows, columns) != (height, width):
+        scaled = cv2.resize(picture, (columns, rows), interpolation=cv2.INTER_LINEAR)
+    whole = np.full((rows + vertical, columns + horizontal, 3), _GREY, np.uint8)
+    whole[top : top + rows, left : left + columns] = scaled
+    return whole, Letterbox(width, height, scale, left, top)
+
+
+def tensor_of(pixels: NDArray[np.uint8], kind: type[np.floating]) -> NDArray[np.floating]:
+    """Pixels, shape ``(rows, columns, 3)``, as numbers from 0 to 1, shape ``(1, 3, rows, columns)``."""
+    planes = np.ascontiguousarray(pixels.transpose(2, 0, 1))
+    return _LEVELS.astype(kind)[planes][np.newaxis]

@@ -1,0 +1,39 @@
+"""The libraries that look at pictures, onnxruntime and OpenCV, which the extra ``vision`` brings."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+from linkwright.diagnostics import missing_extra
+
+_ERRORS_ONLY = 3
+
+
+@cache
+def load_onnxruntime() -> Any:
+    """The module ``onnxruntime``; it has no types.
+
+    Raises:
+        LinkwrightError: VISION101 it is not installed.
+    """
+    try:
+        import onnxruntime  # type: ignore[import-untyped, unused-ignore]
+    except ModuleNotFoundError as error:
+        raise missing_extra("VISION101", error) from None
+    onnxruntime.set_default_logger_severity(_ERRORS_ONLY)  # it warns of every piece of hardware that it has no use for
+    return onnxruntime
+
+
+@cache
+def load_opencv() -> Any:
+    """The module ``cv2``.
+
+    Raises:
+        LinkwrightError: VISION101 it is not installed.
+    """
+    try:
+        import cv2
+    except ModuleNotFoundError as error:
+        raise missing_extra("VISION101", error) from None
+    return cv2

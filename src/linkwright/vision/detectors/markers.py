@@ -1,0 +1,108 @@
+"""The detectors ``aruco``, ``apriltag`` and ``qr``: things that were made to be found."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.vision.detections import Detections
+from linkwright.vision.detector import Detector, Limits
+from linkwright.vision.detectors.library import load_opencv
+from linkwright.vision.detectors.options import DetectorOptions
+from linkwright.vision.detectors.selection import most_certain
+from linkwright.vision.detectors.settings import choice
+
+_PREFIX = "DICT_"
+_USUAL_MARKERS, _USUAL_TAGS = "4X4_50", "APRILTAG_36h11"
+
+
+class MarkerDetector(Detector):
+    """ArUco markers and AprilTags; the class of a marker is its number, its score 1.
+
+    Corners are in the order of OpenCV: upper left of the marker, then clockwise.
+
+    Settings:
+        ``dictionary``
+            which markers there are, as OpenCV names them: ``4X4_50``, ``6X6_250``, ``APRILTAG_36h11``, ...
+
+    Raises:
+        LinkwrightError: VISION101 OpenCV is missing, VISION109 there is no such dictionary.
+    """
+
+    def __init__(self, options: DetectorOptions, dictionary: str = _USUAL_MARKERS) -> None:
+        aruco = load_opencv().aruco
+        known = [name.removeprefix(_PREFIX) for name in sorted(dir(aruco)) if name.startswith(_PREFIX)]
+        given = {
+            name: str(value).removeprefix(_PREFIX) for name, value in options.settings.items() if name == "dictionary"
+        }
+        chosen = choice(given, "dictionary", dictionary, known)
+        markers = aruco.getPredefinedDictionary(getattr(aruco, _PREFIX + chosen))
+        self._names = tuple(map(str, range(len(markers.bytesList))))
+        parameters = aruco.DetectorParameters()
+        parameters.cornerRefinementMethod = aruco.CORNER_REFINE_SUBPIX
+        self._detector = aruco.ArucoDetector(markers, parameters)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The numbers of the markers."""
+        return self._names
+
+    def detect(self, picture: NDArray[np.uint8], limits: Limits) -> Detections:
+        """Find markers."""
+        if min(picture.shape[:2]) < _SMALLEST_SIDE:
+            return Detections.none(self._names)
+        corners, numbers, _ = self._detector.detectMarkers(_grey(picture))
+        classes = [] if numbers is None else [int(each) for each in np.ravel(numbers)]
+        places = [np.asarray(each, np.float32).reshape(4, 2) + 0.5 for each in corners]
+        boxes = [_box(each) for each in places]
+        return most_certain(boxes, [1.0] * len(classes), classes, self._names, limits, places)
+
+
+class AprilTagDetector(MarkerDetector):
+    """As `MarkerDetector`, with the tags that are usual on robots, 36h11."""
+
+    def __init__(self, options: DetectorOptions) -> None:
+        super().__init__(options, _USUAL_TAGS)
+
+
+class QrDetector(Detector):
+    """QR codes; the class of a code is its text, its score 1. One that cannot be read is not told of.
+
+    Raises:
+        LinkwrightError: VISION101, OpenCV is missing.
+    """
+
+    def __init__(self, options: DetectorOptions) -> None:
+        del options  # it has no settings
+        self._detector = load_opencv().QRCodeDetector()
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """None: the texts are those in the picture."""
+        return ()
+
+    def detect(self, picture: NDArray[np.uint8], limits: Limits) -> Detections:
+        """Find codes."""
+        if min(picture.shape[:2]) < _SMALLEST_SIDE:
+            return Detections.none(())
+        found, texts, corners, _ = self._detector.detectAndDecodeMulti(_grey(picture))
+        read = [index for index, text in enumerate(texts) if text] if found else []
+        names = tuple(dict.fromkeys(texts[index] for index in read))
+        places = [np.asarray(corners[index], np.float32).reshape(4, 2) + 0.5 for index in read]
+        classes = [names.index(texts[index]) for index in read]
+        return most_certain([_box(each) for each in places], [1.0] * len(read), classes, names, limits, places)
+
+
+_SMALLEST_SIDE = 8
+"""In smaller pictures OpenCV fails instead of finding nothing."""
+
+
+def _grey(picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    cv2 = load_opencv()
+    grey: NDArray[np.uint8] = cv2.cvtColor(picture, cv2.COLOR_RGB2GRAY)
+    return grey
+
+
+def _box(corners: NDArray[np.float32]) -> list[float]:
+    """Left, top, right, bottom around four points."""
+    return [*map(float, corners.min(axis=0)), *map(float, corners.max(axis=0))]

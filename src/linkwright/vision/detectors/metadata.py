@@ -1,0 +1,62 @@
+"""What an ONNX file says of itself, in the words of Ultralytics' exporters."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import prod
+from typing import Any
+
+from linkwright.vision.detectors.class_names import names_in_metadata
+
+_USUAL_STRIDE = 32
+
+
+@dataclass(frozen=True, slots=True)
+class Metadata:
+    """Facts about a network; what its file does not say has the usual value.
+
+    Attributes:
+        names: of its classes; None when the file does not say.
+        task: ``detect``, ``segment``, ``pose``, ``obb``, ``classify``; empty when the file does not say.
+        stride: the sides of its input are multiples of it.
+        size: height and width of its input in training.
+        suppressed: whether its boxes are final: no two of them are of the same thing.
+        key_numbers: for each box, those of its key points.
+    """
+
+    names: tuple[str, ...] | None = None
+    task: str = ""
+    stride: int = _USUAL_STRIDE
+    size: tuple[int, int] | None = None
+    suppressed: bool = False
+    key_numbers: int = 0
+
+    @classmethod
+    def of(cls, entries: Mapping[str, str]) -> Metadata:
+        """Read the ``metadata_props`` of a file; what is not in its usual form counts as not said."""
+        stride = _literal(entries.get("stride", ""))
+        size = _literal(entries.get("imgsz", ""))
+        points = _literal(entries.get("kpt_shape", ""))
+        arguments = _literal(entries.get("args", ""))
+        return cls(
+            names_in_metadata(entries.get("names", "")),
+            entries.get("task", ""),
+            stride if isinstance(stride, int) and stride > 0 else _USUAL_STRIDE,
+            (size[0], size[1]) if _are_numbers(size) and len(size) == 2 else None,
+            _literal(entries.get("end2end", "")) is True
+            or (isinstance(arguments, Mapping) and arguments.get("nms") is True),
+            prod(points) if _are_numbers(points) else 0,
+        )
+
+
+def _literal(text: str) -> Any:
+    try:
+        return ast.literal_eval(text)
+    except (ValueError, SyntaxError, MemoryError, RecursionError):
+        return None
+
+
+def _are_numbers(found: Any) -> bool:
+    return isinstance(found, list | tuple) and bool(found) and all(isinstance(each, int) and each > 0 for each in found)

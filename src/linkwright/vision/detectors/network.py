@@ -1,0 +1,173 @@
+"""A network in an ONNX file as a detector: any YOLOv5, v8, v10, v11 or 26, and our own."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, foreign, phrase
+from linkwright.vision.detections import Detections
+from linkwright.vision.detector import Detector, Limits
+from linkwright.vision.detectors.class_names import read_labels
+from linkwright.vision.detectors.layouts import Form, find_layout, wrong_number
+from linkwright.vision.detectors.letterbox import letterboxed, tensor_of
+from linkwright.vision.detectors.library import load_onnxruntime
+from linkwright.vision.detectors.metadata import Metadata
+from linkwright.vision.detectors.options import DetectorOptions
+from linkwright.vision.detectors.suppression import suppressed
+
+_NUMBERS: dict[str, type[np.floating]] = {"tensor(float)": np.float32, "tensor(float16)": np.float16}
+_USUAL_SIZE = (640, 640)
+_CPU, _CUDA = "CPUExecutionProvider", "CUDAExecutionProvider"
+
+
+class NetworkDetector(Detector):
+    """Runs a network with onnxruntime.
+
+    Args:
+        file: the ONNX file.
+        options: labels, device and size of the input count.
+
+    Raises:
+        LinkwrightError: VISION101 onnxruntime or OpenCV is missing, VISION103 the file cannot be loaded, VISION105 its
+            input is no picture, VISION106 and VISION107 see `find_layout`, VISION108 the labels cannot be read.
+    """
+
+    def __init__(self, file: Path, options: DetectorOptions) -> None:
+        self._file = file
+        self._notes: list[Phrase] = []
+        labels = read_labels(options.labels) if options.labels is not None else None
+        self._session = self._load(options.device)
+        metadata = Metadata.of(self._session.get_modelmeta().custom_metadata_map)
+        self._input, self._kind, fixed = _picture_input(file, self._session.get_inputs())
+        self._stride = None if fixed else metadata.stride
+        self._size = fixed or _multiple(options.size or metadata.size or _USUAL_SIZE, metadata.stride)
+        if fixed and options.size not in (None, fixed):
+            shown = phrase("{columns} x {rows}", columns=fixed[1], rows=fixed[0])
+            self._notes.append(phrase("the input of '{file}' is always {size} pixels", file=file.name, size=shown))
+        grey = np.full((*self._size, 3), 114, np.uint8)
+        shapes = [output.shape for output in self._run(tensor_of(grey, self._kind))]
+        named = len(labels) if labels is not None else None
+        self._layout = find_layout(shapes, self._size, metadata, file, named)
+        self._names = self._named(metadata.names, labels)
+        if self._layout.left_out:
+            left_out = phrase("masks") if self._layout.left_out == "masks" else phrase("key points")
+            self._notes.append(
+                phrase("of '{file}' the boxes are taken; {what} are left out", file=file.name, what=left_out)
+            )
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The classes that it knows."""
+        return self._names
+
+    @property
+    def notes(self) -> tuple[Phrase, ...]:
+        """What of the network's results is left out, and where it runs if not where it was to."""
+        return tuple(self._notes)
+
+    def detect(self, picture: NDArray[np.uint8], limits: Limits) -> Detections:
+        """Find what is in a picture.
+
+        Raises:
+            LinkwrightError: VISION105 the network fails.
+        """
+        if not picture.size:
+            return Detections.none(self._names)
+        pixels, place = letterboxed(picture, self._size, self._stride)
+        outputs = self._run(tensor_of(pixels, self._kind))
+        found = self._layout.candidates(np.asarray(outputs[0], np.float32), limits.threshold)
+        boxes, scores, classes = found.boxes, found.scores, found.classes
+        if limits.classes is not None:
+            wanted = [index for index, name in enumerate(self._names) if name in limits.classes]
+            chosen = np.isin(classes, wanted)
+            boxes, scores, classes = boxes[chosen], scores[chosen], classes[chosen]
+        if self._layout.form is Form.FINAL:
+            known = (classes >= 0) & (classes < len(self._names))
+            kept = np.flatnonzero(known)[np.argsort(-scores[known], kind="stable")][: limits.most]
+        else:
+            kept = suppressed(boxes, scores, classes, limits.iou, limits.most)
+        return Detections(place.boxes_in_picture(boxes[kept]), scores[kept], classes[kept], self._names)
+
+    def _load(self, device: str) -> Any:
+        onnxruntime = load_onnxruntime()
+        providers: list[Any] = [_CPU]
+        kind, _, number = device.lower().partition(":")
+        if kind not in ("", "cpu"):
+            if _CUDA in onnxruntime.get_available_providers():
+                which = number or (kind if kind.isdigit() else "0")
+                providers.insert(0, (_CUDA, {"device_id": which}))
+            else:
+                self._notes.append(
+                    phrase("onnxruntime has no '{device}' here; the network runs on the CPU", device=device)
+                )
+        how = onnxruntime.SessionOptions()
+        how.add_session_config_entry("session.intra_op.allow_spinning", "0")  # others need the processor, too
+        try:
+            return onnxruntime.InferenceSession(str(self._file), how, providers=providers)
+        except Exception as error:  # noqa: BLE001 - of many classes, which onnxruntime does not document
+            message = phrase("cannot load the network in '{file}': {reason}", file=self._file, reason=_reason(error))
+            hint = phrase("the file is broken, not whole, or made for a newer onnxruntime: export it anew")
+            raise LinkwrightError(Diagnostic("VISION103", message, hint=hint)) from None
+
+    def _run(self, tensor: NDArray[np.floating]) -> Sequence[NDArray[Any]]:
+        try:
+            outputs: Sequence[NDArray[Any]] = self._session.run(None, {self._input: tensor})
+        except Exception as error:  # noqa: BLE001 - see above
+            shape = list(tensor.shape)
+            reason = _reason(error)
+            message = phrase(
+                "the network in '{file}' fails on an input of {shape}: {reason}",
+                file=self._file.name,
+                shape=shape,
+                reason=reason,
+            )
+            raise LinkwrightError(Diagnostic("VISION105", message)) from None
+        return outputs
+
+    def _named(self, own: tuple[str, ...] | None, labels: tuple[str, ...] | None) -> tuple[str, ...]:
+        classes = self._layout.classes or (len(own) if own is not None else 0)
+        if labels is not None:
+            if classes and len(labels) != classes:
+                raise wrong_number(self._file, classes, len(labels), from_labels=True)
+            return labels
+        if own is not None:
+            return own
+        hint = phrase(
+            "'{file}' does not name its classes: they are numbered; give a file of labels", file=self._file.name
+        )
+        self._notes.append(hint)
+        return tuple(map(str, range(classes or 1000)))
+
+
+def _picture_input(file: Path, inputs: Sequence[Any]) -> tuple[str, type[np.floating], tuple[int, int] | None]:
+    """Name and numbers of the input, and its height and width where they are always the same."""
+    shape = list(inputs[0].shape) if len(inputs) == 1 else []
+    kind = _NUMBERS.get(inputs[0].type) if len(inputs) == 1 else None
+    if len(shape) == 4 and isinstance(shape[0], int) and shape[0] > 1:
+        message = phrase("the network in '{file}' takes {count} pictures at once", file=file.name, count=shape[0])
+        raise LinkwrightError(Diagnostic("VISION105", message, hint=phrase("export it with batch 1")))
+    if kind is None or len(shape) != 4 or shape[1] != 3:
+        shown = ", ".join(f"{each.type[7:-1]} {list(each.shape)}" for each in inputs)
+        message = phrase(
+            "the network in '{file}' does not take a picture: its inputs are {inputs}", file=file.name, inputs=shown
+        )
+        hint = phrase("a picture is float or float16 [1, 3, height, width]")
+        raise LinkwrightError(Diagnostic("VISION105", message, hint=hint))
+    rows, columns = shape[2:]
+    size = (rows, columns) if isinstance(rows, int) and isinstance(columns, int) else None
+    return inputs[0].name, kind, size
+
+
+def _multiple(size: tuple[int, int], stride: int) -> tuple[int, int]:
+    return -(-size[0] // stride) * stride, -(-size[1] // stride) * stride
+
+
+def _reason(error: Exception) -> Phrase:
+    """The last part of what onnxruntime says, which is the reason."""
+    lines = str(error).strip().splitlines() or [type(error).__name__]
+    return foreign(lines[0].rpartition(" : ")[2].strip() or type(error).__name__)

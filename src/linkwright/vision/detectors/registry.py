@@ -1,0 +1,54 @@
+"""Which detectors there are: ONNX files, and those that packages bring.
+
+The latter are entry points of the group ``linkwright.detectors``: each names what is called with `DetectorOptions`,
+makes a `Detector`, and raises LinkwrightError where its library is not there.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, phrase, quoted_names
+from linkwright.extensions import extensions
+from linkwright.vision.detector import Detector
+from linkwright.vision.detectors.network import NetworkDetector
+from linkwright.vision.detectors.options import DetectorOptions
+
+DEFAULT_DETECTOR = "colours"
+"""What is used when nothing is said."""
+
+_GROUP = "linkwright.detectors"
+_OTHER_FORMS = (".pt", ".pth", ".weights", ".engine", ".tflite", ".torchscript", ".pb", ".h5", ".xml", ".mlpackage")
+
+
+def detector_names() -> tuple[str, ...]:
+    """The detectors that are installed."""
+    return tuple(extensions(_GROUP))
+
+
+def make_detector(model: str, options: DetectorOptions) -> Detector:
+    """A detector by its name, or the network in an ONNX file.
+
+    Raises:
+        LinkwrightError: VISION102 there is neither such a detector nor such a file, VISION104 the file holds a network
+            in another form; else whatever the detector raises itself.
+    """
+    found = extensions(_GROUP).get(model)
+    if found is not None:
+        detector: Detector = found.load()(options)
+        return detector
+    file = Path(model).expanduser()
+    if file.suffix.lower() in _OTHER_FORMS:
+        message = phrase("'{file}' is no ONNX file", file=file)
+        export = phrase(
+            "networks are run from ONNX files; with Ultralytics: `yolo export model={file} format=onnx`", file=file.name
+        )
+        other = phrase("networks are run from ONNX files: export it as one")
+        hint = export if file.suffix.lower() == ".pt" else other
+        raise LinkwrightError(Diagnostic("VISION104", message, hint=hint))
+    if not file.is_file():
+        names = detector_names()
+        message = phrase("there is neither a file nor a detector '{model}'", model=model)
+        hint = did_you_mean(model, names) or phrase("give an ONNX file, or one of {names}", names=quoted_names(names))
+        raise LinkwrightError(Diagnostic("VISION102", message, hint=hint))
+    return NetworkDetector(file, options)

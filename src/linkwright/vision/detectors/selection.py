@@ -1,0 +1,43 @@
+"""From what a detector found to what is wanted of it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from linkwright.vision.detections import Detections
+from linkwright.vision.detector import Limits
+
+
+def most_certain(
+    boxes: Sequence[Sequence[float]],
+    scores: Sequence[float],
+    classes: Sequence[int],
+    names: tuple[str, ...],
+    limits: Limits,
+    corners: Sequence[object] | None = None,
+) -> Detections:
+    """The detections that count, the most certain first.
+
+    Args:
+        boxes: left, top, right, bottom of each.
+        scores: of each.
+        classes: of each, places in `names`.
+        names: of the classes.
+        limits: which count.
+        corners: of each, four points, for things that have them.
+    """
+    wanted = [
+        index
+        for index, score in enumerate(scores)
+        if score >= limits.threshold and (limits.classes is None or names[classes[index]] in limits.classes)
+    ]
+    kept = sorted(wanted, key=lambda index: -scores[index])[: limits.most]
+    return Detections(
+        np.array([boxes[index] for index in kept], np.float32).reshape(-1, 4),
+        np.array([scores[index] for index in kept], np.float32),
+        np.array([classes[index] for index in kept], np.int32),
+        names,
+        None if corners is None else np.array([corners[index] for index in kept], np.float32).reshape(-1, 4, 2),
+    )

@@ -1,0 +1,54 @@
+"""Reading the settings of detectors, which come from parameters or a command line."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, phrase
+
+
+def bad_setting(name: str, value: object, hint: Phrase | None = None) -> LinkwrightError:
+    """The error for a setting that cannot be what it is: VISION109."""
+    message = phrase("the setting '{name}' of the detector cannot be '{value}'", name=name, value=value)
+    return LinkwrightError(Diagnostic("VISION109", message, hint=hint))
+
+
+def number(settings: Mapping[str, object], name: str, default: float, low: float, high: float) -> float:
+    """A number within limits.
+
+    Raises:
+        LinkwrightError: VISION109, it is none.
+    """
+    value = settings.get(name, default)
+    if isinstance(value, bool) or not isinstance(value, int | float) or not low <= value <= high:
+        raise bad_setting(name, value, phrase("it is a number from {low} to {high}", low=low, high=high))
+    return float(value)
+
+
+def choice(settings: Mapping[str, object], name: str, default: str, known: Sequence[str]) -> str:
+    """One of some words.
+
+    Raises:
+        LinkwrightError: VISION109, it is none of them.
+    """
+    value = str(settings.get(name, default))
+    if value not in known:
+        hint = did_you_mean(value, known) or phrase("it is one of {known}", known=", ".join(known))
+        raise bad_setting(name, value, hint)
+    return value
+
+
+def hsv_range(name: str, value: object) -> tuple[int, ...]:
+    """A range of colours: least hue, saturation and value, then the largest; OpenCV's units, hue to 179, else to 255.
+
+    Raises:
+        LinkwrightError: VISION109, it is no list of six such numbers.
+    """
+    numbers = list(value) if isinstance(value, Sequence) and not isinstance(value, str) else []
+    limits = (179, 255, 255) * 2
+    if len(numbers) != 6 or not all(
+        isinstance(each, int | float) and 0 <= each <= limit for each, limit in zip(numbers, limits, strict=True)
+    ):
+        hint = phrase("it is six numbers: least hue (0 to 179), saturation and value (0 to 255), then the largest")
+        raise bad_setting(name, value, hint)
+    return tuple(int(each) for each in numbers)

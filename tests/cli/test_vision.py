@@ -1,0 +1,78 @@
+"""``linkwright vision detect``: what is printed and drawn of picture files."""
+
+from __future__ import annotations
+
+import json
+
+import cv2
+import numpy as np
+import pytest
+from PIL import Image
+
+from linkwright.cli.command import main
+
+
+@pytest.fixture
+def picture(tmp_path):
+    pixels = np.full((120, 160, 3), 150, np.uint8)
+    pixels[40:80, 100:130] = (20, 60, 200)
+    path = tmp_path / "scene.png"
+    Image.fromarray(pixels).save(path)
+    return path
+
+
+def test_what_is_found_is_printed(picture, capsys):
+    assert main(["vision", "detect", str(picture), "--model", "colours"]) == 0
+    assert capsys.readouterr().out == f"{picture}: blue 1.00 [100.0 40.0 130.0 80.0]\n"
+
+
+def test_as_json(picture, capsys):
+    assert main(["vision", "detect", str(picture), "-m", "colours", "--format", "json"]) == 0
+    (row,) = json.loads(capsys.readouterr().out)
+    assert (row["image"], row["width"], row["height"]) == (str(picture), 160, 120)
+    assert row["detections"] == [{"class": "blue", "score": 1.0, "box": [100.0, 40.0, 130.0, 80.0]}]
+
+
+def test_markers_have_corners(tmp_path, capsys):
+    dictionary = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_4X4_50)
+    pixels = np.full((120, 160), 255, np.uint8)
+    pixels[20:80, 30:90] = cv2.aruco.generateImageMarker(dictionary, 4, 60)
+    Image.fromarray(pixels).save(tmp_path / "marker.png")
+    assert main(["vision", "detect", str(tmp_path / "marker.png"), "-m", "aruco", "--format", "json"]) == 0
+    ((found,),) = [row["detections"] for row in json.loads(capsys.readouterr().out)]
+    assert found["class"] == "4"
+    assert len(found["corners"]) == 4
+
+
+def test_pictures_with_boxes_are_written_each_under_a_name_of_its_own(picture, tmp_path, capsys):
+    folder = tmp_path / "drawn"
+    assert main(["vision", "detect", str(picture), str(picture), "-m", "colours", "--output", str(folder)]) == 0
+    assert sorted(each.name for each in folder.iterdir()) == ["scene-2_detections.png", "scene_detections.png"]
+    with Image.open(folder / "scene_detections.png") as file:
+        assert file.size == (160, 120)
+        assert (np.asarray(file)[80, 100:130] != 150).any()
+
+
+def test_a_picture_that_cannot_be_read_does_not_keep_others_from_it(picture, tmp_path, capsys):
+    (tmp_path / "text.png").write_text("no picture")
+    words = [str(tmp_path / "text.png"), str(tmp_path / "gone.png"), str(picture)]
+    assert main(["vision", "detect", *words, "--model", "colours"]) == 1
+    printed = capsys.readouterr()
+    assert "blue" in printed.out
+    assert printed.err.count("VISION110") == 2
+    assert "text.png" in printed.err
+    assert "gone.png" in printed.err
+
+
+def test_classes_are_chosen_by_name(picture, capsys):
+    assert main(["vision", "detect", str(picture), "-m", "colours", "--classes", "red"]) == 0
+    assert capsys.readouterr().out == f"{picture}: nothing found\n"
+    assert main(["vision", "detect", str(picture), "-m", "colours", "--classes", "blu"]) == 1
+    printed = capsys.readouterr().err
+    assert "VISION111" in printed
+    assert "did you mean 'blue'?" in printed
+
+
+def test_a_threshold_that_is_none_is_wrong_usage(picture, capsys):
+    assert main(["vision", "detect", str(picture), "--threshold", "2"]) == 2
+    assert "value must be from 0 to 1" in capsys.readouterr().err

@@ -1,0 +1,309 @@
+"""Networks in ONNX files: each layout, number by number against onnxruntime called by hand and a slow decoder."""
+
+from __future__ import annotations
+
+import json
+
+import cv2
+import numpy as np
+import onnxruntime
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.vision.detector import Limits
+from linkwright.vision.detectors.options import DetectorOptions
+from linkwright.vision.detectors.registry import detector_names, make_detector
+from tests.vision.detectors.networks import columns, constant
+
+NAMES = {"names": "{0: 'ball', 1: 'box', 2: 'cat'}", "task": "detect", "stride": "32", "imgsz": "[96, 128]"}
+LIMITS = Limits(threshold=0.6, iou=0.45)
+
+
+@pytest.fixture
+def picture():
+    random = np.random.default_rng(7)
+    coarse = random.integers(0, 256, (12, 20, 3), dtype=np.uint8)
+    return cv2.resize(coarse, (200, 120), interpolation=cv2.INTER_CUBIC)
+
+
+def opened(path, **options):
+    return make_detector(str(path), DetectorOptions(**options))
+
+
+def by_hand(path, picture, rows, cols, padded=None):
+    """The input made step by step, and what onnxruntime makes of it."""
+    height, width = picture.shape[:2]
+    scale = min(rows / height, cols / width)
+    new = (round(width * scale), round(height * scale))
+    free = cols - new[0], rows - new[1]
+    if padded:
+        free = free[0] % padded, free[1] % padded
+    left, top = round(free[0] / 2 - 0.1), round(free[1] / 2 - 0.1)
+    image = cv2.resize(picture, new, interpolation=cv2.INTER_LINEAR)
+    image = cv2.copyMakeBorder(
+        image, top, free[1] - top, left, free[0] - left, cv2.BORDER_CONSTANT, value=(114, 114, 114)
+    )
+    session = onnxruntime.InferenceSession(path, providers=["CPUExecutionProvider"])
+    kind = np.float16 if "float16" in session.get_inputs()[0].type else np.float32
+    tensor = (image.astype(np.float32) / 255).astype(kind).transpose(2, 0, 1)[None]
+    return session.run(None, {"images": tensor})[0].astype(np.float32), scale, left, top
+
+
+def overlap(one, two):
+    width = min(one[2], two[2]) - max(one[0], two[0])
+    height = min(one[3], two[3]) - max(one[1], two[1])
+    common = max(0, width) * max(0, height)
+    whole = (one[2] - one[0]) * (one[3] - one[1]) + (two[2] - two[0]) * (two[3] - two[1]) - common
+    return common / whole
+
+
+def slowly(rows, classes, limits, objectness=False):
+    """Boxes, one after the other: (score, class, corners in the input)."""
+    found = []
+    for row in rows:
+        scores = [float(row[4 + objectness + each]) * (float(row[4]) if objectness else 1) for each in range(classes)]
+        best = max(range(classes), key=scores.__getitem__)
+        if scores[best] >= limits.threshold:
+            x, y, w, h = map(float, row[:4])
+            found.append((scores[best], best, (x - w / 2, y - h / 2, x + w / 2, y + h / 2)))
+    found.sort(key=lambda each: -each[0])
+    kept = []
+    for each in found:
+        if all(other[1] != each[1] or overlap(other[2], each[2]) <= limits.iou for other in kept):
+            kept.append(each)
+    return kept[: limits.most]
+
+
+def check(found, kept, picture, scale, left, top, tolerance=1e-3):
+    assert len(found) == len(kept) > 3
+    height, width = picture.shape[:2]
+    for index, (score, which, box) in enumerate(kept):
+        placed = [(box[0] - left) / scale, (box[1] - top) / scale, (box[2] - left) / scale, (box[3] - top) / scale]
+        limits = [width, height, width, height]
+        assert found.boxes[index] == pytest.approx(
+            [min(max(each, 0), limit) for each, limit in zip(placed, limits, strict=True)], abs=tolerance
+        )
+        assert found.scores[index] == pytest.approx(score, abs=1e-5)
+        assert found.classes[index] == which
+    assert len(set(map(found.name, range(len(found))))) > 1
+
+
+def test_columns_as_of_v8(tmp_path, picture):
+    path = columns(tmp_path / "v8.onnx", metadata=NAMES)
+    output, *place = by_hand(path, picture, 96, 128)
+    assert output.shape == (1, 7, 252)
+    detector = opened(path)
+    assert detector.names == ("ball", "box", "cat")
+    assert detector.notes == ()
+    check(detector.detect(picture, LIMITS), slowly(output[0].T, 3, LIMITS), picture, *place)
+
+
+def test_rows_with_objectness_as_of_classic_yolov5(tmp_path, picture):
+    limits = Limits(threshold=0.3, iou=0.45)
+    path = columns(tmp_path / "v5.onnx", transposed=True, objectness=True, metadata={"names": "['ball', 'box', 'cat']"})
+    output, *place = by_hand(path, picture, 96, 128)
+    assert output.shape == (1, 756, 8)
+    check(opened(path).detect(picture, limits), slowly(output[0], 3, limits, True), picture, *place)
+
+
+def test_one_class_of_classic_yolov5_is_not_taken_for_final_boxes(tmp_path, picture):
+    limits = Limits(threshold=0.3, iou=0.45)
+    path = columns(tmp_path / "v5.onnx", 1, transposed=True, objectness=True, metadata={"names": "['ball']"})
+    output, *_ = by_hand(path, picture, 96, 128)
+    assert output.shape == (1, 756, 6)
+    found = opened(path).detect(picture, limits)
+    assert len(found) == len(slowly(output[0], 1, limits, True))
+
+
+@pytest.mark.parametrize("said", [{"end2end": "True"}, {"args": "{'batch': 1, 'nms': True}"}, {}])
+def test_final_boxes(tmp_path, picture, said):
+    rows = np.zeros((1, 300, 6), np.float32)
+    rows[0, 0] = [10, 20, 40, 60, 0.9, 2]
+    rows[0, 1] = [11, 20, 40, 60, 0.8, 2]
+    rows[0, 2] = [0, 0, 128, 96, 0.7, 0]
+    rows[0, 3] = [0, 0, 50, 50, 0.3, 1]
+    path = constant(tmp_path / "v10.onnx", rows, {**NAMES, **said})
+    found = opened(path).detect(picture, LIMITS)
+    assert [found.name(index) for index in range(len(found))] == ["cat", "cat", "ball"]
+    scale, top = 128 / 200, round((96 - round(120 * 128 / 200)) / 2 - 0.1)
+    assert found.boxes[0] == pytest.approx([10 / scale, (20 - top) / scale, 40 / scale, (60 - top) / scale], abs=1e-4)
+    assert found.boxes[2].tolist() == [0, 0, 200, 120]
+
+
+def test_an_input_of_any_size_is_as_small_as_the_picture_lets_it_be(tmp_path, picture):
+    path = columns(tmp_path / "any.onnx", size=None, metadata=NAMES)
+    output, *place = by_hand(path, picture, 128, 160, padded=32)
+    assert output.shape[2] == 12 * 20 + 6 * 10 + 3 * 5  # 96 x 160
+    found = opened(path, size=(120, 160)).detect(picture, LIMITS)
+    check(found, slowly(output[0].T, 3, LIMITS), picture, *place)
+
+
+def test_half_precision(tmp_path, picture):
+    path = columns(tmp_path / "half.onnx", metadata=NAMES, half=True)
+    output, *place = by_hand(path, picture, 96, 128)
+    check(opened(path).detect(picture, LIMITS), slowly(output[0].T, 3, LIMITS), picture, *place, tolerance=1e-2)
+
+
+@pytest.mark.parametrize("task", ["segment", ""])
+def test_masks_are_left_out_and_that_is_said(tmp_path, picture, task):
+    said = {**NAMES, "task": task}
+    path = columns(tmp_path / "seg.onnx", metadata=said, masks=32)
+    output, *place = by_hand(path, picture, 96, 128)
+    detector = opened(path)
+    check(detector.detect(picture, LIMITS), slowly(output[0].T, 3, LIMITS), picture, *place)
+    assert [str(note) for note in detector.notes] == ["of 'seg.onnx' the boxes are taken; masks are left out"]
+
+
+def test_key_points_are_left_out_and_that_is_said(tmp_path, picture):
+    said = {"names": "{0: 'person'}", "task": "pose", "kpt_shape": "[17, 3]"}
+    path = columns(tmp_path / "pose.onnx", 1, metadata=said, more=51)
+    output, *_ = by_hand(path, picture, 96, 128)
+    detector = opened(path)
+    assert len(detector.detect(picture, LIMITS)) == len(slowly(output[0].T, 1, LIMITS))
+    assert "key points are left out" in str(detector.notes[0])
+
+
+def test_only_classes_that_are_wanted_and_no_more_than_that(tmp_path, picture):
+    path = columns(tmp_path / "v8.onnx", metadata=NAMES)
+    detector = opened(path)
+    found = detector.detect(picture, Limits(0.6, 0.45, classes=frozenset({"cat"})))
+    assert {found.name(index) for index in range(len(found))} == {"cat"}
+    assert len(detector.detect(picture, Limits(0.6, 0.45, most=2))) == 2
+    assert len(detector.detect(picture, Limits(0.9999))) == 0
+
+
+def test_labels_of_a_file_go_before_those_of_the_network(tmp_path, picture):
+    path = columns(tmp_path / "v8.onnx", metadata=NAMES)
+    for name, text in {
+        "labels.txt": "one\ntwo\n\nthree\n",
+        "data.yaml": "names: {0: one, 1: two, 2: three}",
+        "labels.json": json.dumps(["one", "two", "three"]),
+    }.items():
+        labels = tmp_path / name
+        labels.write_text(text)
+        assert opened(path, labels=labels).names == ("one", "two", "three")
+
+
+def test_classes_without_names_are_numbered(tmp_path):
+    detector = opened(columns(tmp_path / "v8.onnx"))
+    assert detector.names == ("0", "1", "2")
+    assert "give a file of labels" in str(detector.notes[0])
+
+
+def test_a_device_that_is_not_there_is_told_of(tmp_path):
+    path = columns(tmp_path / "v8.onnx", metadata=NAMES)
+    if "CUDAExecutionProvider" in onnxruntime.get_available_providers():
+        pytest.skip("there is a GPU")
+    assert [str(each) for each in opened(path, device="cuda:0").notes] == [
+        "onnxruntime has no 'cuda:0' here; the network runs on the CPU"
+    ]
+
+
+def test_a_size_that_the_network_does_not_take_is_told_of(tmp_path):
+    path = columns(tmp_path / "v8.onnx", metadata=NAMES)
+    assert "is always 128 x 96 pixels" in str(opened(path, size=(320, 320)).notes[0])
+
+
+def refused(path, **options):
+    with pytest.raises(LinkwrightError) as raised:
+        opened(path, **options)
+    (finding,) = raised.value.diagnostics
+    return finding.code, str(finding.message), str(finding.hint)
+
+
+def test_a_corrupt_file(tmp_path):
+    path = columns(tmp_path / "v8.onnx", metadata=NAMES)
+    path.write_bytes(path.read_bytes()[:-100])
+    code, message, _ = refused(path)
+    assert code == "VISION103"
+    assert "v8.onnx" in message
+    path.write_bytes(b"")
+    assert refused(path)[0] == "VISION103"
+
+
+def test_a_file_that_is_not_there_and_names_that_are_wrong(tmp_path):
+    code, _, hint = refused(tmp_path / "no.onnx")
+    assert (code, "colours" in hint) == ("VISION102", True)
+    assert refused("colour")[2] == "did you mean 'colours'?"
+    assert set(detector_names()) >= {"apriltag", "aruco", "colours", "line", "qr"}
+
+
+@pytest.mark.parametrize("ending", ["pt", "engine", "tflite"])
+def test_networks_in_other_forms(tmp_path, ending):
+    path = tmp_path / f"yolov8n.{ending}"
+    path.write_bytes(b"x")
+    code, _, hint = refused(path)
+    assert code == "VISION104"
+    assert ("yolo export model=yolov8n.pt format=onnx" in hint) == (ending == "pt")
+
+
+@pytest.mark.parametrize(
+    ("shape", "names", "words"),
+    [
+        ((4, 3, 96, 128), ("images",), "4 pictures at once"),
+        ((1, 96, 128, 3), ("images",), "does not take a picture"),
+        ((1, 1, 96, 128), ("images",), "does not take a picture"),
+        ((1, 10), ("images",), "does not take a picture"),
+        ((1, 3, 96, 128), ("images", "sizes"), "does not take a picture"),
+    ],
+)
+def test_inputs_that_are_no_picture(tmp_path, shape, names, words):
+    path = constant(tmp_path / "other.onnx", np.zeros((1, 7, 252), np.float32), NAMES, shape, names)
+    code, message, _ = refused(path)
+    assert (code, words in message) == ("VISION105", True)
+
+
+@pytest.mark.parametrize(("task", "shape"), [("classify", (1, 1000)), ("obb", (1, 8, 252))])
+def test_tasks_without_upright_boxes(tmp_path, task, shape):
+    path = constant(tmp_path / "other.onnx", np.zeros(shape, np.float32), {**NAMES, "task": task})
+    code, message, _ = refused(path)
+    assert (code, f"'{task}'" in message) == ("VISION106", True)
+
+
+@pytest.mark.parametrize("shape", [(1, 1000), (1, 3, 252), (1, 3, 96, 128), (2, 7, 252)])
+def test_outputs_that_are_no_boxes(tmp_path, shape):
+    path = constant(tmp_path / "other.onnx", np.zeros(shape, np.float32))
+    code, message, _ = refused(path)
+    assert (code, str(list(shape)) in message) == ("VISION106", True)
+
+
+def test_names_that_do_not_fit(tmp_path):
+    path = columns(tmp_path / "v8.onnx", 5, metadata=NAMES)
+    code, message, _ = refused(path)
+    assert (code, message) == ("VISION107", "the network in 'v8.onnx' has 5 classes, and there are 3 names")
+    labels = tmp_path / "labels.txt"
+    labels.write_text("one\ntwo\n")
+    code, message, _ = refused(columns(tmp_path / "v8.onnx", metadata=NAMES), labels=labels)
+    assert (code, message) == ("VISION107", "the network in 'v8.onnx' has 3 classes, and there are 2 names")
+    assert refused(columns(tmp_path / "v8.onnx"), labels=labels)[0] == "VISION107"
+
+
+def test_right_labels_mend_wrong_names(tmp_path):
+    path = columns(tmp_path / "v8.onnx", 5, metadata=NAMES)
+    labels = tmp_path / "labels.txt"
+    labels.write_text("one\ntwo\nthree\nfour\nfive\n")
+    assert len(opened(path, labels=labels).names) == 5
+
+
+@pytest.mark.parametrize(
+    ("name", "content"),
+    [
+        ("labels.yaml", "names: [one"),
+        ("labels.json", "{}"),
+        ("labels.yaml", "{0: a, 2: b}"),
+        ("labels.txt", b"\xff\xfe\xff"),
+        ("gone.txt", None),
+    ],
+)
+def test_labels_that_cannot_be_read(tmp_path, name, content):
+    labels = tmp_path / name
+    if content is not None:
+        labels.write_bytes(content if isinstance(content, bytes) else content.encode())
+    code, message, _ = refused(columns(tmp_path / "v8.onnx"), labels=labels)
+    assert (code, name in message) == ("VISION108", True)
+
+
+def test_names_in_metadata_are_not_run(tmp_path, capsys):
+    detector = opened(columns(tmp_path / "v8.onnx", metadata={"names": "{0: print('run')}"}))
+    assert detector.names == ("0", "1", "2")
+    assert capsys.readouterr().out == ""

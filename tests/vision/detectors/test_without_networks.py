@@ -1,0 +1,144 @@
+"""Colours, markers, codes and lines: found in drawn pictures."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.vision.detections import Detections
+from linkwright.vision.detector import Limits
+from linkwright.vision.detectors.drawing import colour_of, drawn
+from linkwright.vision.detectors.options import DetectorOptions
+from linkwright.vision.detectors.registry import make_detector
+
+LIMITS = Limits()
+FLOOR = (150, 150, 145)
+
+
+def blank(height=240, width=320):
+    return np.full((height, width, 3), FLOOR, np.uint8)
+
+
+def detector(name, **settings):
+    return make_detector(name, DetectorOptions(settings=settings))
+
+
+def names(found):
+    return [found.name(index) for index in range(len(found))]
+
+
+def test_balls_and_boxes_of_different_colours():
+    picture = blank()
+    cv2.circle(picture, (80, 100), 30, (200, 20, 30), cv2.FILLED)
+    picture[40:80, 200:260] = (20, 60, 200)
+    picture[150:152, 10:14] = (20, 200, 40)
+    found = detector("colours").detect(picture, LIMITS)
+    assert names(found) == ["blue", "red"]
+    assert found.boxes[0].tolist() == [200, 40, 260, 80]
+    assert found.boxes[1] == pytest.approx([50, 70, 111, 131], abs=1)
+    assert found.scores == pytest.approx([1.0, 0.785], abs=0.05)
+
+
+def test_colours_of_ones_own_and_only_those_that_are_wanted():
+    picture = blank()
+    picture[40:80, 200:260] = (20, 60, 200)
+    picture[40:80, 20:60] = (200, 20, 30)
+    own = detector("colours", colours={"sky": [100, 100, 50, 130, 255, 255], "rose": [170, 100, 50, 5, 255, 255]})
+    assert sorted(names(own.detect(picture, LIMITS))) == ["rose", "sky"]
+    assert names(own.detect(picture, Limits(classes=frozenset({"sky"})))) == ["sky"]
+    assert names(own.detect(picture, Limits(most=1))) == ["sky"]
+    assert len(detector("colours", least_area=1e6).detect(picture, LIMITS)) == 0
+
+
+@pytest.mark.parametrize(
+    ("name", "dictionary", "kind", "number"),
+    [
+        ("aruco", None, cv2.aruco.DICT_4X4_50, 7),
+        ("aruco", "DICT_6X6_250", cv2.aruco.DICT_6X6_250, 123),
+        ("apriltag", None, cv2.aruco.DICT_APRILTAG_36h11, 3),
+    ],
+)
+def test_markers_are_named_by_their_numbers(name, dictionary, kind, number):
+    picture = np.full((240, 320, 3), 255, np.uint8)
+    marker = cv2.aruco.generateImageMarker(cv2.aruco.getPredefinedDictionary(kind), number, 80)
+    picture[60:140, 100:180] = marker[..., np.newaxis]
+    found = detector(name, **({"dictionary": dictionary} if dictionary else {})).detect(picture, LIMITS)
+    assert names(found) == [str(number)]
+    assert found.boxes[0] == pytest.approx([100, 60, 180, 140], abs=1)
+    assert found.corners is not None
+    assert found.corners[0] == pytest.approx(np.array([[100, 60], [180, 60], [180, 140], [100, 140]]), abs=1)
+
+
+def test_qr_codes_are_named_by_their_texts():
+    code = cv2.QRCodeEncoder.create().encode("kitchen")
+    large = cv2.resize(code, None, fx=5, fy=5, interpolation=cv2.INTER_NEAREST)
+    picture = np.full((300, 400, 3), 255, np.uint8)
+    picture[50 : 50 + large.shape[0], 80 : 80 + large.shape[1]] = large[..., np.newaxis]
+    found = detector("qr").detect(picture, LIMITS)
+    assert names(found) == ["kitchen"]
+    left, top, right, bottom = found.boxes[0]
+    assert 70 <= left < right <= 90 + large.shape[1]
+    assert 40 <= top < bottom <= 60 + large.shape[0]
+    assert len(detector("qr").detect(picture, Limits(classes=frozenset({"bath"})))) == 0
+
+
+def test_a_line_on_the_floor():
+    picture = blank()
+    cv2.line(picture, (200, 239), (200, 100), (20, 20, 20), 21)
+    picture[:100] = 0  # above the part that is looked at
+    found = detector("line").detect(picture, LIMITS)
+    assert names(found) == ["line"]
+    left, top, right, bottom = found.boxes[0]
+    assert (left + right) / 2 == pytest.approx(200.5, abs=1)
+    assert (top, bottom) == (180, 240)
+    assert found.scores[0] == 1.0
+    whole = detector("line", part=1.0, colour=[0, 0, 100, 179, 60, 200]).detect(picture, LIMITS)
+    assert whole.boxes[0][1] == 100
+
+
+@pytest.mark.parametrize("name", ["colours", "aruco", "apriltag", "qr", "line"])
+@pytest.mark.parametrize("shape", [(240, 320), (1, 1), (3, 400), (0, 0)])
+def test_pictures_without_anything(name, shape):
+    picture = np.full((*shape, 3), 200, np.uint8)
+    assert len(detector(name).detect(picture, LIMITS)) == 0
+
+
+@pytest.mark.parametrize(
+    ("name", "settings", "words"),
+    [
+        ("colours", {"colours": {}}, "'colours'"),
+        ("colours", {"colours": {"red": [1, 2, 3]}}, "'colours.red'"),
+        ("colours", {"colours": {"red": [200, 0, 0, 10, 255, 255]}}, "'colours.red'"),
+        ("colours", {"least_area": "much"}, "'least_area'"),
+        ("aruco", {"dictionary": "4X4_5"}, "'dictionary'"),
+        ("line", {"part": 2.0}, "'part'"),
+        ("line", {"colour": "black"}, "'colour'"),
+    ],
+)
+def test_settings_that_mean_nothing(name, settings, words):
+    with pytest.raises(LinkwrightError) as raised:
+        detector(name, **settings)
+    (finding,) = raised.value.diagnostics
+    assert finding.code == "VISION109"
+    assert words in str(finding.message)
+
+
+def test_what_was_found_is_drawn_and_the_picture_is_left_as_it_is():
+    picture = blank()
+    boxes = np.array([[50, 60, 150, 160], [200, 5, 400, 90]], np.float32)
+    found = Detections(boxes, np.array([0.9, 0.6], np.float32), np.array([0, 1], np.int32), ("ball", "box"))
+    canvas = drawn(picture, found)
+    assert tuple(canvas[160, 100]) == colour_of("ball")
+    assert tuple(canvas[90, 300]) == colour_of("box")
+    assert (picture == FLOOR).all()
+    assert (drawn(picture, Detections.none(("ball",))) == picture).all()
+    marker = Detections(
+        boxes[:1],
+        found.scores[:1],
+        found.classes[:1],
+        found.names,
+        np.array([[[50, 60], [150, 60], [150, 160], [50, 160]]], np.float32),
+    )
+    assert tuple(drawn(picture, marker)[160, 100]) == colour_of("ball")
