@@ -42,7 +42,7 @@ class Place:
 
 
 def place_by_depth(
-    box: NDArray[np.floating], depths: Floats, camera: CameraModel, *, farthest: float = np.inf
+    box: NDArray[np.floating], depths: Floats, camera: CameraModel, *, spread: float = np.inf, farthest: float = np.inf
 ) -> Place | None:
     """Where a thing is that a depth image shows.
 
@@ -55,6 +55,7 @@ def place_by_depth(
             another size, which is that of `camera`.
         depths: shape ``(rows, columns)``, metres along the view; NaN, infinite, 0 or less where there is none.
         camera: that of the picture that the box is in.
+        spread: what differs from the middle of the surface by more, along the view, is not the thing's, metres.
         farthest: depths beyond are none, metres.
 
     Returns:
@@ -69,11 +70,14 @@ def place_by_depth(
         return None
     nearest, last = _nearest_surface(np.sort(known))
     whole = _cut(depths, scaled)
-    surface = whole[(whole >= nearest - _gap(nearest)) & (whole <= last + _gap(last))]
+    middle = float(np.median(known[(known >= nearest) & (known <= last)]))
+    surface = whole[
+        (whole >= max(nearest - _gap(nearest), middle - spread)) & (whole <= min(last + _gap(last), middle + spread))
+    ]
     front = float(np.percentile(surface, 5))
     width, height = _size(box, camera, front)
-    spread = float(np.percentile(surface, 95)) - front
-    depth = width if spread > _FLAT * width else spread
+    thick = float(np.percentile(surface, 95)) - front
+    depth = width if thick > _FLAT * width else thick
     middle = front + depth / 2
     width, height = _size(box, camera, middle)
     ray = camera.rays(np.array([[(box[0] + box[2]) / 2, (box[1] + box[3]) / 2]], np.float64))[0]

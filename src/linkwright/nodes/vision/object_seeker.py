@@ -1,0 +1,221 @@
+"""object_seeker: looks for what it is told by name, goes there or follows it, and says what it sees.
+
+``vision/go_to`` and ``vision/follow`` take a name, perhaps with a colour (``red ball``, 红色的球), ``vision/stop``
+ends it, ``vision/describe`` answers what is seen; answers are said on ``/voice/response`` too.
+"""
+
+from __future__ import annotations
+
+from math import atan2, hypot, inf
+from typing import Any
+
+import numpy as np
+
+from linkwright.geometry.single import Transform, invert, rotate, rpy_from_quaternion
+from linkwright.graph import SENSOR_DATA_QOS, EndpointInfo, Graph
+from linkwright.graph.endpoints.commander import Commander, who_was_lost
+from linkwright.messages import get_message
+from linkwright.nodes.frame_poses import FramePoses
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.settings import bad_value, positive, tell_unknown
+from linkwright.nodes.velocity_topic import VelocityTopic
+from linkwright.nodes.vision.seen_things import SeenThings, Thing
+from linkwright.vision.places.seeking import Phase, Seeker, SeekSettings, View
+from linkwright.vision.places.words import LANGUAGES, Answer, Sighting, Wanted, answer, described, wanted
+
+_DEPTH = 10
+_PERIOD = 0.05
+_SAME_PLACE = 0.6
+"""Metres between two pictures of one thing whose id has changed."""
+_SEEN_NOW_SECONDS = 1.0
+_SILENT_LASER_SECONDS = 1.0
+
+
+class ObjectSeeker(SingleNode):
+    """The running node.
+
+    Parameters: ``distance`` (from the robot's middle to the thing's nearest side, m), ``max_linear_velocity`` (m/s),
+    ``max_angular_velocity`` (rad/s), ``lost_time`` (s), ``obstacle_distance`` (m), ``blocked_time`` (s),
+    ``robot_radius`` (m), ``base_frame``, ``fixed_frame``, ``language`` (en or zh; a request in Chinese is answered
+    in Chinese anyway).
+
+    Raises:
+        LinkwrightError: a parameter cannot have its value (NODE433, GRAPH201).
+    """
+
+    DEFAULT_NAME = "object_seeker"
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
+        node = self._node
+        with starting(node):
+            self._declare()
+            tell_unknown(node)
+        self._poses = FramePoses(node, "it is not known where the robot is:")
+        self._seen = SeenThings(node, self._poses, self._fixed)
+        self._wanted: Wanted | None = None
+        self._target: Thing | None = None
+        self._began_ns = 0
+        self._scan: Any = None
+        text = get_message("std_msgs/msg/String")
+        self._velocity = VelocityTopic(node, "cmd_vel", frame_id=self._base)
+        self._response = node.create_publisher(text, "/voice/response", _DEPTH)
+        self._commander = Commander(self._commander_lost)
+        for topic, take in (
+            ("vision/go_to", self._go_to),
+            ("vision/follow", self._follow),
+        ):
+            self._commander.watch(node.create_subscription(text, topic, self._commander.taking(take), _DEPTH))
+        node.create_subscription(text, "vision/stop", lambda _: self._stop(), _DEPTH)
+        node.create_subscription(get_message("sensor_msgs/msg/LaserScan"), "scan", self._feel, SENSOR_DATA_QOS)
+        node.create_service("std_srvs/srv/Trigger", "vision/describe", self._describe)
+        node.create_timer(_PERIOD, self._step)
+
+    def close(self) -> None:
+        """Stop the robot, and end."""
+        if self._seeker.phase is not Phase.IDLE:
+            self._velocity.stop()
+        super().close()
+
+    def _declare(self) -> None:
+        usual = SeekSettings()
+        self._seeker = Seeker(
+            SeekSettings(
+                distance=self._positive("distance", usual.distance),
+                speed=self._positive("max_linear_velocity", usual.speed),
+                turn_speed=self._positive("max_angular_velocity", usual.turn_speed),
+                lost_time=self._positive("lost_time", usual.lost_time),
+                obstacle_distance=self._positive("obstacle_distance", usual.obstacle_distance),
+                blocked_time=self._positive("blocked_time", usual.blocked_time),
+            )
+        )
+        self._radius = self._positive("robot_radius", 0.22)
+        self._base: str = self._node.declare_parameter("base_frame", "base_link").value
+        self._fixed: str = self._node.declare_parameter("fixed_frame", "odom").value
+        self._language: str = self._node.declare_parameter("language", "en").value
+        if self._language not in LANGUAGES:
+            raise bad_value("language", self._language, self._node.get_name(), LANGUAGES)
+
+    def _positive(self, name: str, usual: float) -> float:
+        return positive(self._node, name, self._node.declare_parameter(name, usual).value)
+
+    def _now_ns(self) -> int:
+        return self._node.get_clock().now().nanoseconds
+
+    def _go_to(self, message: Any) -> None:
+        self._begin(message.data, follow=False)
+
+    def _follow(self, message: Any) -> None:
+        self._begin(message.data, follow=True)
+
+    def _begin(self, text: str, *, follow: bool) -> None:
+        request = wanted(text)
+        if request is None:
+            self._node.get_logger().warning(f"'{text}' names nothing to go to; say 'ball' or 'red ball'")
+            return
+        if self._seeker.phase is Phase.IDLE:
+            self._velocity.review()
+        self._wanted, self._target, self._began_ns = request, None, self._now_ns()
+        self._seeker.begin(follow=follow)
+        self._say(Answer.LOOKING)
+
+    def _stop(self) -> None:
+        if self._seeker.phase is not Phase.IDLE:
+            self._seeker.stop()
+            self._velocity.stop()
+            self._say(Answer.STOPPED)
+
+    def _commander_lost(self, publisher: EndpointInfo) -> None:
+        if self._seeker.phase is not Phase.IDLE:
+            self._node.get_logger().warning(who_was_lost(publisher))
+            self._stop()
+
+    def _feel(self, scan: Any) -> None:
+        self._scan = scan
+
+    def _describe(self, _request: Any, response: Any) -> Any:
+        pose = self._poses.pose(self._fixed, self._base, 0)
+        since = self._now_ns() - round(_SEEN_NOW_SECONDS * 1e9)
+        if pose is None or self._seen.heard_ns is None or self._seen.heard_ns < since:
+            things = []
+        else:
+            things = [Sighting(each.name, each.colour, *_within(pose, each)) for each in self._seen.things]
+        response.success, response.message = True, described(things, self._language)
+        self._speak(response.message)
+        return response
+
+    def _step(self) -> None:
+        if self._seeker.phase is Phase.IDLE:
+            return
+        move = self._seeker.step(self._view())
+        if move.event is not None:
+            self._say(move.event)
+        self._velocity.publish((move.linear, 0.0, 0.0), (0.0, 0.0, move.angular))
+
+    def _view(self) -> View:
+        now_ns = self._now_ns()
+        heard_ns = max(self._seen.heard_ns or 0, self._began_ns)
+        silence = (now_ns - heard_ns) / 1e9
+        pose = self._poses.pose(self._fixed, self._base, 0)
+        if pose is None:
+            return View(now_ns / 1e9, 0.0, silence=inf)
+        heading = rpy_from_quaternion(pose[3:])[2]
+        self._target = self._chosen(pose) or self._target
+        free = self._free(now_ns)
+        if self._target is None:
+            return View(now_ns / 1e9, heading, silence=silence, free=free)
+        ahead, left = _within(pose, self._target)
+        return View(
+            now_ns / 1e9,
+            heading,
+            bearing=atan2(left, ahead),
+            surface=hypot(ahead, left) - self._target.radius,
+            seen_ago=(now_ns - self._target.seen_ns) / 1e9,
+            silence=silence,
+            free=free,
+        )
+
+    def _chosen(self, pose: Transform) -> Thing | None:
+        """Of the things that are seen, the one to go to: the same as before, or else the nearest."""
+        assert self._wanted is not None, "it is asked for while it seeks"
+        fitting = [each for each in self._seen.things if self._wanted.is_it(each.name, each.colour)]
+        before = self._target
+        if before is not None:
+            same = [each for each in fitting if each.id and each.id == before.id]
+            near = [each for each in fitting if hypot(each.x - before.x, each.y - before.y) < _SAME_PLACE]
+            if same or near or self._seeker.phase is Phase.GOING:
+                fitting = same or near
+        return min(fitting, key=lambda each: hypot(*_within(pose, each)), default=None)
+
+    def _free(self, now_ns: int) -> float:
+        """Metres from the robot's middle to what a laser sees in its way; 0 where the laser has fallen silent."""
+        scan = self._scan
+        if scan is None:
+            return inf
+        if now_ns - scan.header.stamp.nanoseconds > _SILENT_LASER_SECONDS * 1e9:
+            return 0.0
+        pose = self._poses.pose(self._base, scan.header.frame_id, 0)
+        if pose is None:
+            return inf
+        ranges = np.asarray(scan.ranges, np.float64)
+        angles = scan.angle_min + np.arange(len(ranges)) * scan.angle_increment
+        known = np.isfinite(ranges) & (ranges >= scan.range_min) & (ranges <= scan.range_max)
+        yaw = angles[known] + rpy_from_quaternion(pose[3:])[2]
+        x, y = pose[0] + ranges[known] * np.cos(yaw), pose[1] + ranges[known] * np.sin(yaw)
+        return float(x[(x > 0) & (np.abs(y) < self._radius)].min(initial=inf))
+
+    def _say(self, event: Answer) -> None:
+        if self._wanted is not None:
+            language = "zh" if self._wanted.language == "zh" else self._language
+            self._speak(answer(event, self._wanted, language))
+
+    def _speak(self, text: str) -> None:
+        self._node.get_logger().info(text)
+        self._response.publish(get_message("std_msgs/msg/String")(data=text))
+
+
+def _within(pose: Transform, thing: Thing) -> tuple[float, float]:
+    """How far ahead and to the left of the robot a thing is, metres."""
+    x, y, _, *turn = invert(pose)
+    ahead, left, _ = rotate((turn[0], turn[1], turn[2], turn[3]), (thing.x, thing.y, 0.0))
+    return ahead + x, left + y

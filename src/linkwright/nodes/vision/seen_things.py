@@ -1,0 +1,109 @@
+"""The things that are seen, with their colours, in a frame that does not move."""
+
+from __future__ import annotations
+
+from collections import Counter, OrderedDict, deque
+from dataclasses import dataclass
+from typing import Any
+
+from linkwright.geometry.single import compose
+from linkwright.graph import SENSOR_DATA_QOS, Node
+from linkwright.images import BadImageError, RangeFinder, picture_of
+from linkwright.messages import get_message
+from linkwright.nodes.frame_poses import FramePoses
+from linkwright.nodes.vision.detection_reading import best_hypothesis, box_of
+from linkwright.vision.places.colours import colour_of
+
+_DEPTH = 10
+_KEPT_PICTURES = 10
+_KEPT_COLOURS = 200
+_VOTES = 30
+
+
+@dataclass(frozen=True, slots=True)
+class Thing:
+    """Something that is seen.
+
+    Attributes:
+        name: its class.
+        id: that of a tracker; empty where there is none.
+        colour: in a word, if known.
+        x, y: of its middle in the fixed frame, metres.
+        radius: half of its width, metres.
+        seen_ns: the time of the picture, nanoseconds.
+    """
+
+    name: str
+    id: str
+    colour: str | None
+    x: float
+    y: float
+    radius: float
+    seen_ns: int
+
+
+class SeenThings:
+    """Listens to detections with places, and looks which colour the things have in the pictures.
+
+    Colours are those of the boxes that have the same id: topics ``tracking`` and ``image_raw``.
+
+    Args:
+        node: listens.
+        poses: the transforms.
+        fixed_frame: the frame of the things.
+
+    Attributes:
+        things: those of the latest picture.
+        heard_ns: when it came, by the node's clock; None before the first.
+    """
+
+    def __init__(self, node: Node, poses: FramePoses, fixed_frame: str) -> None:
+        self._node, self._poses, self._frame = node, poses, fixed_frame
+        self.things: list[Thing] = []
+        self.heard_ns: int | None = None
+        self._pictures: deque[Any] = deque(maxlen=_KEPT_PICTURES)
+        self._votes: OrderedDict[str, Counter[str]] = OrderedDict()
+        self._ranges = RangeFinder()
+        node.create_subscription(
+            get_message("sensor_msgs/msg/Image"), "image_raw", self._pictures.append, SENSOR_DATA_QOS
+        )
+        node.create_subscription(get_message("vision_msgs/msg/Detection2DArray"), "tracking", self._look, _DEPTH)
+        node.create_subscription(get_message("vision_msgs/msg/Detection3DArray"), "detections_3d", self._see, _DEPTH)
+
+    def _look(self, message: Any) -> None:
+        """Note the colours of things that have ids."""
+        time_ns = message.header.stamp.nanoseconds
+        image = next((each for each in self._pictures if each.header.stamp.nanoseconds == time_ns), None)
+        if image is None or not any(each.id for each in message.detections):
+            return
+        try:
+            pixels = picture_of(image, self._ranges).pixels
+        except BadImageError:
+            return
+        if pixels.ndim != 3:
+            return
+        for detection in message.detections:
+            colour = colour_of(pixels[:, :, :3], box_of(detection)) if detection.id else None
+            if colour is not None:
+                votes = self._votes.setdefault(detection.id, Counter())
+                votes[colour] += 1
+                if votes.total() > _VOTES:
+                    self._votes[detection.id] = Counter({each: count // 2 for each, count in votes.items()})
+                self._votes.move_to_end(detection.id)
+        while len(self._votes) > _KEPT_COLOURS:
+            self._votes.popitem(last=False)
+
+    def _see(self, message: Any) -> None:
+        self.heard_ns = self._node.get_clock().now().nanoseconds
+        time_ns = message.header.stamp.nanoseconds
+        self.things = []
+        pose = self._poses.pose(self._frame, message.header.frame_id, time_ns) if message.detections else None
+        if pose is None:
+            return
+        for each in message.detections:
+            at = each.bbox.center.position
+            x, y, *_ = compose(pose, (at.x, at.y, at.z, 0.0, 0.0, 0.0, 1.0))
+            colours = self._votes.get(each.id)
+            colour = colours.most_common(1)[0][0] if colours else None
+            name, _ = best_hypothesis(each)
+            self.things.append(Thing(name, each.id, colour, x, y, each.bbox.size.y / 2, time_ns))

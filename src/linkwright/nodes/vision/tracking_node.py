@@ -1,0 +1,77 @@
+"""tracking_node: gives the things that a detector finds ids, the same from picture to picture.
+
+Source: yolo_ros 4 (the executable, the topics ``detections`` and ``tracking``); its parameters are in a file of
+ByteTrack's there, and parameters of the node here. Different on purpose: it needs no pictures, and both topics are
+vision_msgs/msg/Detection2DArray.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from linkwright.graph import Graph
+from linkwright.messages import get_message
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.settings import bad_value, positive, tell_unknown
+from linkwright.nodes.vision.detection_reading import detections_of
+from linkwright.vision.places.tracker import Tracker, TrackerSettings
+
+_DEPTH = 10
+_PICTURES_A_SECOND = 30.0
+"""Of the pictures that ``track_buffer`` counts."""
+
+
+class TrackingNode(SingleNode):
+    """The running node.
+
+    Parameters: ``track_high_thresh``, ``track_low_thresh`` and ``new_track_thresh`` (scores), ``match_thresh`` (1 - IoU
+    at most), ``track_buffer`` (how long a thing is waited for, in pictures of 1/30 s), ``min_hits`` (pictures in a row
+    before a thing gets an id).
+
+    Raises:
+        LinkwrightError: a parameter cannot have its value (NODE433, GRAPH201).
+    """
+
+    DEFAULT_NAME = "tracking_node"
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
+        node = self._node
+        with starting(node):
+            node.declare_parameter("tracker", "bytetrack.yaml")  # of yolo_ros; there is one tracker here
+            self._tracker = Tracker(self._settings())
+            tell_unknown(node)
+        self._array = get_message("vision_msgs/msg/Detection2DArray")
+        self._detection = get_message("vision_msgs/msg/Detection2D")
+        self._publisher = node.create_publisher(self._array, "tracking", _DEPTH)
+        node.create_subscription(self._array, "detections", self._see, _DEPTH)
+
+    def _settings(self) -> TrackerSettings:
+        usual = TrackerSettings()
+        return TrackerSettings(
+            high=self._share("track_high_thresh", usual.high),
+            low=self._share("track_low_thresh", usual.low),
+            new=self._share("new_track_thresh", usual.new),
+            match=self._share("match_thresh", usual.match),
+            patience=self._positive("track_buffer", round(usual.patience * _PICTURES_A_SECOND)) / _PICTURES_A_SECOND,
+            births=int(self._positive("min_hits", usual.births)),
+        )
+
+    def _share(self, name: str, usual: float) -> float:
+        value: float = self._node.declare_parameter(name, usual).value
+        if not 0.0 <= value <= 1.0:
+            raise bad_value(name, value, self._node.get_name())
+        return value
+
+    def _positive(self, name: str, usual: int) -> float:
+        return positive(self._node, name, self._node.declare_parameter(name, usual).value)
+
+    def _see(self, message: Any) -> None:
+        ids = self._tracker.update(detections_of(message), message.header.stamp.nanoseconds / 1e9)
+        tracked = self._array(header=message.header)
+        tracked.detections = [
+            self._detection(header=each.header, results=each.results, bbox=each.bbox, id=str(number))
+            for each, number in zip(message.detections, ids, strict=True)
+            if number
+        ]
+        self._publisher.publish(tracked)

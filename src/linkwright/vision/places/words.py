@@ -1,0 +1,223 @@
+"""Things in words: what somebody asks for, and what is seen, in English and Chinese."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from enum import Enum
+from math import atan2, degrees, hypot
+
+from linkwright.vision.places.colours import COLOURS
+
+LANGUAGES = ("en", "zh")
+
+_CHINESE_COLOURS = {
+    "红": "red", "橙": "orange", "橘": "orange", "黄": "yellow", "绿": "green", "青": "cyan", "蓝": "blue",
+    "紫": "purple", "粉": "pink", "棕": "brown", "褐": "brown", "白": "white", "灰": "grey", "黑": "black",
+}  # fmt: skip
+_ENGLISH_COLOURS = {**{each: each for each in COLOURS}, "gray": "grey", "violet": "purple"}
+_ALIKE = (
+    ("ball", "football", "soccer ball", "sports ball", "sphere", "球", "足球", "皮球", "小球"),
+    ("crate", "box", "cube", "箱子", "箱", "盒子", "方块", "木箱"),
+    ("cone", "traffic cone", "锥桶", "路锥", "锥筒", "圆锥", "雪糕筒"),
+    ("drum", "barrel", "cylinder", "桶", "圆桶", "油桶", "圆柱"),
+    ("person", "people", "human", "pedestrian", "adult", "人", "行人", "大人"),
+    ("child", "kid", "小孩", "孩子", "儿童"),
+    ("stop sign", "停车标志", "停止标志", "停车牌"),
+    ("yield sign", "give way sign", "让行标志", "减速让行标志"),
+    ("sign", "traffic sign", "标志", "标志牌", "路牌"),
+    ("wall", "墙", "墙壁"),
+    ("robot", "机器人"),
+    ("chair", "椅子"),
+    ("table", "desk", "桌子"),
+    ("bottle", "瓶子"),
+    ("cup", "杯子"),
+    ("dog", "狗"),
+    ("cat", "猫"),
+    ("car", "汽车", "车"),
+)  # fmt: skip
+"""Names of the same thing, English ones first; the first Chinese one is said."""
+_FIRST = {name: group[0] for group in _ALIKE for name in group}
+_CHINESE = {group[0]: next(name for name in group if not name.isascii()) for group in _ALIKE}
+_PLURALS = {"people": "person", "children": "child", "boxes": "box", "persons": "person"}
+_FILLERS = {"the", "a", "an", "that", "this", "please", "to", "some", "any"}
+_CHINESE_FILLERS = re.compile(r"那个|这个|一个|那只|这只|色的|色|的|请")
+_NUMBERS = {
+    "en": ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten"),
+    "zh": ("零", "一", "两", "三", "四", "五", "六", "七", "八", "九", "十"),
+}
+_AHEAD, _BESIDE = 20.0, 110.0
+"""Up to how many degrees off a thing is ahead, and to the left or right; beyond it is behind."""
+
+
+class Answer(Enum):
+    """What a robot says of a request."""
+
+    LOOKING = "looking"
+    FOUND = "found"
+    ARRIVED = "arrived"
+    NOT_FOUND = "not found"
+    LOST = "lost"
+    BLOCKED = "blocked"
+    BLIND = "blind"
+    STOPPED = "stopped"
+
+
+_ANSWERS = {
+    Answer.LOOKING: {"en": "I am looking for the {it}.", "zh": "我在找{it}。"},
+    Answer.FOUND: {"en": "I see the {it}, and go there.", "zh": "我看到{it}了，正在过去。"},
+    Answer.ARRIVED: {"en": "I am at the {it}.", "zh": "我到{it}这里了。"},
+    Answer.NOT_FOUND: {"en": "I cannot find the {it}.", "zh": "我没有找到{it}。"},
+    Answer.LOST: {"en": "I have lost the {it}.", "zh": "我看不到{it}了。"},
+    Answer.BLOCKED: {"en": "Something stands between me and the {it}.", "zh": "我和{it}之间有东西挡着。"},
+    Answer.BLIND: {"en": "I stop: no detections come.", "zh": "我停下了：没有收到检测结果。"},
+    Answer.STOPPED: {"en": "I stop.", "zh": "我停下了。"},
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """What somebody asked for.
+
+    Attributes:
+        thing: its name, as `thing_of` has it; empty for anything of that colour.
+        colour: one of `COLOURS`; None for any.
+        text: as it was said, without words that say nothing.
+    """
+
+    thing: str
+    colour: str | None
+    text: str
+
+    @property
+    def language(self) -> str:
+        """The language that it was said in: ``zh`` or ``en``."""
+        return "en" if self.text.isascii() else "zh"
+
+    def is_it(self, name: str, colour: str | None) -> bool:
+        """Whether this is a thing of that class; `colour` is the one it was seen in, if any.
+
+        A class may have its colour in its name, as ``red_ball`` does; one that is nothing but a colour may be any
+        thing.
+        """
+        words = _words(name)
+        told = next((_ENGLISH_COLOURS[word] for word in words if word in _ENGLISH_COLOURS), None)
+        rest = " ".join(word for word in words if word not in _ENGLISH_COLOURS)
+        if self.colour is not None and self.colour != (told or colour):
+            return False
+        if not self.thing:
+            return True
+        if not rest:
+            return self.colour is not None
+        return self.thing in (thing_of(rest), thing_of(rest.split()[-1]))
+
+
+@dataclass(frozen=True, slots=True)
+class Sighting:
+    """Something that is seen: its class, its colour if known, and where: metres ahead and to the left of the robot."""
+
+    name: str
+    colour: str | None
+    ahead: float
+    left: float
+
+
+def thing_of(name: str) -> str:
+    """One name for all names of a thing: lower case, singular; ``ball`` for ``football`` and ``球``."""
+    plain = name.strip().lower()
+    if plain in _FIRST:
+        return _FIRST[plain]
+    singular = _PLURALS.get(plain) or (plain[:-1] if len(plain) > 3 and plain.endswith("s") else plain)
+    return _FIRST.get(singular, singular if singular in _PLURALS.values() else plain)
+
+
+def wanted(text: str) -> Wanted | None:
+    """What somebody asks for with ``ball``, ``the red ball``, ``红色的球``; None for nothing."""
+    plain = text.strip().strip(".,!?。，！？").lower()
+    if plain.isascii():
+        words = [word for word in _words(plain) if word not in _FILLERS]
+        colour = next((_ENGLISH_COLOURS[word] for word in words if word in _ENGLISH_COLOURS), None)
+        rest = " ".join(word for word in words if word not in _ENGLISH_COLOURS and word not in ("thing", "one"))
+        return Wanted(thing_of(rest), colour, " ".join(words)) if colour or rest else None
+    colour = next((_CHINESE_COLOURS[sign] for sign in plain if sign in _CHINESE_COLOURS), None)
+    rest = _CHINESE_FILLERS.sub("", plain)
+    rest = "".join(sign for sign in rest if sign not in _CHINESE_COLOURS).replace("东西", "").strip()
+    return Wanted(thing_of(rest), colour, re.sub(r"那个|这个|一个|请", "", plain)) if colour or rest else None
+
+
+def described(sightings: Iterable[Sighting], language: str) -> str:
+    """A sentence about what is seen, nearest first, as *I see a red ball 1.2 m ahead and two crates*."""
+    groups: dict[tuple[str, str | None], list[Sighting]] = {}
+    for each in sorted(sightings, key=lambda each: hypot(each.ahead, each.left)):
+        groups.setdefault((each.name, each.colour), []).append(each)
+    if not groups:
+        return "我什么也没看到。" if language == "zh" else "I see nothing that I know."
+    if language == "zh":
+        return f"我看到{_joined([_in_chinese(group) for group in groups.values()], '，', '和')}。"
+    return f"I see {_joined([_in_english(group) for group in groups.values()], ', ', ' and ')}."
+
+
+def named(name: str, colour: str | None, language: str) -> str:
+    """A thing with its colour: *red ball*, 红色的球."""
+    words = [word for word in _words(name) if word not in _ENGLISH_COLOURS]
+    told = next((_ENGLISH_COLOURS[word] for word in _words(name) if word in _ENGLISH_COLOURS), colour)
+    thing = " ".join(words)
+    if language != "zh":
+        return " ".join(filter(None, (told, thing or "thing")))
+    chinese = _CHINESE.get(thing_of(thing), thing) if thing else "东西"
+    signs = {english: sign for sign, english in reversed(_CHINESE_COLOURS.items())}
+    return f"{signs[told]}色的{chinese}" if told else chinese
+
+
+def answer(event: Answer, request: Wanted, language: str) -> str:
+    """What the robot says of what has come of a request."""
+    return _ANSWERS[event][language].format(it=request.text)
+
+
+def _in_english(group: Sequence[Sighting]) -> str:
+    first = group[0]
+    name = named(first.name, first.colour, "en")
+    if len(group) > 1:
+        return f"{_number(len(group), 'en')} {_plural(name)}"
+    article = "an" if name[0] in "aeiou" else "a"
+    return f"{article} {name} {hypot(first.ahead, first.left):.1f} m {_direction(first, 'en')}"
+
+
+def _in_chinese(group: Sequence[Sighting]) -> str:
+    first = group[0]
+    name = named(first.name, first.colour, "zh")
+    if len(group) > 1:
+        return f"{_number(len(group), 'zh')}个{name}"
+    return f"{_direction(first, 'zh')}{hypot(first.ahead, first.left):.1f}米处有一个{name}"
+
+
+def _direction(sighting: Sighting, language: str) -> str:
+    angle = degrees(atan2(sighting.left, sighting.ahead))
+    if abs(angle) <= _AHEAD:
+        return "前方" if language == "zh" else "ahead"
+    if abs(angle) > _BESIDE:
+        return "后方" if language == "zh" else "behind me"
+    if language == "zh":
+        return "左边" if angle > 0 else "右边"
+    return f"to the {'left' if angle > 0 else 'right'}"
+
+
+def _number(count: int, language: str) -> str:
+    words = _NUMBERS[language]
+    return words[count] if count < len(words) else str(count)
+
+
+def _plural(name: str) -> str:
+    for singular, plural in (("person", "people"), ("child", "children")):
+        if name.endswith(singular):
+            return name[: -len(singular)] + plural
+    return name + ("es" if name.endswith(("x", "s", "ch", "sh")) else "s")
+
+
+def _joined(parts: Sequence[str], comma: str, last: str) -> str:
+    return parts[0] if len(parts) == 1 else comma.join(parts[:-1]) + last + parts[-1]
+
+
+def _words(name: str) -> list[str]:
+    return [word for word in re.split(r"[\s_\-]+", name.lower()) if word]

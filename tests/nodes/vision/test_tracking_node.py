@@ -1,0 +1,56 @@
+"""tracking_node: detections in, detections with ids out."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.messages import Time, get_message
+from linkwright.nodes import NodeOptions
+from linkwright.nodes.vision.tracking_node import TrackingNode
+from linkwright.testing import SteppedGraph
+from tests.nodes.vision.red_things import detection
+
+
+def picture(test, number, *things):
+    header = get_message("std_msgs/msg/Header")(frame_id="camera")
+    header.stamp = Time.from_nanoseconds(round(number * 1e9 / 30))
+    array = get_message("vision_msgs/msg/Detection2DArray")(header=header)
+    array.detections = [detection(header, x - 20, 80, x + 20, 120, name, score) for x, name, score in things]
+    test.publish("/yolo/detections", array)
+    test.settle()
+
+
+def test_things_get_ids_and_keep_what_was_said_of_them():
+    with SteppedGraph() as test:
+        TrackingNode(test.graph, NodeOptions(namespace="/yolo"))
+        tracked = test.record("/yolo/tracking")
+        test.settle()
+        for number in range(10):
+            picture(test, number, (100 + number, "ball", 0.9), (300 - number, "crate", 0.8), (200, "ball", 0.15))
+        assert [[each.id for each in message.detections] for message in tracked] == [[]] + [["1", "2"]] * 9
+        last = tracked.last.detections[1]
+        assert last.results[0].hypothesis.class_id == "crate"
+        assert last.bbox.center.position.x == pytest.approx(291)
+        assert tracked.last.header.frame_id == "camera"
+        picture(test, 11)
+        assert tracked.last.detections == []
+
+
+def test_parameters_are_those_of_bytetrack():
+    with SteppedGraph() as test:
+        options = NodeOptions(parameters={"min_hits": 1, "track_high_thresh": 0.5, "new_track_thresh": 0.95})
+        TrackingNode(test.graph, options)
+        tracked = test.record("/tracking")
+        test.settle()
+        array = get_message("vision_msgs/msg/Detection2DArray")()
+        array.detections = [detection(array.header, 0, 0, 9, 9, "ball", score) for score in (0.96, 0.9)]
+        test.publish("/detections", array)
+        test.settle()
+        assert [each.id for each in tracked.last.detections] == ["1"]
+
+
+@pytest.mark.parametrize("given", [{"match_thresh": 1.5}, {"track_buffer": 0}, {"track_low_thresh": "low"}])
+def test_values_that_mean_nothing_are_refused(given):
+    with SteppedGraph() as test, pytest.raises(LinkwrightError):
+        TrackingNode(test.graph, NodeOptions(parameters=given))

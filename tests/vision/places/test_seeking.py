@@ -1,0 +1,145 @@
+"""How a robot looks for a thing and goes to it, with a robot that is made up."""
+
+from __future__ import annotations
+
+from math import atan2, cos, hypot, inf, pi, sin
+
+import pytest
+
+from linkwright.vision.places.seeking import Phase, Seeker, SeekSettings, View
+from linkwright.vision.places.words import Answer
+
+PERIOD = 0.1
+
+
+class Robot:
+    """A robot that does what it is told, in a plane with one thing; it sees 40 degrees to either side."""
+
+    def __init__(self, seeker, thing=None, radius=0.15):
+        self.seeker, self.thing, self.radius = seeker, thing, radius
+        self.x = self.y = self.heading = self.time = 0.0
+        self.seen_at, self.silence, self.free = -inf, 0.0, inf
+        self.way = 0.0
+        self.hidden = False
+
+    def step(self):
+        view = View(self.time, self.heading, silence=self.silence, free=self.free)
+        if self.thing is not None:
+            away = hypot(self.thing[0] - self.x, self.thing[1] - self.y)
+            bearing = atan2(self.thing[1] - self.y, self.thing[0] - self.x) - self.heading
+            bearing = (bearing + pi) % (2 * pi) - pi
+            if abs(bearing) < 0.7 and not self.hidden:
+                self.seen_at = self.time
+            if self.seen_at > -inf:
+                seen_ago = self.time - self.seen_at
+                view = View(self.time, self.heading, bearing, away - self.radius, seen_ago, self.silence, self.free)
+        move = self.seeker.step(view)
+        self.heading += move.angular * PERIOD
+        self.x += move.linear * cos(self.heading) * PERIOD
+        self.y += move.linear * sin(self.heading) * PERIOD
+        self.way += abs(move.linear) * PERIOD
+        self.time += PERIOD
+        return move
+
+    def go_on(self, seconds):
+        """The events of the next seconds, and the largest speeds."""
+        moves = [self.step() for _ in range(round(seconds / PERIOD))]
+        return [move.event for move in moves if move.event is not None]
+
+
+@pytest.mark.parametrize("thing", [(2.0, 0.0), (1.0, -1.5), (-2.0, 0.5), (0.3, 0.0)])
+def test_it_turns_until_it_sees_the_thing_and_goes_there(thing):
+    seeker = Seeker()
+    robot = Robot(seeker, thing)
+    seeker.begin()
+    assert robot.go_on(60)[-1] is Answer.ARRIVED
+    assert seeker.phase is Phase.IDLE
+    surface = hypot(thing[0] - robot.x, thing[1] - robot.y) - robot.radius
+    assert surface == pytest.approx(0.5, abs=0.05) or (surface < 0.5 and robot.way == 0.0)
+
+
+def test_what_is_nowhere_is_not_found_after_one_turn():
+    seeker = Seeker()
+    robot = Robot(seeker)
+    seeker.begin()
+    assert robot.go_on(60) == [Answer.NOT_FOUND]
+    assert 2 * pi < robot.heading < 2 * pi + 0.5
+    assert robot.way == 0.0
+
+
+def test_what_is_lost_stops_it_and_is_looked_for():
+    seeker = Seeker()
+    robot = Robot(seeker, (8.0, 0.0))
+    seeker.begin()
+    assert robot.go_on(3) == [Answer.FOUND]
+    robot.hidden = True
+    way = robot.way
+    assert robot.go_on(5) == []
+    assert robot.way - way < seeker.settings.speed * (seeker.settings.lost_time + 0.2)
+    assert robot.go_on(30) == [Answer.LOST]
+
+
+def test_what_is_hidden_for_a_moment_is_no_loss():
+    seeker = Seeker()
+    robot = Robot(seeker, (3.0, 0.0))
+    seeker.begin()
+    events = robot.go_on(3)
+    robot.hidden = True
+    events += robot.go_on(2)
+    robot.hidden = False
+    assert events + robot.go_on(20) == [Answer.FOUND, Answer.ARRIVED]
+
+
+def test_a_detector_that_says_nothing_stops_it():
+    seeker = Seeker()
+    robot = Robot(seeker, (3.0, 0.0))
+    seeker.begin()
+    robot.go_on(2)
+    robot.silence = 3.5
+    assert robot.go_on(1) == [Answer.BLIND]
+    way = robot.way
+    robot.go_on(2)
+    assert robot.way == way
+
+
+def test_it_waits_before_an_obstacle_and_gives_up():
+    seeker = Seeker()
+    robot = Robot(seeker, (3.0, 0.0))
+    seeker.begin()
+    robot.go_on(2)
+    robot.free = 0.3
+    way = robot.way
+    assert robot.go_on(3) == []
+    assert robot.way == way
+    robot.free = inf
+    robot.go_on(1)
+    assert robot.way > way
+    robot.free = 0.3
+    assert robot.go_on(7) == [Answer.BLOCKED]
+
+
+def test_the_thing_itself_is_no_obstacle():
+    seeker = Seeker(SeekSettings(distance=0.3))
+    robot = Robot(seeker, (2.0, 0.0))
+    seeker.begin()
+    for _ in range(300):
+        robot.free = 1.85 - robot.x
+        if robot.step().event is Answer.ARRIVED:
+            break
+    assert 1.85 - robot.x == pytest.approx(0.3, abs=0.05)
+
+
+def test_it_follows_a_thing_that_moves_until_it_is_told_to_stop():
+    seeker = Seeker()
+    robot = Robot(seeker, (1.0, 0.0))
+    seeker.begin(follow=True)
+    events = []
+    for step in range(400):
+        robot.thing = (1.0 + 0.02 * step, sin(step / 60))
+        move = robot.step()
+        events += [move.event] if move.event else []
+    assert events == [Answer.FOUND]
+    assert hypot(robot.thing[0] - robot.x, robot.thing[1] - robot.y) < 1.3
+    seeker.stop()
+    assert robot.go_on(1) == []
+    assert robot.step().linear == 0.0

@@ -1,0 +1,82 @@
+"""Things in words, in English and Chinese."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.vision.places.words import Sighting, described, named, wanted
+
+
+@pytest.mark.parametrize(
+    ("text", "thing", "colour"),
+    [
+        ("ball", "ball", None),
+        ("the red ball", "ball", "red"),
+        ("Gray Boxes.", "crate", "grey"),
+        ("the football", "ball", None),
+        ("traffic cone", "cone", None),
+        ("yellow", "", "yellow"),
+        ("the blue one", "", "blue"),
+        ("glass", "glass", None),
+        ("people", "person", None),
+        ("球", "ball", None),
+        ("红色的球", "ball", "red"),
+        ("那个蓝色的箱子", "crate", "blue"),
+        ("绿球。", "ball", "green"),
+        ("黄色的东西", "", "yellow"),
+        ("茶壶", "茶壶", None),
+    ],
+)
+def test_what_somebody_asks_for(text, thing, colour):
+    found = wanted(text)
+    assert (found.thing, found.colour) == (thing, colour)
+    assert found.language == ("en" if text.isascii() else "zh")
+
+
+@pytest.mark.parametrize("text", ["", "  ", "the", "。"])
+def test_nothing_is_asked_for(text):
+    assert wanted(text) is None
+
+
+@pytest.mark.parametrize(
+    ("asked", "name", "colour", "is_it"),
+    [
+        ("ball", "ball", "red", True),
+        ("ball", "sports ball", None, True),
+        ("ball", "crate", "red", False),
+        ("red ball", "ball", "red", True),
+        ("red ball", "ball", "blue", False),
+        ("red ball", "ball", None, False),
+        ("red ball", "red_ball", "white", True),
+        ("红色的球", "red", None, True),
+        ("ball", "red", "red", False),
+        ("red", "crate", "red", True),
+        ("箱子", "box", None, True),
+        ("sign", "stop sign", None, True),
+        ("stop sign", "stop_sign", "red", True),
+    ],
+)
+def test_whether_this_is_it(asked, name, colour, is_it):
+    assert wanted(asked).is_it(name, colour) is is_it
+
+
+def test_what_is_seen_in_a_sentence():
+    seen = [
+        Sighting("crate", None, 3.0, 2.0),
+        Sighting("crate", None, 3.2, 2.2),
+        Sighting("ball", "red", 1.2, -0.1),
+        Sighting("orange", None, 0.5, 1.5),
+    ]
+    assert described(seen, "en") == "I see a red ball 1.2 m ahead, an orange thing 1.6 m to the left and two crates."
+    assert described(seen, "zh") == "我看到前方1.2米处有一个红色的球，左边1.6米处有一个橙色的东西和两个箱子。"
+    assert described([], "en") == "I see nothing that I know."
+    assert described([], "zh") == "我什么也没看到。"
+    assert described([Sighting("person", None, -1.0, 0.0)], "en") == "I see a person 1.0 m behind me."
+    people = [Sighting("person", None, 1.0, 0.0)] * 12
+    assert described(people, "en") == "I see 12 people."
+
+
+def test_names():
+    assert named("traffic cone", "orange", "zh") == "橙色的锥桶"
+    assert named("red_ball", "blue", "en") == "red ball"
+    assert named("teapot", None, "zh") == "teapot"
