@@ -110,6 +110,10 @@ class SeekingRobot(SteppedSimulation):
         """Publish a text."""
         self.publish(topic, get_message("std_msgs/msg/String")(data=text))
 
+    def tell_to_stop(self) -> None:
+        """What ends all seeking."""
+        self.publish("/vision/stop", get_message("std_msgs/msg/Empty")())
+
     def said(self) -> list[str]:
         """What the robot has said."""
         return [each.data for each in self.said_messages]

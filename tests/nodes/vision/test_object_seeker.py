@@ -46,7 +46,7 @@ def test_it_follows_a_ball_that_is_moved_until_it_is_told_to_stop(tmp_path):
         test.put_ball(2.0, 0.3)
         test.advance(5.0)
         assert test.distance() - RADIUS == pytest.approx(0.5, abs=0.1)
-        test.tell("/vision/stop", "")
+        test.tell_to_stop()
         test.advance(0.5)
         assert test.said()[-1] == "I stop."
         commands = len(test.commands)
@@ -102,7 +102,7 @@ def test_a_laser_sees_what_stands_in_the_way(tmp_path):
 def test_a_request_that_names_nothing_moves_nothing(tmp_path):
     with SeekingRobot(tmp_path, (2.0, 0.0)) as test:
         test.tell("/vision/go_to", " the ")
-        test.tell("/vision/stop", "")
+        test.tell_to_stop()
         test.advance(1.0)
         assert test.said() == []
         assert len(test.commands) == 0

@@ -1,7 +1,7 @@
 """object_seeker: looks for what it is told by name, goes there or follows it, and says what it sees.
 
 ``vision/go_to`` and ``vision/follow`` take a name, perhaps with a colour (``red ball``, 红色的球), ``vision/stop``
-ends it, ``vision/describe`` answers what is seen; answers are said on ``/voice/response`` too.
+ends it; what comes of it is said on ``/voice/response``. ``vision/describe`` answers what is seen.
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ class ObjectSeeker(SingleNode):
             ("vision/follow", self._follow),
         ):
             self._commander.watch(node.create_subscription(text, topic, self._commander.taking(take), _DEPTH))
-        node.create_subscription(text, "vision/stop", lambda _: self._stop(), _DEPTH)
+        node.create_subscription("std_msgs/msg/Empty", "vision/stop", lambda _: self._stop(), _DEPTH)
         node.create_subscription(get_message("sensor_msgs/msg/LaserScan"), "scan", self._feel, SENSOR_DATA_QOS)
         node.create_service("std_srvs/srv/Trigger", "vision/describe", self._describe)
         node.create_timer(_PERIOD, self._step)
@@ -141,7 +141,7 @@ class ObjectSeeker(SingleNode):
         else:
             things = [Sighting(each.name, each.colour, *_within(pose, each)) for each in self._seen.things]
         response.success, response.message = True, described(things, self._language)
-        self._speak(response.message)
+        self._node.get_logger().info(response.message)
         return response
 
     def _step(self) -> None:
