@@ -43,9 +43,9 @@ def translate(diagnostic: Diagnostic, lang: str) -> Diagnostic:
     )
 
 
-def localized(text: str) -> str:
-    """A text in the reader's language; what is no phrase stays as it is."""
-    lang = language()
+def localized(text: str, lang: str | None = None) -> str:
+    """A text in a language of `LANGUAGES`, the reader's if not told; what is no phrase stays as it is."""
+    lang = language() if lang is None else lang
     return text.said_in(wording(lang)) if lang != "en" and isinstance(text, Phrase) else text
 
 

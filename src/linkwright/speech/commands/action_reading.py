@@ -111,6 +111,9 @@ class ActionReader:
         return Drive(x, y, turn, **amounts)
 
     def _stop(self) -> Action:
+        if isinstance(self._keys.node("stop"), yaml.MappingNode):
+            keys = self._below("stop", ("publish",))
+            return Stop((self._published(keys.node("publish")),))
         if not self._keys.flag("stop"):
             raise self._keys.error(phrase("'stop' must be true"), self._keys.node("stop"))
         return Stop()
@@ -155,7 +158,10 @@ class ActionReader:
         return CallService(name, kind, request)
 
     def _publish(self) -> Action:
-        keys = self._below("publish", ("topic", "type", "message"))
+        return self._published(self._keys.node("publish"))
+
+    def _published(self, node: yaml.Node | None) -> Publish:
+        keys = Keys(self._document, node, phrase("'{key}'", key="publish"), ("topic", "type", "message"))
         name, kind, message = self._call(keys, "message", get_message)
         return Publish(name, kind, message)
 

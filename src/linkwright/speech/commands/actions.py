@@ -44,11 +44,6 @@ class Drive:
 
 
 @dataclass(frozen=True, slots=True)
-class Stop:
-    """Stand still, and end all that a command has begun."""
-
-
-@dataclass(frozen=True, slots=True)
 class ScaleSpeed:
     """Drive faster or slower from now on.
 
@@ -129,6 +124,17 @@ class Publish:
 
 
 @dataclass(frozen=True, slots=True)
+class Stop:
+    """Stand still, and end all that a command has begun.
+
+    Attributes:
+        tells: what is published besides, for others that drive the robot; also when it begins to move otherwise.
+    """
+
+    tells: tuple[Publish, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
 class Launch:
     """Start a launch file, which the next stop ends. No shell reads any of it.
 
@@ -144,6 +150,8 @@ class Launch:
 
 
 Action: TypeAlias = Drive | Stop | ScaleSpeed | SetSpeed | GoTo | SendGoal | CallService | Publish | Launch
+MOTIONS = Drive, GoTo, Launch
+"""What takes the place of another motion."""
 
 
 def filled(template: Any, values: Values) -> Any:

@@ -21,6 +21,7 @@ from linkwright.diagnostics import (
 )
 from linkwright.input_files import read_text
 from linkwright.speech.commands.action_reading import ActionReader
+from linkwright.speech.commands.actions import MOTIONS
 from linkwright.speech.commands.command_set import ANY, ByLanguage, Command, CommandSet, Place
 from linkwright.speech.commands.phrases import Template, TemplateError, templates
 from linkwright.speech.commands.quantities import SAYABLE, quantity
@@ -126,7 +127,7 @@ class _Reader:
 
     def _command(self, intent: str, node: yaml.Node, places: Mapping[str, Place]) -> Command:
         what = phrase("the command '{intent}'", intent=intent)
-        keys = Keys(self._document, node, what, ("phrases", "confirm", "response", *ActionReader.KINDS))
+        keys = Keys(self._document, node, what, ("phrases", "confirm", "response", "moves", *ActionReader.KINDS))
         if keys.node("phrases") is None:
             raise keys.error(phrase("{what} has no 'phrases': nobody can say it", what=what))
         phrases = self._phrases(keys.node("phrases"), tuple(self._names), intent)
@@ -136,7 +137,9 @@ class _Reader:
         action = ActionReader(self._document, keys, places, samples).read()
         if keys.node("stop") is not None and any(every):
             raise keys.error(phrase("a stop is said without slots"), keys.node("phrases"))
-        return Command(intent, phrases, action, self._question(keys), self._one_text(keys.node("response")))
+        moves = isinstance(action, MOTIONS) if keys.node("moves") is None else keys.flag("moves")
+        response = self._one_text(keys.node("response"))
+        return Command(intent, phrases, action, self._question(keys), response, moves)
 
     def _question(self, keys: Keys) -> ByLanguage:
         node = keys.node("confirm")

@@ -43,6 +43,7 @@ class Command:
         action: what it does.
         question: language -> what is asked before it is done; empty where it is done at once.
         response: language -> what is answered; empty for the usual.
+        moves: whether it takes the place of another motion.
     """
 
     intent: str
@@ -50,6 +51,7 @@ class Command:
     action: Action
     question: ByLanguage
     response: ByLanguage
+    moves: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,11 +99,20 @@ class CommandSet:
                     best = template.literal_count, Understood(command, values)
         return None if best is None else best[1]
 
+    @property
+    def stops(self) -> tuple[Command, ...]:
+        """The commands that stop."""
+        return tuple(each for each in self.commands if isinstance(each.action, Stop))
+
     def is_stop(self, text: str) -> bool:
         """Whether a stop is said anywhere in a text, whatever is said around it."""
         words = words_of(text)
-        stops = (each for each in self.commands if isinstance(each.action, Stop))
-        return any(has_words(words, template.pieces[0]) for stop in stops for template in _all(stop.phrases))
+        return any(has_words(words, template.pieces[0]) for stop in self.stops for template in _all(stop.phrases))
+
+    def is_other(self, text: str) -> bool:
+        """Whether a text is a whole command, and no stop."""
+        found = self.understand(text)
+        return found is not None and not isinstance(found.command.action, Stop)
 
     def answer(self, text: str) -> bool | None:
         """Whether a text is a yes or a no; None where it is neither."""

@@ -1,0 +1,193 @@
+"""What is said, and what comes of it: commands are understood, asked back about, carried out and answered."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from linkwright.diagnostics import Phrase, phrase
+from linkwright.diagnostics.translation import localized
+from linkwright.graph import Clock, ClockType, Node
+from linkwright.nodes.voice.driving import Driver, Ending
+from linkwright.nodes.voice.requests import Requests
+from linkwright.speech.commands.actions import (
+    CallService,
+    Drive,
+    GoTo,
+    Launch,
+    Publish,
+    ScaleSpeed,
+    SendGoal,
+    SetSpeed,
+    Slot,
+    Stop,
+    amount,
+    filled,
+    shown,
+)
+from linkwright.speech.commands.command_set import CommandSet, Understood, chosen
+
+
+class Conversation:
+    """Carries commands out.
+
+    Args:
+        node: whose it is.
+        commands: those that are understood.
+        language: of the answers.
+        driver: moves the robot.
+        requests: asks others.
+        patience: s that a question waits for its answer.
+        tell_command: told each command that is carried out: its intent, and ``slot=value`` for what was said in slots,
+            in m, rad, s and m/s.
+        say: told what the robot answers.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        commands: CommandSet,
+        language: str,
+        driver: Driver,
+        requests: Requests,
+        patience: float,
+        tell_command: Callable[[str], None],
+        say: Callable[[str], None],
+    ) -> None:
+        self._commands, self._language = commands, language
+        self._driver, self._requests = driver, requests
+        self._tell_command, self._say = tell_command, say
+        self._asked: tuple[Understood, str] | None = None
+        clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=node.get_clock().timebase)
+        self._patience = node.create_timer(patience, self._unanswered, clock=clock, autostart=False)
+        for command in commands.commands:
+            requests.prepare(command.action)
+            for tell in command.action.tells if isinstance(command.action, Stop) else ():
+                requests.prepare(tell)
+
+    @property
+    def is_busy(self) -> bool:
+        """Whether something goes on that a stop would end."""
+        return self._driver.is_moving or self._requests.is_active
+
+    def take(self, text: str) -> bool:
+        """Do what a text says, or ask back; whether it was understood."""
+        answer = self._commands.answer(text) if self._asked is not None else None
+        if self._asked is not None and answer is not None:
+            understood, asked_for = self._asked
+            self._forget()
+            if answer:
+                self._carry_out(understood, asked_for)
+            else:
+                self.answer(phrase("I leave it"))
+            return True
+        found = self._commands.understand(text)
+        if found is None:
+            return False
+        self._forget()
+        if found.command.question:
+            self._asked = found, text
+            self._say(str(filled(chosen(found.command.question, self._language), found.values)))
+            self._patience.reset()
+        else:
+            self._carry_out(found, text)
+        return True
+
+    def stop(self, text: str = "") -> None:
+        """Stop, whatever goes on.
+
+        Args:
+            text: what was said, which is answered; empty where nobody said anything.
+        """
+        self._forget()
+        self._driver.stop()
+        self._requests.cancel_all()
+        self._tell_others()
+        if text:
+            stop = self._commands.stops[0]
+            self._tell_command(stop.intent)
+            self._say(chosen(stop.response, self._language) or text)
+
+    def rest(self, why: Phrase) -> None:
+        """Stand still because nobody says how to go on."""
+        self._driver.stop()
+        self.answer(why)
+
+    def answer(self, text: Phrase) -> None:
+        """Say something in the language of the answers."""
+        self._say(localized(text, self._language))
+
+    def drive_ended(self, ending: Ending) -> None:
+        """A way is done, or takes too long."""
+        if ending == "stuck":
+            self.answer(phrase("I am stuck, and stop"))
+
+    def goal_ended(self, reached: bool, reason: str) -> None:
+        """A goal was reached, or not."""
+        if reached:
+            self.answer(phrase("I am done"))
+        elif reason:
+            self.answer(phrase("I could not do it: {reason}", reason=reason))
+        else:
+            self.answer(phrase("I could not do it"))
+
+    def _carry_out(self, found: Understood, text: str) -> None:
+        if isinstance(found.command.action, Stop):
+            self.stop(text)
+            return
+        values = found.values
+        self._tell_command(
+            " ".join([found.command.intent, *(f"{name}={shown(each)}" for name, each in values.items())])
+        )
+        problem = self._done(found)
+        if problem is not None:
+            self.answer(problem)
+        else:
+            self._say(str(filled(chosen(found.command.response, self._language) or text, values)))
+
+    def _done(self, found: Understood) -> Phrase | None:
+        """Do it; None, or why it cannot be done."""
+        action, values = found.command.action, found.values
+        if found.command.moves:
+            self._make_way(found)
+        if isinstance(action, Drive):
+            self._driver.begin(action, values)
+        elif isinstance(action, ScaleSpeed):
+            self._driver.scale(action.factor)
+        elif isinstance(action, SetSpeed):
+            self._driver.set_speed(amount(action.speed, values) or 0.0)
+        elif isinstance(action, Publish):
+            self._requests.publish(action, values)
+        elif isinstance(action, Launch):
+            self._requests.launch(action, values)
+        elif isinstance(action, GoTo):
+            name = str(values[action.place.name]) if isinstance(action.place, Slot) else action.place
+            if not self._requests.send_pose(action.action, self._commands.places[name]):
+                return phrase("I cannot: nobody serves '{name}'", name=action.action)
+        elif isinstance(action, SendGoal):
+            if not self._requests.send_goal(action, values):
+                return phrase("I cannot: nobody serves '{name}'", name=action.action)
+        elif isinstance(action, CallService) and not self._requests.call(action, values):
+            return phrase("I cannot: nobody serves '{name}'", name=action.name)
+        return None
+
+    def _make_way(self, found: Understood) -> None:
+        """End the motion whose place another one takes."""
+        action = found.command.action
+        self._requests.leave(but=action.action if isinstance(action, GoTo) else "")
+        if not isinstance(action, Drive) and self._driver.is_moving:
+            self._driver.stop()
+        if not isinstance(action, Publish):  # whom it tells may be told to begin
+            self._tell_others()
+
+    def _tell_others(self) -> None:
+        for stop in self._commands.stops:
+            for tell in stop.action.tells if isinstance(stop.action, Stop) else ():
+                self._requests.publish(tell, {})
+
+    def _forget(self) -> None:
+        self._asked = None
+        self._patience.cancel()
+
+    def _unanswered(self) -> None:
+        self._forget()
+        self.answer(phrase("nobody answers, so I leave it"))

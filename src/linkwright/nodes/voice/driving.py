@@ -1,0 +1,171 @@
+"""Driving as commands say it: for ever, for a time, a distance or an angle, by odometry where it is heard."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import atan2, hypot, pi, tau
+from typing import Any, Literal, TypeAlias
+
+from linkwright.graph import Node
+from linkwright.nodes.velocity_topic import VelocityTopic
+from linkwright.speech.commands.actions import Drive, Values, amount
+
+_PERIOD = 0.05
+_LONGEST_STEP = 0.2
+_FRESH = 0.5
+"""s: odometry that is older says nothing; the way is then what was commanded."""
+_GAIN = 3.0
+"""1/s: how much of what is left is driven in a second, near the end."""
+_SLOWEST = 0.15
+"""Of the speed, however little is left."""
+_CLOSE = {"distance": 0.005, "angle": 0.005}
+"""m and rad: less is done."""
+_PATIENCE = 3.0
+"""A way takes no more times as long as it should, and 3 s."""
+_SCALES = 0.2, 4.0
+
+Ending: TypeAlias = Literal["done", "stuck"]
+
+
+class Driver:
+    """Publishes velocities.
+
+    A distance or an angle is measured by ``odom`` (nav_msgs/msg/Odometry) where it is heard, else it is the speed times
+    the time. Time is the node's, which may be simulated.
+
+    Args:
+        node: publishes.
+        topic: where.
+        speed: m/s.
+        turn_speed: rad/s.
+        ended: called when a way is done, or takes far too long.
+    """
+
+    def __init__(
+        self, node: Node, topic: VelocityTopic, speed: float, turn_speed: float, ended: Callable[[Ending], None]
+    ) -> None:
+        self._node, self._topic, self._ended = node, topic, ended
+        self._speed, self._turn_speed = speed, turn_speed
+        self._usual_speed, self._scale = speed, 1.0
+        self._drive: Drive | None = None
+        self._odometer = _Odometer()
+        node.create_subscription("nav_msgs/msg/Odometry", "odom", self._on_odometry, 10)
+        self._timer = node.create_timer(_PERIOD, self._step, autostart=False)
+
+    @property
+    def is_moving(self) -> bool:
+        """Whether it drives."""
+        return self._drive is not None
+
+    @property
+    def is_endless(self) -> bool:
+        """Whether it drives without an end of its own."""
+        return self._drive is not None and self._left is None
+
+    def begin(self, drive: Drive, values: Values) -> None:
+        """Drive, in place of what was driven before.
+
+        Args:
+            drive: how.
+            values: what was said in the slots.
+        """
+        self._topic.review(may_change=self._drive is None)
+        self._drive = drive
+        amounts = {"duration": drive.duration, "distance": drive.distance, "angle": drive.angle}
+        given = [(name, amount(each, values)) for name, each in amounts.items() if each is not None]
+        self._kind, self._left = given[0] if given else ("", None)
+        self._at_ns = self._now_ns()
+        self._limit_ns = self._at_ns + round((3.0 + _PATIENCE * self._expected()) * 1e9)
+        self._odometer.take(self._kind)
+        self._publish(1.0)
+        self._timer.reset()
+
+    def stop(self) -> None:
+        """Stand still; it is said again even where nothing moves."""
+        self._drive = None
+        self._timer.cancel()
+        self._topic.review(may_change=False)
+        self._topic.stop()
+
+    def scale(self, factor: float) -> float:
+        """Be faster or slower, within bounds; what all speeds are multiplied by from now on."""
+        self._scale = min(max(self._scale * factor, _SCALES[0]), _SCALES[1])
+        return self._scale
+
+    def set_speed(self, speed: float) -> float:
+        """Drive at a speed, in m/s; the one that it is within the bounds."""
+        self.scale(speed / (self._usual_speed * self._scale))
+        return self._usual_speed * self._scale
+
+    def _on_odometry(self, message: Any) -> None:
+        position, q = message.pose.pose.position, message.pose.pose.orientation
+        yaw = atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z))
+        self._odometer.hear(self._now_ns(), position.x, position.y, yaw)
+
+    def _step(self) -> None:
+        if self._drive is None:
+            return
+        now_ns = self._now_ns()
+        seconds = min(max((now_ns - self._at_ns) * 1e-9, 0.0), _LONGEST_STEP)
+        self._at_ns = now_ns
+        if self._left is None:
+            self._publish(1.0)
+            return
+        rate = self._rate()
+        measured = self._odometer.take(self._kind) if self._odometer.is_fresh(now_ns) else None
+        done = seconds if self._kind == "duration" else rate * self._part * seconds if measured is None else measured
+        self._left -= done
+        if self._left <= _CLOSE.get(self._kind, 0.0):
+            self._finish("done")
+        elif self._kind != "duration" and now_ns > self._limit_ns:
+            self._finish("stuck")
+        else:
+            self._publish(1.0 if self._kind == "duration" else min(1.0, max(_GAIN * self._left / rate, _SLOWEST)))
+
+    def _finish(self, ending: Ending) -> None:
+        self.stop()
+        self._ended(ending)
+
+    def _rate(self) -> float:
+        """How much of the distance or angle a second takes."""
+        assert self._drive is not None, "it drives"
+        if self._kind == "angle":
+            return abs(self._drive.turn) * self._turn_speed * self._scale
+        return hypot(self._drive.x, self._drive.y) * self._speed * self._scale
+
+    def _expected(self) -> float:
+        """Seconds that a distance or angle takes."""
+        return self._left / self._rate() if self._left is not None and self._kind != "duration" else 0.0
+
+    def _publish(self, part: float) -> None:
+        """Publish a part of the velocity."""
+        assert self._drive is not None, "it drives"
+        self._part = part
+        speed, turn = part * self._speed * self._scale, part * self._turn_speed * self._scale
+        self._topic.publish((self._drive.x * speed, self._drive.y * speed, 0.0), (0.0, 0.0, self._drive.turn * turn))
+
+    def _now_ns(self) -> int:
+        return self._node.get_clock().now().nanoseconds
+
+
+class _Odometer:
+    """The way since it was last looked at."""
+
+    def __init__(self) -> None:
+        self._heard_ns: int | None = None
+        self._pose: tuple[float, float, float] | None = None
+        self._way = {"distance": 0.0, "angle": 0.0}
+
+    def hear(self, now_ns: int, x: float, y: float, yaw: float) -> None:
+        if self._pose is not None:
+            self._way["distance"] += hypot(x - self._pose[0], y - self._pose[1])
+            self._way["angle"] += abs((yaw - self._pose[2] + pi) % tau - pi)
+        self._heard_ns, self._pose = now_ns, (x, y, yaw)
+
+    def is_fresh(self, now_ns: int) -> bool:
+        return self._heard_ns is not None and 0 <= now_ns - self._heard_ns < _FRESH * 1e9
+
+    def take(self, kind: str) -> float:
+        way = self._way.get(kind, 0.0)
+        self._way = {"distance": 0.0, "angle": 0.0}
+        return way

@@ -1,0 +1,87 @@
+"""An engine in a thread of its own: sound goes in, and what was heard comes back to the node."""
+
+from __future__ import annotations
+
+import threading
+from collections import deque
+from collections.abc import Callable
+from queue import SimpleQueue
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
+from linkwright.graph import Node
+from linkwright.speech.engine import Heard, SpeechEngine
+from linkwright.speech.sound.samples import Samples
+
+_MOST_WAITING = 100
+"""Blocks: an engine that is 10 s behind hears nothing new until it has caught up."""
+
+
+class Listener:
+    """Hands sound to an engine.
+
+    Args:
+        node: whose callbacks `heard` and `failed` are.
+        make: makes the engine, in the thread; it may take seconds.
+        heard: takes what was heard.
+        failed: takes the error that the engine ended with.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        make: Callable[[], SpeechEngine],
+        heard: Callable[[Heard], None],
+        failed: Callable[[LinkwrightError], None],
+    ) -> None:
+        self._make, self._heard, self._failed = make, heard, failed
+        self._sound: SimpleQueue[Samples | bool | None] = SimpleQueue()
+        self._found: deque[Heard | LinkwrightError] = deque()
+        self._ready = node.create_guard_condition(self._tell)
+        self._thread = threading.Thread(target=self._run, name="speech engine", daemon=True)
+        self._thread.start()
+
+    def hear(self, samples: Samples) -> bool:
+        """Take a block of sound; whether the engine keeps up, else it is dropped."""
+        if self._sound.qsize() >= _MOST_WAITING:
+            return False
+        self._sound.put(samples)
+        return True
+
+    def finish(self) -> None:
+        """The utterance has ended."""
+        self._sound.put(True)
+
+    def close(self) -> None:
+        """End the engine."""
+        self._sound.put(None)
+        self._thread.join()
+
+    def _run(self) -> None:
+        try:
+            self._serve()
+        except LinkwrightError as error:
+            self._pass(error)
+        except Exception as error:
+            message = phrase("the speech engine failed: {problem}", problem=foreign(f"{type(error).__name__}: {error}"))
+            self._pass(LinkwrightError(Diagnostic("VOICE307", message)))
+
+    def _serve(self) -> None:
+        engine = self._make()
+        try:
+            while (block := self._sound.get()) is not None:
+                for heard in engine.finish() if isinstance(block, bool) else engine.hear(block):
+                    self._pass(heard)
+        finally:
+            engine.close()
+
+    def _pass(self, found: Heard | LinkwrightError) -> None:
+        self._found.append(found)
+        self._ready.trigger()
+
+    def _tell(self) -> None:
+        while self._found:
+            found = self._found.popleft()
+            if isinstance(found, LinkwrightError):
+                self._failed(found)
+            else:
+                self._heard(found)

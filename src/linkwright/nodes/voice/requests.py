@@ -1,0 +1,235 @@
+"""What commands ask of others: goals of actions, services, messages, launch files."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+import threading
+from collections.abc import Callable
+from functools import partial
+from math import cos, sin
+from typing import Any
+
+from linkwright.graph import ActionClient, Node, Publisher
+from linkwright.graph.actions.goal import GoalStatus
+from linkwright.messages import get_action, get_message, get_service, set_fields
+from linkwright.packages.programs.child_python import python_command
+from linkwright.speech.commands.actions import CallService, GoTo, Launch, Publish, SendGoal, Values, filled, shown
+from linkwright.speech.commands.command_set import Place
+
+NAVIGATE = "nav2_msgs/action/NavigateToPose"
+_DEPTH = 10
+_GRACE = 5.0
+"""s for a launch to end by itself."""
+
+
+class Goals:
+    """Goals of one action, of which one at a time is ours.
+
+    Args:
+        node: sends them.
+        type_name: of the action.
+        name: of the action.
+        ended: told whether the goal was reached, and the reason where the server gives one. A goal that was canceled,
+            or whose place another one took, is not told of.
+    """
+
+    def __init__(self, node: Node, type_name: str, name: str, ended: Callable[[bool, str], None]) -> None:
+        self._ended = ended
+        self._client = ActionClient(node, type_name, name)
+        self._cancel_all = node.create_client("action_msgs/srv/CancelGoal", f"{name}/_action/cancel_goal")
+        self._number = 0
+        self._handle: Any = None
+        self.is_active = False
+
+    @property
+    def is_served(self) -> bool:
+        """Whether there is a server."""
+        return self._client.server_is_ready()
+
+    def send(self, goal: Any) -> None:
+        """Send a goal in place of the one before."""
+        self._number += 1
+        self.is_active = True
+        self._client.send_goal_async(goal).add_done_callback(partial(self._accepted, self._number))
+
+    def leave(self) -> None:
+        """Have our goal canceled."""
+        handle, self._handle = self._handle, None
+        self._number += 1
+        if self.is_active and handle is not None:
+            handle.cancel_goal_async()
+        self.is_active = False
+
+    def cancel_all(self) -> None:
+        """Have all goals of the action canceled, whoever sent them."""
+        self.leave()
+        if self._cancel_all.service_is_ready():
+            self._cancel_all.call_async(self._cancel_all.srv_type.Request())
+
+    def _accepted(self, number: int, future: Any) -> None:
+        handle = future.result()
+        if number != self._number:
+            if handle.accepted and not self.is_active:
+                handle.cancel_goal_async()
+        elif handle.accepted:
+            self._handle = handle
+            handle.get_result_async().add_done_callback(partial(self._done, number))
+        else:
+            self._end(False, "")
+
+    def _done(self, number: int, future: Any) -> None:
+        if number == self._number:
+            answer = future.result()
+            self._end(answer.status == GoalStatus.SUCCEEDED, getattr(answer.result, "error_msg", ""))
+
+    def _end(self, reached: bool, reason: str) -> None:
+        self._handle, self.is_active = None, False
+        self._ended(reached, reason)
+
+
+def pose_goal(node: Node, place: Place) -> Any:
+    """The goal that sends a robot to a place."""
+    goal = get_action(NAVIGATE).Goal()
+    goal.pose.header.frame_id = place.frame
+    goal.pose.header.stamp = node.get_clock().now().to_msg()
+    goal.pose.pose.position.x, goal.pose.pose.position.y = place.x, place.y
+    goal.pose.pose.orientation.z, goal.pose.pose.orientation.w = sin(place.yaw / 2), cos(place.yaw / 2)
+    return goal
+
+
+class Requests:
+    """Clients and publishers for all that some commands ask of others.
+
+    Args:
+        node: asks.
+        ended: called when a goal is over; see `Goals`.
+        said: called with the ``message`` of a service's answer.
+    """
+
+    def __init__(self, node: Node, ended: Callable[[bool, str], None], said: Callable[[str], None]) -> None:
+        self._node, self._ended, self._said = node, ended, said
+        self._goals: dict[str, Goals] = {}
+        self._clients: dict[str, Any] = {}
+        self._publishers: dict[str, Publisher[Any]] = {}
+        self._launched: subprocess.Popen[bytes] | None = None
+        self._ending: threading.Thread | None = None
+
+    @property
+    def is_active(self) -> bool:
+        """Whether a goal or a launch file of ours goes on."""
+        return self._is_launched or any(goals.is_active for goals in self._goals.values())
+
+    def prepare(self, action: object) -> None:
+        """Have what an action needs, so that it is connected when it is wanted."""
+        if isinstance(action, GoTo):
+            self._goals.setdefault(action.action, Goals(self._node, NAVIGATE, action.action, self._ended))
+        elif isinstance(action, SendGoal) and action.action not in self._goals:
+            self._goals[action.action] = Goals(self._node, action.type_name, action.action, self._ended)
+        elif isinstance(action, CallService) and action.name not in self._clients:
+            self._clients[action.name] = self._node.create_client(get_service(action.type_name), action.name)
+        elif isinstance(action, Publish) and action.topic not in self._publishers:
+            kind = get_message(action.type_name)
+            self._publishers[action.topic] = self._node.create_publisher(kind, action.topic, _DEPTH)
+
+    def send_pose(self, action: str, place: Place) -> bool:
+        """Send the robot to a place; whether there is a server."""
+        goals = self._goals[action]
+        if goals.is_served:
+            goals.send(pose_goal(self._node, place))
+            return True
+        return False
+
+    def send_goal(self, action: SendGoal, values: Values) -> bool:
+        """Send a goal; whether there is a server."""
+        goals = self._goals[action.action]
+        if not goals.is_served:
+            return False
+        goal = get_action(action.type_name).Goal()
+        self._fill(goal, filled(action.goal, values))
+        goals.send(goal)
+        return True
+
+    def call(self, action: CallService, values: Values) -> bool:
+        """Call a service; whether there is a server."""
+        client = self._clients[action.name]
+        if not client.service_is_ready():
+            return False
+        request = client.srv_type.Request()
+        self._fill(request, filled(action.request, values))
+        client.call_async(request).add_done_callback(self._answered)
+        return True
+
+    def publish(self, action: Publish, values: Values) -> None:
+        """Publish a message."""
+        publisher = self._publishers[action.topic]
+        message = publisher.msg_type()
+        self._fill(message, filled(action.message, values))
+        publisher.publish(message)
+
+    def launch(self, action: Launch, values: Values) -> None:
+        """Start a launch file in a process of its own, in place of the one before."""
+        self._end_launch()
+        words = [f"{name}:={_word(value)}" for name, value in filled(action.arguments, values).items()]
+        command = python_command(["-m", "linkwright", "launch", action.package, action.file, *words])
+        self._launched = subprocess.Popen(command, stdin=subprocess.DEVNULL)  # noqa: S603 - fixed words, no shell
+
+    def leave(self, but: str = "") -> None:
+        """End our goals, but those of one action, and our launch file."""
+        for name, goals in self._goals.items():
+            if name != but:
+                goals.leave()
+        self._end_launch()
+
+    def cancel_all(self) -> None:
+        """End our launch file, and all goals of the actions that commands know, whoever sent them."""
+        for goals in self._goals.values():
+            goals.cancel_all()
+        self._end_launch()
+
+    def close(self) -> None:
+        """End what goes on, and wait for it."""
+        self.leave()
+        if self._ending is not None:
+            self._ending.join()
+
+    @property
+    def _is_launched(self) -> bool:
+        return self._launched is not None and self._launched.poll() is None
+
+    def _end_launch(self) -> None:
+        """Interrupt the launch file; it is not waited for here."""
+        launched, self._launched = self._launched, None
+        if launched is None or launched.poll() is not None:
+            return
+        if sys.platform == "win32":
+            launched.terminate()
+        else:
+            launched.send_signal(signal.SIGINT)
+        self._ending = threading.Thread(target=_see_end, args=(launched,), daemon=True)
+        self._ending.start()
+
+    def _fill(self, message: Any, values: Any) -> None:
+        stamp = self._node.get_clock().now().to_msg()
+        for set_stamp in set_fields(message, values, expand_header_auto=True, expand_time_now=True):
+            set_stamp(stamp)
+
+    def _answered(self, future: Any) -> None:
+        text = getattr(future.result(), "message", "")
+        if text and isinstance(text, str):
+            self._said(text)
+
+
+def _word(value: Any) -> str:
+    """A value of a launch argument as it is typed."""
+    return str(value).lower() if isinstance(value, bool) else shown(value)
+
+
+def _see_end(launched: subprocess.Popen[bytes]) -> None:
+    """Wait for a launch file that was interrupted to end, and make it end where it does not."""
+    try:
+        launched.wait(_GRACE)
+    except subprocess.TimeoutExpired:
+        launched.kill()
+        launched.wait()

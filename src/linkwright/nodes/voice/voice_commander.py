@@ -1,0 +1,251 @@
+"""voice_commander of my_robot_voice: what is said becomes velocities, goals, services and messages.
+
+Sound comes as ``audio/audio_stamped``, is recognised by an engine of `linkwright.speech`, and means what the file of
+commands says. It counts while ``voice/listen`` says that a button is held, or always with ``open_listening``.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+from linkwright.diagnostics import LinkwrightError, phrase
+from linkwright.diagnostics.translation import localized
+from linkwright.graph import Clock, ClockType, Graph, ParameterType, Publisher, Subscription
+from linkwright.graph.endpoints.commander import Commander
+from linkwright.graph.endpoints.info import EndpointInfo
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.settings import bad_value, positive, tell_unknown
+from linkwright.nodes.velocity_topic import VelocityTopic
+from linkwright.nodes.voice.audio_messages import (
+    AUDIO_DEPTH,
+    AUDIO_INFO,
+    AUDIO_STAMPED,
+    INFO_QOS,
+    AudioForm,
+    AudioReader,
+)
+from linkwright.nodes.voice.conversation import Conversation
+from linkwright.nodes.voice.driving import Driver, Ending
+from linkwright.nodes.voice.listening import Listener
+from linkwright.nodes.voice.requests import Requests
+from linkwright.speech.commands.command_file import DEFAULT_FILE, read_command_file
+from linkwright.speech.engine import EngineOptions, Heard, make_engine
+
+_DEPTH = 10
+_LOOK_SECONDS = 0.5
+_STRING = "std_msgs/msg/String"
+_BOOL = "std_msgs/msg/Bool"
+_SAID = ("text", "partial_text", "command", "response")
+
+
+class VoiceCommander(SingleNode):
+    """The running node.
+
+    Parameters: ``engine`` (empty: only texts are taken), ``language``, ``model``, ``words_file`` (of the engine
+    ``enrolled``), ``commands_file``, ``confidence`` (0 to 1: what is less certain is not done), ``open_listening``,
+    ``speed`` (m/s), ``turn_speed`` (rad/s), ``silence_timeout`` (s after which a robot that drives without an end
+    stands still, when nobody says anything), ``confirmation_timeout`` (s), ``stamped`` (not set: what the subscribers
+    of ``cmd_vel`` take), ``frame_id``.
+
+    A stop is done at once, from what the engine has heard so far, however uncertain, while a button is held or the
+    robot moves.
+
+    Raises:
+        LinkwrightError: VOICE301 to VOICE306, the file of commands; NODE433, a parameter cannot have its value.
+    """
+
+    DEFAULT_NAME = "voice_commander"
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
+        self.finished: asyncio.Future[int] = asyncio.get_running_loop().create_future()
+        self._listener: Listener | None = None
+        self._held = False
+        self._spoken = False
+        self._stopped: float | None = None
+        with starting(self._node):
+            self._start()
+
+    def close(self) -> None:
+        """Leave a robot that stands still."""
+        if self._listener is not None:
+            self._listener.close()
+        if self._conversation.is_busy:
+            self._driver.stop()
+        self._requests.close()
+        self._topic.close()
+        super().close()
+
+    def _start(self) -> None:
+        node = self._node
+        engine: str = node.declare_parameter("engine", "enrolled").value
+        language: str = node.declare_parameter("language", "en").value
+        model: str = node.declare_parameter("model", "").value
+        words: str = node.declare_parameter("words_file", "").value
+        file: str = node.declare_parameter("commands_file", "").value
+        self._confidence: float = node.declare_parameter("confidence", 0.6).value
+        if not 0.0 <= self._confidence <= 1.0:
+            raise bad_value("confidence", self._confidence, node.get_name())
+        self._open: bool = node.declare_parameter("open_listening", False).value
+        speed, turn_speed = self._positive("speed", 0.2), self._positive("turn_speed", 0.6)
+        silence, patience = self._positive("silence_timeout", 10.0), self._positive("confirmation_timeout", 10.0)
+        stamped: bool | None = node.declare_parameter("stamped", ParameterType.BOOL).value
+        frame_id: str = node.declare_parameter("frame_id", "").value
+        tell_unknown(node)
+
+        commands = read_command_file(Path(file) if file else DEFAULT_FILE)
+        said: dict[str, Publisher[Any]] = {
+            name: node.create_publisher(_STRING, f"voice/{name}", _DEPTH) for name in _SAID
+        }
+        self._said = {name: lambda text, to=each: to.publish(to.msg_type(data=text)) for name, each in said.items()}
+        self._topic = VelocityTopic(node, "cmd_vel", stamped, frame_id)
+        self._driver = Driver(node, self._topic, speed, turn_speed, self._drive_ended)
+        self._requests = Requests(node, self._goal_ended, self._said["response"])
+        self._conversation = Conversation(
+            node,
+            commands,
+            "zh" if language.startswith("zh") else "en",
+            self._driver,
+            self._requests,
+            patience,
+            self._said["command"],
+            self._said["response"],
+        )
+        self._commands = commands
+        self._take_texts()
+        # Silence may not wait for simulated time, which may stand still.
+        clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=node.get_clock().timebase)
+        self._silence = node.create_timer(silence, self._silent, clock=clock, autostart=False)
+        if engine:
+            where = words if engine == "enrolled" and words else model
+            given = EngineOptions(commands.phrases(language), language, Path(where) if where else None)
+            self._listen(lambda: make_engine(engine, given), clock)
+
+    def _positive(self, name: str, default: float) -> float:
+        value: float = self._node.declare_parameter(name, default).value
+        if not isfinite(value):
+            raise bad_value(name, value, self._node.get_name())
+        return positive(self._node, name, value)
+
+    def _take_texts(self) -> None:
+        commander = Commander(self._lost)
+        take = commander.taking(lambda message: self._take(message.data, by_voice=False))
+        commander.watch(self._node.create_subscription(_STRING, "voice/text_input", take, _DEPTH))
+
+    # --- listening -----------------------------------------------------------------------------------------------
+
+    def _listen(self, make: Any, clock: Clock) -> None:
+        node = self._node
+        self._listener = Listener(node, make, self._heard, self._failed)
+        self._reader = AudioReader()
+        node.create_subscription(AUDIO_INFO, "audio/audio_info", self._on_info, INFO_QOS)
+        self._audio: Subscription[Any] = node.create_subscription(
+            AUDIO_STAMPED, "audio/audio_stamped", self._on_audio, AUDIO_DEPTH
+        )
+        self._audio.watch_lost(lambda _: self._deaf())
+        button: Subscription[Any] = node.create_subscription(
+            _BOOL, "voice/listen", lambda message: self._on_listen(message.data), _DEPTH
+        )
+        button.watch_lost(lambda _: self._on_listen(False))
+        node.create_timer(_LOOK_SECONDS, self._look, clock=clock)
+
+    def _on_info(self, info: Any) -> None:
+        try:
+            form = AudioForm.of(info)
+        except LinkwrightError as error:
+            self._node.get_logger().error(error.diagnostics[0].message)
+            return
+        if form != self._reader.form:
+            self._reader = AudioReader(form)
+
+    def _on_audio(self, message: Any) -> None:
+        if not (self._held or self._open) or self._listener is None:
+            return
+        samples = self._reader.read(message.audio.data)
+        if not self._listener.hear(samples):
+            self._node.get_logger().warning(
+                phrase("the speech engine is too slow for this machine: sound is left out"), throttle_duration_sec=5.0
+            )
+
+    def _on_listen(self, held: bool) -> None:
+        if self._held and not held and self._listener is not None:
+            self._listener.finish()
+        self._held = held
+
+    def _heard(self, heard: Heard) -> None:
+        if not heard.final:
+            self._said["partial_text"](heard.text)
+            if self._commands.is_stop(heard.text) and (self._held or self._conversation.is_busy):
+                self._stop_early(heard)
+            return
+        self._said["text"](heard.text)
+        stopped, self._stopped = self._stopped == heard.start, None
+        if stopped and self._commands.is_stop(heard.text):
+            return
+        is_certain = heard.confidence >= self._confidence
+        if is_certain and self._take(heard.text, by_voice=True):
+            return
+        if self._commands.is_stop(heard.text) and (self._held or self._conversation.is_busy):
+            self._conversation.stop(heard.text)
+
+    def _stop_early(self, heard: Heard) -> None:
+        """Stop from what was heard so far, unless it is another command in which that word is."""
+        if self._stopped == heard.start or self._commands.is_other(heard.text):
+            return
+        self._stopped = heard.start
+        self._conversation.stop(heard.text)
+
+    def _failed(self, error: LinkwrightError) -> None:
+        finding = error.diagnostics[0]
+        logger = self._node.get_logger()
+        logger.fatal(finding.message)
+        if finding.hint:
+            logger.fatal(finding.hint)
+        self._conversation.stop()
+        if not self.finished.done():
+            self.finished.set_result(1)
+
+    def _drive_ended(self, ending: Ending) -> None:
+        self._conversation.drive_ended(ending)
+
+    def _goal_ended(self, reached: bool, reason: str) -> None:
+        self._conversation.goal_ended(reached, reason)
+
+    # --- what is said --------------------------------------------------------------------------------------------
+
+    def _take(self, text: str, *, by_voice: bool) -> bool:
+        """Do what a text says; whether it was understood."""
+        if not by_voice:
+            self._said["text"](text)
+        understood = self._conversation.take(text)
+        if understood:
+            self._spoken = by_voice
+            self._silence.reset()
+        elif text and (self._held or not by_voice):
+            self._conversation.answer(phrase("I did not understand '{text}'", text=text))
+        return understood
+
+    def _silent(self) -> None:
+        self._silence.cancel()
+        if self._driver.is_endless:
+            self._conversation.rest(phrase("nobody says anything, so I stop"))
+
+    def _look(self) -> None:
+        """Stop where the source of sound has left while it had the robot drive on."""
+        if self._spoken and self._driver.is_endless and not self._audio.get_publisher_count():
+            self._deaf()
+
+    def _deaf(self) -> None:
+        if self._spoken and self._conversation.is_busy:
+            self._conversation.stop()
+            self._conversation.answer(phrase("I hear nobody any more, so I stop"))
+
+    def _lost(self, publisher: EndpointInfo) -> None:
+        if not self._spoken and self._conversation.is_busy:
+            self._conversation.stop()
+            self._node.get_logger().warning(
+                localized(phrase("who commanded by '{topic}' was lost, so the robot stops", topic=publisher.name))
+            )
