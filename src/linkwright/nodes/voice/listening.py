@@ -61,7 +61,7 @@ class Listener:
             self._serve()
         except LinkwrightError as error:
             self._pass(error)
-        except Exception as error:
+        except Exception as error:  # noqa: BLE001 - of an engine that others may bring
             message = phrase("the speech engine failed: {problem}", problem=foreign(f"{type(error).__name__}: {error}"))
             self._pass(LinkwrightError(Diagnostic("VOICE307", message)))
 
