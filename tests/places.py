@@ -8,6 +8,7 @@ from pathlib import Path
 REPOSITORY = Path(__file__).resolve().parents[1]
 PACKAGE = REPOSITORY / "robots" / "my_robot_description"
 GAZEBO_PACKAGE = REPOSITORY / "robots" / "my_robot_gazebo"
+VOICE_PACKAGE = REPOSITORY / "robots" / "my_robot_voice"
 CONTROL_PACKAGE = REPOSITORY / "robots" / "my_robot_control"
 NAVIGATION_PACKAGE = REPOSITORY / "robots" / "my_robot_navigation"
 PUBLISHED = (REPOSITORY.parent / "shared" / "tutorial" / "my_robot_description").resolve()

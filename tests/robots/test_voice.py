@@ -1,0 +1,70 @@
+"""mbot does what it is told in the playground, with the commands and the launch file of my_robot_voice."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from linkwright.cli import main
+from linkwright.messages import get_message
+from linkwright.nodes import NodeOptions
+from linkwright.nodes.voice.voice_commander import VoiceCommander
+from linkwright.speech.commands.command_file import DEFAULT_FILE, read_command_file
+from linkwright.testing import AsyncSteppedSimulation
+from tests.places import GAZEBO_PACKAGE, VOICE_PACKAGE
+
+COMMANDS = VOICE_PACKAGE / "config" / "commands.yaml"
+WORLD = GAZEBO_PACKAGE / "worlds" / "playground.world"
+ROBOT = "package://my_robot_description/urdf/mbot_gazebo.xacro"
+STRING = get_message("std_msgs/msg/String")
+
+
+def test_the_commands_are_the_built_in_ones_with_the_rooms_of_the_house():
+    built_in, ours = read_command_file(DEFAULT_FILE), read_command_file(COMMANDS)
+    assert ours.commands == built_in.commands
+    assert set(ours.places) - set(built_in.places) == {"kitchen", "bedroom", "study"}
+    found = ours.understand("go to the kitchen")
+    assert found is not None
+    assert found.values == {"place": "kitchen"}
+    assert "去厨房" in ours.phrases("zh")
+
+
+def test_the_program_for_ros_2_is_the_node_of_this_name():
+    assert "'voice_commander = my_robot_voice.voice_commander:main'" in (VOICE_PACKAGE / "setup.py").read_text()
+    program = (VOICE_PACKAGE / "my_robot_voice" / "voice_commander.py").read_text()
+    assert "run('my_robot_voice', 'voice_commander', sys.argv[1:])" in program
+
+
+def test_the_launch_file_has_its_arguments(capsys):
+    assert main(["launch", "my_robot_voice", "voice.launch.py", "--show-args"]) == 0
+    said = capsys.readouterr().out
+    for argument in ("engine", "language", "words_file", "commands_file", "open_listening", "wav", "navigation"):
+        assert f"'{argument}':\n" in said
+
+
+async def test_mbot_is_driven_through_the_playground():
+    pytest.importorskip("mujoco")
+    async with AsyncSteppedSimulation(WORLD, ROBOT, period=0.02) as playground:
+        given = {"engine": "", "commands_file": str(COMMANDS), "use_sim_time": True}
+        running = VoiceCommander(playground.graph, NodeOptions(parameters=given))
+        text = playground.node.create_publisher(STRING, "/voice/text_input", 10)
+
+        async def tell(command, seconds):
+            text.publish(STRING(data=command))
+            await playground.advance(seconds)
+            x, y, _, _, _, z, w = playground.robot_pose()
+            return x, y, 2.0 * math.atan2(z, w)
+
+        await playground.advance(1.0)
+        assert (await tell("前进一米", 8.0))[:2] == pytest.approx((1.0, 0.0), abs=0.02)
+        assert (await tell("turn left ninety degrees", 5.0))[2] == pytest.approx(math.pi / 2, abs=0.03)
+        assert (await tell("forward", 2.0))[1] > 0.2
+        x, y, _ = await tell("停", 1.0)
+        assert (await tell("加速", 2.0))[:2] == pytest.approx((x, y), abs=0.01)
+        assert (await tell("后退半米", 5.0))[1] == pytest.approx(y - 0.5, abs=0.03)
+        running.close()
+
+
+def test_nothing_is_found_in_the_package(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", "--strict", str(VOICE_PACKAGE)]) == 0, capsys.readouterr().out
