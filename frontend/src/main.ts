@@ -11,6 +11,7 @@ import "./styles/description.css";
 import "./styles/monitor.css";
 import "./styles/plots.css";
 import "./styles/modelling.css";
+import "./styles/voice.css";
 import { Connection, socketUrl } from "./connection/connection";
 import { Tokens, type AddressBar } from "./connection/tokens";
 import { h } from "./dom";
@@ -38,9 +39,11 @@ import { TimePanel } from "./panels/time-panel";
 import { ToolPropertiesPanel } from "./panels/tool-properties-panel";
 import { TransformationPanel } from "./panels/transformation-panel";
 import { ViewsPanel } from "./panels/views-panel";
+import { takeTalkKey } from "./panels/voice/talk-button";
+import { VoicePanel } from "./panels/voice/voice-panel";
 import { Controls } from "./scene/controls";
 import { JointDrag } from "./scene/joint-drag";
-import { Keyboard } from "./scene/keyboard";
+import { Keyboard, TAKES_LETTERS } from "./scene/keyboard";
 import type { PanelHost } from "./scene/displays/display-panel";
 import type { Modeller } from "./scene/modelling/modeller";
 import { Stage } from "./scene/stage";
@@ -95,6 +98,7 @@ function start(app: HTMLElement): void {
     new JointTablePanel(session),
     new DiagnosticsPanel(session),
     new WorldPanel(session.modelling, session.angles, commands),
+    new VoicePanel(session.voice),
     ...livePanels(session.monitor, (id) => dock.open(id)),
   ], new Layouts(browserStorage()));
   keepCurrent(dock, session);
@@ -119,10 +123,12 @@ function start(app: HTMLElement): void {
     const typing = event.target instanceof HTMLInputElement || event.target instanceof HTMLTextAreaElement;
     if (event.key === "?" && !typing) sheet.toggle();
   });
+  takeTalkKey(session.voice, TAKES_LETTERS);
   publishInspection(session, stage, toolbox, {
     source: () => source.inspect(),
     diagram: () => diagram.inspect(),
     monitor: () => session.monitor.inspect(),
+    voice: () => session.voice.inspect(),
   });
 }
 

@@ -74,19 +74,26 @@ def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, pytest.TestR
     return report
 
 
+@contextlib.contextmanager
+def launched(*flags: str) -> Iterator[Browser]:
+    """A browser with more flags than the usual ones."""
+    path = os.environ.get("LINKWRIGHT_CHROMIUM") or shutil.which("chromium")
+    if path is None:
+        pytest.fail("no Chromium: `make test` fetches one, or set LINKWRIGHT_CHROMIUM")
+    with sync_playwright() as playwright:
+        started = playwright.chromium.launch(executable_path=path, args=[*_FLAGS, *flags])
+        yield started
+        started.close()
+
+
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Browser]:
     """One browser for a module, drawing in software.
 
     Not for the session: as long as it lives Playwright keeps an event loop running, which asyncio tests must not meet.
     """
-    path = os.environ.get("LINKWRIGHT_CHROMIUM") or shutil.which("chromium")
-    if path is None:
-        pytest.fail("no Chromium: `make test` fetches one, or set LINKWRIGHT_CHROMIUM")
-    with sync_playwright() as playwright:
-        launched = playwright.chromium.launch(executable_path=path, args=list(_FLAGS))
-        yield launched
-        launched.close()
+    with launched() as started:
+        yield started
 
 
 @dataclass

@@ -90,6 +90,11 @@ export class Connection {
     if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
   }
 
+  /** Sends a binary frame, likewise. */
+  sendBytes(frame: ArrayBuffer): void {
+    if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(frame);
+  }
+
   private receive(data: string | ArrayBuffer): void {
     this.receivedCount += 1;
     const length = typeof data === "string" ? data.length : data.byteLength;

@@ -82,8 +82,19 @@ const HOMES: Readonly<Record<PanelId, Home>> = {
   graph: LIVE_HOME,
   parameters: LIVE_HOME,
   log: LIVE_HOME,
+  voice: {
+    beside: [
+      ["teleop", "within"],
+      ["joints", "within"],
+      ["diagnostics", "within"],
+      ["views", "below"],
+      ["scene", "right"],
+    ],
+    width: 290,
+  },
   teleop: {
     beside: [
+      ["voice", "within"],
       ["joints", "within"],
       ["diagnostics", "within"],
       ["views", "below"],

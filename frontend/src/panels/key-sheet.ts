@@ -6,6 +6,7 @@ import type { ToolsState } from "../state/tools";
 import { strings } from "../strings";
 import { WORLD_KEYS } from "./modelling/world-commands";
 import { toolName } from "./toolbar";
+import { TALK_KEY } from "./voice/talk-button";
 
 type Row = readonly [keys: string, meaning: string];
 
@@ -98,6 +99,7 @@ export class KeySheet {
           [keyText(SHORTCUTS.undo), shell.undo],
           [keyText(SHORTCUTS.redo), shell.redo],
           ["R", words.resetTime],
+          [TALK_KEY.toUpperCase(), strings.voice.talkKey],
           ["F11", words.fullscreen],
           ["?", words.sheet],
         ],

@@ -12,6 +12,8 @@ import { showSceneMenus } from "./scene-menu";
 import { SimulationBar } from "./simulation-bar";
 import { SelectionCard } from "./selection-card";
 import { Toolbar } from "./toolbar";
+import { talkButton } from "./voice/talk-button";
+import { VoiceNotice } from "./voice/voice-notice";
 
 /** The 3-D view and what lies over it. */
 export class ScenePanel implements Panel {
@@ -25,7 +27,7 @@ export class ScenePanel implements Panel {
   private readonly waiting = h("div", { class: "waiting" }, h("span", { class: "pulse" }), strings.scene.waiting);
 
   constructor(session: Session, commands: WorldCommands, showDiagnostics: () => void, showKeys: () => void) {
-    const toolbar = new Toolbar(session.tools, showKeys);
+    const toolbar = new Toolbar(session.tools, showKeys, talkButton(session.voice, "scene-tool small talk"));
     const banner = new DiagnosticsBanner(session, showDiagnostics);
     const notice = new ConnectionNotice(session.connection);
     const card = new SelectionCard(session);
@@ -35,7 +37,7 @@ export class ScenePanel implements Panel {
       "div",
       { class: "scene-box" },
       this.container,
-      h("div", { class: "overlay" }, h("div", { class: "notices" }, new SimulationBar(session.simulation, session.modelling, commands).element, notice.element, banner.element), this.waiting, h("div", { class: "corner" }, new LineNotice(session).element, card.element), inspect.element, sign.element),
+      h("div", { class: "overlay" }, h("div", { class: "notices" }, new SimulationBar(session.simulation, session.modelling, commands).element, notice.element, banner.element), this.waiting, h("div", { class: "corner" }, new LineNotice(session).element, new VoiceNotice(session.voice).element, card.element), inspect.element, sign.element),
     );
     showSceneMenus(this.box, session.sceneMenu);
     this.element = h("div", { class: "scene-panel" }, toolbar.element, this.box);

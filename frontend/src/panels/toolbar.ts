@@ -19,6 +19,8 @@ export class Toolbar {
   constructor(
     private readonly tools: ToolsState,
     private readonly showKeys: () => void,
+    /** What stands right of the tools. */
+    private readonly talk: HTMLElement,
   ) {
     tools.listChanged.on(() => this.build());
     tools.currentChanged.on(() => this.mark());
@@ -46,7 +48,7 @@ export class Toolbar {
     remove.disabled = tools.tools.length === 0;
     for (const each of [add, remove]) each.setAttribute("aria-haspopup", "menu");
     const help = button(words.help, this.showKeys, "scene-tool small", icon("keys"));
-    this.element.replaceChildren(...this.buttons.values(), add, remove, h("span", { class: "spacer" }), help);
+    this.element.replaceChildren(...this.buttons.values(), add, remove, h("span", { class: "spacer" }), this.talk, help);
     this.mark();
   }
 

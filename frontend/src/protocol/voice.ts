@@ -2,6 +2,8 @@
 
 export const SOUND_KIND = 5;
 
+export const SOUND_RATE = 16000;
+
 export const MOST_SAMPLES = 1600;
 
 /** What is heard and answered is to be sent, or no longer. */

@@ -5,7 +5,7 @@ import { TOOLS } from "./tools/catalog";
 import type { Toolbox } from "./tools/toolbox";
 
 /** Where a letter is text, or chooses among things. */
-const TAKES_LETTERS = "input:not([type=checkbox]):not([type=range]):not([type=button]), textarea, select, [contenteditable], [role=menu], [role=listbox], dialog";
+export const TAKES_LETTERS = "input:not([type=checkbox]):not([type=range]):not([type=button]), textarea, select, [contenteditable], [role=menu], [role=listbox], dialog";
 
 /** RViz's keys for tools and views: they work wherever no text is being typed. */
 export class Keyboard {

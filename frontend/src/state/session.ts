@@ -21,6 +21,7 @@ import { browserStorage } from "./storage";
 import { TimeControlState } from "./time";
 import { ToolsState } from "./tools";
 import { ViewState } from "./view";
+import { VoiceState } from "./voice/voice";
 
 /** Everything the page knows, kept current from the server's messages. Panels and drawings listen to its parts. */
 export class Session {
@@ -51,6 +52,7 @@ export class Session {
   readonly poses = new PoseStore(browserStorage());
   readonly angles = new AngleUnits(browserStorage());
   readonly monitor: MonitorState;
+  readonly voice: VoiceState;
   diagnostics: readonly DiagnosticItem[] = [];
 
   constructor(readonly connection: Connection) {
@@ -65,6 +67,7 @@ export class Session {
     this.joints = new JointsState(connection);
     this.description = new DescriptionState(connection);
     this.monitor = new MonitorState(connection, browserStorage());
+    this.voice = new VoiceState(connection, browserStorage());
     this.listen(connection);
     const followFixedFrame = (): void => {
       this.frames.fixedFrame = this.displays.fixedFrame;

@@ -7,6 +7,7 @@ import { monitor } from "./en/monitor";
 import { tools } from "./en/tools";
 import { sharing } from "./en/sharing";
 import { simulation } from "./en/simulation";
+import { voice } from "./en/voice";
 
 /** Every word of the page that does not come from the server. */
 export const en = {
@@ -20,11 +21,13 @@ export const en = {
     joints: "Joints",
     diagnostics: "Diagnostics",
     world: modelling.panel,
+    voice: voice.panel,
   },
   shell,
   sharing,
   simulation,
   modelling,
+  voice,
   details,
   displays,
   tree: {

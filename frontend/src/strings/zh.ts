@@ -8,15 +8,17 @@ import { monitor } from "./zh/monitor";
 import { tools } from "./zh/tools";
 import { sharing } from "./zh/sharing";
 import { simulation } from "./zh/simulation";
+import { voice } from "./zh/voice";
 
 /** 简体中文 */
 export const zh: Strings = {
   panels: { ...description.panels,
-    ...tools.panels, ...monitor.panels, displays: "显示", scene: "三维视图", views: "视角", joints: "关节", diagnostics: "诊断", world: modelling.panel },
+    ...tools.panels, ...monitor.panels, displays: "显示", scene: "三维视图", views: "视角", joints: "关节", diagnostics: "诊断", world: modelling.panel, voice: voice.panel },
   shell,
   sharing,
   simulation,
   modelling,
+  voice,
   details,
   displays,
   tree: {

@@ -4,19 +4,25 @@ from __future__ import annotations
 
 from typing import Any
 
-from linkwright.graph import DurabilityPolicy, Node, Publisher, QoSProfile
-from linkwright.messages import get_message
+from linkwright.graph import Duration, Node, Publisher
+from linkwright.nodes.voice.audio_messages import (
+    AUDIO,
+    AUDIO_DEPTH,
+    AUDIO_INFO,
+    AUDIO_STAMPED,
+    INFO_QOS,
+    AudioForm,
+    audio_data,
+    audio_info,
+    audio_stamped,
+)
 from linkwright.speech.sound.samples import RATE, Samples
 
 NAMESPACE = "/audio"
-_DEPTH = 10
-_BITS = 16
 
 
 class AudioTopics:
-    """The topics ``audio``, ``audio_stamped`` and ``audio_info`` of a source of sound.
-
-    Sound is mono PCM of 16 bits at 16 kHz, which ``audio_info`` says once to whoever comes, format ``wave``.
+    """The topics ``audio``, ``audio_stamped`` and ``audio_info`` of a source of sound: mono PCM of 16 bits at 16 kHz.
 
     Args:
         node: who publishes.
@@ -25,28 +31,17 @@ class AudioTopics:
 
     def __init__(self, node: Node, namespace: str = NAMESPACE) -> None:
         self._node = node
-        self._plain: Publisher[Any] = node.create_publisher(
-            "audio_common_msgs/msg/AudioData", f"{namespace}/audio", _DEPTH
-        )
-        self._stamped: Publisher[Any] = node.create_publisher(
-            "audio_common_msgs/msg/AudioDataStamped", f"{namespace}/audio_stamped", _DEPTH
-        )
-        latched = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-        info = get_message("audio_common_msgs/msg/AudioInfo")
-        self._info = node.create_publisher(info, f"{namespace}/audio_info", latched)
-        self._info.publish(
-            info(
-                channels=1, sample_rate=RATE, sample_format="S16LE", bitrate=_BITS * RATE // 1000, coding_format="wave"
-            )
-        )
+        self._plain: Publisher[Any] = node.create_publisher(AUDIO, f"{namespace}/audio", AUDIO_DEPTH)
+        self._stamped: Publisher[Any] = node.create_publisher(AUDIO_STAMPED, f"{namespace}/audio_stamped", AUDIO_DEPTH)
+        self._info: Publisher[Any] = node.create_publisher(AUDIO_INFO, f"{namespace}/audio_info", INFO_QOS)
+        self._info.publish(audio_info(AudioForm()))
 
     def publish(self, samples: Samples) -> None:
-        """Publish a block that ends now."""
-        message = self._stamped.msg_type()
-        message.header.stamp = self._node.get_clock().now().to_msg()
-        message.audio.data = samples.astype("<i2").tobytes()
-        self._stamped.publish(message)
-        self._plain.publish(message.audio)
+        """Publish a block whose last sample was heard now."""
+        data = samples.astype("<i2").tobytes()
+        began = self._node.get_clock().now() - Duration(nanoseconds=samples.size * 10**9 // RATE)
+        self._stamped.publish(audio_stamped(data, began.to_msg()))
+        self._plain.publish(audio_data(data))
 
     def close(self) -> None:
         """Leave the topics."""

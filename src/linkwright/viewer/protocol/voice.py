@@ -16,6 +16,9 @@ from numpy.typing import NDArray
 from linkwright.viewer.protocol.message import PageMessage, ServerMessage
 
 SOUND_KIND = 5
+SOUND_RATE = 16_000
+"""Samples a second."""
+
 MOST_SAMPLES = 1600
 """Of one frame."""
 

@@ -1,0 +1,26 @@
+import { h } from "../../dom";
+import { meterPart } from "../../state/voice/level";
+import { strings } from "../../strings";
+
+/** A peak from which on sound is cut off. */
+const LOUD = 0.97;
+
+/** How loud the microphone is. */
+export class LevelMeter {
+  readonly element: HTMLElement;
+  private readonly bar = h("div", { class: "level-bar" });
+
+  constructor(label: string) {
+    this.element = h("div", { class: "level-meter", role: "meter", title: label, aria: { label, valuemin: "0", valuemax: "100" } }, this.bar);
+    this.show(null);
+  }
+
+  /** Shows a peak of 0 to 1; null while there is no microphone. */
+  show(peak: number | null): void {
+    const part = meterPart(peak ?? 0);
+    this.bar.style.width = `${Math.round(100 * part)}%`;
+    this.bar.classList.toggle("clipped", (peak ?? 0) >= LOUD);
+    this.element.setAttribute("aria-valuenow", String(Math.round(100 * part)));
+    this.element.setAttribute("aria-valuetext", peak === null ? strings.voice.levelOff : `${Math.round(100 * part)} %`);
+  }
+}

@@ -1,0 +1,38 @@
+import { h } from "../../dom";
+import { icon } from "../../icons";
+import type { VoiceState } from "../../state/voice/voice";
+import { activity, obstacle } from "./voice-words";
+
+const SHOWN_MS = 7000;
+
+/** Over the scene: that the page listens, what it hears, what came of it, or why it cannot. */
+export class VoiceNotice {
+  readonly element = h("div", { class: "voice-notice", role: "status" });
+  private readonly text = h("span");
+  private timer = 0;
+  private shown = "";
+
+  constructor(private readonly voice: VoiceState) {
+    this.element.append(icon("microphone"), this.text);
+    this.element.hidden = true;
+    voice.changed.on(() => this.show());
+    voice.conversed.on(() => this.show());
+  }
+
+  private show(): void {
+    const { voice } = this;
+    const wrong = obstacle(voice);
+    const busy = voice.held || voice.open;
+    const last = voice.history.at(-1)?.text ?? "";
+    const text = wrong ?? (voice.partial || (busy ? activity(voice) : last));
+    const key = `${String(busy)}${String(wrong !== null)}${text}`;
+    if (key === this.shown) return;
+    this.shown = key;
+    this.text.textContent = text;
+    this.element.classList.toggle("wrong", wrong !== null);
+    this.element.classList.toggle("talking", busy && wrong === null);
+    this.element.hidden = text === "";
+    clearTimeout(this.timer);
+    if (!busy) this.timer = window.setTimeout(() => (this.element.hidden = true), SHOWN_MS);
+  }
+}

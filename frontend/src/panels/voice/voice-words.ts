@@ -1,0 +1,24 @@
+import type { VoiceState } from "../../state/voice/voice";
+import { strings } from "../../strings";
+
+/** What stands in the way of talking, and what to do about it; null when nothing does. */
+export function obstacle(voice: VoiceState): string | null {
+  const words = strings.voice;
+  const { microphone, told, held, open } = voice;
+  if (microphone.problem === "insecure") return words.insecure(location.hostname, location.port || "80");
+  if (microphone.problem === "failed") return words.failed(microphone.detail);
+  if (microphone.problem !== null) return words.problems[microphone.problem];
+  if (told?.cut === true) return words.cut;
+  if (!held && !open) return null;
+  if (told?.talking === "another") return words.another;
+  if (told?.sound_listeners === 0) return words.nobody;
+  return null;
+}
+
+/** What the microphone does. */
+export function activity(voice: VoiceState): string {
+  const words = strings.voice;
+  if (voice.microphone.isOpening) return words.opening;
+  if (voice.held) return words.listening;
+  return voice.open ? words.openListening : words.idle;
+}

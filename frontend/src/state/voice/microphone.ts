@@ -1,0 +1,157 @@
+import { Signal } from "../signal";
+import workletUrl from "./capture-worklet.ts?worker&url";
+
+/**
+ * Why there is no sound. `insecure`: the browser gives microphones only to https and to this machine; `denied`: the user
+ * or a policy forbids it; `none`: there is no microphone; `busy`: another program has it; `lost`: it went away.
+ */
+export type MicrophoneProblem = "insecure" | "denied" | "none" | "busy" | "lost" | "failed";
+
+/** What makes sound of a microphone; tests have one of their own. */
+export interface Capture {
+  /** Has the part of a block that is there delivered; resolves when it is. */
+  flush(): Promise<void>;
+  close(): void;
+}
+
+export type OpenCapture = (block: (samples: Int16Array) => void, lost: () => void) => Promise<Capture>;
+
+/** The browser's microphone: opened when it is asked for first, and closed when nobody needs it. */
+export class Microphone {
+  /** Blocks of a tenth of a second, mono, 16 kHz. */
+  readonly block = new Signal<Int16Array>();
+  readonly changed = new Signal();
+  problem: MicrophoneProblem | null = null;
+  /** What the browser says of a problem of no known kind. */
+  detail = "";
+  /** The loudest sample of the last block, 0 to 1. */
+  peak = 0;
+  private capture: Capture | null = null;
+  private opening: Promise<boolean> | null = null;
+  /** Counts openings: what comes of one that was given up is not taken. */
+  private turn = 0;
+
+  constructor(private readonly openCapture: OpenCapture = openBrowserCapture) {}
+
+  get isOpen(): boolean {
+    return this.capture !== null;
+  }
+
+  /** Whether the user is being asked, or the microphone started. */
+  get isOpening(): boolean {
+    return this.opening !== null;
+  }
+
+  /** Opens it, unless it is open; false when there is a `problem`. */
+  open(): Promise<boolean> {
+    if (this.capture) return Promise.resolve(true);
+    this.problem = null;
+    this.opening ??= this.start();
+    this.changed.emit();
+    return this.opening;
+  }
+
+  /** Has the sound up to now delivered as a block, however short. */
+  async flush(): Promise<void> {
+    await this.capture?.flush();
+  }
+
+  close(): void {
+    this.turn += 1;
+    this.capture?.close();
+    this.capture = null;
+    this.peak = 0;
+    this.changed.emit();
+  }
+
+  private async start(): Promise<boolean> {
+    const turn = ++this.turn;
+    try {
+      const capture = await this.openCapture(
+        (samples) => {
+          if (turn === this.turn) this.take(samples);
+        },
+        () => {
+          if (turn === this.turn) this.fail("lost");
+        },
+      );
+      if (turn !== this.turn) {
+        capture.close();
+        return false;
+      }
+      this.capture = capture;
+      return true;
+    } catch (error) {
+      if (turn === this.turn) this.fail(problemOf(error), error instanceof Error ? error.message : String(error));
+      return false;
+    } finally {
+      this.opening = null;
+      this.changed.emit();
+    }
+  }
+
+  private take(samples: Int16Array): void {
+    this.peak = samples.reduce((most, sample) => Math.max(most, Math.abs(sample)), 0) / 32768;
+    this.block.emit(samples);
+  }
+
+  private fail(problem: MicrophoneProblem, detail = ""): void {
+    this.problem = problem;
+    this.detail = detail;
+    this.close();
+  }
+}
+
+class InsecureError extends Error {}
+
+const PROBLEMS: Readonly<Record<string, MicrophoneProblem>> = {
+  NotAllowedError: "denied",
+  SecurityError: "denied",
+  NotFoundError: "none",
+  OverconstrainedError: "none",
+  NotReadableError: "busy",
+  AbortError: "busy",
+};
+
+function problemOf(error: unknown): MicrophoneProblem {
+  if (error instanceof InsecureError) return "insecure";
+  return (error instanceof Error ? PROBLEMS[error.name] : undefined) ?? "failed";
+}
+
+/** The microphone that the user allows, through an AudioWorklet. */
+async function openBrowserCapture(block: (samples: Int16Array) => void, lost: () => void): Promise<Capture> {
+  // Where the address is no secure one, browsers do not even have the property.
+  const devices = (navigator as Partial<Navigator>).mediaDevices;
+  if (!isSecureContext || !devices) throw new InsecureError("no secure context");
+  const stream = await devices.getUserMedia({
+    audio: { channelCount: 1, echoCancellation: true, noiseSuppression: true, autoGainControl: true },
+  });
+  const tracks = stream.getTracks();
+  const context = new AudioContext();
+  const close = (): void => {
+    for (const track of tracks) track.stop();
+    void context.close();
+  };
+  try {
+    await context.audioWorklet.addModule(workletUrl);
+    await context.resume();
+    const node = new AudioWorkletNode(context, "linkwright-capture", { numberOfOutputs: 0 });
+    let delivered: (() => void)[] = [];
+    node.port.onmessage = ({ data }: MessageEvent<Int16Array>) => {
+      if (data.length > 0) block(data);
+      for (const each of delivered) each();
+      delivered = [];
+    };
+    context.createMediaStreamSource(stream).connect(node);
+    for (const track of tracks) track.addEventListener("ended", lost);
+    const flush = (): Promise<void> =>
+      new Promise((resolve) => {
+        delivered.push(resolve);
+        node.port.postMessage(null);
+      });
+    return { flush, close };
+  } catch (error) {
+    close();
+    throw error;
+  }
+}

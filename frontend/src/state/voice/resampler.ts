@@ -1,0 +1,59 @@
+/** Zero crossings of the sinc on each side. */
+const REACH = 16;
+/** The part of the band that is kept: the filter needs the rest to fall. */
+const BAND = 0.92;
+
+/**
+ * Brings a stream of samples to another rate: each sample of the result is a sum of those around its time, weighted with
+ * a windowed sinc, which also takes away what the new rate cannot carry.
+ */
+export class Resampler {
+  private readonly step: number;
+  private readonly half: number;
+  private readonly cutoff: number;
+  private kept: Float32Array;
+  /** Time of the next sample of the result, in samples of `kept`. */
+  private at: number;
+
+  constructor(from: number, to: number) {
+    this.step = from / to;
+    this.cutoff = BAND * Math.min(1, to / from);
+    this.half = Math.ceil(REACH / this.cutoff);
+    this.kept = new Float32Array(this.half);
+    this.at = this.half;
+  }
+
+  /** The samples that have become known by the next ones of the stream. */
+  take(samples: Float32Array): Float32Array {
+    const all = new Float32Array(this.kept.length + samples.length);
+    all.set(this.kept);
+    all.set(samples, this.kept.length);
+    const count = Math.max(0, Math.ceil((all.length - this.half - this.at) / this.step));
+    const made = new Float32Array(count);
+    for (let i = 0; i < count; i++) made[i] = this.sampleAt(all, this.at + i * this.step);
+    const next = this.at + count * this.step;
+    const drop = Math.min(all.length, Math.max(0, Math.floor(next) - this.half));
+    this.kept = all.slice(drop);
+    this.at = next - drop;
+    return made;
+  }
+
+  private sampleAt(all: Float32Array, at: number): number {
+    const first = Math.max(0, Math.ceil(at - this.half));
+    const last = Math.min(all.length - 1, Math.floor(at + this.half));
+    let sum = 0;
+    for (let i = first; i <= last; i++) sum += (all[i] ?? 0) * this.weight(i - at);
+    return sum;
+  }
+
+  private weight(distance: number): number {
+    const x = Math.PI * this.cutoff * distance;
+    const window = 0.5 + 0.5 * Math.cos((Math.PI * distance) / (this.half + 1));
+    return window * (Math.abs(x) < 1e-9 ? this.cutoff : (this.cutoff * Math.sin(x)) / x);
+  }
+}
+
+/** Samples of -1 to 1 as PCM of 16 bits. */
+export function pcm(samples: Float32Array): Int16Array {
+  return Int16Array.from(samples, (value) => Math.round(Math.max(-1, Math.min(1, value)) * 32767));
+}

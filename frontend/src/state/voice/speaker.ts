@@ -1,0 +1,64 @@
+import { Signal } from "../signal";
+import type { TextStorage } from "../storage";
+
+export interface SpeakerSettings {
+  on: boolean;
+  /** By its address; empty for the browser's choice. */
+  voice: string;
+}
+
+const SAVED_KEY = "linkwright.speaker.1";
+
+/** Reads answers aloud, with the voices that the browser has. */
+export class Speaker {
+  /** Settings, or the voices that there are. */
+  readonly changed = new Signal();
+  settings: SpeakerSettings = { on: false, voice: "" };
+  private readonly synthesis = (globalThis as { speechSynthesis?: SpeechSynthesis }).speechSynthesis ?? null;
+
+  constructor(private readonly storage: TextStorage) {
+    try {
+      this.settings = { ...this.settings, ...(JSON.parse(storage.getItem(SAVED_KEY) ?? "{}") as Partial<SpeakerSettings>) };
+    } catch {
+      // What is kept is not ours.
+    }
+    this.synthesis?.addEventListener("voiceschanged", () => this.changed.emit());
+  }
+
+  /** The voices, those of the user's languages first. */
+  get voices(): readonly SpeechSynthesisVoice[] {
+    const { languages } = navigator;
+    const rank = (voice: SpeechSynthesisVoice): number => {
+      const at = languages.findIndex((each) => voice.lang.toLowerCase().startsWith(each.slice(0, 2).toLowerCase()));
+      return at < 0 ? languages.length : at;
+    };
+    return [...(this.synthesis?.getVoices() ?? [])].sort((a, b) => rank(a) - rank(b) || a.name.localeCompare(b.name));
+  }
+
+  get speaking(): boolean {
+    return this.synthesis?.speaking ?? false;
+  }
+
+  configure(change: Partial<SpeakerSettings>): void {
+    this.settings = { ...this.settings, ...change };
+    this.storage.setItem(SAVED_KEY, JSON.stringify(this.settings));
+    if (!this.settings.on) this.hush();
+    this.changed.emit();
+  }
+
+  speak(text: string): void {
+    if (!this.settings.on || !this.synthesis || text === "") return;
+    const utterance = new SpeechSynthesisUtterance(text);
+    const voice = this.voices.find(({ voiceURI }) => voiceURI === this.settings.voice);
+    if (voice) {
+      utterance.voice = voice;
+      utterance.lang = voice.lang;
+    } else if (/\p{Script=Han}/u.test(text)) utterance.lang = "zh-CN";
+    this.synthesis.speak(utterance);
+  }
+
+  /** Stops at once. */
+  hush(): void {
+    this.synthesis?.cancel();
+  }
+}

@@ -1,0 +1,214 @@
+import type { Connection } from "../../connection/connection";
+import { SOUND_KIND, type SaidPart, type TalkMode, type VoiceState as Told } from "../../protocol";
+import { Signal } from "../signal";
+import type { TextStorage } from "../storage";
+import { Microphone } from "./microphone";
+import { Speaker } from "./speaker";
+
+/** How long the microphone stays open after the button was let go: to open it takes a moment, in which a word is lost. */
+const WARM_MS = 60_000;
+const MOST_KEPT = 100;
+const HEADER_BYTES = 16;
+
+/** A line of the conversation. */
+export interface Said {
+  part: SaidPart;
+  text: string;
+}
+
+/** A binary frame with a block of sound; `viewer/protocol/voice.py` has its form. */
+export function soundFrame(samples: Int16Array): ArrayBuffer {
+  const frame = new ArrayBuffer(HEADER_BYTES + 2 * samples.length);
+  const view = new DataView(frame);
+  view.setUint32(0, SOUND_KIND, true);
+  view.setUint32(4, samples.length, true);
+  samples.forEach((sample, i) => view.setInt16(HEADER_BYTES + 2 * i, sample, true));
+  return frame;
+}
+
+/** Talking to the robot: the button, the microphone, and what came of it. */
+export class VoiceState {
+  readonly changed = new Signal();
+  /** A line was said, or what is being heard changed. */
+  readonly conversed = new Signal();
+  /** What was said, oldest first. */
+  readonly history: Said[] = [];
+  /** What is being heard. */
+  partial = "";
+  /** What the server says; null while it is not asked. */
+  told: Told | null = null;
+  readonly speaker: Speaker;
+  private readonly watching = new Set<object>();
+  private pressed = false;
+  /** The button is let go, and what was said until then is on its way. */
+  private ending = false;
+  private listening = false;
+  private mode: TalkMode = "off";
+  private timer = 0;
+
+  constructor(
+    private readonly connection: Connection,
+    storage: TextStorage,
+    readonly microphone: Microphone = new Microphone(),
+  ) {
+    this.speaker = new Speaker(storage);
+    connection.on("voice_state", (told) => {
+      this.told = told;
+      if (told.cut) this.release();
+      this.changed.emit();
+    });
+    connection.on("voice_said", ({ part, text }) => this.take(part, text));
+    connection.on("hello", () => {
+      this.mode = "off";
+      this.announce();
+      if (this.watched) this.connection.send({ type: "watch_voice", watched: true });
+    });
+    connection.stateChanged.on((state) => {
+      if (state === "connected") return;
+      this.told = null;
+      this.release();
+      this.changed.emit();
+    });
+    microphone.block.on((samples) => this.send(samples));
+    microphone.changed.on(() => {
+      if (microphone.problem !== null) this.listening = this.pressed = false;
+      this.announce();
+      this.changed.emit();
+    });
+    this.speaker.changed.on(() => {
+      this.watch(this.speaker, this.speaker.settings.on);
+      this.changed.emit();
+    });
+    this.watch(this.speaker, this.speaker.settings.on);
+  }
+
+  /** Whether the button is held. */
+  get held(): boolean {
+    return this.pressed;
+  }
+
+  /** Whether all is listened to. */
+  get open(): boolean {
+    return this.listening;
+  }
+
+  get watched(): boolean {
+    return this.watching.size > 0;
+  }
+
+  /** Somebody wants to know what is said, or no longer. */
+  watch(who: object, wanted: boolean): void {
+    const before = this.watched;
+    if (wanted) this.watching.add(who);
+    else this.watching.delete(who);
+    if (this.watched === before) return;
+    if (!this.watched) this.told = null;
+    this.connection.send({ type: "watch_voice", watched: this.watched });
+  }
+
+  /** The button is pressed: what is said from now on is meant. */
+  press(): void {
+    if (this.pressed) return;
+    this.pressed = true;
+    this.speaker.hush();
+    this.watch(this.microphone, true);
+    this.use();
+  }
+
+  /** The button is let go. */
+  release(): void {
+    if (!this.pressed) return;
+    this.pressed = false;
+    this.ending = this.mode === "held";
+    this.changed.emit();
+    void this.microphone.flush().then(() => {
+      this.ending = false;
+      this.announce();
+      this.rest();
+    });
+  }
+
+  /** Listens to all, or only while the button is held. */
+  setOpen(open: boolean): void {
+    if (open === this.listening) return;
+    this.listening = open;
+    this.watch(this.microphone, true);
+    if (open) this.use();
+    else {
+      this.announce();
+      this.rest();
+    }
+    this.changed.emit();
+  }
+
+  /** Gives the microphone back, as when nobody looks at the page. */
+  letGo(): void {
+    this.release();
+    if (!this.listening) this.microphone.close();
+  }
+
+  say(text: string): void {
+    this.connection.send({ type: "say_command", text });
+  }
+
+  clear(): void {
+    this.history.length = 0;
+    this.partial = "";
+    this.conversed.emit();
+  }
+
+  /** For `window.linkwright`. */
+  inspect(): object {
+    const { history, partial, told, microphone, mode } = this;
+    const { problem, isOpen, peak } = microphone;
+    return { mode, problem, isOpen, peak, partial, told, history: history.map((each) => ({ ...each })) };
+  }
+
+  private use(): void {
+    clearTimeout(this.timer);
+    void this.microphone.open().then((opened) => {
+      if (opened) this.rest();
+    });
+    this.announce();
+    this.changed.emit();
+  }
+
+  /** Closes the microphone after a while, if it is not needed. */
+  private rest(): void {
+    clearTimeout(this.timer);
+    if (this.pressed || this.listening || !this.microphone.isOpen) return;
+    this.timer = window.setTimeout(() => this.microphone.close(), WARM_MS);
+  }
+
+  private announce(): void {
+    const mode = this.wanted;
+    if (mode === this.mode) return;
+    this.mode = mode;
+    this.connection.send({ type: "talk", mode });
+  }
+
+  private get wanted(): TalkMode {
+    if (!this.microphone.isOpen) return "off";
+    if (this.pressed || this.ending) return "held";
+    return this.listening ? "open" : "ready";
+  }
+
+  private send(samples: Int16Array): void {
+    this.changed.emit();
+    if (this.mode !== "held" && this.mode !== "open") return;
+    // What the page itself says is no command.
+    if (this.mode === "open" && this.speaker.speaking) return;
+    this.connection.sendBytes(soundFrame(samples));
+  }
+
+  private take(part: SaidPart, text: string): void {
+    if (part === "partial") this.partial = text;
+    else {
+      if (part === "text") this.partial = "";
+      if (text !== "") this.history.push({ part, text });
+      if (this.history.length > MOST_KEPT) this.history.shift();
+      if (part === "response") this.speaker.speak(text);
+    }
+    this.conversed.emit();
+  }
+}

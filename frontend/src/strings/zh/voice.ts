@@ -1,0 +1,43 @@
+import type { voice as english } from "../en/voice";
+
+/** 语音面板 */
+export const voice: typeof english = {
+  panel: "语音",
+  talk: "对机器人说话",
+  talkHint: "按住对机器人说话（V）",
+  talkWithKey: "按住说话（V）",
+  talkKey: "按住：对机器人说话",
+  open: "持续聆听",
+  openHint: "不必按住按钮，一直聆听。此时旁人说的话也可能被当作命令。",
+  level: "麦克风音量",
+  levelOff: "关闭",
+  history: "对话",
+  nothing: "按住按钮说出命令，例如：前进、左转、停止。",
+  clearHint: "清除对话",
+  parts: { partial: "正在听", text: "听到", command: "理解", response: "回答" },
+  idle: "麦克风未使用。",
+  opening: "正在等待麦克风。如果浏览器询问，请允许。",
+  listening: "正在聆听",
+  openListening: "持续聆听中",
+  command: "输入命令，例如：左转九十度",
+  send: "发送",
+  sendHint: "发送命令，如同说出一样（Enter）",
+  noTextListener: "没有节点接收文字命令：voice_commander 未运行。",
+  speak: "朗读回答",
+  speakHint: "使用本浏览器的语音",
+  voice: "嗓音",
+  anyVoice: "按语言选择",
+  noVoices: "本浏览器没有可用的语音。",
+  problems: {
+    denied: "麦克风未获允许。请在地址栏左侧的图标处或浏览器设置中，允许本页面使用麦克风。",
+    none: "没有找到麦克风。请连接后重试。",
+    busy: "无法启动麦克风，可能正被其他程序占用。",
+    lost: "麦克风已断开。请重新连接后再试。",
+  },
+  failed: (detail: string): string => `无法启动麦克风：${detail}`,
+  insecure: (host: string, port: string): string =>
+    `浏览器只允许本机页面或 https 页面使用麦克风，而本页面通过 http 来自 ${host}。请在本机运行“ssh -L ${port}:localhost:${port} ${host}”，并把地址中的 ${host} 换成 localhost 打开；或者使用 https 代理。`,
+  cut: "本页面发送的声音超过了实际时长，已被切断。请重新按下按钮。",
+  another: "另一个页面正在说话；等它说完后才轮到本页面。",
+  nobody: "没有节点在听：请启动语音节点，例如 linkwright launch my_robot_voice voice.launch.py",
+};

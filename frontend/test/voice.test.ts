@@ -1,0 +1,185 @@
+import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
+import { Connection } from "../src/connection/connection";
+import type { PageMessage } from "../src/protocol";
+import { meterPart } from "../src/state/voice/level";
+import { Microphone, type OpenCapture } from "../src/state/voice/microphone";
+import { pcm, Resampler } from "../src/state/voice/resampler";
+import { soundFrame, VoiceState } from "../src/state/voice/voice";
+
+describe("resampling", () => {
+  const tone = (hertz: number, rate: number, count: number): Float32Array =>
+    Float32Array.from({ length: count }, (_, i) => Math.sin((2 * Math.PI * hertz * i) / rate));
+
+  const through = (samples: Float32Array, rate: number): Float32Array => {
+    const resampler = new Resampler(rate, 16_000);
+    const parts: number[] = [];
+    for (let at = 0; at < samples.length; at += 128) parts.push(...resampler.take(samples.subarray(at, at + 128)));
+    return Float32Array.from(parts);
+  };
+
+  it.each([48_000, 44_100, 16_000, 8_000])("a tone at %i Hz stays one, in its place", (rate) => {
+    const made = through(tone(1000, rate, rate), rate);
+    expect(Math.abs(made.length - 16_000)).toBeLessThan(100);
+    const wanted = tone(1000, 16_000, made.length);
+    const worst = made.slice(100, -100).reduce((most, value, i) => Math.max(most, Math.abs(value - (wanted[i + 100] ?? 0))), 0);
+    expect(worst).toBeLessThan(0.02);
+  });
+
+  it("what the new rate cannot carry is taken away", () => {
+    const made = through(tone(10_000, 48_000, 48_000), 48_000).slice(100, -100);
+    expect(made.reduce((most, value) => Math.max(most, Math.abs(value)), 0)).toBeLessThan(0.01);
+  });
+
+  it("samples are of 16 bits, and louder ones are cut", () => {
+    expect([...pcm(Float32Array.from([0, 1, -1, 2, 0.5]))]).toEqual([0, 32767, -32767, 32767, 16384]);
+  });
+});
+
+it("a meter is logarithmic", () => {
+  expect(meterPart(1)).toBe(1);
+  expect(meterPart(0.001)).toBeCloseTo(0);
+  expect(meterPart(0)).toBe(0);
+  expect(meterPart(Math.sqrt(0.001))).toBeCloseTo(0.5);
+});
+
+describe("talking", () => {
+  let sent: PageMessage[];
+  let frames: ArrayBuffer[];
+  let connection: Connection;
+  let deliver: (samples: Int16Array) => void;
+  let lose: () => void;
+  let closed: number;
+  const storage = { getItem: () => null, setItem: () => undefined };
+
+  const openFake: OpenCapture = (block, lost) => {
+    deliver = block;
+    lose = lost;
+    return Promise.resolve({
+      flush: () => {
+        block(Int16Array.of(7));
+        return Promise.resolve();
+      },
+      close: () => void (closed += 1),
+    });
+  };
+  const modes = (): string[] => sent.flatMap((message) => (message.type === "talk" ? [message.mode] : []));
+  const soon = async (): Promise<void> => {
+    for (let i = 0; i < 10; i++) await Promise.resolve();
+  };
+
+  beforeEach(() => {
+    [sent, frames, closed] = [[], [], 0];
+    vi.useFakeTimers();
+    vi.stubGlobal("window", { setTimeout });
+    connection = new Connection("ws://localhost/ws");
+    vi.spyOn(connection, "send").mockImplementation((message) => void sent.push(message));
+    vi.spyOn(connection, "sendBytes").mockImplementation((frame) => void frames.push(frame));
+  });
+
+  afterEach(() => {
+    vi.useRealTimers();
+    vi.unstubAllGlobals();
+  });
+
+  it("the button sends blocks while it is held, and the last part of one", async () => {
+    const voice = new VoiceState(connection, storage, new Microphone(openFake));
+    voice.press();
+    await soon();
+    deliver(Int16Array.of(1, -2));
+    voice.release();
+    await soon();
+    deliver(Int16Array.of(3));
+    expect(modes()).toEqual(["held", "ready"]);
+    expect(frames).toEqual([soundFrame(Int16Array.of(1, -2)), soundFrame(Int16Array.of(7))]);
+    expect([...new Int16Array(frames[0]!, 16)]).toEqual([1, -2]);
+    expect([...new Uint32Array(frames[0]!, 0, 4)]).toEqual([5, 2, 0, 0]);
+  });
+
+  it("the microphone is given back a while after it was used, and at once when the page is left", async () => {
+    const voice = new VoiceState(connection, storage, new Microphone(openFake));
+    voice.press();
+    await soon();
+    voice.release();
+    await soon();
+    expect(closed).toBe(0);
+    vi.advanceTimersByTime(60_000);
+    expect(closed).toBe(1);
+    voice.press();
+    await soon();
+    voice.letGo();
+    await soon();
+    expect(closed).toBe(2);
+    expect(modes().at(-1)).toBe("off");
+  });
+
+  it("a button let go before the microphone is there sends nothing", async () => {
+    const voice = new VoiceState(connection, storage, new Microphone(openFake));
+    voice.press();
+    voice.release();
+    await soon();
+    expect(modes()).toEqual(["ready"]);
+  });
+
+  it.each([
+    ["NotAllowedError", "denied"],
+    ["NotFoundError", "none"],
+    ["NotReadableError", "busy"],
+    ["Other", "failed"],
+  ])("%s of the browser is told as %s", async (name, problem) => {
+    const fails: OpenCapture = () => Promise.reject(Object.assign(new Error("why"), { name }));
+    const voice = new VoiceState(connection, storage, new Microphone(fails));
+    voice.press();
+    await soon();
+    expect(voice.microphone.problem).toBe(problem);
+    expect([voice.held, modes()]).toEqual([false, []]);
+  });
+
+  it("a microphone that goes away ends talking, and is asked for anew", async () => {
+    const voice = new VoiceState(connection, storage, new Microphone(openFake));
+    voice.setOpen(true);
+    await soon();
+    expect(modes()).toEqual(["open"]);
+    lose();
+    expect([voice.open, voice.microphone.problem, modes().at(-1)]).toEqual([false, "lost", "off"]);
+    voice.press();
+    await soon();
+    expect([voice.microphone.problem, modes().at(-1)]).toEqual([null, "held"]);
+  });
+
+  it("a lost connection lets go of the button", async () => {
+    const voice = new VoiceState(connection, storage, new Microphone(openFake));
+    voice.press();
+    await soon();
+    connection.stateChanged.emit("reconnecting");
+    await soon();
+    expect(voice.held).toBe(false);
+  });
+
+  it("the conversation is kept, and what is being heard gives way to what was", () => {
+    const voice = new VoiceState(connection, storage, new Microphone(openFake));
+    const says = (part: "partial" | "text" | "response", text: string): void =>
+      connection.message.emit({ type: "voice_said", number: 1, part, text });
+    says("partial", "turn");
+    expect([voice.partial, voice.history.length]).toEqual(["turn", 0]);
+    says("text", "turn left");
+    says("response", "Turning left.");
+    expect(voice.partial).toBe("");
+    expect(voice.history).toEqual([
+      { part: "text", text: "turn left" },
+      { part: "response", text: "Turning left." },
+    ]);
+  });
+
+  it("the server is asked once, however many want to know", () => {
+    const voice = new VoiceState(connection, storage, new Microphone(openFake));
+    const [one, two] = [{}, {}];
+    voice.watch(one, true);
+    voice.watch(two, true);
+    voice.watch(one, false);
+    voice.watch(two, false);
+    expect(sent).toEqual([
+      { type: "watch_voice", watched: true },
+      { type: "watch_voice", watched: false },
+    ]);
+  });
+});

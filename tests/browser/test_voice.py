@@ -1,0 +1,171 @@
+"""The Voice panel in a real browser, whose microphone is a file: a tone."""
+
+from __future__ import annotations
+
+import wave
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from playwright.sync_api import Browser, Page
+
+from linkwright.messages import get_message
+from tests.browser.conftest import launched, until
+from tests.browser.live import LiveViewer, configuration
+from tests.waiting import SECONDS, wait_until
+
+pytestmark = pytest.mark.browser
+
+TONE = 440.0
+GRID = "- Class: rviz_default_plugins/Grid\n  Enabled: true\n  Name: Grid"
+STRING = "std_msgs/msg/String"
+
+
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
+    """A browser that says yes to the question for the microphone, which hears a tone."""
+    path = tmp_path_factory.mktemp("sound") / "tone.wav"
+    _write_tone(path)
+    fake = ("--use-fake-ui-for-media-stream", "--use-fake-device-for-media-stream")
+    with launched(*fake, f"--use-file-for-fake-audio-capture={path}") as started:
+        yield started
+
+
+def _write_tone(path: Path) -> None:
+    samples = np.sin(2 * np.pi * TONE * np.arange(48_000) / 48_000) * 12_000
+    with wave.open(str(path), "wb") as file:
+        file.setnchannels(1)
+        file.setsampwidth(2)
+        file.setframerate(48_000)
+        file.writeframes(samples.astype("<i2").tobytes())
+
+
+class Robot:
+    """A node that keeps what it hears, and answers."""
+
+    def __init__(self, viewer: LiveViewer) -> None:
+        self.viewer = viewer
+        self.samples: list[np.ndarray] = []
+        self.held: list[bool] = []
+        self.commands: list[str] = []
+        viewer.run(self._listen)
+
+    def _listen(self) -> None:
+        node = self.viewer.node
+        node.create_subscription("audio_common_msgs/msg/AudioDataStamped", "/audio/audio_stamped", self._hear, 100)
+        node.create_subscription("std_msgs/msg/Bool", "/voice/listen", lambda m: self.held.append(m.data), 10)
+        node.create_subscription(STRING, "/voice/text_input", lambda m: self.commands.append(m.data), 10)
+
+    def _hear(self, message: Any) -> None:
+        self.samples.append(np.frombuffer(bytes(message.audio.data), "<i2"))
+
+    @property
+    def seconds(self) -> float:
+        return sum(each.size for each in self.samples) / 16_000
+
+    def says(self, topic: str, text: str) -> None:
+        self.viewer.publish(f"/voice/{topic}", get_message(STRING)(data=text))
+
+
+@pytest.fixture
+def talking(live: Callable[..., LiveViewer], open_page: Callable[..., Page]) -> tuple[Robot, Page]:
+    viewer = live(configuration(GRID))
+    robot = Robot(viewer)
+    page = open_page(viewer, wait=False)
+    until(page, "lw.displays.length === 1")
+    return robot, page
+
+
+def open_panel(page: Page) -> None:
+    page.get_by_role("button", name="Panels").click()
+    page.get_by_role("menuitemcheckbox", name="Voice").click()
+    page.wait_for_selector(".voice-talk")
+
+
+def test_the_key_talks_while_it_is_held(talking: tuple[Robot, Page]) -> None:
+    robot, page = talking
+    page.keyboard.down("v")
+    wait_until(lambda: robot.seconds > 1.0, SECONDS)
+    assert robot.held == [True]
+    page.keyboard.up("v")
+    wait_until(lambda: robot.held == [True, False], SECONDS)
+    until(page, "lw.panels.voice.mode === 'ready'")
+    # Blocks of a tenth of a second but for the last; without gaps a tone has one line in its spectrum.
+    assert {each.size for each in robot.samples[:-1]} == {1600}
+    sound = np.concatenate(robot.samples)[1600:11200].astype(float)
+    spectrum = np.abs(np.fft.rfft(sound * np.hanning(sound.size))) ** 2
+    strongest = int(np.argmax(spectrum))
+    assert abs(strongest * 16_000 / sound.size - TONE) < 4
+    assert spectrum[strongest - 8 : strongest + 9].sum() > 0.9 * spectrum.sum()
+
+
+def test_the_conversation_is_shown_and_commands_are_typed(talking: tuple[Robot, Page]) -> None:
+    robot, page = talking
+    open_panel(page)
+    until(page, "lw.panels.voice.told?.text_listeners === 1")
+    robot.says("partial_text", "turn")
+    page.wait_for_selector(".voice-said.partial:has-text('turn')")
+    for topic, text in (("text", "turn left"), ("command", "turn (angle 90°)"), ("response", "Turning left.")):
+        robot.says(topic, text)
+    page.wait_for_selector(".voice-said.response:has-text('Turning left.')")
+    assert page.locator(".voice-said").count() == 3
+    field = page.get_by_label("Command as text")
+    field.fill("go to the kitchen")
+    field.press("v")  # a letter where text is typed
+    field.press("Enter")
+    wait_until(lambda: robot.commands == ["go to the kitchenv"], SECONDS)
+    assert robot.held == []
+
+
+def test_the_button_talks_and_lets_go_when_the_page_is_left(talking: tuple[Robot, Page]) -> None:
+    robot, page = talking
+    open_panel(page)
+    page.locator(".voice-talk").focus()
+    page.keyboard.down("Space")
+    wait_until(lambda: robot.held == [True], SECONDS)
+    page.evaluate("window.dispatchEvent(new Event('blur'))")
+    wait_until(lambda: robot.held == [True, False], SECONDS)
+    page.keyboard.up("Space")
+    page.get_by_label("Open listening").check()
+    until(page, "lw.panels.voice.mode === 'open' && lw.panels.voice.peak > 0.2")
+    before = robot.seconds
+    wait_until(lambda: robot.seconds > before + 0.3, SECONDS)
+    assert robot.held == [True, False]
+
+
+_REFUSE = "navigator.mediaDevices.getUserMedia = () => Promise.reject(new DOMException('', '{}')); 0"
+
+
+@pytest.mark.parametrize(
+    ("breaks", "words"),
+    [
+        ("Object.defineProperty(window, 'isSecureContext', {value: false}); 0", "ssh -L"),
+        (_REFUSE.format("NotAllowedError"), "not allowed"),
+        (_REFUSE.format("NotFoundError"), "No microphone"),
+    ],
+    ids=["insecure", "denied", "none"],
+)
+def test_why_there_is_no_sound_is_said(talking: tuple[Robot, Page], breaks: str, words: str) -> None:
+    robot, page = talking
+    page.evaluate(breaks)
+    page.locator(".scene-tool.talk").hover()
+    page.mouse.down()
+    page.wait_for_selector(f".voice-notice:has-text('{words}')")
+    page.mouse.up()
+    assert robot.samples == []
+
+
+def test_a_microphone_that_goes_away_is_told_of(talking: tuple[Robot, Page]) -> None:
+    robot, page = talking
+    page.evaluate(
+        "const get = navigator.mediaDevices.getUserMedia.bind(navigator.mediaDevices);"
+        "navigator.mediaDevices.getUserMedia = async (wanted) => (window.heard = await get(wanted)); 0"
+    )
+    page.keyboard.down("v")
+    wait_until(lambda: robot.seconds > 0.1, SECONDS)
+    page.evaluate("window.heard.getTracks()[0].dispatchEvent(new Event('ended'))")
+    page.wait_for_selector(".voice-notice:has-text('disconnected')")
+    wait_until(lambda: robot.held == [True, False], SECONDS)
+    page.keyboard.up("v")
