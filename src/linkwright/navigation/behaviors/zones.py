@@ -1,0 +1,188 @@
+"""Zones around a robot: where points of its sensors are in one, it slows down, keeps to a limit, or stops.
+
+Source: nav2_collision_monitor (``polygon.cpp``, ``collision_monitor_node.cpp``), Humble and Jazzy.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import IntEnum
+from math import atan2, hypot
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.navigation.costmaps.footprints import Footprint, cells_within
+from linkwright.navigation.following.follower import Velocity
+
+Points = NDArray[np.float64]
+"""Of sensors, in the frame of the robot, in metres, of shape (points, 2)."""
+
+
+class Action(IntEnum):
+    """What a zone asks for; the numbers are those of nav2_msgs/msg/CollisionMonitorState."""
+
+    NOTHING = 0
+    STOP = 1
+    SLOWDOWN = 2
+    APPROACH = 3
+    LIMIT = 4
+
+
+@dataclass(frozen=True, slots=True)
+class Circle:
+    """A round zone.
+
+    Attributes:
+        radius: in metres.
+    """
+
+    radius: float
+
+    def holds(self, points: Points) -> NDArray[np.bool_]:
+        """Which points lie in it."""
+        inside: NDArray[np.bool_] = (points**2).sum(axis=1) < self.radius**2
+        return inside
+
+
+@dataclass(frozen=True, slots=True)
+class Outline:
+    """A zone with corners.
+
+    Attributes:
+        corners: in the frame of the robot.
+    """
+
+    corners: Footprint
+
+    def holds(self, points: Points) -> NDArray[np.bool_]:
+        """Which points lie in it."""
+        return cells_within(self.corners, points)
+
+
+Shape = Circle | Outline
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """What a zone does.
+
+    Attributes:
+        action: what it asks for.
+        min_points: so many points are something.
+        slowdown_ratio: what is left of a velocity, 0 to 1.
+        linear_limit: in m/s.
+        angular_limit: in rad/s.
+        time_before_collision: so many seconds before the robot would meet something it begins to slow down.
+        simulation_time_step: seconds between the places where it is looked for.
+    """
+
+    action: Action
+    min_points: int = 4
+    slowdown_ratio: float = 0.5
+    linear_limit: float = 0.5
+    angular_limit: float = 0.5
+    time_before_collision: float = 2.0
+    simulation_time_step: float = 0.1
+
+    def allowed(self, shape: Shape, points: Points, velocity: Velocity) -> Velocity | None:
+        """The velocity that the zone lets a robot have that is to have another one; None where it has no say."""
+        if self.action is Action.APPROACH:
+            seconds = self._seconds_left(shape, points, velocity)
+            return None if seconds is None else _scaled(velocity, seconds / self.time_before_collision)
+        if self.action is Action.NOTHING or np.count_nonzero(shape.holds(points)) < self.min_points:
+            return None
+        if self.action is Action.STOP:
+            return Velocity(0.0, 0.0, 0.0)
+        if self.action is Action.SLOWDOWN:
+            return _scaled(velocity, self.slowdown_ratio)
+        return _scaled(velocity, self._ratio(velocity))
+
+    def _ratio(self, velocity: Velocity) -> float:
+        speed = hypot(velocity.x, velocity.y)
+        along = self.linear_limit / speed if speed else 1.0
+        about = self.angular_limit / abs(velocity.yaw) if velocity.yaw else 1.0
+        return min(max(min(along, about), 0.0), 1.0)
+
+    def _seconds_left(self, shape: Shape, points: Points, velocity: Velocity) -> float | None:
+        """Seconds until the robot would have points in its shape; None if that is longer than it looks ahead."""
+        if not len(points):
+            return None
+        step, x, y, yaw = self.simulation_time_step, 0.0, 0.0, 0.0
+        for count in range(int(self.time_before_collision / step + 1e-9) + 1):
+            cosine, sine = np.cos(yaw), np.sin(yaw)
+            seen = (points - (x, y)) @ np.array([[cosine, -sine], [sine, cosine]])
+            if np.count_nonzero(shape.holds(seen)) >= self.min_points:
+                return count * step
+            x += float(velocity.x * cosine - velocity.y * sine) * step
+            y += float(velocity.x * sine + velocity.y * cosine) * step
+            yaw += velocity.yaw * step
+        return None
+
+
+@dataclass(frozen=True, slots=True)
+class SpeedRange:
+    """The shape that a zone has at some velocities.
+
+    Attributes:
+        shape: the shape.
+        linear: least and greatest speed along x, or in any direction for a robot that moves in all, in m/s.
+        angular: least and greatest turning, in rad/s.
+        direction: between which angles such a robot moves, counterclockwise, in rad; None for one that does not.
+    """
+
+    shape: Outline
+    linear: tuple[float, float]
+    angular: tuple[float, float]
+    direction: tuple[float, float] | None = None
+
+    def covers(self, velocity: Velocity) -> bool:
+        """Whether the shape is that for a velocity."""
+        speed = velocity.x if self.direction is None else hypot(velocity.x, velocity.y)
+        if not self.linear[0] <= speed <= self.linear[1] or not self.angular[0] <= velocity.yaw <= self.angular[1]:
+            return False
+        if self.direction is None:
+            return True
+        (begin, end), angle = self.direction, atan2(velocity.y, velocity.x)
+        return begin <= angle <= end if begin <= end else angle >= begin or angle <= end
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """What is left of a velocity.
+
+    Attributes:
+        velocity: that the robot may have.
+        action: what has been done to it.
+        zone: the name of the zone that has done it; empty where none has.
+    """
+
+    velocity: Velocity
+    action: Action = Action.NOTHING
+    zone: str = ""
+
+
+def judged(velocity: Velocity, zones: Sequence[tuple[str, Rule, Shape, Points]]) -> Verdict:
+    """The velocity that all zones let a robot have: the least of what they say, and nothing after a stop.
+
+    Args:
+        velocity: that it is to have.
+        zones: name, rule and shape of each, and what its sensors see.
+    """
+    verdict = Verdict(velocity)
+    for name, rule, shape, points in zones:
+        allowed = rule.allowed(shape, points, velocity)
+        if allowed is not None and (rule.action is Action.STOP or _size(allowed) < _size(verdict.velocity)):
+            verdict = Verdict(allowed, rule.action, name)
+        if verdict.action is Action.STOP:
+            break
+    return verdict
+
+
+def _scaled(velocity: Velocity, ratio: float) -> Velocity:
+    return Velocity(velocity.x * ratio, velocity.y * ratio, velocity.yaw * ratio)
+
+
+def _size(velocity: Velocity) -> float:
+    return velocity.x**2 + velocity.y**2 + velocity.yaw**2

@@ -1,0 +1,97 @@
+"""Zones around a robot: what they leave of its velocity."""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+import pytest
+
+from linkwright.navigation.behaviors.zones import Action, Circle, Outline, Rule, SpeedRange, Verdict, judged
+from linkwright.navigation.following.follower import Velocity
+
+AHEAD = Outline(np.array([[0.0, -0.3], [0.6, -0.3], [0.6, 0.3], [0.0, 0.3]]))
+BODY = Circle(0.2)
+FORWARD = Velocity(0.4, 0.0, 0.2)
+
+
+def points(count, x, y=0.0):
+    return np.tile([[x, y]], (count, 1))
+
+
+def test_a_zone_with_too_few_points_has_no_say():
+    rule = Rule(Action.STOP, min_points=4)
+    assert rule.allowed(AHEAD, points(3, 0.5), FORWARD) is None
+    assert rule.allowed(AHEAD, points(9, 0.7), FORWARD) is None
+    assert rule.allowed(AHEAD, points(4, 0.5), FORWARD) == Velocity(0.0, 0.0, 0.0)
+
+
+def test_a_zone_slows_down_by_its_ratio():
+    allowed = Rule(Action.SLOWDOWN, 1, slowdown_ratio=0.25).allowed(AHEAD, points(1, 0.5), FORWARD)
+    assert allowed == pytest.approx((0.1, 0.0, 0.05))
+
+
+@pytest.mark.parametrize(
+    ("velocity", "left"),
+    [
+        (Velocity(0.4, 0.0, 0.2), (0.2, 0.0, 0.1)),
+        (Velocity(0.3, 0.4, 0.0), (0.12, 0.16, 0.0)),
+        (Velocity(0.1, 0.0, -2.0), (0.025, 0.0, -0.5)),
+        (Velocity(0.1, 0.0, 0.1), (0.1, 0.0, 0.1)),
+    ],
+)
+def test_a_limit_keeps_the_curve(velocity, left):
+    rule = Rule(Action.LIMIT, 1, linear_limit=0.2, angular_limit=0.5)
+    assert rule.allowed(AHEAD, points(1, 0.5), velocity) == pytest.approx(left)
+
+
+def test_a_robot_that_approaches_keeps_its_time_to_what_is_ahead():
+    rule = Rule(Action.APPROACH, 1, time_before_collision=2.0, simulation_time_step=0.1)
+    ahead = Velocity(0.5, 0.0, 0.0)
+    # 0.7 m ahead: the rim of the body, 0.2 m, meets it after 0.5 m, which takes 1 s of the 2 s.
+    allowed = rule.allowed(BODY, points(1, 0.699), ahead)
+    assert allowed is not None
+    assert allowed.x == pytest.approx(0.25, abs=0.03)
+    assert rule.allowed(BODY, points(1, 1.5), ahead) is None
+    assert rule.allowed(BODY, points(1, -0.7), ahead) is None
+    assert rule.allowed(BODY, points(1, 0.1), ahead) == pytest.approx((0.0, 0.0, 0.0))
+    assert rule.allowed(BODY, np.zeros((0, 2)), ahead) is None
+
+
+def test_a_robot_that_turns_on_the_spot_meets_what_its_corner_sweeps():
+    long = Outline(np.array([[-0.1, -0.1], [0.5, -0.1], [0.5, 0.1], [-0.1, 0.1]]))
+    rule = Rule(Action.APPROACH, 1, time_before_collision=2.0, simulation_time_step=0.05)
+    assert rule.allowed(long, points(1, 0.0, 0.4), Velocity(0.0, 0.0, 1.0)) is not None
+    assert rule.allowed(long, points(1, 0.0, 0.4), Velocity(0.0, 0.0, -1.0)) is None
+
+
+def test_of_several_zones_the_one_counts_that_leaves_least():
+    slow, slower = Rule(Action.SLOWDOWN, 1, slowdown_ratio=0.5), Rule(Action.SLOWDOWN, 1, slowdown_ratio=0.1)
+    seen = points(1, 0.5)
+    zones = [("slow", slow, AHEAD, seen), ("slower", slower, AHEAD, seen), ("again", slow, AHEAD, seen)]
+    assert judged(FORWARD, zones).zone == "slower"
+    stop = ("stop", Rule(Action.STOP, 1), AHEAD, seen)
+    assert judged(FORWARD, [stop, *zones]) == Verdict(Velocity(0.0, 0.0, 0.0), Action.STOP, "stop")
+    assert judged(FORWARD, [("off", Rule(Action.NOTHING, 1), AHEAD, seen)]) == Verdict(FORWARD)
+
+
+def test_a_robot_that_stands_is_stopped_all_the_same():
+    still = Velocity(0.0, 0.0, 0.0)
+    verdict = judged(still, [("stop", Rule(Action.STOP, 1), AHEAD, points(1, 0.5))])
+    assert verdict == Verdict(still, Action.STOP, "stop")
+
+
+@pytest.mark.parametrize(
+    ("velocity", "direction", "covered"),
+    [
+        (Velocity(0.2, 0.0, 0.0), None, True),
+        (Velocity(-0.2, 0.0, 0.0), None, False),
+        (Velocity(0.2, 0.0, 2.0), None, False),
+        (Velocity(0.0, 0.2, 0.0), (pi / 4, 3 * pi / 4), True),
+        (Velocity(0.2, 0.0, 0.0), (pi / 4, 3 * pi / 4), False),
+        (Velocity(-0.2, 0.01, 0.0), (3 * pi / 4, -3 * pi / 4), True),
+        (Velocity(0.2, 0.0, 0.0), (3 * pi / 4, -3 * pi / 4), False),
+    ],
+)
+def test_a_shape_is_for_some_velocities(velocity, direction, covered):
+    assert SpeedRange(AHEAD, (0.0, 0.5), (-1.0, 1.0), direction).covers(velocity) is covered
