@@ -1,0 +1,300 @@
+"""The node that finds things in a camera's pictures, and the names that users of other packages know it by.
+
+Pictures are taken only while somebody listens to what is found in them; a thread looks at the latest one, so that a
+slow network never makes a queue. What others differ in is in `dialects`.
+
+Parameters, by the names of yolo_ros:
+
+``model``
+    an ONNX file, or a detector: ``colours``, ``aruco``, ``apriltag``, ``qr``, ``line``, and those of packages.
+``labels``
+    a file with the names of the classes, instead of those in the network.
+``device``
+    where the network runs: ``cpu``, ``cuda:0``.
+``imgsz_height``, ``imgsz_width``
+    size of the input of a network that takes any; 0 for that of its training.
+``threshold``, ``iou``, ``max_det``, ``classes``, ``enable``, ``max_rate``
+    which detections count, whether pictures are looked at, and how many a second at most (0: all). These may be set
+    while it runs. ``classes`` are names; none means all.
+``input_image_topic``, ``image_transport``, ``image_reliability``
+    where pictures come from: a topic of Image, or one that ends in ``/compressed``; 1 reliable, 2 best effort.
+``colours.NAME``, ``dictionary``, ``least_area``, ``part``, ``colour``
+    settings of the detectors without networks.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, ClassVar
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph import (
+    Graph,
+    Parameter,
+    ParameterDescriptor,
+    QoSProfile,
+    ReliabilityPolicy,
+    SetParametersResult,
+    Subscription,
+)
+from linkwright.graph.parameters.parameter import Range
+from linkwright.images import BadImageError, ImageSource, RangeFinder, Unpacker, picture_of
+from linkwright.messages import get_message, get_service
+from linkwright.nodes.lazy import LazySubscriptions
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
+from linkwright.nodes.settings import bad_value, tell_unknown
+from linkwright.nodes.vision.detection_messages import MESSAGES, picture_message
+from linkwright.nodes.vision.dialects import DARKNET_ROS, OURS, YOLO_ROS, YOLOV5_ROS, YOLOV5_ROS2, Dialect
+from linkwright.nodes.vision.latest import LatestWorker
+from linkwright.vision.detector import Detector, Limits
+from linkwright.vision.detectors.drawing import drawn
+from linkwright.vision.detectors.options import DetectorOptions
+from linkwright.vision.detectors.registry import DEFAULT_DETECTOR, make_detector
+
+_DEPTH = 10
+_SECONDS_BETWEEN_COMPLAINTS = 5.0
+_SHARE = ParameterDescriptor(floating_point_range=[Range(0.0, 1.0)])
+_FOR_GOOD = ParameterDescriptor(read_only=True)
+_ANY = ParameterDescriptor(dynamic_typing=True)
+_SETTINGS = ("dictionary", "least_area", "part", "colour")
+_COLOURS = "colours"
+_RATE_SLACK = 0.9
+"""Of a period: a picture that comes a little early is not left out."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Task:
+    """A picture to be looked at, and what for."""
+
+    message: Any
+    limits: Limits
+    draws: bool
+
+
+class DetectorNode(SingleNode):
+    """The running node.
+
+    Raises:
+        LinkwrightError: a parameter cannot have its value (NODE433), or there is no such detector (VISION1xx).
+    """
+
+    DEFAULT_NAME = "yolo_node"
+    DIALECT: ClassVar[Dialect] = OURS
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
+        node, dialect = self._node, self.DIALECT
+        with starting(node):
+            self._declare(dialect)
+            self._detector = self._make_detector(dialect)
+            self._limits = self._limits_of({})
+            self._source = self._image_source(dialect)
+            self._qos = self._image_qos()
+            tell_unknown(node)
+        for note in self._detector.notes:
+            node.get_logger().info(str(note))
+        self._unpacker, self._ranges = Unpacker(), RangeFinder()
+        self._last_ns: int | None = None
+        self._done: deque[tuple[str, Any]] = deque()
+        output = node.get_parameter(dialect.output_topic).value if dialect.output_topic else dialect.detections
+        self._detections = node.create_publisher(get_message(dialect.message), output, _DEPTH)
+        image = get_message("sensor_msgs/msg/Image")
+        self._pictures = [node.create_publisher(image, topic, _DEPTH) for topic in dialect.debug_images]
+        node.create_service(get_service("std_srvs/srv/SetBool"), "enable", self._on_enable)
+        node.create_service(get_service("yolo_msgs/srv/SetClasses"), "set_classes", self._on_set_classes)
+        node.add_on_set_parameters_callback(self._check)
+        node.add_post_set_parameters_callback(lambda _: self._follow())
+        self._finished = node.create_guard_condition(self._publish)
+        self._worker = LatestWorker(self._look, f"{node.get_name()} looks at pictures")
+        self._lazy = LazySubscriptions(graph, node, [self._detections, *self._pictures], self._subscribe)
+
+    def close(self) -> None:
+        """End it."""
+        self._lazy.close()
+        self._worker.close()
+        super().close()
+
+    def _declare(self, dialect: Dialect) -> None:
+        node = self._node
+        node.declare_parameter(dialect.model, DEFAULT_DETECTOR, _FOR_GOOD)
+        node.declare_parameter(dialect.labels, "", _FOR_GOOD)
+        node.declare_parameter("device", "cpu", _FOR_GOOD)
+        node.declare_parameter("imgsz_height", 0, _FOR_GOOD)
+        node.declare_parameter("imgsz_width", 0, _FOR_GOOD)
+        node.declare_parameter(dialect.threshold, dialect.least_score, _SHARE)
+        node.declare_parameter(dialect.iou, dialect.overlap, _SHARE)
+        node.declare_parameter(dialect.most, dialect.largest_number)
+        node.declare_parameter("classes", [""], _ANY)
+        node.declare_parameter("enable", True)
+        node.declare_parameter("max_rate", 0.0)
+        node.declare_parameter("image_transport", "raw", _FOR_GOOD)
+        node.declare_parameter("image_reliability", ReliabilityPolicy.BEST_EFFORT.value, _FOR_GOOD)
+        if dialect.image_topic:
+            node.declare_parameter(dialect.image_topic, dialect.images, _FOR_GOOD)
+        if dialect.output_topic:
+            node.declare_parameter(dialect.output_topic, dialect.detections, _FOR_GOOD)
+        for name in node.undeclared_overrides():
+            if name in _SETTINGS or name.startswith(f"{_COLOURS}."):
+                node.declare_parameter(name, None, ParameterDescriptor(read_only=True, dynamic_typing=True))
+
+    def _value(self, name: str) -> Any:
+        return self._node.get_parameter(name).value
+
+    def _make_detector(self, dialect: Dialect) -> Detector:
+        names = self._node.parameter_names()
+        settings: dict[str, object] = {name: self._value(name) for name in _SETTINGS if name in names}
+        colours = {name.partition(".")[2]: self._value(name) for name in names if name.startswith(f"{_COLOURS}.")}
+        if colours:
+            settings[_COLOURS] = colours
+        size = self._value("imgsz_height"), self._value("imgsz_width")
+        labels = self._value(dialect.labels)
+        return make_detector(
+            self._value(dialect.model),
+            DetectorOptions(
+                labels=Path(labels).expanduser() if labels else None,
+                device=self._value("device"),
+                size=size if min(size) > 0 else None,
+                settings=settings,
+            ),
+        )
+
+    def _image_source(self, dialect: Dialect) -> ImageSource:
+        topic = self._value(dialect.image_topic) if dialect.image_topic else dialect.images
+        transport = self._value("image_transport")
+        source = ImageSource.of(self._node.resolve_topic_name(topic), transport)
+        if not source.is_read:
+            raise bad_value("image_transport", transport, self._node.get_name(), ("raw", "compressed"))
+        return source
+
+    def _image_qos(self) -> QoSProfile:
+        reliability = self._value("image_reliability")
+        known = {policy.value: policy for policy in ReliabilityPolicy}
+        if reliability not in known:
+            raise bad_value("image_reliability", reliability, self._node.get_name(), ("1", "2"))
+        return QoSProfile(depth=1, reliability=known[reliability])
+
+    def _limits_of(self, changed: dict[str, Any]) -> Limits:
+        """What the parameters say, with others in the place of some.
+
+        Raises:
+            LinkwrightError: NODE433, `max_det` is less than 1, or a class is none that the detector knows.
+        """
+        dialect = self.DIALECT
+        threshold, iou, most, classes = (
+            changed.get(name, self._value(name)) for name in (dialect.threshold, dialect.iou, dialect.most, "classes")
+        )
+        if most < 1:
+            raise bad_value(dialect.most, most, self._node.get_name())
+        return Limits(threshold, iou, most, self._wanted(classes))
+
+    def _wanted(self, classes: Any) -> frozenset[str] | None:
+        given = classes if isinstance(classes, Sequence) and not isinstance(classes, str) else [classes]
+        known = self._detector.names
+        wanted = []
+        for each in given:
+            numbered = isinstance(each, int) and not isinstance(each, bool) and 0 <= each < len(known)
+            name = known[each] if numbered else str(each)
+            if each is None or name == "":
+                continue
+            if known and name not in known:
+                raise bad_value("classes", name, self._node.get_name(), known)
+            wanted.append(name)
+        return frozenset(wanted) if wanted else None
+
+    def _check(self, parameters: Sequence[Parameter]) -> SetParametersResult:
+        try:
+            self._limits_of({each.name: each.value for each in parameters})
+        except LinkwrightError as error:
+            finding = error.diagnostics[0]
+            return SetParametersResult(
+                False, f"{finding.message}; {finding.hint}" if finding.hint else str(finding.message)
+            )
+        return SetParametersResult(True)
+
+    def _follow(self) -> None:
+        self._limits = self._limits_of({})
+
+    def _on_enable(self, request: Any, response: Any) -> Any:
+        self._node.set_parameters([Parameter("enable", value=request.data)])
+        response.success, response.message = True, "enabled" if request.data else "disabled"
+        return response
+
+    def _on_set_classes(self, request: Any, response: Any) -> Any:
+        (result,) = self._node.set_parameters([Parameter("classes", value=list(request.classes) or [""])])
+        response.success, response.message = result.successful, result.reason
+        return response
+
+    def _subscribe(self) -> list[Subscription[Any]]:
+        kind = get_message(self._source.message_type)
+        return [self._node.create_subscription(kind, self._source.topic, self._see, self._qos)]
+
+    def _see(self, message: Any) -> None:
+        if not self._value("enable") or self._is_too_early():
+            return
+        draws = any(publisher.get_subscription_count() for publisher in self._pictures)
+        self._worker.offer(_Task(message, self._limits, draws))
+
+    def _is_too_early(self) -> bool:
+        rate, now = self._value("max_rate"), self._node.get_clock().now().nanoseconds
+        if rate > 0 and self._last_ns is not None and 0 <= now - self._last_ns < _RATE_SLACK * 1e9 / rate:
+            return True
+        self._last_ns = now
+        return False
+
+    def _look(self, task: _Task) -> None:
+        """Find what is in a picture; in the worker's thread."""
+        try:
+            image = self._unpacker.image(task.message, self._source.transport)
+            picture = picture_of(image, self._ranges).rgb()
+            found = self._detector.detect(picture, task.limits)
+            picture_with_boxes = drawn(picture, found) if task.draws else None
+        except (BadImageError, LinkwrightError) as error:
+            self._done.append(("error", str(error)))
+        else:
+            self._done.append(("found", (task.message.header, found, picture_with_boxes)))
+        self._finished.trigger()
+
+    def _publish(self) -> None:
+        while self._done:
+            kind, result = self._done.popleft()
+            if kind == "error":
+                self._node.get_logger().error(result, throttle_duration_sec=_SECONDS_BETWEEN_COMPLAINTS)
+                continue
+            header, found, picture = result
+            self._detections.publish(MESSAGES[self.DIALECT.message](header, found))
+            if picture is None:
+                continue
+            message = picture_message(header, picture)
+            for publisher in self._pictures:
+                if publisher.get_subscription_count():
+                    publisher.publish(message)
+
+
+class YoloRosNode(DetectorNode):
+    """yolo_node of yolo_ros: yolo_msgs/msg/DetectionArray on ``detections``, and ``dbg_image`` too."""
+
+    DIALECT = YOLO_ROS
+
+
+class Yolov5RosNode(DetectorNode):
+    """The detector of yolov5_ros: ``weights``, ``confidence_threshold``, ``iou_threshold``, ``output_topic``."""
+
+    DEFAULT_NAME = "detect"
+    DIALECT = YOLOV5_ROS
+
+
+class Yolov5Ros2Node(DetectorNode):
+    """yolo_detect_2d of yolov5_ros2: ``image_topic``; ``yolo_result`` and ``result_img``."""
+
+    DEFAULT_NAME = "yolov5_ros2"
+    DIALECT = YOLOV5_ROS2
+
+
+class DarknetRosNode(DetectorNode):
+    """detector_node of openrobotics_darknet_ros: ``~/images``, ``~/detections``, ``detection.threshold``."""
+
+    DEFAULT_NAME = "detector_node"
+    DIALECT = DARKNET_ROS

@@ -1,0 +1,270 @@
+"""The node that finds things in pictures, under all of its names."""
+
+from __future__ import annotations
+
+from io import BytesIO
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph import Parameter
+from linkwright.messages import Time, get_message, get_service
+from linkwright.nodes import NodeOptions
+from linkwright.nodes.vision.detector import (
+    DarknetRosNode,
+    DetectorNode,
+    YoloRosNode,
+    Yolov5Ros2Node,
+    Yolov5RosNode,
+)
+from linkwright.testing.stepped import AsyncSteppedGraph
+from tests.vision.detectors.networks import columns
+from tests.waiting import eventually
+
+
+@pytest.fixture
+async def test():
+    async with AsyncSteppedGraph() as graph:
+        yield graph
+
+
+@pytest.fixture
+def start(test):
+    running = []
+
+    def begin(kind=DetectorNode, remappings=(), namespace="/yolo", **parameters):
+        options = NodeOptions(namespace=namespace, parameters=parameters, remappings=list(remappings))
+        running.append(kind(test.graph, options))
+        return running[-1]
+
+    yield begin
+    for each in running:
+        each.close()
+
+
+def scene(encoding="rgb8"):
+    pixels = np.full((120, 160, 3), 150, np.uint8)
+    pixels[40:80, 100:130] = (20, 60, 200)
+    pixels[40:80, 20:60] = (200, 20, 30)
+    return np.ascontiguousarray(pixels[:, :, ::-1]) if encoding == "bgr8" else pixels
+
+
+def image(encoding="rgb8", seconds=7):
+    pixels = scene(encoding)
+    message = get_message("sensor_msgs/msg/Image")(height=120, width=160, encoding=encoding, step=480)
+    message.header.stamp, message.header.frame_id = Time.from_nanoseconds(seconds * 10**9), "camera"
+    message.data = pixels.reshape(-1)
+    return message
+
+
+def compressed():
+    file = BytesIO()
+    Image.fromarray(scene()).save(file, "PNG")
+    message = get_message("sensor_msgs/msg/CompressedImage")(format="rgb8; png compressed rgb8", data=file.getvalue())
+    message.header.frame_id = "camera"
+    return message
+
+
+async def seen(test, recording, topic, message):
+    """What is published for a picture."""
+    before = len(recording)
+    test.publish(topic, message)
+    await test.settle()
+
+    def came():
+        return len(recording) > before
+
+    await eventually(came)
+    return recording.last
+
+
+def classes(message):
+    return sorted(each.results[0].hypothesis.class_id for each in message.detections)
+
+
+@pytest.mark.parametrize("encoding", ["rgb8", "bgr8"])
+async def test_detections_have_names_centres_sizes_and_the_header_of_the_picture(test, start, encoding):
+    start(model="colours")
+    recording = test.record("/yolo/detections")
+    await test.settle()
+    message = await seen(test, recording, "/yolo/image_raw", image(encoding))
+    assert (message.header.stamp.sec, message.header.frame_id) == (7, "camera")
+    assert classes(message) == ["blue", "red"]
+    (blue,) = [each for each in message.detections if each.results[0].hypothesis.class_id == "blue"]
+    assert (blue.bbox.center.position.x, blue.bbox.center.position.y) == (115.0, 60.0)
+    assert (blue.bbox.size_x, blue.bbox.size_y, blue.bbox.center.theta) == (30.0, 40.0, 0.0)
+    assert blue.results[0].hypothesis.score == pytest.approx(1.0)
+    assert blue.header == message.header
+
+
+async def test_compressed_pictures(test, start):
+    start(model="colours", input_image_topic="/camera/image_raw/compressed")
+    recording = test.record("/yolo/detections")
+    await test.settle()
+    message = await seen(test, recording, "/camera/image_raw/compressed", compressed())
+    assert classes(message) == ["blue", "red"]
+
+
+async def test_a_network(test, start, tmp_path):
+    names = {"names": "{0: 'ball', 1: 'box', 2: 'cat'}"}
+    start(model=str(columns(tmp_path / "v8.onnx", metadata=names)), threshold=0.6, max_det=5)
+    recording = test.record("/yolo/detections")
+    await test.settle()
+    message = await seen(test, recording, "/yolo/image_raw", image())
+    assert len(message.detections) == 5
+    assert set(classes(message)) <= {"ball", "box", "cat"}
+
+
+async def test_the_picture_with_boxes_is_made_when_somebody_wants_it(test, start):
+    start(model="colours")
+    recording = test.record("/yolo/debug_image")
+    await test.settle()
+    message = await seen(test, recording, "/yolo/image_raw", image())
+    assert (message.encoding, message.width, message.height, message.step) == ("rgb8", 160, 120, 480)
+    assert message.header.frame_id == "camera"
+    assert (np.frombuffer(bytes(message.data), np.uint8) != scene().reshape(-1)).any()
+
+
+async def test_pictures_are_taken_only_while_somebody_listens(test, start):
+    start(model="colours")
+    await test.settle()
+    assert test.graph.count_subscribers("/yolo/image_raw") == 0
+    test.record("/yolo/detections")
+    await test.settle()
+    assert test.graph.count_subscribers("/yolo/image_raw") == 1
+
+
+async def test_limits_change_while_it_runs(test, start):
+    node = start(model="colours").node
+    recording = test.record("/yolo/detections")
+    await test.settle()
+    for name, value, expected in [
+        ("classes", ["red"], ["red"]),
+        ("classes", [""], ["blue", "red"]),
+        ("max_det", 1, ["red"]),
+    ]:
+        (result,) = node.set_parameters([Parameter(name, value=value)])
+        assert result.successful, result.reason
+        assert classes(await seen(test, recording, "/yolo/image_raw", image())) == expected
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "words"),
+    [
+        ("threshold", 1.5, ""),
+        ("max_det", 0, "cannot be '0'"),
+        ("classes", ["blu"], "did you mean 'blue'?"),
+        ("model", "aruco", ""),
+    ],
+)
+async def test_values_that_cannot_be_are_refused(test, start, name, value, words):
+    node = start(model="colours").node
+    (result,) = node.set_parameters([Parameter(name, value=value)])
+    assert not result.successful
+    assert words in result.reason
+
+
+async def test_services_enable_and_set_classes(test, start):
+    start(model="colours")
+    recording = test.record("/yolo/detections")
+    await test.settle()
+    switch, choose = get_service("std_srvs/srv/SetBool"), get_service("yolo_msgs/srv/SetClasses")
+    assert (await test.call("/yolo/set_classes", choose.Request(classes=["red"]))).success
+    assert classes(await seen(test, recording, "/yolo/image_raw", image())) == ["red"]
+    assert "did you mean 'red'?" in (await test.call("/yolo/set_classes", choose.Request(classes=["rd"]))).message
+    assert (await test.call("/yolo/set_classes", choose.Request(classes=[]))).success
+    assert (await test.call("/yolo/enable", switch.Request(data=False))).success
+    before = len(recording)
+    test.publish("/yolo/image_raw", image(seconds=8))
+    await test.settle()
+    assert (await test.call("/yolo/enable", switch.Request(data=True))).success
+    message = await seen(test, recording, "/yolo/image_raw", image(seconds=9))
+    assert (message.header.stamp.sec, len(recording) - before) == (9, 1)
+
+
+async def test_no_more_pictures_a_second_than_wanted(test, start):
+    start(model="colours", max_rate=10.0)
+    recording = test.record("/yolo/detections")
+    await test.settle()
+    await seen(test, recording, "/yolo/image_raw", image(seconds=1))
+    await test.advance(0.05)
+    test.publish("/yolo/image_raw", image(seconds=2))
+    await test.settle()
+    await test.advance(0.05)
+    message = await seen(test, recording, "/yolo/image_raw", image(seconds=3))
+    assert (message.header.stamp.sec, len(recording)) == (3, 2)
+
+
+async def test_a_broken_picture_is_told_of_and_the_next_one_looked_at(test, start):
+    start(model="colours")
+    recording = test.record("/yolo/detections")
+    await test.settle()
+    broken = image()
+    broken.encoding = "rainbow8"
+    test.publish("/yolo/image_raw", broken)
+    await test.settle()
+    await eventually(lambda: any("rainbow8" in record.text for record in test.log))
+    assert classes(await seen(test, recording, "/yolo/image_raw", image())) == ["blue", "red"]
+
+
+async def test_colours_of_ones_own(test, start):
+    start(model="colours", colours={"sky": [95, 110, 50, 130, 255, 255]}, least_area=10.0)
+    recording = test.record("/yolo/detections")
+    await test.settle()
+    assert classes(await seen(test, recording, "/yolo/image_raw", image())) == ["sky"]
+
+
+async def test_as_yolo_ros_with_its_messages_and_its_older_topic(test, start):
+    start(YoloRosNode, model="colours", remappings=[("image_raw", "/camera/rgb/image_raw")])
+    recording, picture = test.record("/yolo/detections"), test.record("/yolo/dbg_image")
+    await test.settle()
+    message = await seen(test, recording, "/camera/rgb/image_raw", image())
+    (blue,) = [each for each in message.detections if each.class_name == "blue"]
+    assert (blue.class_id, blue.score) == (4, pytest.approx(1.0))
+    assert (blue.bbox.center.position.x, blue.bbox.size.y) == (115.0, 40.0)
+    await eventually(lambda: len(picture) == 1)
+
+
+@pytest.mark.parametrize(
+    ("kind", "parameters", "topic", "output"),
+    [
+        (
+            Yolov5RosNode,
+            {"weights": "colours", "confidence_threshold": 0.5, "input_image_topic": "/image", "output_topic": "/out"},
+            "/image",
+            "/out",
+        ),
+        (Yolov5Ros2Node, {"model": "colours", "image_topic": "/camera/image_raw"}, "/camera/image_raw", "/yolo_result"),
+        (
+            DarknetRosNode,
+            {"network": {"weights": "colours"}, "detection": {"threshold": 0.5, "nms_threshold": 0.4}},
+            "/detector_node/images",
+            "/detector_node/detections",
+        ),
+    ],
+)
+async def test_as_other_packages_name_things(test, start, kind, parameters, topic, output):
+    start(kind, namespace="/", **parameters)
+    recording = test.record(output)
+    await test.settle()
+    assert classes(await seen(test, recording, topic, image())) == ["blue", "red"]
+    assert not any("no parameter" in record.text or "not read" in record.text for record in test.log)
+
+
+@pytest.mark.parametrize(
+    ("parameters", "code"),
+    [
+        ({"model": "gone.onnx"}, "VISION102"),
+        ({"model": "yolov8n.pt"}, "VISION104"),
+        ({"model": "aruco", "dictionary": "5X"}, "VISION109"),
+        ({"model": "colours", "image_transport": "theora"}, "NODE433"),
+        ({"model": "colours", "image_reliability": 9}, "NODE433"),
+        ({"model": "colours", "classes": ["blu"]}, "NODE433"),
+    ],
+)
+async def test_what_it_cannot_start_with(test, start, parameters, code):
+    with pytest.raises(LinkwrightError) as caught:
+        start(**parameters)
+    assert [each.code for each in caught.value.diagnostics] == [code]
