@@ -46,7 +46,8 @@ def by_hand(path, picture, rows, cols, padded=None):
     session = onnxruntime.InferenceSession(path, providers=["CPUExecutionProvider"])
     kind = np.float16 if "float16" in session.get_inputs()[0].type else np.float32
     tensor = (image.astype(np.float32) / 255).astype(kind).transpose(2, 0, 1)[None]
-    return session.run(None, {"images": tensor})[0].astype(np.float32), scale, left, top
+    scales = new[0] / width, new[1] / height
+    return session.run(None, {"images": tensor})[0].astype(np.float32), scales, left, top
 
 
 def overlap(one, two):
@@ -78,7 +79,7 @@ def check(found, kept, picture, scale, left, top, tolerance=1e-3):
     assert len(found) == len(kept) > 3
     height, width = picture.shape[:2]
     for index, (score, which, box) in enumerate(kept):
-        placed = [(box[0] - left) / scale, (box[1] - top) / scale, (box[2] - left) / scale, (box[3] - top) / scale]
+        placed = [(each - (left, top)[axis % 2]) / scale[axis % 2] for axis, each in enumerate(box)]
         limits = [width, height, width, height]
         assert found.boxes[index] == pytest.approx(
             [min(max(each, 0), limit) for each, limit in zip(placed, limits, strict=True)], abs=tolerance
@@ -125,8 +126,8 @@ def test_final_boxes(tmp_path, picture, said):
     path = constant(tmp_path / "v10.onnx", rows, {**NAMES, **said})
     found = opened(path).detect(picture, LIMITS)
     assert [found.name(index) for index in range(len(found))] == ["cat", "cat", "ball"]
-    scale, top = 128 / 200, round((96 - round(120 * 128 / 200)) / 2 - 0.1)
-    assert found.boxes[0] == pytest.approx([10 / scale, (20 - top) / scale, 40 / scale, (60 - top) / scale], abs=1e-4)
+    across, down, top = 128 / 200, 77 / 120, round((96 - 77) / 2 - 0.1)
+    assert found.boxes[0] == pytest.approx([10 / across, (20 - top) / down, 40 / across, (60 - top) / down], abs=1e-4)
     assert found.boxes[2].tolist() == [0, 0, 200, 120]
 
 

@@ -24,21 +24,21 @@ class Letterbox:
     Attributes:
         width: of the picture, in pixels.
         height: of the picture.
-        scale: pixels of the input for one of the picture.
+        scale: pixels of the input for one of the picture, across and down; they differ by what rounding takes.
         left: where the picture begins in the input, in its pixels.
         top: the same, from above.
     """
 
     width: int
     height: int
-    scale: float
+    scale: tuple[float, float]
     left: int
     top: int
 
     def boxes_in_picture(self, boxes: NDArray[np.float32]) -> NDArray[np.float32]:
         """Boxes of the input, shape ``(n, 4)``, in pixels of the picture, and within it."""
         offset = np.array([self.left, self.top, self.left, self.top], np.float32)
-        placed = (boxes - offset) / np.float32(self.scale)
+        placed = (boxes - offset) / np.array(self.scale * 2, np.float32)
         limits = np.array([self.width, self.height, self.width, self.height], np.float32)
         within: NDArray[np.float32] = np.clip(placed, np.float32(0), limits)
         return within
@@ -71,7 +71,7 @@ def letterboxed(
         scaled = cv2.resize(picture, (columns, rows), interpolation=cv2.INTER_LINEAR)
     whole = np.full((rows + vertical, columns + horizontal, 3), _GREY, np.uint8)
     whole[top : top + rows, left : left + columns] = scaled
-    return whole, Letterbox(width, height, scale, left, top)
+    return whole, Letterbox(width, height, (columns / width, rows / height), left, top)
 
 
 def tensor_of(pixels: NDArray[np.uint8], kind: type[np.floating]) -> NDArray[np.floating]:
