@@ -34,6 +34,7 @@ def suppressed(
         width = np.minimum(boxes[first, 2], others[:, 2]) - np.maximum(boxes[first, 0], others[:, 0])
         height = np.minimum(boxes[first, 3], others[:, 3]) - np.maximum(boxes[first, 1], others[:, 1])
         common = np.maximum(width, 0) * np.maximum(height, 0)
-        same = common > iou * (areas[first] + areas[left] - common)
+        union = areas[first] + areas[left] - common
+        same = (union > 0) & (common > iou * union)  # no area: a network that learnt nothing has such boxes, too
         left = left[~(same & (classes[left] == classes[first]))]
     return np.asarray(kept, np.intp)

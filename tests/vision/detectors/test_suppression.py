@@ -1,0 +1,39 @@
+"""Non-maximum suppression against a slow one."""
+
+from __future__ import annotations
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+
+from linkwright.vision.detectors.suppression import suppressed
+
+
+def slowly(boxes, scores, classes, iou, most):
+    kept = []
+    for index in sorted(range(len(scores)), key=lambda each: -scores[each]):
+        left, top, right, bottom = boxes[index]
+        for other in kept:
+            width = min(right, boxes[other][2]) - max(left, boxes[other][0])
+            height = min(bottom, boxes[other][3]) - max(top, boxes[other][1])
+            common = max(0, width) * max(0, height)
+            sizes = [(each[2] - each[0]) * (each[3] - each[1]) for each in (boxes[index], boxes[other])]
+            union = sum(sizes) - common
+            if classes[other] == classes[index] and union > 0 and common > iou * union:
+                break
+        else:
+            kept.append(index)
+    return kept[:most]
+
+
+corner = st.integers(0, 12)
+box = st.tuples(st.tuples(corner, corner, corner, corner), st.integers(1, 8), st.integers(0, 2))
+
+
+@given(st.lists(box, max_size=25), st.sampled_from([0.0, 0.25, 0.5, 1.0]), st.integers(1, 30))
+def test_the_same_boxes_stay_inside_out_ones_too(rows, iou, most):
+    boxes = np.array([each[0] for each in rows], np.float32).reshape(-1, 4)
+    scores = np.array([each[1] / 8 for each in rows], np.float32)
+    classes = np.array([each[2] for each in rows], np.int32)
+    expected = slowly(boxes.tolist(), scores.tolist(), classes.tolist(), iou, most)
+    assert suppressed(boxes, scores, classes, iou, most).tolist() == expected
