@@ -11,6 +11,7 @@ GAZEBO_PACKAGE = REPOSITORY / "robots" / "my_robot_gazebo"
 VOICE_PACKAGE = REPOSITORY / "robots" / "my_robot_voice"
 CONTROL_PACKAGE = REPOSITORY / "robots" / "my_robot_control"
 NAVIGATION_PACKAGE = REPOSITORY / "robots" / "my_robot_navigation"
+VISION_PACKAGE = REPOSITORY / "robots" / "my_robot_vision"
 PUBLISHED = (REPOSITORY.parent / "shared" / "tutorial" / "my_robot_description").resolve()
 """The tutorial's package as published, where it is at hand: it is not part of the repository."""
 TUTORIAL_PACKAGES = [PACKAGE, *([PUBLISHED] if PUBLISHED.is_dir() else [])]

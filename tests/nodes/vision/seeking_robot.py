@@ -44,6 +44,7 @@ class SeekingRobot(SteppedSimulation):
         pictures: whether a camera sees it; else its boxes are worked out, which is much quicker.
         laser: whether there is one.
         seeker: parameters of the seeker.
+        thing: the class that the ball is found as.
     """
 
     def __init__(
@@ -54,6 +55,7 @@ class SeekingRobot(SteppedSimulation):
         pictures: bool = False,
         laser: bool = False,
         seeker: dict[str, Any] | None = None,
+        thing: str = "ball",
     ) -> None:
         arguments = {"camera": True, "laser": laser}
         world = GAZEBO_PACKAGE / "worlds" / "empty.world"
@@ -61,6 +63,7 @@ class SeekingRobot(SteppedSimulation):
         self._model = folder / "ball.sdf"
         self._model.write_text(_BALL)
         self._ball, self._pictures, self._seeker = ball, pictures, seeker or {}
+        self._thing = thing
         self._visible = True
 
     def __enter__(self) -> Self:
@@ -148,7 +151,7 @@ class SeekingRobot(SteppedSimulation):
             pixels = camera.pixels(corners).ravel() + self._numbers.normal(0, 0.7, 4)
             left, top, right, bottom = np.clip(pixels, 0, [_WIDTH, _HEIGHT] * 2)
             if right - left > 5 and bottom - top > 5:
-                array.detections.append(detection(header, left, top, right, bottom, "ball"))
+                array.detections.append(detection(header, left, top, right, bottom, self._thing))
         self._detections.publish(array)
 
 

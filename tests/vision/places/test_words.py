@@ -72,6 +72,8 @@ def test_what_is_seen_in_a_sentence():
     assert described([], "en") == "I see nothing that I know."
     assert described([], "zh") == "我什么也没看到。"
     assert described([Sighting("person", None, -1.0, 0.0)], "en") == "I see a person 1.0 m behind me."
+    balls = [Sighting("red", None, 1.0, 0.0), Sighting("red", "red", 2.0, 0.0)]
+    assert described(balls, "en") == "I see two red things.", "things of one name are counted together"
     people = [Sighting("person", None, 1.0, 0.0)] * 12
     assert described(people, "en") == "I see 12 people."
 

@@ -9,9 +9,7 @@ things that no depth is known of are where they stand on the ground.
 from __future__ import annotations
 
 from collections import deque
-from colorsys import hsv_to_rgb
 from typing import Any
-from zlib import crc32
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +22,7 @@ from linkwright.nodes.frame_poses import FramePoses
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 from linkwright.nodes.settings import positive, tell_unknown
 from linkwright.nodes.vision.detection_reading import best_hypothesis, box_of
+from linkwright.vision.detectors.drawing import colour_of
 from linkwright.vision.places.camera import CameraModel, camera_model
 from linkwright.vision.places.positions import Place, place_by_depth, place_on_ground
 
@@ -201,7 +200,7 @@ def _markers(found: Any, places: list[Place]) -> Any:
         label.text = " ".join(filter(None, (name, each.id, f"{distance:.1f} m")))
         for marker, alpha in ((box, 0.45), (label, 1.0)):
             colour = marker.color
-            colour.r, colour.g, colour.b = hsv_to_rgb(crc32(name.encode()) % 360 / 360, 0.8, 1.0)
+            colour.r, colour.g, colour.b = (part / 255 for part in colour_of(name))
             colour.a = alpha
         array.markers += [box, label]
     return array

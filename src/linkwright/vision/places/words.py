@@ -148,9 +148,9 @@ def wanted(text: str) -> Wanted | None:
 
 def described(sightings: Iterable[Sighting], language: str) -> str:
     """A sentence about what is seen, nearest first, as *I see a red ball 1.2 m ahead and two crates*."""
-    groups: dict[tuple[str, str | None], list[Sighting]] = {}
+    groups: dict[str, list[Sighting]] = {}
     for each in sorted(sightings, key=lambda each: hypot(each.ahead, each.left)):
-        groups.setdefault((each.name, each.colour), []).append(each)
+        groups.setdefault(named(each.name, each.colour, language), []).append(each)
     if not groups:
         return "我什么也没看到。" if language == "zh" else "I see nothing that I know."
     if language == "zh":

@@ -1,0 +1,53 @@
+"""The chapter about vision; the nodes it tells of are tested in tests/nodes/vision."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from linkwright import standins
+from linkwright.cli import main
+from linkwright.nodes import EXECUTABLES
+from tests.docs.pages import DOCS, blocks, commands
+from tests.nodes.vision.seeking_robot import SeekingRobot
+
+LANGUAGES = {"en": DOCS / "tutorial-vision.md", "zh": DOCS / "zh" / "tutorial-vision.md"}
+
+
+def test_both_languages_have_the_same_commands_and_programs():
+    english, chinese = LANGUAGES.values()
+    assert commands(english) == commands(chinese)
+    assert [block.text for block in blocks(english)] == [block.text for block in blocks(chinese)]
+
+
+def test_the_launch_files_have_the_arguments_that_the_page_uses(capsys: pytest.CaptureFixture[str]):
+    assert main(["launch", "my_robot_vision", "detect.launch.py", "--show-args"]) == 0
+    said = capsys.readouterr().out
+    for argument in ("depth", "voice", "language", "model", "threshold"):
+        assert f"'{argument}'" in said
+    assert main(["launch", "my_robot_vision", "follow_object.launch.py", "--show-args"]) == 0
+    assert "'thing'" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("page", LANGUAGES.values(), ids=LANGUAGES)
+def test_the_nodes_of_the_page_are_there(page: Path):
+    text = page.read_text(encoding="utf-8")
+    for name in ("detector", "tracking_node", "detect_3d_node", "object_seeker"):
+        assert f"| `{name}` |" in text
+        assert ("my_robot_vision", name) in EXECUTABLES
+
+
+def test_the_program_of_the_page_drives_to_something_red(tmp_path: Path):
+    pytest.importorskip("mujoco")
+    standins.activate()
+    (program,) = [block for block in blocks(LANGUAGES["en"]) if block.title == "follow_colour.py"]
+    names: dict[str, Any] = {"__name__": "follow_colour"}
+    exec(compile(program.text, "follow_colour.py", "exec"), names)
+    with SeekingRobot(tmp_path, (2.0, 0.6), thing="red") as test:
+        test.init_rclpy()
+        names["FollowColour"]()
+        test.advance(20.0)
+        assert test.distance() < 1.2
+        assert abs(test.commands.last.angular.z) < 0.2, "it is in the middle of the picture"

@@ -1,0 +1,93 @@
+"""The package of vision nodes: its launch files, its checks, and the node that follows a thing in a simulated world."""
+
+from __future__ import annotations
+
+import importlib
+import math
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import pytest
+
+from linkwright import standins
+from linkwright.cli.command import main
+from linkwright.nodes import EXECUTABLES
+from tests.nodes.vision.seeking_robot import SeekingRobot
+from tests.places import CONTROL_PACKAGE, VISION_PACKAGE
+from tests.robots.workspaces import colcon_build
+
+pytest.importorskip("mujoco")
+
+
+@pytest.fixture
+def follow_object(monkeypatch: pytest.MonkeyPatch) -> Iterator[ModuleType]:
+    """The module of the package, imported as a workspace that is sourced would."""
+    standins.activate()
+    for package in (CONTROL_PACKAGE, VISION_PACKAGE):
+        monkeypatch.syspath_prepend(str(package))
+    yield importlib.import_module("my_robot_vision.follow_object")
+    for name in [each for each in sys.modules if each.partition(".")[0] in ("my_robot_control", "my_robot_vision")]:
+        del sys.modules[name]
+
+
+def test_a_ball_that_moves_is_followed(follow_object: Any, tmp_path: Path) -> None:
+    with SeekingRobot(tmp_path, (-1.5, 0.5)) as test:
+        test.init_rclpy(["--ros-args", "-p", "thing:=ball", "-p", "use_sim_time:=true"])
+        follow_object.FollowObject()
+        for x, y in ((-1.5, 0.5), (-2.0, 1.5), (-1.0, 2.5)):
+            test.delete("ball")
+            test.put_ball(x, y)
+            test.advance(20.0)
+            assert 0.5 < test.distance() < 1.2
+            robot_x, robot_y, _, _, _, *turn = test.robot_pose()
+            bearing = math.atan2(y - robot_y, x - robot_x) - 2.0 * math.atan2(turn[0], turn[1])
+            assert math.cos(bearing) > math.cos(0.15), "it looks at the ball"
+        test.detector.cancel()
+        test.advance(1.0)
+        speed = test.commands.last
+        assert (speed.linear.x, speed.angular.z) == (0.0, 0.0), "a detector that says nothing stops it"
+
+
+def test_what_the_node_decides(follow_object: Any) -> None:
+    path = VISION_PACKAGE / "test" / "test_decisions.py"
+    names: dict[str, Any] = {"__name__": "test_decisions"}
+    exec(compile(path.read_text(encoding="utf-8"), str(path), "exec"), names)
+    tests = [value for name, value in names.items() if name.startswith("test_")]
+    assert len(tests) == 3
+    for each in tests:
+        each()
+
+
+def test_the_package_is_checked(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", "--strict", str(VISION_PACKAGE)]) == 0, capsys.readouterr().out
+
+
+@pytest.mark.parametrize("name", ["detect", "follow_object"])
+def test_launch_files_start_the_nodes(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["launch", str(VISION_PACKAGE / "launch" / f"{name}.launch.py"), "--print"]) == 0
+    said = capsys.readouterr().out
+    for executable in ("detector", "tracking_node", "detect_3d_node", "object_seeker", "voice_commander", "gazebo"):
+        assert executable in said
+
+
+def test_each_program_of_the_package_is_a_node_of_ours_or_its_own() -> None:
+    setup = (VISION_PACKAGE / "setup.py").read_text(encoding="utf-8")
+    for name in ("detector", "tracking_node", "detect_3d_node", "object_seeker"):
+        assert ("my_robot_vision", name) in EXECUTABLES
+        assert f"'{name} = my_robot_vision.linkwright_nodes:{name}'" in setup
+
+
+@pytest.mark.slow
+def test_colcon_installs_everything(tmp_path: Path) -> None:
+    (tmp_path / "src").mkdir()
+    (tmp_path / "src" / VISION_PACKAGE.name).symlink_to(VISION_PACKAGE)
+    colcon_build(tmp_path, VISION_PACKAGE.name)
+    installed = tmp_path / "install" / VISION_PACKAGE.name
+    for name in ("follow_object", "detector", "tracking_node", "detect_3d_node", "object_seeker"):
+        assert (installed / "lib" / VISION_PACKAGE.name / name).is_file()
+    share = installed / "share" / VISION_PACKAGE.name
+    assert (share / "launch" / "detect.launch.py").is_file()
+    assert (share / "rviz" / "vision.rviz").is_file()
