@@ -23,7 +23,7 @@ class Heard:
     """What an engine made of the sound so far.
 
     Attributes:
-        text: the words. Empty: there was speech, and it is none of the phrases.
+        text: the phrase, as it was given. Empty: there was speech, and it is none of the phrases.
         confidence: of the least certain word, 0 to 1.
         final: whether the utterance is over; else it may still change.
         start: of the utterance, in seconds of sound since the engine was made.

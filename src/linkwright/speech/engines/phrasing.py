@@ -1,0 +1,95 @@
+"""Phrases in the words of an engine's vocabulary, and heard words as phrases again."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase, quoted_names
+
+Words = tuple[str, ...]
+
+_LONGEST_WORD = 8
+"""Characters of a Chinese word that are looked up as one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Phrasing:
+    """Phrases as an engine knows them.
+
+    Attributes:
+        phrases: the words that the engine hears -> the phrase as the user wrote it.
+    """
+
+    phrases: Mapping[Words, str]
+
+    @classmethod
+    def of(cls, phrases: Iterable[str], knows: Callable[[str], bool], model: Path | str) -> Phrasing:
+        """Put phrases in an engine's words.
+
+        A word that the engine does not know is tried in small letters and, where it is written without spaces, as
+        Chinese is, divided into the fewest words that it knows.
+
+        Args:
+            phrases: as the user wrote them.
+            knows: whether a word is in the engine's vocabulary.
+            model: what has the vocabulary, for errors.
+
+        Raises:
+            LinkwrightError: VOICE103 it does not know some words.
+        """
+        found: dict[Words, str] = {}
+        missing: dict[str, None] = {}
+        for each in phrases:
+            words: list[str] = []
+            for word in each.split():
+                known = _known(word, knows)
+                if known is None:
+                    missing[word] = None
+                else:
+                    words += known
+            if words:
+                found.setdefault(tuple(words), each)
+        if missing:
+            message = phrase("'{model}' does not know {words}", model=model, words=quoted_names(missing))
+            hint = phrase("say it in other words, or use the engine 'enrolled', which needs no vocabulary")
+            raise LinkwrightError(Diagnostic("VOICE103", message, hint=hint))
+        return cls(found)
+
+    def divided(self, words: Sequence[str]) -> list[tuple[str, int, int]] | None:
+        """Words that were heard as the fewest phrases one after another.
+
+        Returns:
+            Each phrase with its first word and the one after its last; None where the words are not such a sequence.
+        """
+        longest = max(map(len, self.phrases), default=0)
+        best: list[list[tuple[str, int, int]] | None] = [[]]
+        for end in range(1, len(words) + 1):
+            shortest: list[tuple[str, int, int]] | None = None
+            for first in range(max(0, end - longest), end):
+                before, found = best[first], self.phrases.get(tuple(words[first:end]))
+                if before is None or found is None:
+                    continue
+                if shortest is None or len(before) + 1 < len(shortest):
+                    shortest = [*before, (found, first, end)]
+            best.append(shortest)
+        return best[-1]
+
+
+def _known(word: str, knows: Callable[[str], bool]) -> list[str] | None:
+    """A word in words of a vocabulary."""
+    for each in (word, word.lower()):
+        if knows(each):
+            return [each]
+    if word.isascii():
+        return None
+    best: list[list[str] | None] = [[]]
+    for end in range(1, len(word) + 1):
+        shortest: list[str] | None = None
+        for first in range(max(0, end - _LONGEST_WORD), end):
+            before, part = best[first], word[first:end]
+            if before is not None and (shortest is None or len(before) + 1 < len(shortest)) and knows(part):
+                shortest = [*before, part]
+        best.append(shortest)
+    return best[-1]

@@ -1,0 +1,131 @@
+"""pocketsphinx: hears phrases of a grammar; its wheel carries a model of American English.
+
+The grammar has nothing for other speech: half of what is none of the phrases is taken for one of them in our
+measurements. So it is an engine for push-to-talk, and Vosk or enrolled words are better where they can be had.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, install_hint, phrase
+from linkwright.speech.engine import EngineOptions, Heard, SpeechEngine
+from linkwright.speech.engines.phrasing import Phrasing
+from linkwright.speech.sound.samples import RATE, Samples
+
+_LANGUAGE = "en"
+_GRAMMAR = "phrases"
+_MODEL_FILES = ("mdef", "means", "variances", "transition_matrices")  # without one, the library ends the process
+_FILLER = "<"  # how pocketsphinx's names of silence and noise begin
+
+
+class PocketsphinxEngine(SpeechEngine):
+    """The engine ``pocketsphinx``; its confidence is the probability of the phrase among all that the grammar has.
+
+    Raises:
+        LinkwrightError: VOICE102 pocketsphinx is not installed; VOICE103 the dictionary lacks a word; VOICE104 the
+            folder holds no model; VOICE105 the language is not English and no model is given.
+    """
+
+    def __init__(self, options: EngineOptions) -> None:
+        try:
+            import pocketsphinx
+        except ModuleNotFoundError:
+            message = phrase("the package '{package}' is not installed", package="pocketsphinx")
+            raise LinkwrightError(Diagnostic("VOICE102", message, hint=install_hint("voice"))) from None
+        if options.model is None and options.language.partition("-")[0].lower() != _LANGUAGE:
+            message = phrase("pocketsphinx has no model for the language '{language}'", language=options.language)
+            hint = phrase("use the engine 'vosk' or 'enrolled', or give the folder of a model")
+            raise LinkwrightError(Diagnostic("VOICE105", message, hint=hint))
+        self._decoder = _decoder(pocketsphinx, options.model)
+        self._phrasing = Phrasing.of(
+            options.phrases,
+            lambda word: self._decoder.lookup_word(word) is not None,
+            options.model or "pocketsphinx",
+        )
+        self._decoder.add_jsgf_string(_GRAMMAR, _jsgf(self._phrasing))
+        self._decoder.activate_search(_GRAMMAR)
+        self._endpointer = pocketsphinx.Endpointer(sample_rate=RATE)
+        self._waiting = b""
+        self._speaking = False
+        self._partial = ""
+
+    def hear(self, samples: Samples) -> Sequence[Heard]:
+        """Partials are phrases that the words so far are."""
+        self._waiting += samples.astype("<i2").tobytes()
+        size = self._endpointer.frame_bytes
+        found: list[Heard] = []
+        while len(self._waiting) >= size:
+            frame, self._waiting = self._waiting[:size], self._waiting[size:]
+            found += self._take(self._endpointer.process(frame))
+        if self._speaking:
+            found += self._changed()
+        return found
+
+    def finish(self) -> Sequence[Heard]:
+        """What was said until now."""
+        rest, self._waiting = self._waiting, b""
+        found = self._take(self._endpointer.end_stream(rest)) if self._endpointer.in_speech else []
+        return [*found, *self._end()]
+
+    def close(self) -> None:
+        """End an utterance that goes on."""
+        self._end()
+
+    def _take(self, speech: bytes | None) -> list[Heard]:
+        """Decode what the endpointer takes for speech."""
+        if speech is None:
+            return []
+        if not self._speaking:
+            self._decoder.start_utt()
+            self._speaking, self._partial = True, ""
+        self._decoder.process_raw(speech)
+        return [] if self._endpointer.in_speech else self._end()
+
+    def _end(self) -> list[Heard]:
+        if not self._speaking:
+            return []
+        self._speaking = False
+        self._decoder.end_utt()
+        text, confidence = self._best()
+        return [Heard(text, confidence, True, self._endpointer.speech_start, self._endpointer.speech_end)]
+
+    def _changed(self) -> list[Heard]:
+        text, confidence = self._best()
+        if text in ("", self._partial):
+            return []
+        self._partial = text
+        now = self._endpointer.speech_start + self._decoder.n_frames() / self._decoder.config["frate"]
+        return [Heard(text, confidence, False, self._endpointer.speech_start, now)]
+
+    def _best(self) -> tuple[str, float]:
+        """The phrase that is heard, as the user wrote it, and its probability; an empty one where it is none."""
+        found = self._decoder.hyp()
+        if found is None:
+            return "", 0.0
+        words = [word for word in found.hypstr.split() if not word.startswith(_FILLER)]
+        return self._phrasing.phrases.get(tuple(words), ""), min(1.0, found.prob)
+
+
+def _jsgf(phrasing: Phrasing) -> str:
+    """A grammar of phrases, each of which is all that is said (JSpeech Grammar Format, W3C note of June 2000)."""
+    alternatives = " | ".join(" ".join(words) for words in phrasing.phrases)
+    return f"#JSGF V1.0;\ngrammar {_GRAMMAR};\npublic <said> = {alternatives};\n"
+
+
+def _decoder(pocketsphinx: Any, folder: Path | None) -> Any:
+    settings: dict[str, Any] = {"lm": None, "loglevel": "FATAL", "samprate": RATE}
+    if folder is not None:
+        dictionaries = sorted(each for each in folder.glob("*.dic*") if each.is_file()) if folder.is_dir() else []
+        if not dictionaries or not all((folder / name).is_file() for name in _MODEL_FILES):
+            message = phrase("'{path}' holds no model of pocketsphinx", path=folder)
+            hint = phrase("it is a folder with 'mdef', what belongs to it, and a dictionary such as 'words.dict'")
+            raise LinkwrightError(Diagnostic("VOICE104", message, hint=hint))
+        settings |= {"hmm": str(folder), "dict": str(dictionaries[0])}
+    try:
+        return pocketsphinx.Decoder(**settings)
+    except (RuntimeError, ValueError) as error:
+        message = phrase("pocketsphinx cannot begin: {reason}", reason=foreign(error))
+        raise LinkwrightError(Diagnostic("VOICE104", message)) from None

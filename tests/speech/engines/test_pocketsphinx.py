@@ -1,0 +1,152 @@
+"""The engine pocketsphinx: what is decided about phrases with the real library, and streams with one that is told."""
+
+from __future__ import annotations
+
+import sys
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.speech.engine import EngineOptions, engine_names
+from linkwright.speech.engines.pocketsphinx_engine import PocketsphinxEngine
+
+FRAME = 480
+SPEECH, QUIET = np.full(FRAME, 1_000, np.int16), np.zeros(FRAME, np.int16)
+
+
+class Endpointer:
+    """Speech is what is loud; one quiet frame ends it."""
+
+    frame_bytes = 2 * FRAME
+
+    def __init__(self, sample_rate):
+        assert sample_rate == 16_000
+        self.in_speech, self.speech_start, self.speech_end, self.frames = False, 0.0, 0.0, 0
+
+    def process(self, frame):
+        assert len(frame) == self.frame_bytes
+        self.frames += 1
+        loud, was = bool(np.frombuffer(frame, np.int16).any()), self.in_speech
+        if loud and not was:
+            self.speech_start = (self.frames - 1) * 0.03
+        if was and not loud:
+            self.speech_end = self.frames * 0.03
+        self.in_speech = loud
+        return frame if loud or was else None
+
+    def end_stream(self, frame):
+        self.in_speech, self.speech_end = False, self.frames * 0.03
+        return frame
+
+
+class Decoder:
+    """Hears as many words of a sentence as there are frames of speech."""
+
+    says = ("go", "to", "<sil>", "the", "kitchen")
+    made = ()
+
+    def __init__(self, **settings):
+        self.config, self.grammar, self.frames = {"frate": 100}, "", 0
+        self.made.append(self)
+
+    def lookup_word(self, word):
+        return "A B" if word in ("go", "to", "the", "kitchen", "stop") else None
+
+    def add_jsgf_string(self, name, text):
+        self.grammar = text
+
+    def activate_search(self, name):
+        pass
+
+    def start_utt(self):
+        self.frames = 0
+
+    def process_raw(self, data):
+        self.frames += 1
+
+    def end_utt(self):
+        pass
+
+    def n_frames(self):
+        return 3 * self.frames
+
+    def hyp(self):
+        heard = " ".join(self.says[: self.frames])
+        return SimpleNamespace(hypstr=heard, prob=0.5) if heard else None
+
+
+@pytest.fixture
+def told(monkeypatch):
+    monkeypatch.setitem(sys.modules, "pocketsphinx", SimpleNamespace(Decoder=Decoder, Endpointer=Endpointer))
+    monkeypatch.setattr(Decoder, "made", [])
+
+
+def refused(*given):
+    with pytest.raises(LinkwrightError) as caught:
+        PocketsphinxEngine(EngineOptions(*given))
+    (diagnostic,) = caught.value.diagnostics
+    return diagnostic
+
+
+def test_both_engines_are_found_by_name():
+    assert {"vosk", "pocketsphinx"} <= set(engine_names())
+
+
+def test_an_utterance_in_blocks_of_another_length(told):
+    engine = PocketsphinxEngine(EngineOptions(("go to the kitchen", "Stop")))
+    assert "public <said> = go to the kitchen | stop;" in Decoder.made[0].grammar
+    sound = np.concatenate([QUIET, QUIET, *[SPEECH] * 5, QUIET, QUIET])
+    heard = [each for at in range(0, len(sound), 700) for each in engine.hear(sound[at : at + 700])]
+    assert [(each.text, each.final) for each in heard] == [("go to the kitchen", False), ("go to the kitchen", True)]
+    assert heard[-1].confidence == 0.5
+    assert (heard[-1].start, heard[-1].end) == pytest.approx((0.06, 0.24))
+
+
+def test_other_words_are_none_of_the_phrases(told):
+    engine = PocketsphinxEngine(EngineOptions(("stop",)))
+    (heard,) = engine.hear(np.concatenate([SPEECH, SPEECH, QUIET]))
+    assert (heard.text, heard.final) == ("", True)
+
+
+def test_the_end_of_a_button_press_ends_the_utterance(told):
+    engine = PocketsphinxEngine(EngineOptions(("go", "stop")))
+    assert [each.text for each in engine.hear(np.concatenate([SPEECH, SPEECH[:100]]))] == ["go"]
+    (heard,) = engine.finish()
+    assert heard.final
+    assert list(engine.finish()) == []
+    assert [each.text for each in engine.hear(SPEECH)] == ["go"]
+    engine.close()
+
+
+def test_quiet_and_noise_are_no_phrase_for_the_real_library():
+    engine = PocketsphinxEngine(EngineOptions(("forward", "turn left", "stop")))
+    noise = np.random.default_rng(1).normal(0, 30, 16_000).astype(np.int16)
+    assert [each for each in engine.hear(np.concatenate([np.zeros(16_000, np.int16), noise])) if each.text] == []
+    assert [each for each in engine.finish() if each.text] == []
+
+
+def test_words_that_the_real_dictionary_lacks_are_named():
+    diagnostic = refused(("go forward", "engage the frobnicator", "前进"))
+    assert diagnostic.code == "VOICE103"
+    assert "'frobnicator', '前进'" in str(diagnostic.message)
+
+
+def test_only_english_comes_with_it():
+    assert refused(("前进",), "zh").code == "VOICE105"
+
+
+def test_a_folder_without_a_model(tmp_path):
+    assert refused(("stop",), "en", tmp_path).code == "VOICE104"
+    (tmp_path / "mdef").write_text("nothing")
+    (tmp_path / "words.dict").write_text("stop S T AA P\n")
+    assert refused(("stop",), "en", tmp_path).code == "VOICE104"
+    assert refused(("stop",), "en", tmp_path / "nowhere").code == "VOICE104"
+
+
+def test_without_the_library(monkeypatch):
+    monkeypatch.setitem(sys.modules, "pocketsphinx", None)
+    diagnostic = refused(("stop",))
+    assert diagnostic.code == "VOICE102"
+    assert "linkwright[voice]" in str(diagnostic.hint)
