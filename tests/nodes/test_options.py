@@ -8,6 +8,7 @@ from linkwright.nodes import EXECUTABLES, NodeOptions
 from linkwright.nodes.options import create_node
 from linkwright.nodes.registry import default_name
 from tests.nodes.stage import joint, robot
+from tests.nodes.voice import fake_sounddevice
 
 ARGUMENTS = {
     "static_transform_publisher": ["--frame-id", "a", "--child-frame-id", "b"],
@@ -52,6 +53,12 @@ def terminal():
     yield sides[1]
     for side in sides:
         os.close(side)
+
+
+@pytest.fixture(autouse=True)
+def microphone(monkeypatch):
+    """That of a machine which has one."""
+    monkeypatch.setitem(sys.modules, "sounddevice", fake_sounddevice)
 
 
 @pytest.mark.parametrize("executable", EXECUTABLES, ids="/".join)

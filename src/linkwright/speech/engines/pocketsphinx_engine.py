@@ -31,7 +31,7 @@ class PocketsphinxEngine(SpeechEngine):
 
     def __init__(self, options: EngineOptions) -> None:
         try:
-            import pocketsphinx
+            import pocketsphinx  # type: ignore[import-untyped, import-not-found, unused-ignore]
         except ModuleNotFoundError:
             message = phrase("the package '{package}' is not installed", package="pocketsphinx")
             raise LinkwrightError(Diagnostic("VOICE102", message, hint=install_hint("voice"))) from None

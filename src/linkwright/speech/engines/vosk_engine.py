@@ -104,7 +104,7 @@ class VoskEngine(SpeechEngine):
 
 def _library() -> Any:
     try:
-        import vosk
+        import vosk  # type: ignore[import-untyped, import-not-found, unused-ignore]
     except ModuleNotFoundError as error:
         raise missing_extra("VOICE102", error) from None
     except OSError as error:

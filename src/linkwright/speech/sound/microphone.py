@@ -1,0 +1,86 @@
+"""The system's microphone, through PortAudio, which the library sounddevice finds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, install_hint, phrase
+from linkwright.speech.sound.resampling import Resampler
+from linkwright.speech.sound.samples import RATE, Samples
+
+_FULL = 32_768.0
+
+
+class Microphone:
+    """Listens until it is closed.
+
+    A device that cannot be read at 16 kHz is read at its own rate and resampled.
+
+    Args:
+        device: number or part of the name, as ``python -m sounddevice`` lists them; empty for the system's default.
+        block: samples that are delivered at once, about.
+        heard: takes each block, in a thread of PortAudio's.
+
+    Raises:
+        LinkwrightError: VOICE412 there is no PortAudio; VOICE413 the device is not there or cannot be opened.
+    """
+
+    def __init__(self, device: str, block: int, heard: Callable[[Samples], None]) -> None:
+        sounddevice = _library()
+        chosen: int | str | None = int(device) if device.isdigit() else device or None
+        self._heard = heard
+        self._resampler: Resampler | None = None
+        try:
+            rate = self._rate_of(sounddevice, chosen)
+            self._stream = sounddevice.InputStream(
+                device=chosen,
+                samplerate=rate,
+                blocksize=block * rate // RATE,
+                channels=1,
+                dtype="int16",
+                callback=self._take,
+            )
+            self._stream.start()
+        except (sounddevice.PortAudioError, ValueError, OSError) as error:
+            message = phrase(
+                "the microphone '{device}' cannot be opened: {reason}", device=device, reason=foreign(error)
+            )
+            hint = phrase(
+                "`python -m sounddevice` lists the devices; the microphone of the browser needs none of the system"
+            )
+            raise LinkwrightError(Diagnostic("VOICE413", message, hint=hint)) from None
+
+    def close(self) -> None:
+        """Stop listening."""
+        self._stream.close()
+
+    def _rate_of(self, sounddevice: Any, chosen: int | str | None) -> int:
+        try:
+            sounddevice.check_input_settings(device=chosen, channels=1, dtype="int16", samplerate=RATE)
+        except sounddevice.PortAudioError:
+            rate: int = round(sounddevice.query_devices(chosen, "input")["default_samplerate"])
+            self._resampler = Resampler(rate)
+            return rate
+        return RATE
+
+    def _take(self, data: Any, _frames: int, _time: Any, _status: Any) -> None:
+        samples: Samples = np.array(data[:, 0], dtype=np.int16)
+        self._heard(samples if self._resampler is None else self._resampler.feed(samples / _FULL))
+
+
+def _library() -> Any:
+    hint = phrase(
+        "install PortAudio (apt install libportaudio2), or use the microphone of the browser, which needs nothing"
+    )
+    try:
+        import sounddevice  # type: ignore[import-untyped, import-not-found, unused-ignore]
+    except ModuleNotFoundError:
+        message = phrase("the package '{package}' is not installed", package="sounddevice")
+        raise LinkwrightError(Diagnostic("VOICE412", message, hint=install_hint("voice"))) from None
+    except OSError as error:  # what it loads is not there
+        message = phrase("the system's microphone cannot be used: {reason}", reason=foreign(error))
+        raise LinkwrightError(Diagnostic("VOICE412", message, hint=hint)) from None
+    return sounddevice
