@@ -45,6 +45,7 @@ GROUPS = {
         "completion": "print what makes TAB complete command lines in bash, zsh or fish",
         "bag": "record topics, play recordings and tell what is in them",
         "models": "fetch models for speech and vision that others trained, check and remove them",
+        "voice": "try engines of speech on recordings, and enrol words",
         "vision": "find things in pictures with detectors",
     },
     "the running graph, as ros2 does": {

@@ -21,10 +21,11 @@ def write_output(path: Path, content: str | bytes) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
         write_whole_file(path, content)
     except OSError as error:
-        raise LinkwrightError(
-            Diagnostic(
-                "CLI201",
-                phrase("cannot write '{path}': {strerror}", path=path, strerror=foreign(error.strerror or error)),
-                hint=phrase("name a file in a folder that you may write to"),
-            )
-        ) from None
+        raise cannot_write(path, error) from None
+
+
+def cannot_write(path: Path, error: OSError) -> LinkwrightError:
+    """The error for a result file that cannot be written (CLI201)."""
+    message = phrase("cannot write '{path}': {strerror}", path=path, strerror=foreign(error.strerror or error))
+    hint = phrase("name a file in a folder that you may write to")
+    return LinkwrightError(Diagnostic("CLI201", message, hint=hint))

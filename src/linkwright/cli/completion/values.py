@@ -118,6 +118,12 @@ def _models(_: Asked) -> Iterable[str]:
     return model_table()
 
 
+def _engines(_: Asked) -> Iterable[str]:
+    from linkwright.speech.engine import engine_names
+
+    return engine_names()
+
+
 def _files(_: Asked) -> Iterable[str]:
     return [FILES]
 
@@ -130,6 +136,8 @@ _KINDS: dict[str, Callable[[Asked], Iterable[str]]] = {
     "LAUNCH_ARGUMENT": _launch_arguments,
     "NAME:=VALUE": _description_arguments,
     "MODEL": _models,
+    "ENGINE": _engines,
+    "WAV": _files,
     "TOPIC": _graph("topics"),
     "NODE": _graph("nodes"),
     "CONTAINER": _graph("nodes"),

@@ -1,0 +1,260 @@
+"""``linkwright voice``: engines of speech tried on recordings, and the words that a user has enrolled."""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from linkwright.cli.endings import FINE, say
+from linkwright.cli.nested import SubVerb, configure_nested, run_nested
+from linkwright.cli.output import cannot_write
+from linkwright.diagnostics import (
+    Diagnostic,
+    LinkwrightError,
+    Note,
+    Phrase,
+    counted,
+    did_you_mean,
+    display_path,
+    phrase,
+)
+from linkwright.diagnostics.translation import localized
+
+if TYPE_CHECKING:
+    from linkwright.speech.commands.command_set import CommandSet
+    from linkwright.speech.engine import Heard, SpeechEngine
+    from linkwright.speech.enrolled.words import Words
+    from linkwright.speech.sound.samples import Samples
+
+_ENGINE = "enrolled"
+_LANGUAGES = {"en": "stop", "zh": "停止"}
+"""Those that engines are asked for, with something that can be said."""
+
+
+def configure_try(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    parser.add_argument("files", metavar="WAV", nargs="+", help="recordings")
+    parser.add_argument(
+        "--engine", metavar="ENGINE", default=_ENGINE, help="the engine: enrolled (default), vosk, pocketsphinx"
+    )
+    parser.add_argument("--language", metavar="LANGUAGE", default="en", help="what is spoken: en (default), zh")
+    parser.add_argument("--model", metavar="PATH", type=Path, help="another model than the engine's usual one")
+    parser.add_argument("--commands", metavar="FILE", help="the file of commands (default: the built-in one)")
+    parser.add_argument("--partials", action="store_true", help="print what is heard before it is final, too")
+
+
+def run_try(arguments: argparse.Namespace) -> int:
+    """Print what an engine hears in recordings."""
+    from linkwright.speech.commands.command_file import DEFAULT_FILE, read_command_file
+    from linkwright.speech.engine import EngineOptions, make_engine
+    from linkwright.speech.sound.wav import read_wav
+
+    sounds = [read_wav(file) for file in arguments.files]
+    commands = read_command_file(arguments.commands or DEFAULT_FILE)
+    options = EngineOptions(commands.phrases(arguments.language), arguments.language, arguments.model)
+    engine = make_engine(arguments.engine, options)
+    trial = _Trial(engine, commands, partials=arguments.partials)
+    try:
+        for file, samples in zip(arguments.files, sounds, strict=True):
+            trial.hear(file, samples)
+    finally:
+        engine.close()
+    return FINE
+
+
+class _Trial:
+    """Hands recordings to an engine as a microphone would, one after another, and prints what it hears.
+
+    Args:
+        engine: the engine.
+        commands: what may be meant.
+        partials: whether to print what is not final.
+    """
+
+    def __init__(self, engine: SpeechEngine, commands: CommandSet, *, partials: bool) -> None:
+        self._engine, self._commands, self._partials = engine, commands, partials
+        self._given = 0  # samples
+
+    def hear(self, file: str, samples: Samples) -> None:
+        """Print what is heard in a recording, a line each."""
+        import numpy as np
+
+        from linkwright.speech.sound.samples import BLOCK, RATE
+
+        began = self._given / RATE
+        sound = np.concatenate((samples, np.zeros(RATE, np.int16)))  # engines wait for silence
+        finals = 0
+        for first in range(0, len(sound), BLOCK):
+            block = sound[first : first + BLOCK]
+            self._given += len(block)
+            start = time.perf_counter()
+            heard = self._engine.hear(block)
+            finals += self._print(file, heard, began, self._given / RATE + time.perf_counter() - start)
+        start = time.perf_counter()
+        heard = self._engine.finish()
+        finals += self._print(file, heard, began, self._given / RATE + time.perf_counter() - start)
+        if not finals:
+            print(localized(phrase("{file}: nothing is heard", file=file)))
+
+    def _print(self, file: str, heard: Sequence[Heard], began: float, now: float) -> int:
+        """Print what came at some time of the sound; how much of it was final."""
+        for each in heard:
+            if each.final or self._partials:
+                times = {"start": f"{max(0.0, each.start - began):.2f}", "end": f"{each.end - began:.2f}"}
+                print(localized(phrase(
+                    "{file}: {what}, {start} s to {end} s, known {latency} s later",
+                    file=file, what=self._what(each), latency=f"{max(0.0, now - each.end):.2f}", **times,
+                )))  # fmt: skip
+        return sum(each.final for each in heard)
+
+    def _what(self, heard: Heard) -> Phrase:
+        if not heard.text:
+            return phrase("none of the phrases")
+        said = {"text": heard.text, "confidence": f"{heard.confidence:.2f}"}
+        if not heard.final:
+            return phrase("so far '{text}' ({confidence})", **said)
+        understood = self._commands.understand(heard.text)
+        if understood is None:
+            return phrase("'{text}' ({confidence}), no command", **said)
+        return phrase("'{text}' ({confidence}), command {intent}", intent=understood.command.intent, **said)
+
+
+def configure_enrol(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    parser.add_argument("word", metavar="WORD", help="the word or phrase, as the commands have it")
+    parser.add_argument("files", metavar="WAV", nargs="+", help="recordings in which it is said once each, best three")
+    _add_file(parser)
+
+
+def run_enrol(arguments: argparse.Namespace) -> int:
+    """Learn a word from recordings: of all, or, where one is not fit, of none."""
+    from linkwright.speech.enrolled.enrolment import enrol
+    from linkwright.speech.enrolled.words import TAKES
+    from linkwright.speech.sound.wav import read_wav
+
+    path = _path(arguments)
+    words = _read(path)
+    wrong: list[Diagnostic] = []
+    for file in arguments.files:
+        place = Note(phrase("in '{path}'", path=file))
+        found = enrol(words, arguments.word, read_wav(file))
+        wrong += [dataclasses.replace(each, notes=(*each.notes, place)) for each in found]
+    if wrong:
+        raise LinkwrightError(*wrong)
+    _write(words, path)
+    count = len(words.takes(arguments.word))
+    takes = counted("{count} recording", "{count} recordings", count)
+    print(localized(phrase("'{word}': {takes}", word=arguments.word, takes=takes)))
+    if count < TAKES:
+        say(localized(phrase("it is told apart more surely with {takes} recordings", takes=TAKES)))
+    return FINE
+
+
+def configure_words(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    _add_file(parser)
+
+
+def run_words(arguments: argparse.Namespace) -> int:
+    """List the enrolled words."""
+    path = _path(arguments)
+    words = _read(path)
+    for name in words.names:
+        takes = counted("{count} recording", "{count} recordings", len(words.takes(name)))
+        print(localized(phrase("'{word}': {takes}", word=name, takes=takes)))
+    if not words.names:
+        say(localized(phrase("no word is enrolled in '{path}'", path=display_path(path))))
+    return FINE
+
+
+def configure_forget(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    parser.add_argument("word", metavar="WORD", help="the word, as `linkwright voice words` prints it")
+    _add_file(parser)
+
+
+def run_forget(arguments: argparse.Namespace) -> int:
+    """Take a word out of the enrolled ones."""
+    path = _path(arguments)
+    words = _read(path)
+    if arguments.word not in words.names:
+        message = phrase("the word '{word}' is not enrolled", word=arguments.word)
+        raise LinkwrightError(Diagnostic("VOICE210", message, hint=did_you_mean(arguments.word, words.names)))
+    words.remove(arguments.word)
+    _write(words, path)
+    print(localized(phrase("Removed {path}", path=arguments.word)))
+    return FINE
+
+
+def configure_engines(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments: there are none."""
+
+
+def run_engines(_: argparse.Namespace) -> int:
+    """Try to make each engine in each language, and say what it lacks."""
+    from linkwright.speech.engine import engine_names
+
+    for name in engine_names():
+        for language, text in _LANGUAGES.items():
+            print(f"{name} {language}: {localized(_state(name, language, text))}")
+    return FINE
+
+
+def _state(name: str, language: str, text: str) -> Phrase:
+    from linkwright.speech.engine import EngineOptions, make_engine
+
+    try:
+        make_engine(name, EngineOptions((text,), language)).close()
+    except LinkwrightError as error:
+        (first, *_) = error.diagnostics
+        return phrase("{problem}; {hint}", problem=first.message, hint=first.hint) if first.hint else first.message
+    return phrase("ready")
+
+
+def _add_file(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--file", metavar="FILE", type=Path, help="another file of words than the user's own")
+
+
+def _path(arguments: argparse.Namespace) -> Path:
+    from linkwright.speech.enrolled.words import words_path
+
+    path: Path | None = arguments.file
+    return path or words_path()
+
+
+def _read(path: Path) -> Words:
+    from linkwright.speech.enrolled.words import Words
+
+    return Words.read(path) if path.exists() else Words()
+
+
+def _write(words: Words, path: Path) -> None:
+    try:
+        words.write(path)
+    except OSError as error:
+        raise cannot_write(path, error) from None
+
+
+VERBS = {
+    "try": SubVerb(
+        configure_try, run_try, help="print what an engine hears in recordings, and which commands that are"
+    ),
+    "enrol": SubVerb(configure_enrol, run_enrol, help="learn a word from recordings of it"),
+    "words": SubVerb(configure_words, run_words, help="list the words that have been enrolled"),
+    "forget": SubVerb(configure_forget, run_forget, help="take a word out of the enrolled ones"),
+    "engines": SubVerb(configure_engines, run_engines, help="list the engines that there are, and what they lack"),
+}
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Declare the commands."""
+    configure_nested(parser, VERBS)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the command that was named."""
+    return run_nested(arguments)
