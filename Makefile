@@ -3,6 +3,7 @@
 #   make demo    drive the robot of the tutorial, with laser and camera, through a simulated world in a browser
 #   make test    all tests, those of the page in a real Chromium (fetched below .build/ where there is none)
 #   make test-ros  the tests against real ROS 2, which is installed from PyPI below .build/
+#   make test-train  those that train networks, with PyTorch from PyPI below .build/
 #   make check   ruff, mypy, import-linter, the page's type check, generated files current
 #   make bench   the figures the project promises, measured on this machine
 #   make soak    an hour of processes over DDS: does anything grow, get lost or hang?
@@ -43,7 +44,7 @@ MBOT := robots/my_robot_description/urdf/mbot_gazebo.xacro
 LOCKED := .build/constraints.txt
 PAGE_SOURCES := $(shell find frontend -path frontend/node_modules -prune -o -type f -print)
 
-.PHONY: demo test test-quick coverage test-browser test-ros check bench soak fuzz reference docs page lock format clean
+.PHONY: demo test test-quick coverage test-browser test-ros test-train check bench soak fuzz reference docs page lock format clean
 
 # Ctrl-C is how the demo ends (status 130), which is no error; the shell has to outlive it to say so.
 demo: $(VENV)/.ready
@@ -72,6 +73,16 @@ test-ros: $(VENV)/.dev .build/ros/.ready
 	$(UV) venv --quiet --clear --python 3.12 .build/ros
 	$(UV) pip install --quiet --python .build/ros/bin/python \
 		ros-rclpy==7.1.6 ros-rmw-fastrtps-cpp==8.4.3 ros-common-interfaces==5.3.6
+	touch $@
+
+# PyTorch is larger than everything else together, so that it has an environment of its own.
+test-train: .build/train/.ready
+	LINKWRIGHT_TESTS_TRAINING=1 .build/train/bin/pytest tests/vision/training $(ARGS)
+
+.build/train/.ready: pyproject.toml | $(UV)
+	$(UV) venv --quiet --clear --python $(or $(VERSION),3.12) .build/train
+	$(UV) pip install --quiet --python .build/train/bin/python -e '.[train]' \
+		babel hypothesis psutil pytest pytest-asyncio pytest-xdist
 	touch $@
 
 check: $(VENV)/.dev

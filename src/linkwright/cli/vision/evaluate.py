@@ -1,0 +1,38 @@
+"""``linkwright vision evaluate``: how well a detector finds what is in the pictures of a dataset."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from dataclasses import asdict
+from pathlib import Path
+
+from linkwright.cli.endings import FINE
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    parser.add_argument("model", metavar="MODEL", help="an ONNX file, or the name of a detector")
+    parser.add_argument(
+        "dataset", metavar="DATASET", type=Path, help="its folder, as linkwright dataset makes it, or its data.yaml"
+    )
+    parser.add_argument("--split", metavar="NAME", help="train, val or test; default test, or val where there is none")
+    parser.add_argument("--confusion", action="store_true", help="also print what was taken for what")
+    parser.add_argument("--format", choices=("text", "json"), default="text", help="how to print it")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Print the figures."""
+    from linkwright.vision.training.card import confusion, table
+    from linkwright.vision.training.teaching import judge
+
+    figures = judge(arguments.model, arguments.dataset, arguments.split)
+    if arguments.format == "json":
+        content = {**asdict(figures), "confusion": figures.confusion.tolist()}
+        print(json.dumps(content, indent=2, ensure_ascii=False))
+        return FINE
+    print(f"{figures.pictures} pictures: mAP50 {figures.map50:.3f}, mAP50-95 {figures.map:.3f}")
+    print("\n".join(table(figures)))
+    if arguments.confusion:
+        print("\n".join(["", *confusion(figures)]))
+    return FINE

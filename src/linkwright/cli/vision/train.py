@@ -1,0 +1,101 @@
+"""``linkwright vision train``: a network taught with the pictures of a dataset."""
+
+from __future__ import annotations
+
+import argparse
+import shlex
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from linkwright.cli.endings import FINE
+from linkwright.cli.numbers import positive_float, positive_int, unsigned_int
+from linkwright.diagnostics import phrase
+from linkwright.diagnostics.translation import localized
+from linkwright.interruption import INTERRUPTED
+
+if TYPE_CHECKING:
+    from linkwright.vision.training.learning.course import Epoch
+
+_CELL = 32
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    parser.add_argument(
+        "dataset", metavar="DATASET", type=Path, help="its folder, as linkwright dataset makes it, or its data.yaml"
+    )
+    parser.add_argument(
+        "-o", "--output", metavar="FOLDER", type=Path, default=Path("training"), help="default training"
+    )
+    parser.add_argument("--name", default="detector", help="of the network and its card, default detector")
+    parser.add_argument("--epochs", type=positive_int, default=40, help="how often it sees each picture, default 40")
+    parser.add_argument("--batch", type=positive_int, default=16, help="pictures in a step, default 16")
+    parser.add_argument("--rate", type=positive_float, default=0.002, help="the highest learning rate, default 0.002")
+    parser.add_argument(
+        "--size", metavar="WIDTHxHEIGHT", type=_size, default=(480, 384), help="of its input, default 480x384"
+    )
+    parser.add_argument(
+        "--channels", type=positive_int, default=8, help="of its first layer; the others have multiples, default 8"
+    )
+    parser.add_argument("--seed", type=unsigned_int, default=0, help="of all that is drawn by lot, default 0")
+    parser.add_argument("--threads", type=positive_int, default=2, help="of the processor, default 2")
+    parser.add_argument("--resume", action="store_true", help="go on from the last epoch that is in the folder")
+    parser.add_argument(
+        "--held-out",
+        metavar="DATASET",
+        type=Path,
+        action="append",
+        default=[],
+        help="judge the result with this one, too; may be given again",
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Train, and print how well the network does."""
+    from linkwright.vision.training.card import table
+    from linkwright.vision.training.options import Options
+    from linkwright.vision.training.teaching import teach
+
+    width, height = arguments.size
+    options = Options(
+        dataset=arguments.dataset,
+        output=arguments.output,
+        name=arguments.name,
+        epochs=arguments.epochs,
+        batch=arguments.batch,
+        rate=arguments.rate,
+        width=width,
+        height=height,
+        channels=arguments.channels,
+        seed=arguments.seed,
+        threads=arguments.threads,
+        resume=arguments.resume,
+        held_out=tuple(arguments.held_out),
+        command=shlex.join(["linkwright", *sys.argv[1:]]),
+    )
+    taught = teach(options, lambda epoch: _tell(epoch, options.epochs))
+    for each in taught.examinations:
+        print(f"{each.title}: mAP50 {each.figures.map50:.3f}, mAP50-95 {each.figures.map:.3f}")
+        print("\n".join(table(each.figures)))
+    print(taught.network)
+    print(taught.card)
+    return INTERRUPTED if taught.interrupted else FINE
+
+
+def _tell(epoch: Epoch, last: int) -> None:
+    boxes, scores = (f"{loss:.3f}" for loss in epoch.losses)
+    told = phrase("epoch {number} of {last}: loss of boxes {boxes}, of scores {scores}", number=epoch.number, last=last,
+                  boxes=boxes, scores=scores)  # fmt: skip
+    line = localized(told)
+    if epoch.judged is not None:
+        line += f"; mAP50 {epoch.judged.map50:.3f}, mAP50-95 {epoch.judged.map:.3f}"
+    print(line, file=sys.stderr, flush=True)
+
+
+def _size(text: str) -> tuple[int, int]:
+    width, _, height = text.partition("x")
+    sides = [int(side) if side.isascii() and side.isdigit() else 0 for side in (width, height)]
+    if any(side == 0 or side % _CELL or side > 4096 for side in sides):
+        raise argparse.ArgumentTypeError("value must be WIDTHxHEIGHT, both multiples of 32")
+    return sides[0], sides[1]

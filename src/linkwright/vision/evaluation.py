@@ -1,0 +1,273 @@
+"""How good a detector is: average precision as COCO counts it, and what is taken for what."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.vision.detections import Detections
+
+OVERLAPS = tuple(round(0.5 + 0.05 * step, 2) for step in range(10))
+"""Intersection over union from which on a box is right: 0.50, 0.55, ... 0.95."""
+MOST = 100
+"""Detections of a picture that count, the most certain ones."""
+_RECALLS: NDArray[np.float64] = np.linspace(0.0, 1.0, 101)
+_CONFUSION_SCORE, _CONFUSION_OVERLAP = 0.5, 0.5
+
+
+@dataclass(frozen=True, slots=True)
+class Things:
+    """What is in a picture.
+
+    Attributes:
+        boxes: shape ``(n, 4)``: left, top, right, bottom, in pixels.
+        classes: shape ``(n,)``, places in the dataset's names.
+        ignored: shape ``(n,)``, things that nobody is asked for; who finds one is neither right nor wrong. COCO says
+            ``iscrowd``.
+    """
+
+    boxes: NDArray[np.float32]
+    classes: NDArray[np.int32]
+    ignored: NDArray[np.bool_]
+
+    def where(self, chosen: NDArray[np.bool_]) -> Things:
+        """Some of them."""
+        return Things(self.boxes[chosen], self.classes[chosen], self.ignored[chosen])
+
+
+@dataclass(frozen=True, slots=True)
+class ClassFigures:
+    """How well one class is found.
+
+    Attributes:
+        name: of the class.
+        things: how many there are.
+        ap50: the average precision where an overlap of 0.5 is enough; None where there is none to find.
+        ap: its mean over `OVERLAPS`; None likewise.
+        precision: of the detections with a score of at least 0.5, the share that is right; None where there are none.
+        recall: the share of the things that these find; None where there is none to find.
+    """
+
+    name: str
+    things: int
+    ap50: float | None
+    ap: float | None
+    precision: float | None
+    recall: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class Evaluation:
+    """How well things are found in a set of pictures.
+
+    Attributes:
+        pictures: how many.
+        map50: the mean of `ClassFigures.ap50` over the classes that there are.
+        map: that of `ClassFigures.ap`.
+        classes: the figures of each class.
+        confusion: shape ``(classes + 1, classes + 1)``: how many things of a class (row) were taken for a class
+            (column) with a score of at least 0.5; the last column counts things that were not found, the last row
+            detections where nothing is.
+        recall_by_size: name of a range of sizes, how many things it has, the share of them found with a score of at
+            least 0.5.
+    """
+
+    pictures: int
+    map50: float
+    map: float
+    classes: tuple[ClassFigures, ...]
+    confusion: NDArray[np.int64]
+    recall_by_size: tuple[tuple[str, int, float], ...]
+
+
+def overlap(first: NDArray[np.float32], second: NDArray[np.float32]) -> NDArray[np.float64]:
+    """The intersection over the union of each box with each.
+
+    Args:
+        first: shape ``(n, 4)``: left, top, right, bottom.
+        second: shape ``(m, 4)``.
+
+    Returns:
+        Shape ``(n, m)``.
+    """
+    one: NDArray[np.float64] = first.astype(np.float64)[:, None]
+    other: NDArray[np.float64] = second.astype(np.float64)[None]
+    inner = np.clip(np.minimum(one[..., 2:], other[..., 2:]) - np.maximum(one[..., :2], other[..., :2]), 0, None)
+    common = inner.prod(-1)
+    union = (one[..., 2:] - one[..., :2]).prod(-1) + (other[..., 2:] - other[..., :2]).prod(-1) - common
+    shares: NDArray[np.float64] = common / np.maximum(union, 1e-12)
+    return shares
+
+
+def evaluate(names: Sequence[str], truth: Sequence[Things], found: Sequence[Detections]) -> Evaluation:
+    """Compare what was found with what is there.
+
+    Args:
+        names: of the classes that `truth` counts with.
+        truth: of each picture.
+        found: what a detector says of the same pictures, with a threshold near 0. Its classes are told by their names;
+            those that `names` lacks do not count.
+    """
+    known = {name: place for place, name in enumerate(names)}
+    detections = [_in_terms_of(known, each) for each in found]
+    figures, confusion, sizes = [], _confusion(len(names), truth, detections), _by_size(truth, detections)
+    for place, name in enumerate(names):
+        precisions = _average_precisions(place, truth, detections)
+        right = int(confusion[place, place])
+        told, there = int(confusion[:, place].sum()), int(confusion[place].sum())
+        figures.append(
+            ClassFigures(
+                name,
+                there,
+                None if precisions is None else float(precisions[0]),
+                None if precisions is None else float(precisions.mean()),
+                right / told if told else None,
+                right / there if there else None,
+            )
+        )
+    return Evaluation(
+        len(truth),
+        _mean([each.ap50 for each in figures]),
+        _mean([each.ap for each in figures]),
+        tuple(figures),
+        confusion,
+        sizes,
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class _Found:
+    """Detections by the dataset's numbers of classes, the most certain first."""
+
+    boxes: NDArray[np.float32]
+    scores: NDArray[np.float32]
+    classes: NDArray[np.int32]
+
+    def where(self, chosen: NDArray[np.bool_]) -> _Found:
+        return _Found(self.boxes[chosen], self.scores[chosen], self.classes[chosen])
+
+
+def _in_terms_of(known: dict[str, int], found: Detections) -> _Found:
+    numbers: NDArray[np.int32] = np.array([known.get(name, -1) for name in found.names] or [-1], np.int32)
+    order = np.argsort(-found.scores, kind="stable")
+    classes: NDArray[np.int32] = numbers[found.classes[order]] if len(found) else np.zeros(0, np.int32)
+    every = _Found(found.boxes[order], found.scores[order], classes)
+    return every.where(classes >= 0)
+
+
+def _average_precisions(place: int, truth: Sequence[Things], found: Sequence[_Found]) -> NDArray[np.float64] | None:
+    """Of one class, shape (overlaps,); None where there is nothing of it."""
+    there = sum(int(((things.classes == place) & ~things.ignored).sum()) for things in truth)
+    if there == 0:
+        return None
+    scores: list[NDArray[np.float32]] = []
+    right: list[NDArray[np.bool_]] = []
+    wrong: list[NDArray[np.bool_]] = []
+    for things, detections in zip(truth, found, strict=True):
+        mine = detections.where(detections.classes == place)
+        boxes = mine.boxes[:MOST]
+        scores.append(mine.scores[:MOST])
+        same = things.where(things.classes == place)
+        shares = overlap(boxes, same.boxes[~same.ignored])
+        hidden = _within(boxes, same.boxes[same.ignored])
+        right.append(np.stack([_matches(shares, least) >= 0 for least in OVERLAPS]))
+        wrong.append(~right[-1] & np.stack([hidden < least for least in OVERLAPS]))
+    all_scores: NDArray[np.float32] = np.concatenate(scores)
+    order = np.argsort(-all_scores, kind="stable")
+    hits: NDArray[np.int64] = np.concatenate(right, axis=1)[:, order].cumsum(axis=1)
+    misses: NDArray[np.int64] = np.concatenate(wrong, axis=1)[:, order].cumsum(axis=1)
+    precisions = hits / np.maximum(hits + misses, 1)
+    return np.array([_area(row / there, best) for row, best in zip(hits, precisions, strict=True)])
+
+
+def _within(boxes: NDArray[np.float32], hidden: NDArray[np.float32]) -> NDArray[np.float64]:
+    """The share of each box that lies within what is to be ignored, the largest of all such places."""
+    if not len(hidden):
+        return np.zeros(len(boxes))
+    inner = np.minimum(boxes[:, None, 2:], hidden[None, :, 2:]) - np.maximum(boxes[:, None, :2], hidden[None, :, :2])
+    areas = (boxes[:, 2:] - boxes[:, :2]).prod(-1).astype(np.float64)
+    shares: NDArray[np.float64] = np.clip(inner, 0, None).prod(-1).max(1) / np.maximum(areas, 1e-12)
+    return shares
+
+
+def _area(recall: NDArray[np.float64], precision: NDArray[np.float64]) -> float:
+    """The mean of the precisions at 101 recalls, each the best that is to be had at this recall or a higher one."""
+    best: NDArray[np.float64] = np.maximum.accumulate(precision[::-1])[::-1]
+    places = np.searchsorted(recall, _RECALLS, side="left")
+    reached = places < len(best)
+    return float(best[places[reached]].sum() / len(_RECALLS))
+
+
+def _matches(shares: NDArray[np.float64], least: float) -> NDArray[np.int64]:
+    """The thing that each detection, the most certain first, finds, or -1; a thing is found once.
+
+    Args:
+        shares: of each detection with each thing, shape (detections, things).
+        least: share from which on a box is right.
+    """
+    found: NDArray[np.int64] = np.full(len(shares), -1, np.int64)
+    if shares.shape[1] == 0:
+        return found
+    free: NDArray[np.bool_] = np.ones(shares.shape[1], bool)
+    for number, row in enumerate(shares):
+        open_shares = np.where(free, row, -1.0)
+        thing = int(open_shares.argmax())
+        if open_shares[thing] >= min(least, 1 - 1e-10):
+            found[number] = thing
+            free[thing] = False
+    return found
+
+
+def _confusion(classes: int, truth: Sequence[Things], found: Sequence[_Found]) -> NDArray[np.int64]:
+    table: NDArray[np.int64] = np.zeros((classes + 1, classes + 1), np.int64)
+    for things, detections in zip(truth, found, strict=True):
+        sure = detections.where(detections.scores >= _CONFUSION_SCORE)
+        hidden = things.where(things.ignored)
+        things = things.where(~things.ignored)
+        shares = overlap(sure.boxes, things.boxes)
+        # Its own class first: a thing that was found right is not confused because another box lies on it, too.
+        same = shares * (sure.classes[:, None] == things.classes[None])
+        matches = _matches(same, _CONFUSION_OVERLAP)
+        left = shares.copy()
+        left[:, matches[matches >= 0]] = 0
+        left[matches >= 0] = 0
+        others = _matches(left, _CONFUSION_OVERLAP)
+        matches = np.where(matches >= 0, matches, others)
+        unseen = _within(sure.boxes, hidden.boxes) >= _CONFUSION_OVERLAP
+        for number, thing in enumerate(matches):
+            if thing < 0 and unseen[number]:
+                continue
+            table[things.classes[thing] if thing >= 0 else classes, sure.classes[number]] += 1
+        for thing in set(range(len(things.classes))) - set(matches.tolist()):
+            table[things.classes[thing], classes] += 1
+    return table
+
+
+_SIZES = (("under 16 pixels", 0.0, 16.0), ("16 to 32 pixels", 16.0, 32.0), ("32 to 96 pixels", 32.0, 96.0),
+          ("over 96 pixels", 96.0, np.inf))  # fmt: skip
+"""Ranges of the longer side of a box, in pixels of the picture."""
+
+
+def _by_size(truth: Sequence[Things], found: Sequence[_Found]) -> tuple[tuple[str, int, float], ...]:
+    sides: list[float] = []
+    hit: list[bool] = []
+    for things, detections in zip(truth, found, strict=True):
+        sure = detections.where(detections.scores >= _CONFUSION_SCORE)
+        things = things.where(~things.ignored)
+        same = overlap(sure.boxes, things.boxes) * (sure.classes[:, None] == things.classes[None])
+        matched = set(_matches(same, _CONFUSION_OVERLAP).tolist())
+        sides += (things.boxes[:, 2:] - things.boxes[:, :2]).max(axis=1, initial=0).tolist()
+        hit += [thing in matched for thing in range(len(things.classes))]
+    rows = []
+    for name, least, most in _SIZES:
+        inside = [was for side, was in zip(sides, hit, strict=True) if least <= side < most]
+        rows.append((name, len(inside), sum(inside) / len(inside) if inside else 0.0))
+    return tuple(rows)
+
+
+def _mean(values: Sequence[float | None]) -> float:
+    there = [value for value in values if value is not None]
+    return sum(there) / len(there) if there else 0.0

@@ -1,0 +1,105 @@
+"""The card of a network: what it was taught with, how well it does, and where it fails."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from linkwright.vision.evaluation import ClassFigures, Evaluation
+
+_WEAK = 0.8  # of recall: what is below is named among what fails
+_OFTEN = 0.05  # the share of a class that is taken for another one from which on it is named
+
+
+@dataclass(frozen=True, slots=True)
+class Examination:
+    """How well a network does on some pictures.
+
+    Attributes:
+        title: what the pictures are.
+        figures: how well it does on them.
+    """
+
+    title: str
+    figures: Evaluation
+
+
+def card(name: str, facts: Mapping[str, str], examinations: Sequence[Examination]) -> str:
+    """The card, as Markdown.
+
+    Args:
+        name: of the network.
+        facts: what there is to know of its making, in the order in which it is told.
+        examinations: how well it does, first on the pictures that were kept from the same dataset.
+    """
+    lines = [f"# {name}", "", "| | |", "| --- | --- |"]
+    lines += [f"| {key} | {_cell(value)} |" for key, value in facts.items()]
+    for each in examinations:
+        lines += ["", f"## {each.title}", "", *_figures(each.figures)]
+    lines += ["", "## Where it fails", ""]
+    failures = [line for each in examinations for line in _failures(each)]
+    lines += failures or ["Nothing stands out in these pictures."]
+    return "\n".join(lines) + "\n"
+
+
+def table(figures: Evaluation) -> list[str]:
+    """Figures of all classes, as lines of a Markdown table."""
+    lines = ["| class | things | mAP50 | mAP50-95 | precision | recall |", "| --- | ---: | ---: | ---: | ---: | ---: |"]
+    lines += [_row(each) for each in figures.classes]
+    things = sum(each.things for each in figures.classes)
+    lines.append(f"| all | {things} | {figures.map50:.3f} | {figures.map:.3f} | | |")
+    return lines
+
+
+def confusion(figures: Evaluation) -> list[str]:
+    """What was taken for what, as lines of a Markdown table: a row for what is there, a column for what was said."""
+    names = [each.name for each in figures.classes]
+    lines = [f"| is \\ said | {' | '.join(names)} | nothing |", "| --- |" + " ---: |" * (len(names) + 1)]
+    for name, row in zip([*names, "nothing"], figures.confusion.tolist(), strict=True):
+        lines.append(f"| {name} | {' | '.join(str(count) if count else '' for count in row)} |")
+    return lines
+
+
+def _figures(figures: Evaluation) -> list[str]:
+    sizes = [
+        f"| {name} | {things} | {recall:.2f} |" for name, things, recall in figures.recall_by_size if things
+    ]  # fmt: skip
+    return [
+        f"{figures.pictures} pictures. Precision and recall at a score of 0.5.",
+        "",
+        *table(figures),
+        "",
+        "| longer side | things | recall |",
+        "| --- | ---: | ---: |",
+        *sizes,
+    ]
+
+
+def _row(each: ClassFigures) -> str:
+    values = (each.ap50, each.ap, each.precision, each.recall)
+    return f"| {each.name} | {each.things} | {' | '.join(map(_number, values))} |"
+
+
+def _number(value: float | None) -> str:
+    return "" if value is None else f"{value:.3f}"
+
+
+def _failures(each: Examination) -> list[str]:
+    """What is found seldom, and what is often taken for something else."""
+    lines = []
+    for name, things, recall in each.figures.recall_by_size:
+        if things and recall < _WEAK:
+            lines.append(f"- {each.title}: of things {name} it misses {1 - recall:.0%}.")
+    names = [kind.name for kind in each.figures.classes]
+    for place, kind in enumerate(each.figures.classes):
+        if kind.recall is not None and kind.recall < _WEAK:
+            lines.append(f"- {each.title}: it misses {1 - kind.recall:.0%} of {kind.name}.")
+        row = each.figures.confusion[place]
+        for other, count in enumerate(row[:-1].tolist()):
+            if other != place and kind.things and count / kind.things >= _OFTEN:
+                lines.append(f"- {each.title}: it takes {count / kind.things:.0%} of {kind.name} for {names[other]}.")
+    return lines
+
+
+def _cell(text: str) -> str:
+    return text.replace("|", "\\|").replace("\n", " ")

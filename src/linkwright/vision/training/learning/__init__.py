@@ -1,0 +1,1 @@
+"""What needs PyTorch; imported only after `linkwright.vision.training.library` has found it."""

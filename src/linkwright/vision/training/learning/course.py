@@ -1,0 +1,242 @@
+"""The training: epochs over a lesson, a smoothed copy of the network that is judged, and what goes on later."""
+
+from __future__ import annotations
+
+import math
+import pickle
+from collections.abc import Callable, Iterator, Sequence
+from copy import deepcopy
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from torch import Tensor, nn
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, phrase
+from linkwright.vision.detections import Detections
+from linkwright.vision.detectors.suppression import suppressed
+from linkwright.vision.evaluation import Evaluation, Things, evaluate
+from linkwright.vision.training.learning.losses import loss
+from linkwright.vision.training.learning.network import Network, Shape, cells
+from linkwright.vision.training.measuring import LIMITS
+from linkwright.vision.training.options import Options
+from linkwright.vision.training.pictures import Lesson, changed
+
+_WARM_UP = 100  # steps in which the rate grows to its highest
+_LEAST_RATE = 0.02  # of the highest, at the end
+_DECAY = 0.05
+_STEEPEST = 10.0  # the norm that gradients are cut to
+_SMOOTHING = 0.998  # of the copy that is judged, a step, once it has seen enough
+
+
+@dataclass(frozen=True, slots=True)
+class Epoch:
+    """How an epoch went.
+
+    Attributes:
+        number: from 1.
+        losses: means of those of the boxes and of the scores.
+        judged: how well the smoothed network does on the other part; None where it was not asked.
+        best: it did so better than ever before.
+    """
+
+    number: int
+    losses: tuple[float, float]
+    judged: Evaluation | None
+    best: bool
+
+
+class Course:
+    """A network that learns.
+
+    Args:
+        names: of the classes.
+        options: see there.
+        lesson: what it learns from.
+        exam: what it is judged by.
+    """
+
+    def __init__(self, names: Sequence[str], options: Options, lesson: Lesson, exam: Lesson) -> None:
+        torch.set_num_threads(options.threads)
+        torch.manual_seed(options.seed)
+        self.names = tuple(names)
+        self.options = options
+        self._lesson, self._exam = lesson, exam
+        self.shape = Shape(len(names), options.channels)
+        self.network = Network(self.shape).to(memory_format=torch.channels_last)
+        self.smooth = deepcopy(self.network).eval().requires_grad_(requires_grad=False)
+        self.best = deepcopy(self.smooth.state_dict())
+        self.best_map = -1.0
+        self.best_epoch = 0
+        self.epoch = 0
+        self._step = 0
+        self._optimizer = torch.optim.AdamW(_groups(self.network), lr=options.rate, betas=(0.9, 0.98))
+
+    def run(self, tell: Callable[[Epoch], None]) -> None:
+        """Learn until the last epoch, with a checkpoint after each.
+
+        Args:
+            tell: hears of each epoch.
+
+        Raises:
+            KeyboardInterrupt: it was interrupted; `best` is what was best so far.
+        """
+        while self.epoch < self.options.epochs:
+            losses = self._learn(self.epoch)
+            self.epoch += 1
+            judged = self.judge() if self._is_exam() else None
+            best = judged is not None and judged.map >= self.best_map
+            if judged is not None and best:
+                self.best, self.best_map, self.best_epoch = deepcopy(self.smooth.state_dict()), judged.map, self.epoch
+            self.save(self.options.output / "last.pt")
+            tell(Epoch(self.epoch, losses, judged, best))
+
+    def best_network(self) -> Network:
+        """The network that did best on the other part, ready to be asked."""
+        network = deepcopy(self.smooth)
+        network.load_state_dict(self.best)
+        return network
+
+    def _is_exam(self) -> bool:
+        """Each fifth epoch, the first ones seldom, the last ones always."""
+        last = self.options.epochs
+        return self.epoch % 5 == 0 or self.epoch > last - 3
+
+    def _learn(self, epoch: int) -> tuple[float, float]:
+        self.network.train()
+        sums = torch.zeros(2)
+        batches = list(self._batches(epoch))
+        for chosen, seed in batches:
+            pictures, things = self._batch(chosen, seed)
+            for group in self._optimizer.param_groups:
+                group["lr"] = self._rate(len(batches))
+            boxes, logits = self.network(pictures)
+            middles, _ = cells(pictures.shape[3], pictures.shape[2])
+            total, parts = loss(boxes, logits, middles, things)
+            self._optimizer.zero_grad(set_to_none=True)
+            total.backward()
+            nn.utils.clip_grad_norm_(self.network.parameters(), _STEEPEST)
+            self._optimizer.step()
+            self._step += 1
+            self._follow()
+            sums += parts
+        mean = sums / len(batches)
+        return float(mean[0]), float(mean[1])
+
+    def _batches(self, epoch: int) -> Iterator[tuple[NDArray[np.int64], int]]:
+        """The pictures of each step, in an order that only the seed and the epoch decide."""
+        order = np.random.default_rng((self.options.seed, epoch)).permutation(len(self._lesson.things))
+        size = min(self.options.batch, len(order))
+        for start in range(0, len(order) - size + 1, size):
+            yield order[start : start + size], start
+
+    def _batch(self, chosen: NDArray[np.int64], start: int) -> tuple[Tensor, Tensor]:
+        chance = np.random.default_rng((self.options.seed, self.epoch, start))
+        both = [changed(self._lesson, int(place), self.options.view, chance) for place in chosen]
+        most = max([1, *(len(things) for _, things in both)])
+        table: NDArray[np.float32] = np.full((len(both), most, 5), -1, np.float32)
+        for row, (_, things) in zip(table, both, strict=True):
+            row[: len(things)] = things
+        return _tensor(np.stack([picture for picture, _ in both])), torch.from_numpy(table)
+
+    def _rate(self, steps: int) -> float:
+        """A short rise, then half a cosine down to next to nothing."""
+        whole = self.options.epochs * steps
+        done = min(1.0, self._step / max(1, whole))
+        low = _LEAST_RATE + (1 - _LEAST_RATE) * (1 + math.cos(math.pi * done)) / 2
+        return self.options.rate * low * min(1.0, (self._step + 1) / min(_WARM_UP, max(1, whole // 4)))
+
+    @torch.no_grad()
+    def _follow(self) -> None:
+        """Let the smoothed copy come a little nearer."""
+        keep = min(_SMOOTHING, (1 + self._step) / (10 + self._step))
+        here = self.network.state_dict()
+        for name, value in self.smooth.state_dict().items():
+            if value.dtype.is_floating_point:
+                value.lerp_(here[name], 1 - keep)
+            else:
+                value.copy_(here[name])
+
+    @torch.no_grad()
+    def judge(self) -> Evaluation:
+        """How well the smoothed network does."""
+        found: list[Detections] = []
+        for start in range(0, len(self._exam.things), self.options.batch):
+            pictures = _tensor(self._exam.pictures[start : start + self.options.batch])
+            boxes, logits = self.smooth(pictures)
+            scores = logits.sigmoid()
+            pairs = zip(boxes.numpy(), scores.numpy(), strict=True)
+            found += [self._found(each, score) for each, score in pairs]
+        return evaluate(self.names, [_truth(things) for things in self._exam.things], found)
+
+    def _found(self, boxes: NDArray[np.float32], scores: NDArray[np.float32]) -> Detections:
+        """What is in one picture, of boxes (cells, 4) and scores (cells, classes)."""
+        cells, kinds = np.nonzero(scores >= LIMITS.threshold)
+        told: NDArray[np.float32] = scores[cells, kinds]
+        classes: NDArray[np.int32] = kinds.astype(np.int32)
+        kept = suppressed(boxes[cells], told, classes, LIMITS.iou, LIMITS.most)
+        return Detections(boxes[cells[kept]], told[kept], classes[kept], self.names)
+
+    def save(self, path: Path) -> None:
+        """Write all that it takes to go on."""
+        state = {
+            "shape": asdict(self.shape),
+            "names": list(self.names),
+            "seed": self.options.seed,
+            "network": self.network.state_dict(),
+            "smooth": self.smooth.state_dict(),
+            "best": self.best,
+            "best_map": self.best_map,
+            "best_epoch": self.best_epoch,
+            "optimizer": self._optimizer.state_dict(),
+            "epoch": self.epoch,
+            "step": self._step,
+        }
+        draft = path.with_suffix(".part")
+        torch.save(state, draft)
+        draft.replace(path)
+
+    def load(self, path: Path) -> None:
+        """Go on from a checkpoint.
+
+        Raises:
+            LinkwrightError: VISION306, it is none, or that of another network.
+        """
+        try:
+            state: dict[str, Any] = torch.load(path, weights_only=True)
+            told = state["shape"], state["names"]
+        except (OSError, RuntimeError, pickle.UnpicklingError, KeyError, EOFError, TypeError):
+            message = phrase("'{path}' is no checkpoint of a training", path=display_path(path))
+            hint = phrase("without --resume the training begins anew")
+            raise LinkwrightError(Diagnostic("VISION306", message, hint=hint)) from None
+        if told != (asdict(self.shape), list(self.names)):
+            message = phrase("'{path}' is of a training with other classes or sizes", path=display_path(path))
+            hint = phrase("without --resume the training begins anew")
+            raise LinkwrightError(Diagnostic("VISION306", message, hint=hint))
+        self.network.load_state_dict(state["network"])
+        self.smooth.load_state_dict(state["smooth"])
+        self._optimizer.load_state_dict(state["optimizer"])
+        self.best, self.best_map, self.best_epoch = state["best"], state["best_map"], state["best_epoch"]
+        self.epoch, self._step = state["epoch"], state["step"]
+
+
+def _tensor(pictures: NDArray[np.uint8]) -> Tensor:
+    """Pictures, shape (batch, height, width, 3), as the network takes them."""
+    return torch.from_numpy(pictures).permute(0, 3, 1, 2).float().div_(255)
+
+
+def _truth(things: NDArray[np.float32]) -> Things:
+    kinds: NDArray[np.int32] = things[:, 0].astype(np.int32)
+    return Things(things[:, 1:], np.where(kinds < 0, -2 - kinds, kinds).astype(np.int32), kinds < 0)
+
+
+def _groups(network: Network) -> list[dict[str, Any]]:
+    """Weights decay; what shifts and scales does not."""
+    every = list(network.parameters())
+    return [
+        {"params": [each for each in every if each.ndim > 1], "weight_decay": _DECAY},
+        {"params": [each for each in every if each.ndim <= 1], "weight_decay": 0.0},
+    ]

@@ -1,0 +1,113 @@
+"""Which cells answer for which thing, and how wrong they are.
+
+The cells of a thing are those that already tell it best, by score and overlap together, and the more certain a cell
+shall be the better its box is (task-aligned assignment, Feng and others 2021).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import torch
+from torch import Tensor
+from torch.nn import functional
+
+_SCORE_POWER, _OVERLAP_POWER = 1.0, 4.0
+_CELLS_A_THING = 10
+_NEAR = 8.0  # pixels around its middle in which cells may answer for a thing that is smaller than a cell
+_BOX_WEIGHT, _SCORE_WEIGHT = 4.0, 1.0
+_SMALL = 1e-7
+
+
+@dataclass(frozen=True, slots=True)
+class Assignment:
+    """What each cell shall say.
+
+    Attributes:
+        boxes: shape (batch, cells, 4), pixels; of no meaning where no thing is.
+        scores: shape (batch, cells, classes), between 0 and 1.
+        taken: shape (batch, cells), whether the cell answers for a thing.
+        unasked: the same, whether it is free to say what it likes, because what is there is to be ignored.
+    """
+
+    boxes: Tensor
+    scores: Tensor
+    taken: Tensor
+    unasked: Tensor
+
+
+def overlaps(first: Tensor, second: Tensor) -> tuple[Tensor, Tensor]:
+    """How much boxes overlap.
+
+    Args:
+        first: shape (..., 4), left, top, right, bottom.
+        second: one that broadcasts with it.
+
+    Returns:
+        The intersection over the union, and the generalised one (Rezatofighi and others 2019), which also tells boxes
+        apart that do not touch; without the last axis.
+    """
+    inner = (torch.minimum(first[..., 2:], second[..., 2:]) - torch.maximum(first[..., :2], second[..., :2])).clamp(0)
+    outer = (torch.maximum(first[..., 2:], second[..., 2:]) - torch.minimum(first[..., :2], second[..., :2])).clamp(0)
+    common = inner.prod(-1)
+    union = (first[..., 2:] - first[..., :2]).prod(-1) + (second[..., 2:] - second[..., :2]).prod(-1) - common
+    hull = outer.prod(-1)
+    iou = common / (union + _SMALL)
+    return iou, iou - (hull - union) / (hull + _SMALL)
+
+
+@torch.no_grad()
+def assign(boxes: Tensor, logits: Tensor, middles: Tensor, things: Tensor) -> Assignment:
+    """Give each thing its cells.
+
+    Args:
+        boxes: what the network says, shape (batch, cells, 4).
+        logits: the same, shape (batch, cells, classes).
+        middles: of the cells, shape (cells, 2).
+        things: shape (batch, most, 5): class, left, top, right, bottom; class -1 where a picture has fewer, and
+            less where a thing is to be ignored.
+    """
+    real = things[..., 0] >= 0
+    kinds = things[..., 0].clamp(0).long()
+    places = things[..., 1:]
+    _, cells, classes = logits.shape
+    iou, _ = overlaps(places[:, :, None], boxes[:, None])
+    scores = logits.sigmoid().transpose(1, 2).gather(1, kinds[..., None].expand(-1, -1, cells))
+    fit = scores**_SCORE_POWER * iou**_OVERLAP_POWER
+    half = ((places[..., 2:] - places[..., :2]) / 2).clamp(_NEAR)
+    middle = (places[..., :2] + places[..., 2:]) / 2
+    near = ((middles - middle[:, :, None]).abs() <= half[:, :, None]).all(3) & real[..., None]
+    fit = (fit + _SMALL * iou) * near
+    best = fit.topk(min(_CELLS_A_THING, cells), 2).indices
+    chosen = torch.zeros_like(near).scatter_(2, best, value=True) & near & (fit > 0)
+    # A cell that several things want answers for that which its box overlaps most.
+    wanted = torch.where(chosen, iou, torch.full_like(iou, -1.0))
+    most, owner = wanted.max(1)
+    taken = most >= 0
+    chosen = chosen & functional.one_hot(owner, things.shape[1]).transpose(1, 2).bool()
+    fit = fit * chosen
+    level = fit / (fit.amax(2, keepdim=True) + 1e-12) * (iou * chosen).amax(2, keepdim=True)
+    certainty = level.amax(1) * taken
+    target = functional.one_hot(kinds.gather(1, owner), classes) * certainty[..., None]
+    within = (middles >= places[:, :, None, :2]).all(3) & (middles <= places[:, :, None, 2:]).all(3)
+    unasked = (within & (things[..., 0] < -1)[..., None]).any(1) & ~taken
+    return Assignment(places.gather(1, owner[..., None].expand(-1, -1, 4)), target.to(boxes.dtype), taken, unasked)
+
+
+def loss(boxes: Tensor, logits: Tensor, middles: Tensor, things: Tensor) -> tuple[Tensor, Tensor]:
+    """How wrong a batch is; the arguments are those of `assign`.
+
+    Returns:
+        What is to be made small, and its parts: those of the boxes and of the scores, shape (2,), without gradients.
+    """
+    wanted = assign(boxes, logits, middles, things)
+    whole = wanted.scores.sum().clamp(1.0)
+    of_scores = functional.binary_cross_entropy_with_logits(logits, wanted.scores, reduction="none")
+    # Empty cells that are sure of a thing weigh most, those that are right already next to nothing.
+    weights = torch.where(wanted.scores > 0, wanted.scores, 0.75 * logits.sigmoid().detach() ** 2)
+    of_scores = (of_scores * weights * ~wanted.unasked[..., None]).sum() / whole
+    weight = wanted.scores.sum(2)[wanted.taken]
+    _, overlap = overlaps(boxes[wanted.taken], wanted.boxes[wanted.taken])
+    of_boxes = ((1 - overlap) * weight).sum() / whole
+    total = _BOX_WEIGHT * of_boxes + _SCORE_WEIGHT * of_scores
+    return total, torch.stack((of_boxes, of_scores)).detach()

@@ -1,0 +1,172 @@
+"""The network: a small detector without anchors, of plain convolutions, which two cores train in an hour.
+
+A backbone of half-stages (as in CSPNet, Wang and others 2019) gives features at 8, 16 and 32 pixels a cell, a pyramid
+carries what is coarse to the fine ones and back (PANet, Liu and others 2018), and one head for each says for each
+cell how far the four sides of a box lie from its middle (FCOS, Tian and others 2019) and what is in it. Depthwise
+convolutions would have fewer weights, but a processor computes dense ones of few channels in the same time.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cache
+
+import torch
+from torch import Tensor, nn
+from torch.nn import functional
+
+STRIDES = (8, 16, 32)
+"""Pixels of the picture a cell, one for each level of the pyramid."""
+
+_PRIOR = 0.01  # the score that all cells say at first, so that the many that are empty do not drown the others
+_FARTHEST = 4.0  # e ** this many strides is the farthest side that a cell can tell of
+
+
+@dataclass(frozen=True, slots=True)
+class Shape:
+    """What a network is made of; a checkpoint holds it.
+
+    Attributes:
+        classes: how many it tells apart.
+        channels: of the first convolution; the other layers have multiples of it.
+    """
+
+    classes: int
+    channels: int
+
+
+class Convolution(nn.Module):
+    """A convolution, its normalisation and SiLU."""
+
+    def __init__(self, inputs: int, outputs: int, size: int = 1, stride: int = 1) -> None:
+        super().__init__()
+        self.convolution = nn.Conv2d(inputs, outputs, size, stride, size // 2, bias=False)
+        self.norm = nn.BatchNorm2d(outputs, eps=1e-3, momentum=0.03)
+
+    def forward(self, features: Tensor) -> Tensor:
+        """Features of shape (batch, inputs, height, width) to (batch, outputs, height / stride, width / stride)."""
+        return functional.silu(self.norm(self.convolution(features)), inplace=True)
+
+
+class HalfStage(nn.Module):
+    """Residual blocks over one half of the channels; the other half goes by."""
+
+    def __init__(self, inputs: int, outputs: int, blocks: int, *, residual: bool = True) -> None:
+        super().__init__()
+        half = outputs // 2
+        self.split = Convolution(inputs, 2 * half)
+        self.blocks = nn.ModuleList(
+            nn.Sequential(Convolution(half, half, 3), Convolution(half, half, 3)) for _ in range(blocks)
+        )
+        self.join = Convolution(2 * half, outputs)
+        self.residual = residual
+
+    def forward(self, features: Tensor) -> Tensor:
+        """The same size, with `outputs` channels."""
+        kept, worked = self.split(features).chunk(2, 1)
+        for block in self.blocks:
+            worked = worked + block(worked) if self.residual else block(worked)
+        return self.join(torch.cat((kept, worked), 1))
+
+
+class Pooling(nn.Module):
+    """What is around each cell, near and far: pooled once, twice and three times (SPPF)."""
+
+    def __init__(self, channels: int) -> None:
+        super().__init__()
+        self.narrow = Convolution(channels, channels // 2)
+        self.pool = nn.MaxPool2d(5, 1, 2)
+        self.join = Convolution(channels * 2, channels)
+
+    def forward(self, features: Tensor) -> Tensor:
+        """The same shape."""
+        seen = [self.narrow(features)]
+        for _ in range(3):
+            seen.append(self.pool(seen[-1]))
+        return self.join(torch.cat(seen, 1))
+
+
+class Head(nn.Module):
+    """What one level says of each of its cells."""
+
+    def __init__(self, channels: int, classes: int) -> None:
+        super().__init__()
+        self.shared = Convolution(channels, channels, 3)
+        self.box = nn.Sequential(Convolution(channels, channels // 2, 3), nn.Conv2d(channels // 2, 4, 1))
+        self.scores = nn.Sequential(Convolution(channels, channels // 2, 3), nn.Conv2d(channels // 2, classes, 1))
+        nn.init.constant_(self.scores[-1].bias, -math.log((1 - _PRIOR) / _PRIOR))
+        nn.init.constant_(self.box[-1].bias, 1.0)
+
+    def forward(self, features: Tensor) -> Tensor:
+        """Shape (batch, 4 + classes, height * width): logarithms of the sides' distances, then the classes' logits."""
+        shared = self.shared(features)
+        return torch.cat((self.box(shared), self.scores(shared)), 1).flatten(2)
+
+
+class Network(nn.Module):
+    """Pictures to what each cell says."""
+
+    def __init__(self, shape: Shape) -> None:
+        super().__init__()
+        self.shape = shape
+        c = shape.channels
+        self.stem = nn.Sequential(Convolution(3, c, 3, 2), Convolution(c, 2 * c, 3, 2), HalfStage(2 * c, 2 * c, 1))
+        self.fine = nn.Sequential(Convolution(2 * c, 4 * c, 3, 2), HalfStage(4 * c, 4 * c, 2))
+        self.middle = nn.Sequential(Convolution(4 * c, 8 * c, 3, 2), HalfStage(8 * c, 8 * c, 2))
+        self.coarse = nn.Sequential(
+            Convolution(8 * c, 12 * c, 3, 2), HalfStage(12 * c, 12 * c, 1), Pooling(12 * c), Convolution(12 * c, 8 * c)
+        )
+        self.down_middle = HalfStage(16 * c, 8 * c, 1, residual=False)
+        self.narrow = Convolution(8 * c, 4 * c)
+        self.down_fine = HalfStage(8 * c, 4 * c, 1, residual=False)
+        self.halve_fine = Convolution(4 * c, 4 * c, 3, 2)
+        self.up_middle = HalfStage(8 * c, 8 * c, 1, residual=False)
+        self.halve_middle = Convolution(8 * c, 8 * c, 3, 2)
+        self.up_coarse = HalfStage(16 * c, 8 * c, 1, residual=False)
+        self.heads = nn.ModuleList(Head(width * c, shape.classes) for width in (4, 8, 8))
+
+    def forward(self, pictures: Tensor) -> tuple[Tensor, Tensor]:
+        """What each cell says of what is in it.
+
+        Args:
+            pictures: shape (batch, 3, height, width), red, green, blue between 0 and 1; both sides are multiples of 32.
+
+        Returns:
+            Boxes, shape (batch, cells, 4), left, top, right, bottom in pixels; and logits of the classes, shape
+            (batch, cells, classes).
+        """
+        fine = self.fine(self.stem(pictures))
+        middle = self.middle(fine)
+        coarse = self.coarse(middle)
+        middle = self.down_middle(torch.cat((_doubled(coarse), middle), 1))
+        narrow = self.narrow(middle)
+        fine = self.down_fine(torch.cat((_doubled(narrow), fine), 1))
+        middle = self.up_middle(torch.cat((self.halve_fine(fine), narrow), 1))
+        coarse = self.up_coarse(torch.cat((self.halve_middle(middle), coarse), 1))
+        levels = [head(level) for head, level in zip(self.heads, (fine, middle, coarse), strict=True)]
+        said = torch.cat(levels, 2).transpose(1, 2)
+        middles, strides = cells(pictures.shape[3], pictures.shape[2])
+        sides = said[..., :4].clamp(max=_FARTHEST).exp() * strides
+        boxes = torch.cat((middles - sides[..., :2], middles + sides[..., 2:]), 2)
+        return boxes, said[..., 4:]
+
+
+def _doubled(features: Tensor) -> Tensor:
+    return functional.interpolate(features, scale_factor=2.0, mode="nearest")
+
+
+@cache
+def cells(width: int, height: int) -> tuple[Tensor, Tensor]:
+    """Where the cells of all levels are in a picture of this size.
+
+    Returns:
+        Their middles in pixels, shape (cells, 2), and the strides of their levels, shape (cells, 1).
+    """
+    middles, strides = [], []
+    for stride in STRIDES:
+        rows, columns = height // stride, width // stride
+        y, x = torch.meshgrid(torch.arange(rows), torch.arange(columns), indexing="ij")
+        middles.append((torch.stack((x, y), 2).reshape(-1, 2) + 0.5) * stride)
+        strides.append(torch.full((rows * columns, 1), float(stride)))
+    return torch.cat(middles), torch.cat(strides)

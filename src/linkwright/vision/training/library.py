@@ -1,0 +1,20 @@
+"""PyTorch, which the extra ``train`` brings."""
+
+from __future__ import annotations
+
+from importlib import import_module
+
+from linkwright.diagnostics import missing_extra
+
+
+def need_pytorch() -> None:
+    """Make sure that it is there.
+
+    Raises:
+        LinkwrightError: VISION301 it is not installed, or what its networks are exported by is not.
+    """
+    try:
+        for name in ("torch", "onnx"):
+            import_module(name)
+    except ModuleNotFoundError as error:
+        raise missing_extra("VISION301", error) from None

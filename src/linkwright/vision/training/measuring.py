@@ -1,0 +1,39 @@
+"""How well a detector does on labelled pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from linkwright.vision.detector import Limits
+from linkwright.vision.detectors.options import DetectorOptions
+from linkwright.vision.detectors.registry import make_detector
+from linkwright.vision.evaluation import MOST, Evaluation, Things, evaluate
+from linkwright.vision.training.pictures import read_picture
+from linkwright.vision.training.reading import Labelled
+
+LIMITS = Limits(threshold=0.01, iou=0.6, most=MOST)
+"""Which detections count: also those that are far from certain, because average precision asks how they are ordered."""
+
+
+def measure(model: str | Path, names: Sequence[str], labelled: Sequence[Labelled]) -> Evaluation:
+    """How well a detector finds what is in pictures.
+
+    Args:
+        model: an ONNX file, or the name of a detector.
+        names: of the classes of the pictures.
+        labelled: the pictures.
+
+    Raises:
+        LinkwrightError: the detector cannot be made; VISION305, a picture is broken.
+    """
+    detector = make_detector(str(model), DetectorOptions())
+    found, truth = [], []
+    for each in labelled:
+        picture = read_picture(each)
+        scale = np.array(picture.shape[1::-1] * 2, np.float32)
+        truth.append(Things(each.boxes * scale, each.classes, each.ignored))
+        found.append(detector.detect(picture, LIMITS))
+    return evaluate(names, truth, found)

@@ -1,0 +1,153 @@
+"""Pictures as the network sees them: of one size, changed at random while it learns."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, phrase
+from linkwright.vision.detectors.letterbox import letterboxed
+from linkwright.vision.detectors.library import load_opencv
+from linkwright.vision.training.reading import Labelled
+
+GREY = 114
+"""Around pictures of another shape, as trainers of the YOLO family do it."""
+_FEWEST_PIXELS = 3.0  # a thing that is narrower after a change is no longer asked for
+_LEAST_SHARE = 0.3  # nor one of which less is left
+_SMALLEST, _LARGEST = 0.5, 1.3  # how large pictures become
+
+
+@dataclass(frozen=True, slots=True)
+class Lesson:
+    """Pictures of one size with what is in them.
+
+    Attributes:
+        pictures: shape ``(n, height, width, 3)``, red, green, blue.
+        things: for each picture shape ``(m, 5)``: class, left, top, right, bottom in its pixels. The class of what
+            is to be ignored is -2 for class 0, -3 for class 1, ...
+    """
+
+    pictures: NDArray[np.uint8]
+    things: tuple[NDArray[np.float32], ...]
+
+
+def read_picture(labelled: Labelled) -> NDArray[np.uint8]:
+    """The pixels of a picture, shape ``(height, width, 3)``, red, green, blue.
+
+    Raises:
+        LinkwrightError: VISION305, it is no picture.
+    """
+    cv2 = load_opencv()
+    data: NDArray[np.uint8] = np.fromfile(labelled.path, np.uint8)
+    pixels: Any = cv2.imdecode(data, cv2.IMREAD_COLOR) if data.size else None
+    if pixels is None:
+        message = phrase("'{path}' is no picture, or is broken", path=display_path(labelled.path))
+        raise LinkwrightError(Diagnostic("VISION305", message))
+    read: NDArray[np.uint8] = np.ascontiguousarray(pixels[..., ::-1])
+    return read
+
+
+def read_lesson(labelled: Sequence[Labelled], width: int, height: int) -> Lesson:
+    """Read pictures into memory, fitted into one size with grey around as detectors do it.
+
+    Raises:
+        LinkwrightError: VISION305, one is no picture.
+    """
+    pictures: NDArray[np.uint8] = np.zeros((len(labelled), height, width, 3), np.uint8)
+    things: list[NDArray[np.float32]] = [np.zeros((0, 5), np.float32)] * len(labelled)
+
+    def read(number: int) -> None:
+        pixels = read_picture(labelled[number])
+        pictures[number], place = letterboxed(pixels, (height, width), None)
+        sides = np.array((place.width, place.height) * 2, np.float32) * np.array(place.scale * 2, np.float32)
+        boxes: NDArray[np.float32] = labelled[number].boxes * sides
+        boxes += np.array((place.left, place.top) * 2, np.float32)
+        kinds = np.where(labelled[number].ignored, -2 - labelled[number].classes, labelled[number].classes)
+        things[number] = np.concatenate((kinds[:, None].astype(np.float32), boxes), 1)
+
+    with ThreadPoolExecutor(2) as pool:
+        for done in [pool.submit(read, number) for number in range(len(labelled))]:
+            done.result()
+    return Lesson(pictures, tuple(things))
+
+
+def changed(
+    lesson: Lesson, place: int, view: tuple[int, int], chance: np.random.Generator
+) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
+    """A part of a picture as another camera in another light might have taken it.
+
+    It is mirrored and scaled; brightness, contrast, colours and sharpness change, and noise is added.
+
+    Args:
+        lesson: the pictures.
+        place: of the picture in it.
+        view: width and height of the part.
+        chance: where the dice come from.
+
+    Returns:
+        The part, shape ``(height, width, 3)``, and the things in it, see `Lesson`.
+    """
+    cv2 = load_opencv()
+    picture, things = lesson.pictures[place], lesson.things[place]
+    height, width = picture.shape[:2]
+    scale = float(np.exp(chance.uniform(np.log(_SMALLEST), np.log(_LARGEST))))
+    mirror = -1.0 if chance.random() < 0.5 else 1.0
+    aspect = float(np.exp(chance.uniform(-0.1, 0.1)))
+    across, down = scale * aspect, scale / aspect
+    middle = chance.uniform(0, 1, 2) * (width, height)
+    asked = things[things[:, 0] >= 0]
+    if len(asked) and chance.random() < 0.7:  # something is to be seen
+        some = asked[int(chance.integers(len(asked)))]
+        middle = (some[1:3] + some[3:5]) / 2 + chance.uniform(-0.4, 0.4, 2) * view / np.array((across, down))
+    # The part lies within the picture; where that is too small, grey is around.
+    room = np.array((width, height)) - np.array(view) / (across, down)
+    corner = np.clip(middle - np.array(view) / (across, down) / 2, np.minimum(room, 0), np.maximum(room, 0))
+    left, top = corner
+    shift = -left * across if mirror > 0 else view[0] + left * across
+    turn: NDArray[np.float32] = np.array([[across * mirror, 0, shift], [0, down, -top * down]], np.float32)
+    moved = cv2.warpAffine(picture, turn, view, flags=cv2.INTER_LINEAR, borderValue=(GREY, GREY, GREY))
+    return _in_other_light(moved, chance), _moved(things, turn, *view)
+
+
+def _in_other_light(picture: NDArray[np.uint8], chance: np.random.Generator) -> NDArray[np.uint8]:
+    cv2 = load_opencv()
+    gain = float(np.exp(chance.uniform(-0.5, 0.35)))
+    tint: NDArray[np.float32] = np.exp(chance.normal(0, 0.08, 3)).astype(np.float32) * np.float32(gain)
+    lift = float(chance.uniform(-20, 20))
+    steps: NDArray[np.float32] = np.arange(256, dtype=np.float32)[:, None]
+    bent = (steps / 255) ** float(np.exp(chance.uniform(-0.25, 0.25)))
+    light: NDArray[np.uint8] = np.clip(bent * 255 * tint + lift, 0, 255).astype(np.uint8)
+    pixels: Any = cv2.LUT(picture, light[None])
+    if chance.random() < 0.3:
+        hue: Any = cv2.cvtColor(pixels, cv2.COLOR_RGB2HSV)
+        hue[..., 0] = (hue[..., 0].astype(np.int16) + int(chance.integers(-12, 13))) % 180
+        pixels = cv2.cvtColor(hue, cv2.COLOR_HSV2RGB)
+    if chance.random() < 0.15:
+        pixels = cv2.GaussianBlur(pixels, (3, 3), 0)
+    if chance.random() < 0.25:
+        noise = chance.normal(0, chance.uniform(2, 10), pixels.shape[:2])[..., None]
+        pixels = np.clip(pixels + noise, 0, 255).astype(np.uint8)
+    result: NDArray[np.uint8] = pixels
+    return result
+
+
+def _moved(things: NDArray[np.float32], turn: NDArray[np.float32], width: int, height: int) -> NDArray[np.float32]:
+    """The boxes in the moved picture; those of which too little is left are to be ignored."""
+    x = things[:, 1::2] * turn[0, 0] + turn[0, 2]
+    y = things[:, 2::2] * turn[1, 1] + turn[1, 2]
+    whole = np.stack((x.min(1), y.min(1), x.max(1), y.max(1)), 1) if len(things) else np.zeros((0, 4), np.float32)
+    seen = whole.copy()
+    seen[:, 0::2] = np.clip(seen[:, 0::2], 0, width)
+    seen[:, 1::2] = np.clip(seen[:, 1::2], 0, height)
+    sides, all_sides = seen[:, 2:] - seen[:, :2], whole[:, 2:] - whole[:, :2]
+    asked = (sides.min(1, initial=np.inf) >= _FEWEST_PIXELS) & (
+        sides.prod(1) >= _LEAST_SHARE * np.maximum(all_sides.prod(1), 1e-6)
+    )
+    kinds = np.where(asked | (things[:, 0] < 0), things[:, 0], -2 - things[:, 0])
+    result: NDArray[np.float32] = np.concatenate((kinds[:, None], seen), 1)[sides.min(1, initial=np.inf) > 0]
+    return result.astype(np.float32)

@@ -1,0 +1,228 @@
+"""Labelled pictures in folders as trainers of the YOLO family read them, which `linkwright dataset` writes.
+
+A YAML file in the folder names the classes and the folders of the pictures, and beside ``images`` lies ``labels``:
+for each picture a text with a line for each thing, its class, the middle, the width and the height of its box as
+shares of the picture. A picture without such a text has nothing in it.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import yaml
+from numpy.typing import NDArray
+
+from linkwright.diagnostics import (
+    Diagnostic,
+    LinkwrightError,
+    Phrase,
+    Span,
+    display_path,
+    foreign,
+    missing_file_hint,
+    phrase,
+    quoted_names,
+)
+
+PICTURES = frozenset({".bmp", ".jpeg", ".jpg", ".png", ".ppm", ".webp"})
+
+
+@dataclass(frozen=True, slots=True)
+class Labelled:
+    """A picture and what is in it.
+
+    Attributes:
+        path: of the picture.
+        classes: shape ``(n,)``, places in the dataset's names.
+        boxes: shape ``(n, 4)``: left, top, right, bottom, as shares of the picture's width and height.
+        ignored: shape ``(n,)``, those of which so little is seen that nobody is asked for them.
+    """
+
+    path: Path
+    classes: NDArray[np.int32]
+    boxes: NDArray[np.float32]
+    ignored: NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True)
+class Dataset:
+    """Labelled pictures in splits, of which one teaches and another tells how well it did.
+
+    Attributes:
+        folder: where it lies.
+        names: of the classes.
+        splits: folders of pictures by the name of the split: ``train``, ``val``, perhaps ``test``.
+    """
+
+    folder: Path
+    names: tuple[str, ...]
+    splits: Mapping[str, tuple[Path, ...]]
+
+    def read(self, split: str) -> list[Labelled]:
+        """The pictures of a split, sorted by their paths, with their labels.
+
+        Raises:
+            LinkwrightError: VISION303, there is no such split, or no picture in it; VISION304, a label that cannot be.
+        """
+        if split not in self.splits:
+            known = quoted_names(sorted(self.splits), " and ")
+            message = phrase(
+                "the dataset '{folder}' has no split '{split}'", folder=display_path(self.folder), split=split
+            )
+            raise LinkwrightError(Diagnostic("VISION303", message, hint=phrase("it has {known}", known=known)))
+        paths = [
+            path
+            for folder in self.splits[split]
+            if folder.is_dir()
+            for path in sorted(folder.rglob("*"))
+            if path.suffix.lower() in PICTURES
+        ]
+        if not paths:
+            where = display_path(self.splits[split][0])
+            message = phrase("there are no pictures of the split '{split}' in '{folder}'", split=split, folder=where)
+            raise LinkwrightError(Diagnostic("VISION303", message))
+        hidden = _hidden(self.folder / "annotations" / f"instances_{split}.json", self.names)
+        return [_labelled(path, len(self.names), hidden.get(path.name, ())) for path in paths]
+
+
+def open_dataset(folder: Path) -> Dataset:
+    """Read what a dataset is made of.
+
+    Args:
+        folder: the folder, or its YAML file.
+
+    Raises:
+        LinkwrightError: VISION302, it is none.
+    """
+    file = folder if folder.suffix in {".yaml", ".yml"} else _description(folder)
+    try:
+        content = yaml.safe_load(file.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise _no_dataset(file, phrase("it does not exist"), missing_file_hint(file)) from None
+    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
+        raise _no_dataset(file, foreign(error)) from None
+    if not isinstance(content, dict):
+        raise _no_dataset(file, phrase("it does not hold names and values"))
+    names = _names(file, content.get("names"))
+    base = file.parent
+    if isinstance(content.get("path"), str):
+        base = next((place for place in (file.parent / content["path"],) if place.is_dir()), file.parent)
+    splits = {
+        split: tuple(base / each for each in ([content[split]] if isinstance(content[split], str) else content[split]))
+        for split in ("train", "val", "test")
+        if isinstance(content.get(split), str)
+        or (isinstance(content.get(split), list) and all(isinstance(each, str) for each in content[split]))
+    }
+    if not splits:
+        raise _no_dataset(file, phrase("neither 'train' nor 'val' names a folder of pictures"))
+    return Dataset(file.parent, names, splits)
+
+
+def _description(folder: Path) -> Path:
+    """The YAML file of a dataset."""
+    if not folder.is_dir():
+        raise _no_dataset(folder, phrase("it does not exist"), missing_file_hint(folder))
+    files = sorted(folder.glob("*.y*ml"))
+    preferred = [file for file in files if file.stem in {"data", "dataset"}]
+    if not files:
+        hint = phrase("`linkwright dataset` makes one; others have a file data.yaml")
+        raise _no_dataset(folder, phrase("there is no YAML file in it"), hint)
+    return (preferred or files)[0]
+
+
+def _names(file: Path, names: Any) -> tuple[str, ...]:
+    if isinstance(names, dict) and sorted(names) == list(range(len(names))):
+        names = [names[place] for place in range(len(names))]
+    if isinstance(names, list) and names and all(isinstance(name, (str, int)) for name in names):
+        return tuple(str(name) for name in names)
+    raise _no_dataset(file, phrase("'names' does not name the classes 0, 1, ..."))
+
+
+def _no_dataset(path: Path, reason: Phrase | Any, hint: Phrase | None = None) -> LinkwrightError:
+    message = phrase("'{path}' is no dataset: {reason}", path=display_path(path), reason=reason)
+    return LinkwrightError(Diagnostic("VISION302", message, hint=hint))
+
+
+def _hidden(file: Path, names: tuple[str, ...]) -> dict[str, list[list[float]]]:
+    """What COCO's list of a split says shall be ignored (``iscrowd``), which the texts have no word for.
+
+    Returns:
+        Name of the picture -> class, left, top, right, bottom as shares; nothing where there is no such list.
+    """
+    try:
+        content = json.loads(file.read_text(encoding="utf-8"))
+        pictures = {each["id"]: each for each in content["images"]}
+        numbers = {each["id"]: names.index(each["name"]) for each in content["categories"]}
+        found: dict[str, list[list[float]]] = {}
+        for each in content["annotations"]:
+            if each["iscrowd"]:
+                picture = pictures[each["image_id"]]
+                left, top, width, height = each["bbox"]
+                across, down = picture["width"], picture["height"]
+                box = [left / across, top / down, (left + width) / across, (top + height) / down]
+                found.setdefault(picture["file_name"], []).append([numbers[each["category_id"]], *box])
+    except FileNotFoundError:
+        return {}
+    except (OSError, ValueError, KeyError, TypeError, ZeroDivisionError) as error:
+        message = phrase("cannot read '{path}': {reason}", path=display_path(file), reason=foreign(error))
+        raise LinkwrightError(Diagnostic("VISION304", message)) from None
+    return found
+
+
+def _labelled(path: Path, classes: int, hidden: Sequence[list[float]]) -> Labelled:
+    """A picture with what its text says, and what shall be ignored.
+
+    Raises:
+        LinkwrightError: VISION304, the text is none of labels.
+    """
+    text = labels_of(path)
+    try:
+        lines = text.read_text(encoding="utf-8").splitlines()
+    except FileNotFoundError:
+        lines = []
+    except (OSError, UnicodeDecodeError) as error:
+        message = phrase("cannot read '{path}': {reason}", path=display_path(text), reason=foreign(error))
+        raise LinkwrightError(Diagnostic("VISION304", message)) from None
+    rows = [_row(text, number, line, classes) for number, line in enumerate(lines, 1) if line.strip()]
+    table: NDArray[np.float32] = np.array(rows, np.float32).reshape(-1, 5)
+    half: NDArray[np.float32] = table[:, 3:5] * np.float32(0.5)
+    boxes: NDArray[np.float32] = np.concatenate((table[:, 1:3] - half, table[:, 1:3] + half), 1)
+    unseen: NDArray[np.float32] = np.array(hidden, np.float32).reshape(-1, 5)
+    kinds: NDArray[np.int32] = np.concatenate((table[:, 0], unseen[:, 0])).astype(np.int32)
+    ignored: NDArray[np.bool_] = np.arange(len(kinds)) >= len(table)
+    return Labelled(path, kinds, np.concatenate((boxes, unseen[:, 1:])), ignored)
+
+
+def labels_of(picture: Path) -> Path:
+    """The text with the labels of a picture: the last folder named ``images`` of its path is ``labels`` there."""
+    parts = list(picture.parts)
+    for place in range(len(parts) - 2, -1, -1):
+        if parts[place] == "images":
+            parts[place] = "labels"
+            break
+    return Path(*parts).with_suffix(".txt")
+
+
+def _row(text: Path, number: int, line: str, classes: int) -> list[float]:
+    words = line.split()
+    try:
+        row = [float(word) for word in words]
+    except ValueError:
+        row = []
+    problem: Phrase | None = None
+    if len(row) != 5:
+        problem = phrase("a label has five numbers, class, x, y, width, height")
+    elif row[0] not in range(classes):
+        problem = phrase("the class {number} is none of the {count} that 'names' tells", number=words[0], count=classes)
+    elif not all(0 <= value <= 1 for value in row[1:]):
+        problem = phrase("x, y, width and height are shares of the picture, between 0 and 1")
+    if problem is None:
+        return row
+    span = Span(display_path(text), number, 1, number, len(line) + 1)
+    message = phrase("'{line}' is no label: {reason}", line=line.strip()[:60], reason=problem)
+    raise LinkwrightError(Diagnostic("VISION304", message, span))

@@ -1,0 +1,152 @@
+"""From a dataset to a network with its card: training, export, and the judgement of the file that comes of it."""
+
+from __future__ import annotations
+
+import hashlib
+import platform
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, phrase
+from linkwright.vision.evaluation import Evaluation
+from linkwright.vision.training.card import Examination, card
+from linkwright.vision.training.library import need_pytorch
+from linkwright.vision.training.measuring import measure
+from linkwright.vision.training.options import Options
+from linkwright.vision.training.reading import Dataset, Labelled, open_dataset
+from linkwright.whole_files import write_whole_file
+
+if TYPE_CHECKING:
+    from linkwright.vision.training.learning.course import Epoch
+
+
+@dataclass(frozen=True, slots=True)
+class Taught:
+    """What came of a training.
+
+    Attributes:
+        network: the ONNX file.
+        card: its card.
+        examinations: how well it does: on the split ``val`` of the dataset that taught, then on each that was held out.
+        interrupted: whether it ended before its last epoch; the network is the best until then.
+    """
+
+    network: Path
+    card: Path
+    examinations: tuple[Examination, ...]
+    interrupted: bool
+
+
+def teach(options: Options, tell: Callable[[Epoch], None]) -> Taught:
+    """Train a network, export it, judge the file, and write its card beside it.
+
+    Args:
+        options: what is wanted.
+        tell: hears of each epoch.
+
+    Raises:
+        LinkwrightError: VISION301 PyTorch is not installed, VISION302 to VISION305 see `open_dataset` and
+            `Dataset.read`, VISION306 there is nothing to go on from, VISION307 the folder cannot be written.
+        KeyboardInterrupt: it was interrupted before anything was learnt that could be kept.
+    """
+    need_pytorch()
+    from linkwright.vision.training.learning.course import Course
+    from linkwright.vision.training.learning.export import to_onnx
+    from linkwright.vision.training.pictures import read_lesson
+
+    dataset = open_dataset(options.dataset)
+    lesson, exam = dataset.read("train"), dataset.read("val")
+    others = [(open_dataset(folder), _judging_split(open_dataset(folder))) for folder in options.held_out]
+    held_out = [(other, split, other.read(split)) for other, split in others]
+    try:
+        options.output.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise _cannot_write(options.output, error) from None
+    size = options.width, options.height
+    course = Course(dataset.names, options, read_lesson(lesson, *size), read_lesson(exam, *size))
+    if options.resume:
+        course.load(options.output / "last.pt")
+    began, interrupted = time.monotonic(), False
+    try:
+        course.run(tell)
+    except KeyboardInterrupt:
+        if course.epoch == 0:
+            raise
+        interrupted = True
+    except OSError as error:
+        raise _cannot_write(options.output, error) from None
+    minutes = (time.monotonic() - began) / 60
+    facts = _facts(options, dataset, lesson, course.epoch, course.best_epoch, course.network)
+    facts["time"] = f"{minutes:.0f} minutes, {options.threads} threads, {platform.machine()}"
+    network = options.output / f"{options.name}.onnx"
+    described = {"description": f"{options.name}, trained by linkwright vision train", "seed": str(options.seed)}
+    described["dataset"] = facts["pictures' sha256"]
+    content = to_onnx(course.best_network(), dataset.names, *size, described)
+    facts["file"] = f"{network.name}, {len(content) / 1e6:.2f} MB, sha256 {hashlib.sha256(content).hexdigest()}"
+    try:
+        write_whole_file(network, content)
+        examinations = [Examination(f"Pictures kept from {dataset.folder.name}", measure(network, dataset.names, exam))]
+        for other, split, pictures in held_out:
+            title = f"{other.folder.name} ({split}), which it never saw"
+            examinations.append(Examination(title, measure(network, other.names, pictures)))
+        text = options.output / f"{options.name}.md"
+        write_whole_file(text, card(options.name, facts, examinations))
+    except OSError as error:
+        raise _cannot_write(options.output, error) from None
+    return Taught(network, text, tuple(examinations), interrupted)
+
+
+def judge(model: str, folder: Path, split: str | None) -> Evaluation:
+    """How well a detector does on a dataset.
+
+    Args:
+        model: an ONNX file, or the name of a detector.
+        folder: of the dataset.
+        split: which of its splits; when left out, ``test``, or else ``val``.
+
+    Raises:
+        LinkwrightError: the detector cannot be made; VISION302 to VISION305 see `open_dataset` and `Dataset.read`.
+    """
+    dataset = open_dataset(folder)
+    return measure(model, dataset.names, dataset.read(split or _judging_split(dataset)))
+
+
+def _judging_split(dataset: Dataset) -> str:
+    return next((split for split in ("test", "val") if split in dataset.splits), "val")
+
+
+def _facts(
+    options: Options, dataset: Dataset, lesson: Sequence[Labelled], epochs: int, best: int, network: object
+) -> dict[str, str]:
+    """What the card says of the making."""
+    parameters = sum(each.numel() for each in network.parameters())  # type: ignore[attr-defined]
+    asked = sum(int((~each.ignored).sum()) for each in lesson)
+    return {
+        "command": f"`{options.command}`",
+        "classes": ", ".join(dataset.names),
+        "taught with": f"{len(lesson)} pictures with {asked} things of the dataset {dataset.folder.name}",
+        "pictures' sha256": sum_of(lesson),
+        "input": f"{options.width} x {options.height}, red, green, blue, 0 to 1",
+        "output": "YOLOv8's: [1, 4 + classes, cells], middle, width, height in pixels, scores",
+        "weights": f"{parameters}",
+        "seed": str(options.seed),
+        "epochs": f"{epochs} of {options.epochs}; the best, which this is, was {best}",
+    }
+
+
+def sum_of(lesson: Sequence[Labelled]) -> str:
+    """SHA-256 over pictures and labels, in order, by which one can tell whether a dataset is the same."""
+    whole = hashlib.sha256()
+    for each in lesson:
+        whole.update(hashlib.sha256(each.path.read_bytes()).digest())
+        whole.update(each.classes.tobytes() + each.boxes.tobytes())
+    return whole.hexdigest()
+
+
+def _cannot_write(path: Path, error: OSError) -> LinkwrightError:
+    reason = foreign(error.strerror or error)
+    message = phrase("cannot write to '{path}': {reason}", path=display_path(path), reason=reason)
+    return LinkwrightError(Diagnostic("VISION307", message))

@@ -1,0 +1,38 @@
+"""A dataset of coloured shapes, small enough to be learnt in a test."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+
+NAMES = ("disc", "square")
+
+
+def write_shapes(folder: Path, count: int, *, names: tuple[str, ...] = NAMES, size: int = 96, seed: int = 1) -> Path:
+    """Write `count` pictures, which are those of both parts, with their labels; returns the folder."""
+    chance = np.random.default_rng(seed)
+    (folder / "images" / "train").mkdir(parents=True)
+    (folder / "labels" / "train").mkdir(parents=True)
+    listed = "".join(f"  {number}: {name}\n" for number, name in enumerate(names))
+    (folder / "data.yaml").write_text(f"path: .\ntrain: images/train\nval: images/train\nnames:\n{listed}")
+    rows, columns = np.mgrid[0:size, 0:size]
+    for number in range(count):
+        pixels = np.full((size, size, 3), chance.integers(60, 120, 3), np.uint8)
+        lines = []
+        for kind, half in enumerate((size // 6, size // 5)):
+            x, y = (
+                int(chance.integers(half, size // 2 - half + 1)) + kind * size // 2,
+                int(chance.integers(half, size - half)),
+            )
+            inside = (columns - x) ** 2 + (rows - y) ** 2 <= half**2 if kind == 0 else (
+                np.maximum(abs(columns - x), abs(rows - y)) <= half
+            )  # fmt: skip
+            pixels[inside] = (230, 40, 40) if kind == 0 else (40, 90, 230)
+            lines.append(
+                f"{kind} {(x + 0.5) / size} {(y + 0.5) / size} {(2 * half + 1) / size} {(2 * half + 1) / size}"
+            )
+        Image.fromarray(pixels).save(folder / "images" / "train" / f"{number:03}.png")
+        (folder / "labels" / "train" / f"{number:03}.txt").write_text("\n".join(lines) + "\n")
+    return folder

@@ -1,0 +1,43 @@
+from __future__ import annotations
+
+import numpy as np
+
+from linkwright.vision.detections import Detections
+from linkwright.vision.evaluation import Things, evaluate
+from linkwright.vision.training.card import Examination, card, confusion
+
+BOXES = np.array([[0, 0, 8, 8], [20, 20, 60, 60]], np.float32)
+
+
+def figures(classes):
+    truth = Things(BOXES, np.array([0, 1], np.int32), np.zeros(2, bool))
+    kept = [place for place, kind in enumerate(classes) if kind is not None]
+    kinds = np.array([classes[place] for place in kept], np.int32)
+    return evaluate(
+        ("ball", "box"), [truth], [Detections(BOXES[kept], np.full(len(kept), 0.9, np.float32), kinds, ("ball", "box"))]
+    )
+
+
+def test_a_card_says_what_was_done_how_well_it_is_and_where_it_fails():
+    text = card("eye", {"command": "`a | b`"}, [Examination("Rooms", figures([None, 0]))])
+    assert text.startswith("# eye\n")
+    assert "| command | `a \\| b` |" in text
+    assert "| ball | 1 | 0.000 | 0.000 | 0.000 | 0.000 |" in text
+    assert "- Rooms: of things under 16 pixels it misses 100%." in text
+    assert "- Rooms: it takes 100% of box for ball." in text
+
+
+def test_a_card_of_a_network_without_faults_says_so():
+    text = card("eye", {}, [Examination("Rooms", figures([0, 1]))])
+    assert "| all | 2 | 1.000 | 1.000 | | |" in text
+    assert text.endswith("## Where it fails\n\nNothing stands out in these pictures.\n")
+
+
+def test_confusion_has_a_row_for_what_is_there_and_a_column_for_what_was_said():
+    assert confusion(figures([None, 0])) == [
+        "| is \\ said | ball | box | nothing |",
+        "| --- | ---: | ---: | ---: |",
+        "| ball |  |  | 1 |",
+        "| box | 1 |  |  |",
+        "| nothing |  |  |  |",
+    ]

@@ -1,0 +1,60 @@
+"""`linkwright vision train` and `evaluate`, as far as they need no PyTorch."""
+
+from __future__ import annotations
+
+import json
+import sys
+
+import pytest
+
+from linkwright.cli import main
+from tests.vision.training.pictures_of_shapes import write_shapes
+
+
+@pytest.fixture
+def colours(tmp_path):
+    """Red discs and blue squares, which the detector `colours` knows."""
+    return write_shapes(tmp_path / "colours", 6, names=("red", "blue"))
+
+
+def test_without_pytorch_training_says_what_to_install(colours, tmp_path, capsys, monkeypatch):
+    monkeypatch.setitem(sys.modules, "torch", None)
+    assert main(["vision", "train", str(colours), "-o", str(tmp_path / "out")]) == 1
+    told = capsys.readouterr().err
+    assert "VISION301" in told
+    assert "linkwright[train]" in told
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("size", ["480", "480x", "480x100", "0x0", "-32x32", "32x99999968"])
+def test_a_size_that_the_network_cannot_have_is_wrong_usage(size, capsys):
+    assert main(["vision", "train", "somewhere", f"--size={size}"]) == 2
+    assert "both multiples of 32" in capsys.readouterr().err
+
+
+def test_a_detector_is_judged(colours, capsys):
+    assert main(["vision", "evaluate", "colours", str(colours), "--confusion"]) == 0
+    told = capsys.readouterr().out
+    assert told.startswith("6 pictures: mAP50 1.000, ")
+    assert "| red | 6 | 1.000 |" in told
+    assert "| blue |  | 6 |" in told
+
+
+def test_figures_are_printed_for_programs(colours, capsys):
+    assert main(["vision", "evaluate", "colours", str(colours), "--split", "train", "--format", "json"]) == 0
+    figures = json.loads(capsys.readouterr().out)
+    assert figures["pictures"] == 6
+    assert figures["map50"] == pytest.approx(1)
+    assert [each["name"] for each in figures["classes"]] == ["red", "blue"]
+
+
+def test_a_folder_that_is_no_dataset_is_one_error(tmp_path, capsys):
+    assert main(["vision", "evaluate", "colours", str(tmp_path)]) == 1
+    told = capsys.readouterr()
+    assert "VISION302" in told.err
+    assert told.out == ""
+
+
+def test_a_detector_that_is_not_there_is_one_error(colours, capsys):
+    assert main(["vision", "evaluate", "none.onnx", str(colours)]) == 1
+    assert "VISION102" in capsys.readouterr().err

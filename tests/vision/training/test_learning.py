@@ -1,0 +1,187 @@
+"""Networks that learn, where PyTorch is installed: `make test-train` runs them (see CONTRIBUTING.md)."""
+
+from __future__ import annotations
+
+import os
+import sys
+from dataclasses import replace
+from importlib.util import find_spec
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from linkwright.cli import main
+from linkwright.diagnostics import LinkwrightError
+from linkwright.vision.training.options import Options
+from linkwright.vision.training.pictures import read_lesson
+from linkwright.vision.training.reading import open_dataset
+from linkwright.vision.training.teaching import teach
+from tests.vision.training.pictures_of_shapes import NAMES, write_shapes
+
+# `make test-train` sets the variable: there it is an error when PyTorch is missing, which would else skip everything.
+HERE = find_spec("torch") is not None or "LINKWRIGHT_TESTS_TRAINING" in os.environ
+pytestmark = pytest.mark.skipif(not HERE, reason="PyTorch is not installed; `make test-train` installs it")
+
+if HERE:
+    import onnxruntime
+    import torch
+
+    from linkwright.vision.training.learning.course import Course
+    from linkwright.vision.training.learning.export import to_onnx
+    from linkwright.vision.training.learning.losses import assign, loss, overlaps
+    from linkwright.vision.training.learning.network import Network, Shape, cells
+
+
+@pytest.fixture(scope="module")
+def shapes(tmp_path_factory):
+    return write_shapes(tmp_path_factory.mktemp("data") / "shapes", 8)
+
+
+def options(shapes: Path, output: Path, **changed) -> Options:
+    usual = Options(shapes, output, epochs=4, batch=8, width=96, height=96, channels=4, threads=1)
+    return replace(usual, **changed)
+
+
+def course_of(given: Options) -> Course:
+    given.output.mkdir(exist_ok=True)
+    dataset = open_dataset(given.dataset)
+    lesson = read_lesson(dataset.read("train"), given.width, given.height)
+    return Course(dataset.names, given, lesson, lesson)
+
+
+def weights(course: Course) -> np.ndarray:
+    return np.concatenate([each.detach().numpy().ravel() for each in course.network.parameters()])
+
+
+def test_a_network_overfits_eight_pictures(shapes, tmp_path):
+    course = course_of(options(shapes, tmp_path, epochs=150, rate=4e-3))
+    epochs = []
+    course.run(epochs.append)
+    first, last = np.mean([each.losses for each in epochs[:5]], 0), np.mean([each.losses for each in epochs[-5:]], 0)
+    assert (last < first / 2).all()
+    assert course.best_map > 0.5
+    assert course.judge().map50 >= 0.9
+
+
+def test_the_same_seed_gives_the_same_weights_and_another_one_others(shapes, tmp_path):
+    same = [course_of(options(shapes, tmp_path, seed=seed)) for seed in (3, 3, 4)]
+    for course in same:
+        course.run(lambda _: None)
+    assert (weights(same[0]) == weights(same[1])).all()
+    assert (weights(same[0]) != weights(same[2])).any()
+
+
+def test_what_is_resumed_ends_as_if_it_had_not_been_interrupted(shapes, tmp_path):
+    whole = course_of(options(shapes, tmp_path / "whole"))
+    whole.run(lambda _: None)
+    begun = course_of(options(shapes, tmp_path / "begun"))
+
+    def stop_after_two(epoch):
+        if epoch.number == 2:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        begun.run(stop_after_two)
+    resumed = course_of(options(shapes, tmp_path / "begun"))
+    resumed.load(tmp_path / "begun" / "last.pt")
+    assert resumed.epoch == 2
+    resumed.run(lambda _: None)
+    assert (weights(resumed) == weights(whole)).all()
+
+
+@pytest.mark.parametrize("content", [b"", b"none", None])
+def test_a_checkpoint_that_is_none_is_said(shapes, tmp_path, content):
+    if content is not None:
+        (tmp_path / "last.pt").write_bytes(content)
+    with pytest.raises(LinkwrightError) as caught:
+        course_of(options(shapes, tmp_path)).load(tmp_path / "last.pt")
+    assert caught.value.diagnostics[0].code == "VISION306"
+
+
+def test_a_checkpoint_of_another_network_is_said(shapes, tmp_path):
+    course_of(options(shapes, tmp_path)).save(tmp_path / "last.pt")
+    with pytest.raises(LinkwrightError) as caught:
+        course_of(options(shapes, tmp_path, channels=8)).load(tmp_path / "last.pt")
+    assert "other classes or sizes" in str(caught.value.diagnostics[0].message)
+
+
+def test_the_exported_network_says_what_the_network_says():
+    torch.manual_seed(2)
+    network = Network(Shape(3, 4)).eval()
+    with torch.no_grad():  # the file's weights have 16 bits; with such ones here, too, only the export is compared
+        for each in network.parameters():
+            each.copy_(each.half().float())
+    picture = torch.rand(1, 3, 96, 64)
+    with torch.no_grad():
+        boxes, logits = network(picture)
+    content = to_onnx(network, ("a", "b", "c"), 64, 96, {"seed": "2"})
+    session = onnxruntime.InferenceSession(content, providers=["CPUExecutionProvider"])
+    told = session.run(None, {"images": picture.numpy()})[0][0].T
+    left, right = told[:, :2] - told[:, 2:4] / 2, told[:, :2] + told[:, 2:4] / 2
+    assert np.abs(np.concatenate((left, right), 1) - boxes[0].numpy()).max() < 0.05  # pixels
+    assert np.abs(told[:, 4:] - logits[0].sigmoid().numpy()).max() < 1e-4
+    metadata = session.get_modelmeta().custom_metadata_map
+    assert metadata["names"] == "{0: 'a', 1: 'b', 2: 'c'}"
+    assert (metadata["imgsz"], metadata["stride"], metadata["task"]) == ("[96, 64]", "32", "detect")
+
+
+def test_boxes_that_do_not_touch_are_told_apart_by_the_generalised_overlap():
+    first = torch.tensor([[0.0, 0.0, 10.0, 10.0]] * 3)
+    second = torch.tensor([[0.0, 0.0, 10.0, 10.0], [20.0, 0.0, 30.0, 10.0], [90.0, 0.0, 100.0, 10.0]])
+    plain, generalised = overlaps(first, second)
+    assert plain.tolist() == pytest.approx([1, 0, 0])
+    assert generalised.tolist() == pytest.approx([1, -1 / 3, -0.8])
+
+
+def test_cells_answer_for_the_thing_they_are_in_and_may_say_what_they_like_of_what_is_ignored():
+    middles, _ = cells(64, 64)
+    boxes = torch.cat((middles - 12, middles + 12), 1)[None]
+    logits = torch.zeros(1, len(middles), 2)
+    things = torch.tensor([[[1.0, 8, 8, 32, 32], [-2.0, 40, 40, 60, 60], [-1.0, -1, -1, -1, -1]]])
+    wanted = assign(boxes, logits, middles, things)
+    inside = (middles >= 8).all(1) & (middles <= 32).all(1)
+    assert wanted.taken[0].sum() == 10
+    assert not (wanted.taken[0] & ~inside).any()
+    assert (wanted.scores[0][..., 0] == 0).all()
+    assert wanted.scores[0][..., 1].max() > 0.9
+    hidden = (middles >= 40).all(1) & (middles <= 60).all(1)
+    assert (wanted.unasked[0] == hidden).all()
+
+
+def test_a_batch_without_anything_in_it_has_a_loss():
+    network = Network(Shape(2, 4))
+    boxes, logits = network(torch.rand(2, 3, 64, 64))
+    total, parts = loss(boxes, logits, cells(64, 64)[0], torch.full((2, 1, 5), -1.0))
+    total.backward()
+    assert parts[0] == 0
+    assert torch.isfinite(total)
+
+
+def test_the_command_trains_judges_and_writes_a_card(shapes, tmp_path, capsys, monkeypatch):
+    words = ["vision", "train", str(shapes), "-o", str(tmp_path), "--name", "eye", "--epochs", "2", "--size", "96x96"]
+    words += ["--channels", "4", "--threads", "1", "--held-out", str(shapes)]
+    monkeypatch.setattr(sys, "argv", ["linkwright", *words])
+    assert main(words) == 0
+    told = capsys.readouterr()
+    assert told.err.count("epoch ") == 2
+    assert told.out.count("mAP50 ") >= 2
+    card = (tmp_path / "eye.md").read_text(encoding="utf-8")
+    assert f"vision train {shapes}" in card
+    assert "## shapes (val), which it never saw" in card
+    assert main(["vision", "evaluate", str(tmp_path / "eye.onnx"), str(shapes), "--confusion"]) == 0
+    assert "8 pictures: mAP50" in capsys.readouterr().out
+    assert main([*words, "--resume", "--epochs", "3"]) == 0
+    assert capsys.readouterr().err.startswith("epoch 3 of 3")
+
+
+def test_what_was_learnt_until_ctrl_c_is_kept(shapes, tmp_path):
+    def stop_after_two(epoch):
+        if epoch.number == 2:
+            raise KeyboardInterrupt
+
+    taught = teach(options(shapes, tmp_path), stop_after_two)
+    assert taught.interrupted
+    assert taught.network.is_file()
+    assert "2 of 4" in taught.card.read_text(encoding="utf-8")
+    assert tuple(each.name for each in taught.examinations[0].figures.classes) == NAMES

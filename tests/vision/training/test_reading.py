@@ -1,0 +1,160 @@
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.vision.training.pictures import changed, read_lesson, read_picture
+from linkwright.vision.training.reading import open_dataset
+from tests.vision.training.pictures_of_shapes import NAMES, write_shapes
+
+
+@pytest.fixture
+def shapes(tmp_path):
+    return write_shapes(tmp_path / "shapes", 3)
+
+
+def problem(function, *words):
+    with pytest.raises(LinkwrightError) as caught:
+        function(*words)
+    return caught.value.diagnostics[0]
+
+
+def test_a_dataset_is_read(shapes):
+    dataset = open_dataset(shapes)
+    assert dataset.names == NAMES
+    pictures = dataset.read("train")
+    assert [each.path.name for each in pictures] == ["000.png", "001.png", "002.png"]
+    assert pictures[0].classes.tolist() == [0, 1]
+    assert not pictures[0].ignored.any()
+    assert (pictures[0].boxes >= 0).all()
+    assert (pictures[0].boxes <= 1).all()
+
+
+def test_the_boxes_are_where_the_colours_are(shapes):
+    for each in open_dataset(shapes).read("train"):
+        left, top, right, bottom = np.rint(each.boxes[0] * 96).astype(int)
+        red = read_picture(each)[..., 0] > 200
+        assert (np.flatnonzero(red.any(0))[[0, -1]] == (left, right - 1)).all()
+        assert (np.flatnonzero(red.any(1))[[0, -1]] == (top, bottom - 1)).all()
+
+
+def test_what_coco_says_of_a_crowd_is_ignored(shapes):
+    (shapes / "annotations").mkdir()
+    content = {
+        "images": [{"id": 7, "file_name": "001.png", "width": 96, "height": 48}],
+        "categories": [{"id": 2, "name": "square"}, {"id": 1, "name": "disc"}],
+        "annotations": [
+            {"image_id": 7, "category_id": 2, "bbox": [24, 12, 48, 24], "iscrowd": 1},
+            {"image_id": 7, "category_id": 1, "bbox": [0, 0, 9, 9], "iscrowd": 0},
+        ],
+    }
+    (shapes / "annotations" / "instances_train.json").write_text(json.dumps(content))
+    picture = open_dataset(shapes).read("train")[1]
+    assert picture.ignored.tolist() == [False, False, True]
+    assert picture.classes[2] == 1
+    assert picture.boxes[2].tolist() == [0.25, 0.25, 0.75, 0.75]
+
+
+def test_a_picture_without_labels_has_nothing_in_it(shapes):
+    (shapes / "labels" / "train" / "002.txt").unlink()
+    assert open_dataset(shapes).read("train")[2].boxes.shape == (0, 4)
+
+
+def test_the_yaml_file_itself_may_be_named(shapes):
+    assert open_dataset(shapes / "data.yaml").names == NAMES
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        ("train: images/train\n", "'names' does not name the classes"),
+        ("train: images/train\nnames: {0: a, 2: b}\n", "'names' does not name the classes"),
+        ("names: [a]\n", "neither 'train' nor 'val'"),
+        ("- 1\n", "does not hold names and values"),
+        ("names: [a\n", "is no dataset"),
+    ],
+)
+def test_what_is_no_dataset_is_said(tmp_path, content, said):
+    (tmp_path / "data.yaml").write_text(content)
+    found = problem(open_dataset, tmp_path)
+    assert found.code == "VISION302"
+    assert said in str(found.message)
+
+
+def test_folders_that_are_not_there_or_empty_are_no_datasets(tmp_path):
+    assert "does not exist" in str(problem(open_dataset, tmp_path / "none").message)
+    assert "there is no YAML file in it" in str(problem(open_dataset, tmp_path).message)
+
+
+def test_a_part_that_is_not_there_is_said(shapes):
+    found = problem(open_dataset(shapes).read, "test")
+    assert found.code == "VISION303"
+    assert "'train' and 'val'" in str(found.hint)
+
+
+def test_a_part_without_pictures_is_said(shapes):
+    for path in (shapes / "images" / "train").iterdir():
+        path.unlink()
+    assert problem(open_dataset(shapes).read, "train").code == "VISION303"
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ("0 0.5 0.5 0.1", "five numbers"),
+        ("0 0.5 0.5 0.1 b", "five numbers"),
+        ("2 0.5 0.5 0.1 0.1", "the class 2 is none of the 2"),
+        ("0.5 0.5 0.5 0.1 0.1", "the class 0.5 is none of the 2"),
+        ("0 50 0.5 0.1 0.1", "shares of the picture"),
+        ("0 nan 0.5 0.1 0.1", "shares of the picture"),
+    ],
+)
+def test_a_label_that_cannot_be_is_said_with_its_place(shapes, line, said):
+    text = shapes / "labels" / "train" / "001.txt"
+    text.write_text(f"0 0.5 0.5 0.1 0.1\n{line}\n")
+    found = problem(open_dataset(shapes).read, "train")
+    assert found.code == "VISION304"
+    assert said in str(found.message)
+    assert found.span is not None
+    assert found.span.line == 2
+
+
+def test_a_picture_that_is_none_is_said(shapes):
+    dataset = open_dataset(shapes)
+    (shapes / "images" / "train" / "001.png").write_bytes(b"none")
+    found = problem(read_lesson, dataset.read("train"), 96, 96)
+    assert (found.code, "001.png" in str(found.message)) == ("VISION305", True)
+
+
+def test_pictures_of_another_shape_are_fitted_in_with_grey(shapes):
+    pictures = open_dataset(shapes).read("train")
+    lesson = read_lesson(pictures, 160, 96)
+    assert lesson.pictures.shape == (3, 96, 160, 3)
+    assert (lesson.pictures[:, :, :32] == 114).all()
+    assert np.allclose(lesson.things[0][:, 1:], pictures[0].boxes * 96 + (32, 0, 32, 0), atol=1e-4)
+
+
+def test_boxes_stay_with_what_they_are_around(shapes):
+    lesson = read_lesson(open_dataset(shapes).read("train"), 96, 96)
+    seen = 0
+    for seed in range(40):
+        picture, things = changed(lesson, seed % 3, (64, 64), np.random.default_rng(seed))
+        assert picture.shape == (64, 64, 3)
+        for kind, left, top, right, bottom in things:
+            assert 0 <= left < right <= 64
+            assert 0 <= top < bottom <= 64
+            if kind == 0 and min(right - left, bottom - top) > 8:
+                middle = picture[int((top + bottom) / 2), int((left + right) / 2)].astype(int)
+                seen += 1
+                assert middle[0] > middle[2]  # the disc is the red one
+    assert seen > 10
+
+
+def test_the_same_dice_change_a_picture_in_the_same_way(shapes):
+    lesson = read_lesson(open_dataset(shapes).read("train"), 96, 96)
+    one, other = (changed(lesson, 0, (64, 64), np.random.default_rng(5)) for _ in range(2))
+    assert (one[0] == other[0]).all()
+    assert (one[1] == other[1]).all()
