@@ -229,7 +229,7 @@ def test_a_file_that_is_not_there_and_names_that_are_wrong(tmp_path):
     assert set(detector_names()) >= {"apriltag", "aruco", "colours", "line", "qr"}
 
 
-@pytest.mark.parametrize("ending", ["pt", "engine", "tflite"])
+@pytest.mark.parametrize("ending", ["pt", "engine", "torchscript"])
 def test_networks_in_other_forms(tmp_path, ending):
     path = tmp_path / f"yolov8n.{ending}"
     path.write_bytes(b"x")

@@ -76,5 +76,6 @@ def letterboxed(
 
 def tensor_of(pixels: NDArray[np.uint8], kind: type[np.floating]) -> NDArray[np.floating]:
     """Pixels, shape ``(rows, columns, 3)``, as numbers from 0 to 1, shape ``(1, 3, rows, columns)``."""
-    planes = np.ascontiguousarray(pixels.transpose(2, 0, 1))
-    return _LEVELS.astype(kind)[planes][np.newaxis]
+    cv2 = load_opencv()
+    planes = np.stack([cv2.LUT(plane, _LEVELS) for plane in cv2.split(pixels)])
+    return planes.astype(kind, copy=False)[np.newaxis]

@@ -5,9 +5,10 @@ from __future__ import annotations
 from functools import cache
 from typing import Any
 
-from linkwright.diagnostics import missing_extra
+from linkwright.diagnostics import Diagnostic, LinkwrightError, missing_extra, phrase
 
 _ERRORS_ONLY = 3
+_LITERT = "ai-edge-litert"
 
 
 @cache
@@ -37,3 +38,19 @@ def load_opencv() -> Any:
     except ModuleNotFoundError as error:
         raise missing_extra("VISION101", error) from None
     return cv2
+
+
+@cache
+def load_litert() -> Any:
+    """The module ``ai_edge_litert.interpreter``, which no extra brings: it is large, and for TFLite files alone.
+
+    Raises:
+        LinkwrightError: VISION101 it is not installed.
+    """
+    try:
+        from ai_edge_litert import interpreter  # type: ignore[import-not-found, unused-ignore]
+    except ModuleNotFoundError:
+        message = phrase("TFLite files are run by the package '{package}', which is not installed", package=_LITERT)
+        hint = phrase("run pip install {package}", package=_LITERT)
+        raise LinkwrightError(Diagnostic("VISION101", message, hint=hint)) from None
+    return interpreter

@@ -1,4 +1,4 @@
-"""Which detectors there are: ONNX files, and those that packages bring.
+"""Which detectors there are: networks in files, by path or the name that they were fetched under; those of packages.
 
 The latter are entry points of the group ``linkwright.detectors``: each names what is called with `DetectorOptions`,
 makes a `Detector`, and raises LinkwrightError where its library is not there.
@@ -10,7 +10,9 @@ from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, phrase, quoted_names
 from linkwright.extensions import extensions
+from linkwright.model_files import find_model, model_table
 from linkwright.vision.detector import Detector
+from linkwright.vision.detectors.efficientdet import EfficientDetDetector
 from linkwright.vision.detectors.network import NetworkDetector
 from linkwright.vision.detectors.options import DetectorOptions
 
@@ -18,7 +20,8 @@ DEFAULT_DETECTOR = "colours"
 """What is used when nothing is said."""
 
 _GROUP = "linkwright.detectors"
-_OTHER_FORMS = (".pt", ".pth", ".weights", ".engine", ".tflite", ".torchscript", ".pb", ".h5", ".xml", ".mlpackage")
+_KIND = "vision"
+_OTHER_FORMS = (".pt", ".pth", ".weights", ".engine", ".torchscript", ".pb", ".h5", ".xml", ".mlpackage")
 
 
 def detector_names() -> tuple[str, ...]:
@@ -27,7 +30,9 @@ def detector_names() -> tuple[str, ...]:
 
 
 def make_detector(model: str, options: DetectorOptions) -> Detector:
-    """A detector by its name, or the network in an ONNX file.
+    """A detector by its name, or the network in an ONNX file, or EfficientDet-Lite in a TFLite file.
+
+    Models that `linkwright models get` has fetched go by their names.
 
     Raises:
         LinkwrightError: VISION102 there is neither such a detector nor such a file, VISION104 the file holds a network
@@ -37,7 +42,8 @@ def make_detector(model: str, options: DetectorOptions) -> Detector:
     if found is not None:
         detector: Detector = found.load()(options)
         return detector
-    file = Path(model).expanduser()
+    entry = model_table().get(model)
+    file = find_model(entry) if entry is not None and entry.kind == _KIND else Path(model).expanduser()
     if file.suffix.lower() in _OTHER_FORMS:
         message = phrase("'{file}' is no ONNX file", file=file)
         export = phrase(
@@ -51,4 +57,5 @@ def make_detector(model: str, options: DetectorOptions) -> Detector:
         message = phrase("there is neither a file nor a detector '{model}'", model=model)
         hint = did_you_mean(model, names) or phrase("give an ONNX file, or one of {names}", names=quoted_names(names))
         raise LinkwrightError(Diagnostic("VISION102", message, hint=hint))
-    return NetworkDetector(file, options)
+    kind = EfficientDetDetector if file.suffix.lower() == ".tflite" else NetworkDetector
+    return kind(file, options)

@@ -1,0 +1,106 @@
+"""EfficientDet-Lite in TFLite files, whose boxes are final."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+from zipfile import BadZipFile, ZipFile
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
+from linkwright.vision.detections import Detections
+from linkwright.vision.detector import Detector, Limits
+from linkwright.vision.detectors.class_names import read_labels
+from linkwright.vision.detectors.library import load_litert, load_opencv
+from linkwright.vision.detectors.options import DetectorOptions
+from linkwright.vision.detectors.selection import most_certain
+
+_LAST_STEP = "TFLite_Detection_PostProcess"
+"""The operation that makes final boxes; it has four outputs: boxes, classes, scores, how many there are."""
+_LARGEST_LABELS = 1_000_000
+_MOST_THREADS = 4
+
+
+class EfficientDetDetector(Detector):
+    """Runs a network with LiteRT; the names of its classes are in a zip archive at the end of the file.
+
+    Args:
+        file: the TFLite file.
+        options: labels count.
+
+    Raises:
+        LinkwrightError: VISION101 LiteRT or OpenCV is missing, VISION103 the file cannot be loaded, VISION105 its input
+            is no picture of 8 bits, VISION106 it has no final boxes, VISION108 it has no names and none are given.
+    """
+
+    def __init__(self, file: Path, options: DetectorOptions) -> None:
+        litert = load_litert()
+        load_opencv()
+        threads = min(_MOST_THREADS, os.cpu_count() or 1)
+        try:
+            self._interpreter = litert.Interpreter(model_path=str(file), num_threads=threads)
+            self._interpreter.allocate_tensors()
+        except (ValueError, RuntimeError) as error:
+            message = phrase("cannot load the network in '{file}': {reason}", file=file, reason=foreign(error))
+            raise LinkwrightError(Diagnostic("VISION103", message)) from None
+        inputs = self._interpreter.get_input_details()
+        shape = [int(each) for each in inputs[0]["shape"]] if len(inputs) == 1 else []
+        if len(shape) != 4 or shape[0] != 1 or shape[3] != 3 or inputs[0]["dtype"] is not np.uint8:
+            shown = ", ".join(f"{np.dtype(each['dtype'])} {list(map(int, each['shape']))}" for each in inputs)
+            message = phrase(
+                "the network in '{file}' does not take a picture: its inputs are {inputs}", file=file.name, inputs=shown
+            )
+            raise LinkwrightError(Diagnostic("VISION105", message))
+        self._input, self._size = inputs[0]["index"], (shape[2], shape[1])
+        self._outputs = _final_outputs(file, self._interpreter)
+        self._names = _names_in(file) if options.labels is None else read_labels(options.labels)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The classes that it knows."""
+        return self._names
+
+    def detect(self, picture: NDArray[np.uint8], limits: Limits) -> Detections:
+        """Find what is in a picture, which is stretched to the size of the input, as TFLite's own library does it."""
+        if not picture.size:
+            return Detections.none(self._names)
+        cv2 = load_opencv()
+        self._interpreter.set_tensor(self._input, cv2.resize(picture, self._size)[np.newaxis])
+        self._interpreter.invoke()
+        boxes, classes, scores, count = (self._interpreter.get_tensor(index) for index in self._outputs)
+        found = int(np.ravel(count)[0])
+        height, width = picture.shape[:2]
+        sides = np.clip(boxes[0, :found][:, [1, 0, 3, 2]], 0.0, 1.0) * [width, height, width, height]
+        numbers = classes[0, :found].astype(int)
+        known = [index for index in range(found) if 0 <= numbers[index] < len(self._names)]
+        return most_certain(
+            [sides[index].tolist() for index in known],
+            [float(scores[0, index]) for index in known],
+            [int(numbers[index]) for index in known],
+            self._names,
+            limits,
+        )
+
+
+def _final_outputs(file: Path, interpreter: Any) -> list[int]:
+    """The tensors of boxes, classes, scores and their number; files differ in the order and names of their outputs."""
+    last = [each for each in interpreter._get_ops_details() if each["op_name"] == _LAST_STEP]
+    if len(last) != 1:
+        message = phrase("the network in '{file}' has no final boxes, as EfficientDet-Lite has", file=file.name)
+        raise LinkwrightError(Diagnostic("VISION106", message, hint=phrase("export it as ONNX")))
+    return [int(each) for each in last[0]["outputs"]]
+
+
+def _names_in(file: Path) -> tuple[str, ...]:
+    try:
+        with ZipFile(file) as archive:
+            entry = next(each for each in archive.infolist() if each.filename.endswith(".txt"))
+            with archive.open(entry) as text:
+                lines = text.read(_LARGEST_LABELS).decode().splitlines()
+        return tuple(line.strip() for line in lines)
+    except (BadZipFile, StopIteration, UnicodeDecodeError, OSError):
+        message = phrase("there are no labels in '{path}'", path=file)
+        raise LinkwrightError(Diagnostic("VISION108", message, hint=phrase("give a file of labels"))) from None
