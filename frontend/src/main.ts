@@ -98,7 +98,7 @@ function start(app: HTMLElement): void {
     new JointTablePanel(session),
     new DiagnosticsPanel(session),
     new WorldPanel(session.modelling, session.angles, commands),
-    new VoicePanel(session.voice),
+    new VoicePanel(session.voice, session.words),
     ...livePanels(session.monitor, (id) => dock.open(id)),
   ], new Layouts(browserStorage()));
   keepCurrent(dock, session);

@@ -169,3 +169,20 @@ def test_a_microphone_that_goes_away_is_told_of(talking: tuple[Robot, Page]) -> 
     page.wait_for_selector(".voice-notice:has-text('disconnected')")
     wait_until(lambda: robot.held == [True, False], SECONDS)
     page.keyboard.up("v")
+
+
+def test_a_word_is_recorded_while_its_button_is_held(talking: tuple[Robot, Page], monkeypatch, tmp_path: Path) -> None:
+    robot, page = talking
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
+    open_panel(page)
+    page.locator(".word-box summary").click()
+    page.get_by_label("Word or phrase of a command").fill("stop")
+    page.keyboard.press("Enter")
+    button = page.get_by_role("button", name="Hold and say: stop")
+    button.focus()
+    page.keyboard.down("Space")
+    until(page, "lw.panels.voice.recording && lw.panels.voice.peak > 0.2")
+    page.keyboard.up("Space")
+    # A tone without an end is no word; what matters here is that it is judged, and published to nobody.
+    page.wait_for_selector(".word-judged:has-text(' dB, ')")
+    assert robot.samples == []

@@ -112,6 +112,18 @@ import type {
   ViewState,
 } from "./views-and-tools";
 import type { SayCommand, Talk, VoiceSaid, VoiceState, WatchVoice } from "./voice";
+import type {
+  AskWordsFile,
+  BeginTake,
+  EndTake,
+  ImportWords,
+  RemoveWord,
+  RenameWord,
+  TakeJudged,
+  VoiceWords,
+  VoiceWordsFile,
+  WatchWords,
+} from "./voice-words";
 import type { WorldPoses, WorldRays, WorldScene } from "./worlds";
 
 export * from "./binary";
@@ -132,6 +144,7 @@ export * from "./simulation";
 export * from "./time";
 export * from "./views-and-tools";
 export * from "./voice";
+export * from "./voice-words";
 export * from "./worlds";
 
 export type ServerMessage =
@@ -173,6 +186,7 @@ export type ServerMessage =
   | SeriesStates
   | SimulationNotice
   | SimulationStatus
+  | TakeJudged
   | TeleopState
   | TimeReset
   | TimeState
@@ -186,7 +200,9 @@ export type ServerMessage =
   | ViewClasses
   | ViewState
   | VoiceSaid
-  | VoiceState;
+  | VoiceState
+  | VoiceWords
+  | VoiceWordsFile;
 
 export type PageMessage =
   | AddDisplay
@@ -204,6 +220,8 @@ export type PageMessage =
   | AskModels
   | AskPoint
   | AskProvenance
+  | AskWordsFile
+  | BeginTake
   | CenterJoints
   | ChangeSavedView
   | ChangeThings
@@ -215,8 +233,10 @@ export type PageMessage =
   | Drive
   | DumpParameters
   | DuplicateDisplays
+  | EndTake
   | GroupDisplays
   | GroupThings
+  | ImportWords
   | LoadConfiguration
   | MarkerFeedback
   | MeshStatus
@@ -234,7 +254,9 @@ export type PageMessage =
   | RemoveDisplays
   | RemoveSavedView
   | RemoveTool
+  | RemoveWord
   | RenameDisplay
+  | RenameWord
   | ResetTime
   | RevertConfiguration
   | SaveConfiguration
@@ -261,7 +283,8 @@ export type PageMessage =
   | WatchParameters
   | WatchSeries
   | WatchTopics
-  | WatchVoice;
+  | WatchVoice
+  | WatchWords;
 
 export type DataContent =
   | CellGrid

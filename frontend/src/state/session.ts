@@ -22,6 +22,7 @@ import { TimeControlState } from "./time";
 import { ToolsState } from "./tools";
 import { ViewState } from "./view";
 import { VoiceState } from "./voice/voice";
+import { WordsState } from "./voice/words";
 
 /** Everything the page knows, kept current from the server's messages. Panels and drawings listen to its parts. */
 export class Session {
@@ -53,6 +54,7 @@ export class Session {
   readonly angles = new AngleUnits(browserStorage());
   readonly monitor: MonitorState;
   readonly voice: VoiceState;
+  readonly words: WordsState;
   diagnostics: readonly DiagnosticItem[] = [];
 
   constructor(readonly connection: Connection) {
@@ -68,6 +70,7 @@ export class Session {
     this.description = new DescriptionState(connection);
     this.monitor = new MonitorState(connection, browserStorage());
     this.voice = new VoiceState(connection, browserStorage());
+    this.words = new WordsState(connection, this.voice);
     this.listen(connection);
     const followFixedFrame = (): void => {
       this.frames.fixedFrame = this.displays.fixedFrame;

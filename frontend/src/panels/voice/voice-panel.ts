@@ -2,6 +2,7 @@ import { button, h } from "../../dom";
 import { icon } from "../../icons";
 import type { SaidPart } from "../../protocol";
 import type { VoiceState } from "../../state/voice/voice";
+import type { WordsState } from "../../state/voice/words";
 import { strings } from "../../strings";
 import { choice, textField, tickBox } from "../controls";
 import type { Panel } from "../panel";
@@ -9,6 +10,7 @@ import { whenSeen } from "../when-seen";
 import { LevelMeter } from "./level-meter";
 import { talkButton } from "./talk-button";
 import { activity, obstacle } from "./voice-words";
+import { WordsBox } from "./words-box";
 
 const ICONS = { partial: "microphone", text: "microphone", command: "check", response: "speech" } as const satisfies Record<SaidPart, string>;
 
@@ -26,12 +28,16 @@ export class VoicePanel implements Panel {
   private readonly voices: HTMLSelectElement;
   private readonly noVoices = h("p", { class: "note" }, strings.voice.noVoices);
 
-  constructor(private readonly voice: VoiceState) {
+  constructor(
+    private readonly voice: VoiceState,
+    enrolled: WordsState,
+  ) {
     const words = strings.voice;
     const { speaker } = voice;
     this.open = tickBox(words.open, words.openHint, (ticked) => voice.setOpen(ticked));
     this.speak = tickBox(words.speak, words.speakHint, (on) => speaker.configure({ on }));
     this.voices = choice(words.voice, [], (chosen) => speaker.configure({ voice: chosen }));
+    const box = new WordsBox(enrolled);
     const clear = button(words.clearHint, () => voice.clear(), "tool bare", icon("clear"));
     this.element = h(
       "div",
@@ -46,11 +52,15 @@ export class VoicePanel implements Panel {
         this.commandForm(),
         h("div", { class: "voice-row" }, this.speak, this.voices),
         this.noVoices,
+        box.element,
       ),
     );
     voice.changed.on(() => this.show());
     voice.conversed.on(() => this.showHistory());
-    whenSeen(this.element, (seen) => voice.watch(this, seen));
+    whenSeen(this.element, (seen) => {
+      voice.watch(this, seen);
+      box.watch(seen);
+    });
     this.show();
     this.showHistory();
   }

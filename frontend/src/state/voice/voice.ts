@@ -43,6 +43,7 @@ export class VoiceState {
   /** The button is let go, and what was said until then is on its way. */
   private ending = false;
   private listening = false;
+  private taking = false;
   private mode: TalkMode = "off";
   private timer = 0;
 
@@ -71,7 +72,7 @@ export class VoiceState {
     });
     microphone.block.on((samples) => this.send(samples));
     microphone.changed.on(() => {
-      if (microphone.problem !== null) this.listening = this.pressed = false;
+      if (microphone.problem !== null) this.listening = this.pressed = this.taking = false;
       this.announce();
       this.changed.emit();
     });
@@ -147,6 +148,30 @@ export class VoiceState {
     if (!this.listening) this.microphone.close();
   }
 
+  /** Whether what is heard is a recording of a word, and no command. */
+  get recording(): boolean {
+    return this.taking;
+  }
+
+  /** Has the microphone opened for a recording; `begun` is called before the first sound is sent, false gives it up. */
+  async record(begun: () => boolean): Promise<boolean> {
+    this.speaker.hush();
+    this.setOpen(false);
+    clearTimeout(this.timer);
+    const opened = await this.microphone.open();
+    this.announce();
+    this.taking = opened && begun();
+    if (!this.taking) this.rest();
+    return this.taking;
+  }
+
+  /** Ends the recording; its last sound is sent when this resolves. */
+  async endRecord(): Promise<void> {
+    await this.microphone.flush();
+    this.taking = false;
+    this.rest();
+  }
+
   say(text: string): void {
     this.connection.send({ type: "say_command", text });
   }
@@ -159,9 +184,9 @@ export class VoiceState {
 
   /** For `window.linkwright`. */
   inspect(): object {
-    const { history, partial, told, microphone, mode } = this;
+    const { history, partial, told, microphone, mode, recording } = this;
     const { problem, isOpen, peak } = microphone;
-    return { mode, problem, isOpen, peak, partial, told, history: history.map((each) => ({ ...each })) };
+    return { mode, recording, problem, isOpen, peak, partial, told, history: history.map((each) => ({ ...each })) };
   }
 
   private use(): void {
@@ -176,7 +201,7 @@ export class VoiceState {
   /** Closes the microphone after a while, if it is not needed. */
   private rest(): void {
     clearTimeout(this.timer);
-    if (this.pressed || this.listening || !this.microphone.isOpen) return;
+    if (this.pressed || this.listening || this.taking || !this.microphone.isOpen) return;
     this.timer = window.setTimeout(() => this.microphone.close(), WARM_MS);
   }
 
@@ -195,7 +220,7 @@ export class VoiceState {
 
   private send(samples: Int16Array): void {
     this.changed.emit();
-    if (this.mode !== "held" && this.mode !== "open") return;
+    if (this.mode !== "held" && this.mode !== "open" && !this.taking) return;
     // What the page itself says is no command.
     if (this.mode === "open" && this.speaker.speaking) return;
     this.connection.sendBytes(soundFrame(samples));

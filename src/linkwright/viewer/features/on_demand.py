@@ -20,6 +20,15 @@ from linkwright.viewer.protocol.monitor import (
     WatchTopics,
 )
 from linkwright.viewer.protocol.voice import SayCommand, SoundBlock, Talk, WatchVoice
+from linkwright.viewer.protocol.voice_words import (
+    AskWordsFile,
+    BeginTake,
+    EndTake,
+    ImportWords,
+    RemoveWord,
+    RenameWord,
+    WatchWords,
+)
 from linkwright.viewer.web.audience import Page
 
 _ANSWERED_BY: dict[type, str] = {
@@ -38,6 +47,10 @@ _ANSWERED_BY: dict[type, str] = {
     WatchSeries: "monitor.plots:PlotsFeature",
     WatchTopics: "monitor.topics:TopicsFeature",
     WatchVoice: "voice.feature:VoiceFeature",
+    **dict.fromkeys(
+        (AskWordsFile, BeginTake, EndTake, ImportWords, RemoveWord, RenameWord, WatchWords),
+        "voice.feature:VoiceFeature",
+    ),
 }
 """Module and class, below this package."""
 

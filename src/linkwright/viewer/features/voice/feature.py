@@ -10,6 +10,7 @@ from linkwright.graph import Publisher, Subscription
 from linkwright.nodes.voice.audio_topics import NAMESPACE, AudioTopics
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
 from linkwright.viewer.features.voice.floor import Floor, SoundBudget
+from linkwright.viewer.features.voice.words import WORDS_MESSAGES, WordBook
 from linkwright.viewer.protocol.voice import (
     SaidPart,
     SayCommand,
@@ -41,7 +42,7 @@ class VoiceFeature(PageFeature):
     The topics of sound are there while a page has its microphone open, the others while a page watches.
     """
 
-    RECEIVES = (WatchVoice, Talk, SayCommand, SoundBlock)
+    RECEIVES = (WatchVoice, Talk, SayCommand, SoundBlock, *WORDS_MESSAGES)
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -57,8 +58,9 @@ class VoiceFeature(PageFeature):
         self._listen: Publisher[Any] | None = None
         self._holder: Page | None = None
         self._said = 0
+        self._words = WordBook()
 
-    def receive(self, page: Page, message: WatchVoice | Talk | SayCommand | SoundBlock) -> None:
+    def receive(self, page: Page, message: Any) -> None:
         """Publish sound or a text, note who talks, or begin or end to tell a page."""
         if isinstance(message, SoundBlock):
             self._hear(page, message)
@@ -67,12 +69,15 @@ class VoiceFeature(PageFeature):
             self._talk(page, message)
         elif isinstance(message, WatchVoice):
             self._watch(page, message.watched)
+        elif not isinstance(message, SayCommand):
+            self._words.receive(page, message)
         elif self._text_input is not None:
             self._text_input.publish(self._text_input.msg_type(data=message.text[:_LONGEST_TEXT]))
 
     def page_gone(self, page: Page) -> None:
         """A page that is gone does not talk any more."""
         self._cut.discard(page)
+        self._words.page_gone(page)
         self._talk(page, Talk("off"))
         self._watch(page, False)
 
@@ -119,6 +124,8 @@ class VoiceFeature(PageFeature):
         if not budget.spend(block.samples.size):
             self._cut.add(page)
             self._talk(page, Talk("off"))
+        elif self._words.hear(page, block.samples):
+            pass  # it is an example of a word
         elif page is self._floor.talker and self._audio is not None:
             self._audio.publish(block.samples)
 

@@ -1,0 +1,138 @@
+import { button, h } from "../../dom";
+import { icon } from "../../icons";
+import type { EnrolledWord, TakeJudged } from "../../protocol";
+import { askName } from "../../shell/dialog";
+import type { WordsState } from "../../state/voice/words";
+import { strings } from "../../strings";
+import { saveText } from "../save-file";
+import { textField } from "../controls";
+
+/** Below this the loudest sample of a recording is rather quiet: -24 dB. */
+const QUIET = 0.06;
+
+/** The words that the user enrols: each is said three times, with a button that is held. */
+export class WordsBox {
+  readonly element: HTMLDetailsElement;
+  private readonly list = h("div", { class: "word-list", role: "list" });
+  private readonly problem = h("p", { class: "note wrong", role: "status" });
+  private readonly file = h("p", { class: "note" });
+  private shown = "";
+
+  constructor(private readonly words: WordsState) {
+    const texts = strings.voice.words;
+    const add = (): void => {
+      words.name(field.value);
+      field.value = "";
+    };
+    const field = textField(texts.choose, () => undefined);
+    field.maxLength = 100;
+    const suggestions = h("datalist", {}, ...texts.suggestions.map((each) => new Option(each)));
+    suggestions.id = "voice-word-suggestions";
+    field.setAttribute("list", suggestions.id);
+    field.addEventListener("keydown", (event) => {
+      if (event.key === "Enter" && !event.isComposing) add();
+    });
+    const picker = h("input", { aria: { label: texts.importFile } });
+    picker.type = "file";
+    picker.accept = ".json,application/json";
+    picker.hidden = true;
+    picker.addEventListener("change", () => {
+      const [chosen] = picker.files ?? [];
+      picker.value = "";
+      void chosen?.text().then((text) => words.importFile(text));
+    });
+    this.element = h(
+      "details",
+      { class: "word-box" },
+      h("summary", {}, texts.title),
+      h("p", { class: "note" }, texts.hint),
+      h("div", { class: "voice-row" }, field, suggestions, button(texts.addHint, add, "tool framed", texts.add)),
+      this.list,
+      this.problem,
+      h(
+        "div",
+        { class: "voice-row" },
+        button(texts.importHint, () => picker.click(), "tool framed", icon("upload"), texts.importFile),
+        button(texts.exportHint, () => words.askFile(), "tool framed", icon("download"), texts.exportFile),
+        picker,
+      ),
+      this.file,
+    );
+    this.element.addEventListener("toggle", () => this.watch(true));
+    words.changed.on(() => this.show());
+    words.fileCame.on((text) => saveText("words.json", text, "application/json"));
+    this.show();
+  }
+
+  /** Whether the panel can be seen. */
+  watch(seen: boolean): void {
+    this.words.watch(seen && this.element.open);
+  }
+
+  private show(): void {
+    const { words } = this;
+    const all = words.all;
+    const key = JSON.stringify(all.map(({ name }) => name));
+    // While a button is held it must stay where it is.
+    if (key !== this.shown) {
+      this.shown = key;
+      this.list.replaceChildren(...all.map((word) => this.row(word)));
+    }
+    all.forEach((word, index) => this.update(this.list.children[index], word));
+    this.problem.textContent = words.problem ?? "";
+    this.problem.hidden = words.problem === null;
+    this.file.textContent = words.file === "" ? "" : strings.voice.words.keptIn(words.file);
+  }
+
+  private row({ name }: EnrolledWord): HTMLElement {
+    const texts = strings.voice.words;
+    const { words } = this;
+    const say = button(texts.say(name), () => undefined, "tool framed word-say", icon("microphone"));
+    const begin = (): void => void words.begin(name);
+    const end = (): void => {
+      if (words.recording === name) words.end();
+    };
+    say.addEventListener("pointerdown", (event) => {
+      if (event.button !== 0) return;
+      say.setPointerCapture(event.pointerId);
+      begin();
+    });
+    for (const each of ["pointerup", "pointercancel", "lostpointercapture", "blur"]) say.addEventListener(each, end);
+    say.addEventListener("keydown", (event) => {
+      if (event.key !== " " && event.key !== "Enter") return;
+      event.preventDefault();
+      if (!event.repeat) begin();
+    });
+    say.addEventListener("keyup", (event) => {
+      if (event.key === " " || event.key === "Enter") end();
+    });
+    const rename = button(texts.rename(name), () => askName(texts.renameTitle, texts.name, name, (to) => words.rename(name, to)), "tool bare", icon("rename"));
+    const remove = button(texts.remove(name), () => words.remove(name), "tool bare", icon("remove"));
+    const head = h("div", { class: "word-head" }, say, h("span", { class: "word-name" }, name), h("span", { class: "word-takes note" }), rename, remove);
+    return h("div", { class: "word", role: "listitem" }, head, h("div", { class: "note word-judged", role: "status" }));
+  }
+
+  private update(row: Element | undefined, { name, takes }: EnrolledWord): void {
+    const { recording, enough, judged } = this.words;
+    const texts = strings.voice.words;
+    const find = (part: string): Element | null => row?.querySelector(part) ?? null;
+    const count = find(".word-takes");
+    if (count) count.textContent = texts.takes(takes, enough);
+    row?.classList.toggle("enough", takes >= enough);
+    find(".word-say")?.classList.toggle("talking", recording === name);
+    const last = judged.get(name);
+    const line = find(".word-judged");
+    const text = recording === name ? texts.saying : last ? judgement(last) : "";
+    if (line && line.textContent !== text) line.textContent = text;
+    line?.classList.toggle("wrong", recording !== name && last !== undefined && last.code !== null);
+  }
+}
+
+/** What became of a recording, in words. */
+function judgement({ code, text, peak, seconds }: TakeJudged): string {
+  const texts = strings.voice.words;
+  const known: Readonly<Record<string, string>> = texts.codes;
+  const level = peak > 0 ? Math.round(20 * Math.log10(peak)) : -96;
+  if (code !== null) return `${known[code] ?? text} ${texts.measured(level, seconds.toFixed(1))}`;
+  return `${peak < QUIET ? texts.quiet : texts.good} ${texts.measured(level, seconds.toFixed(1))}`;
+}

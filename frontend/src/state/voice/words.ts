@@ -1,0 +1,115 @@
+import type { Connection } from "../../connection/connection";
+import type { EnrolledWord, TakeJudged } from "../../protocol";
+import { Signal } from "../signal";
+import type { VoiceState } from "./voice";
+
+/** How long a recording goes on after the button was let go: the end of a word is soft. */
+const TAIL_MS = 300;
+
+/** The words that the user enrols. */
+export class WordsState {
+  readonly changed = new Signal();
+  /** The text of the file came. */
+  readonly fileCame = new Signal<string>();
+  words: readonly EnrolledWord[] = [];
+  /** How often each is to be said. */
+  enough = 3;
+  file = "";
+  problem: string | null = null;
+  /** What became of the last recording of each word. */
+  readonly judged = new Map<string, TakeJudged>();
+  /** The word that is being said. */
+  recording: string | null = null;
+  /** Words that have a name and were not said yet. */
+  private readonly named = new Set<string>();
+  private watched = false;
+
+  constructor(
+    private readonly connection: Connection,
+    private readonly voice: VoiceState,
+  ) {
+    connection.on("voice_words", ({ words, enough, file, problem }) => {
+      Object.assign(this, { words, enough, file, problem });
+      for (const { name } of words) this.named.delete(name);
+      this.changed.emit();
+    });
+    connection.on("take_judged", (judged) => {
+      this.judged.set(judged.name, judged);
+      this.changed.emit();
+    });
+    connection.on("voice_words_file", ({ text }) => this.fileCame.emit(text));
+    connection.on("hello", () => {
+      if (this.watched) connection.send({ type: "watch_words", watched: true });
+    });
+  }
+
+  /** All words, those too that were not said yet. */
+  get all(): readonly EnrolledWord[] {
+    return [...this.words, ...[...this.named].map((name) => ({ name, takes: 0 }))];
+  }
+
+  watch(watched: boolean): void {
+    if (watched === this.watched) return;
+    this.watched = watched;
+    this.connection.send({ type: "watch_words", watched });
+  }
+
+  /** Has a word stand in the list, to be said. */
+  name(name: string): void {
+    const trimmed = name.trim();
+    if (trimmed === "" || this.all.some((word) => word.name === trimmed)) return;
+    this.named.add(trimmed);
+    this.changed.emit();
+  }
+
+  /** The user begins to say a word. */
+  async begin(name: string): Promise<void> {
+    if (this.recording !== null) return;
+    this.recording = name;
+    this.changed.emit();
+    const begun = await this.voice.record(() => {
+      if (this.recording === name) this.connection.send({ type: "begin_take", name });
+      return this.recording === name;
+    });
+    if (!begun && this.recording === name) this.stop();
+  }
+
+  /** The user has said it. */
+  end(): void {
+    if (this.recording === null) return;
+    if (!this.voice.recording) {
+      this.stop();
+      return;
+    }
+    window.setTimeout(() => {
+      void this.voice.endRecord().then(() => {
+        this.connection.send({ type: "end_take" });
+        this.stop();
+      });
+    }, TAIL_MS);
+  }
+
+  remove(name: string): void {
+    this.judged.delete(name);
+    if (this.named.delete(name)) this.changed.emit();
+    else this.connection.send({ type: "remove_word", name });
+  }
+
+  rename(name: string, to: string): void {
+    if (this.named.delete(name)) this.name(to);
+    else this.connection.send({ type: "rename_word", name, new_name: to });
+  }
+
+  importFile(text: string): void {
+    this.connection.send({ type: "import_words", text });
+  }
+
+  askFile(): void {
+    this.connection.send({ type: "ask_words_file" });
+  }
+
+  private stop(): void {
+    this.recording = null;
+    this.changed.emit();
+  }
+}

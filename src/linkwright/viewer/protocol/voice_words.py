@@ -1,0 +1,97 @@
+"""Words that the user enrols in the Voice panel: recorded three times each, and kept in a file of the user's."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from linkwright.viewer.protocol.message import PageMessage, Record, ServerMessage
+
+
+class EnrolledWord(Record):
+    """A word and how often it was said."""
+
+    name: str
+    takes: int
+
+
+class WatchWords(PageMessage):
+    """The words are to be sent, now and when they change, or no longer."""
+
+    watched: bool
+
+
+class BeginTake(PageMessage):
+    """The sound that comes until `EndTake` is a word, said once; it is not published."""
+
+    name: str
+
+
+class EndTake(PageMessage):
+    """The word was said."""
+
+
+class RemoveWord(PageMessage):
+    """Forget a word."""
+
+    name: str
+
+
+class RenameWord(PageMessage):
+    """Call a word something else."""
+
+    name: str
+    new_name: str
+
+
+class ImportWords(PageMessage):
+    """Take in the words of a file; they take the place of words of the same names."""
+
+    text: str
+
+
+class AskWordsFile(PageMessage):
+    """The file of the words is to be sent."""
+
+
+class VoiceWords(ServerMessage):
+    """The words.
+
+    Attributes:
+        words: in the order in which they were enrolled.
+        enough: how often a word is to be said.
+        file: where they are kept.
+        problem: why the file cannot be read or written, or something was not done.
+    """
+
+    words: list[EnrolledWord]
+    enough: int
+    file: str
+    problem: str | None
+
+
+class TakeJudged(ServerMessage):
+    """What became of a recording.
+
+    Attributes:
+        number: counts the recordings.
+        name: the word.
+        code: of the finding for which it was not taken; None when it was.
+        text: that finding.
+        peak: the loudest sample, 0 to 1.
+        seconds: how long the recording is.
+    """
+
+    NEWEST_OF: ClassVar[tuple[str, ...]] = ("number",)
+
+    number: int
+    name: str
+    code: str | None
+    text: str
+    peak: float
+    seconds: float
+
+
+class VoiceWordsFile(ServerMessage):
+    """The text of the file of words."""
+
+    text: str
