@@ -29,6 +29,7 @@ setup(
     license='Apache-2.0',
     entry_points={
         'console_scripts': [
+            'audio_capture = my_robot_voice.audio_capture:main',
             'voice_commander = my_robot_voice.voice_commander:main',
         ],
     },

@@ -30,10 +30,11 @@ def test_the_commands_are_the_built_in_ones_with_the_rooms_of_the_house():
     assert "去厨房" in ours.phrases("zh")
 
 
-def test_the_program_for_ros_2_is_the_node_of_this_name():
-    assert "'voice_commander = my_robot_voice.voice_commander:main'" in (VOICE_PACKAGE / "setup.py").read_text()
-    program = (VOICE_PACKAGE / "my_robot_voice" / "voice_commander.py").read_text()
-    assert "run('my_robot_voice', 'voice_commander', sys.argv[1:])" in program
+@pytest.mark.parametrize("name", ["audio_capture", "voice_commander"])
+def test_the_programs_for_ros_2_are_the_nodes_of_their_names(name):
+    assert f"'{name} = my_robot_voice.{name}:main'" in (VOICE_PACKAGE / "setup.py").read_text()
+    program = (VOICE_PACKAGE / "my_robot_voice" / f"{name}.py").read_text()
+    assert f"run('my_robot_voice', '{name}', sys.argv[1:])" in program
 
 
 def test_the_launch_file_has_its_arguments(capsys):

@@ -88,11 +88,10 @@ def generate_launch_description():
                 ],
             ),
             Node(
-                package='audio_capture',
-                executable='audio_capture_node',
-                namespace='audio',
+                package='my_robot_voice',
+                executable='audio_capture',
                 output='screen',
-                parameters=[{'src': 'filesrc', 'filename': text('wav')}],
+                parameters=[{'use_sim_time': True, 'file': text('wav')}],
                 condition=IfCondition(has_wav),
             ),
         ]

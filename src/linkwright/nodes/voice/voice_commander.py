@@ -86,7 +86,7 @@ class VoiceCommander(SingleNode):
         model: str = node.declare_parameter("model", "").value
         words: str = node.declare_parameter("words_file", "").value
         file: str = node.declare_parameter("commands_file", "").value
-        self._confidence: float = node.declare_parameter("confidence", 0.6).value
+        self._confidence: float = node.declare_parameter("confidence", 0.5).value
         if not 0.0 <= self._confidence <= 1.0:
             raise bad_value("confidence", self._confidence, node.get_name())
         self._open: bool = node.declare_parameter("open_listening", False).value

@@ -1,0 +1,116 @@
+"""The chapter about voice: what a reader says is understood, and their own commands move mbot."""
+
+from __future__ import annotations
+
+import math
+import re
+from pathlib import Path
+
+import pytest
+
+from linkwright.cli import main
+from linkwright.diagnostics import SourceText
+from linkwright.messages import get_message
+from linkwright.nodes import NodeOptions
+from linkwright.nodes.voice.voice_commander import VoiceCommander
+from linkwright.speech.commands.command_file import parse_commands, read_command_file
+from linkwright.testing import AsyncSteppedSimulation
+from tests.docs.pages import DOCS, blocks, commands
+from tests.places import GAZEBO_PACKAGE, VOICE_PACKAGE
+
+LANGUAGES = {"en": DOCS / "tutorial-voice.md", "zh": DOCS / "zh" / "tutorial-voice.md"}
+WORLD = GAZEBO_PACKAGE / "worlds" / "playground.world"
+ROBOT = "package://my_robot_description/urdf/mbot_gazebo.xacro"
+STRING = get_message("std_msgs/msg/String")
+
+
+def test_both_languages_have_the_same_commands_and_files() -> None:
+    english, chinese = LANGUAGES.values()
+    assert commands(english) == commands(chinese)
+    assert [block.text for block in blocks(english)] == [block.text for block in blocks(chinese)]
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_what_the_page_says_is_understood(language: str) -> None:
+    page = LANGUAGES[language].read_text(encoding="utf-8")
+    ours = read_command_file(VOICE_PACKAGE / "config" / "commands.yaml")
+    table = [cell for row in re.findall(r"^\| (`.+?) \| (.+?) \|$", page, re.MULTILINE) for cell in row]
+    told = [text for cell in table[:8] for text in re.findall(r"`([^`]+)`", cell) or cell.split("、")]
+    told += [
+        "forward half a metre",
+        "前进半米",
+        "后退半米",
+        "go to the kitchen",
+        "去厨房",
+        "go home",
+        "回家",
+        "stop",
+        "停",
+    ]
+    told += [
+        "turn right forty five degrees",
+        "右转四十五度",
+        "turn left",
+        "左转",
+        "turn right",
+        "右转",
+        "forward",
+        "前进",
+    ]
+    assert len(told) > 22
+    assert [text for text in told if ours.understand(text) is None] == []
+
+
+def test_the_launch_file_has_the_arguments_that_the_page_uses(capsys: pytest.CaptureFixture[str]) -> None:
+    used = {word.partition(":=")[0] for line in commands(LANGUAGES["en"]) for word in line.split() if ":=" in word}
+    assert used >= {"commands_file", "engine", "language", "navigation", "open_listening", "wav"}
+    assert main(["launch", "my_robot_voice", "voice.launch.py", "--show-args"]) == 0
+    said = capsys.readouterr().out
+    for argument in used:
+        assert f"'{argument}':\n" in said
+
+
+async def test_the_readers_own_commands_move_mbot(tmp_path: Path) -> None:
+    pytest.importorskip("mujoco")
+    (block,) = [each for each in blocks(LANGUAGES["en"]) if each.title == "my_commands.yaml"]
+    file = tmp_path / block.title
+    file.write_text(block.text, encoding="utf-8")
+    async with AsyncSteppedSimulation(WORLD, ROBOT, period=0.02) as playground:
+        given = {"engine": "", "commands_file": str(file), "use_sim_time": True}
+        running = VoiceCommander(playground.graph, NodeOptions(parameters=given))
+        text = playground.node.create_publisher(STRING, "/voice/text_input", 10)
+        responses = playground.record("/voice/response")
+        turned = playground.record("/odom")
+
+        async def tell(said: str, seconds: float) -> str:
+            text.publish(STRING(data=said))
+            await playground.advance(seconds)
+            return str(responses.last.data)
+
+        await playground.advance(1.0)
+        assert await tell("please dance", 12.0) == "look at me"
+        assert sum(abs(each.twist.twist.angular.z) for each in turned) > 0
+        x, y, _, _, _, z, w = playground.robot_pose()
+        assert math.hypot(x, y) < 0.1
+        assert abs(2.0 * math.atan2(z, w)) < 0.1, "two whole turns"
+        assert await tell("race one metre", 1.0) == "really?"
+        assert math.hypot(*playground.robot_pose()[:2]) < 0.1
+        assert await tell("yes", 8.0) == "race one metre"
+        assert math.hypot(*playground.robot_pose()[:2]) == pytest.approx(1.0, abs=0.12)
+        running.close()
+
+
+def test_the_file_on_the_page_about_voice_is_right() -> None:
+    (block,) = [each for each in blocks(DOCS / "voice.md") if each.title]
+    found = parse_commands(SourceText(block.title, block.text))
+    assert found.understand("please go forward seven metres") is None
+    for said in (
+        "go forward seven metres",
+        "转圈",
+        "go and recharge",
+        "张开夹爪",
+        "count to twelve",
+        "follow the wall",
+    ):
+        assert found.understand(said) is not None, said
+    assert "前进七米" in found.phrases("zh")
