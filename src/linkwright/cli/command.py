@@ -39,6 +39,7 @@ GROUPS = {
         "run": "run an executable of a package: ours, a built one, or an entry point of its sources",
         "sim": "simulate a world, with a robot in it, in the browser or without",
         "sweep": "run a scenario over parameters and seeds, in many processes, and make a table of what comes of it",
+        "dataset": "make pictures of a world with labels, in COCO and YOLO form, to teach a detector with",
         "spawn": "put a robot or model into a world that is being simulated",
         "launch": "run a ROS 2 launch file, with its rviz2 as a page in the browser",
         "shell": "open a shell in which ros2, xacro, check_urdf, urdf_to_graphviz, rviz2 and colcon exist",

@@ -1,0 +1,226 @@
+"""``linkwright dataset``: pictures of a world with labels, to teach a detector with."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from linkwright.cli.endings import FINE, say
+from linkwright.cli.numbers import positive_int, unsigned_int
+from linkwright.diagnostics import counted, display_path, phrase
+from linkwright.diagnostics.translation import localized
+from linkwright.interruption import INTERRUPTED
+
+if TYPE_CHECKING:
+    from linkwright.vision.datasets.making import Studio
+
+_SMALLEST, _LARGEST = 32, 4096
+_FORMATS = ("coco", "yolo")
+_KEPT = ("lights", "colours", "lens")
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    parser.add_argument("worlds", metavar="WORLD", nargs="+", help="files in SDF, or names of worlds")
+    parser.add_argument("--output", "-o", metavar="DIR", required=True, help="the folder of the dataset")
+    parser.add_argument(
+        "--pictures", "-n", metavar="N", type=positive_int, default=1000, help="so many are made (default: 1000)"
+    )
+    parser.add_argument(
+        "--seed", metavar="N", type=unsigned_int, default=0, help="what chance follows from (default: 0)"
+    )
+    parser.add_argument(
+        "--size", metavar="WIDTHxHEIGHT", type=_size, default=(640, 480), help="of pictures (default: 640x480)"
+    )
+    parser.add_argument(
+        "--format", metavar="FORMATS", type=_formats, default=_FORMATS, help="coco, yolo or both (default: coco,yolo)"
+    )
+    parser.add_argument(
+        "--image-format", choices=("jpg", "png"), default="jpg", help="of pictures (default: %(default)s)"
+    )
+    parser.add_argument(
+        "--classes", metavar="FILE", help="YAML: classes with patterns of models (default: a class for each model)"
+    )
+    parser.add_argument(
+        "--add",
+        metavar="FILE",
+        action="append",
+        default=[],
+        help="a robot or model that is put into each world, URDF, xacro or SDF; may be repeated",
+    )
+    parser.add_argument(
+        "--splits",
+        metavar="TRAIN,VAL,TEST",
+        type=_splits,
+        default=(0.8, 0.1, 0.1),
+        help="the shares of pictures (default: 0.8,0.1,0.1)",
+    )
+    parser.add_argument(
+        "--copies", metavar="N", type=unsigned_int, default=3, help="things of each class at least (default: 3)"
+    )
+    parser.add_argument(
+        "--most", metavar="N", type=positive_int, default=10, help="things put into a picture at most (default: 10)"
+    )
+    parser.add_argument(
+        "--distractors", metavar="N", type=unsigned_int, default=12, help="shapes without a label (default: 12)"
+    )
+    parser.add_argument(
+        "--keep",
+        metavar="WHAT",
+        type=_kept,
+        default=(),
+        help="what stays as the world has it: lights, colours, lens (no blur, no noise), with commas between them",
+    )
+    parser.add_argument(
+        "--min-size",
+        metavar="PIXELS",
+        type=unsigned_int,
+        default=6,
+        help="the shorter side of a box, below which there is none (default: 6)",
+    )
+    parser.add_argument(
+        "--min-visible",
+        metavar="SHARE",
+        type=_share,
+        default=0.2,
+        help="the visible share of a thing, below which it has no box (default: 0.2)",
+    )
+    parser.add_argument(
+        "--workers", metavar="N", type=positive_int, help="so many processes (default: one for each processor)"
+    )
+    what_is_there = parser.add_mutually_exclusive_group()
+    what_is_there.add_argument("--append", action="store_true", help="add pictures to the dataset that is there")
+    what_is_there.add_argument("--force", action="store_true", help="replace the dataset that is there")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Make the dataset; 130 when it was interrupted."""
+    from linkwright.vision.datasets.dataset import make_dataset
+    from linkwright.vision.datasets.making import Source
+    from linkwright.vision.datasets.options import Options
+    from linkwright.vision.datasets.statistics import as_table
+
+    width, height = arguments.size
+    options = Options(
+        width=width,
+        height=height,
+        seed=arguments.seed,
+        splits=arguments.splits,
+        copies=arguments.copies,
+        distractors=arguments.distractors,
+        most=arguments.most,
+        kept=arguments.keep,
+        least_size=arguments.min_size,
+        least_visible=arguments.min_visible,
+        form=arguments.image_format,
+    )
+    source = Source(tuple(arguments.worlds), tuple(arguments.add), arguments.classes, options)
+    path = Path(arguments.output)
+    progress = _Progress(arguments.pictures)
+    made = make_dataset(
+        source,
+        path,
+        arguments.pictures,
+        formats=arguments.format,
+        workers=arguments.workers or _processors(),
+        force=arguments.force,
+        append=arguments.append,
+        progress=progress.tell,
+        begin=progress.begin,
+    )
+    progress.end()
+    print(as_table(made.folder.statistics()), end="")
+    pictures = counted("{count} picture", "{count} pictures", made.folder.count)
+    print(localized(phrase("{pictures} in {folder}", pictures=pictures, folder=display_path(path))))
+    if made.interrupted:
+        say(localized(phrase("{done} of {count} were made; what is there is complete, `--append` adds more",
+                             done=made.added, count=arguments.pictures)))  # fmt: skip
+        return INTERRUPTED
+    return FINE
+
+
+def _processors() -> int:
+    """How many processors this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+class _Progress:
+    """One line of a terminal that says how far it has come; elsewhere nothing."""
+
+    def __init__(self, count: int) -> None:
+        self._count = count
+        self._began = 0.0
+        self._shown = sys.stderr.isatty()
+
+    def begin(self, studio: Studio) -> None:
+        """Say what is made."""
+        say(localized(phrase("Classes: {names}", names=", ".join(studio.classes))))
+        say(localized(phrase("Pictures are made by {way}", way=studio.way)))
+        if studio.unused:
+            say(localized(phrase("Nothing in these worlds is of the classes {names}", names=", ".join(studio.unused))))
+        self._began = time.monotonic()
+
+    def tell(self, done: int) -> None:
+        """Show how many are done."""
+        if self._shown:
+            rate = done / max(time.monotonic() - self._began, 1e-9)
+            words = localized(phrase("{done} of {count} pictures, {rate} a second", done=done, count=self._count,
+                                     rate=f"{rate:.1f}"))  # fmt: skip
+            print(f"\r{words}\x1b[K", end="", file=sys.stderr, flush=True)
+
+    def end(self) -> None:
+        """Leave the line."""
+        if self._shown:
+            print(file=sys.stderr)
+
+
+def _size(text: str) -> tuple[int, int]:
+    width, mark, height = text.partition("x")
+    sides = [int(side) if side.isascii() and side.isdigit() and len(side) < 6 else 0 for side in (width, height)]
+    if not mark or not all(_SMALLEST <= side <= _LARGEST for side in sides):
+        raise argparse.ArgumentTypeError(
+            f"'{text}' is not WIDTHxHEIGHT with sides from {_SMALLEST} to {_LARGEST} pixels"
+        )
+    return sides[0], sides[1]
+
+
+def _formats(text: str) -> tuple[str, ...]:
+    return _some_of(text, _FORMATS)
+
+
+def _kept(text: str) -> tuple[str, ...]:
+    return _some_of(text, _KEPT)
+
+
+def _some_of(text: str, known: tuple[str, ...]) -> tuple[str, ...]:
+    words = text.split(",")
+    if not set(words) <= set(known):
+        raise argparse.ArgumentTypeError(f"'{text}' is not made of {', '.join(known)}, with commas between them")
+    return tuple(word for word in known if word in words)
+
+
+def _share(text: str) -> float:
+    try:
+        share = float(text)
+    except ValueError:
+        share = -1.0
+    if not 0.0 <= share <= 1.0:
+        raise argparse.ArgumentTypeError(f"'{text}' is not a number from 0 to 1")
+    return share
+
+
+def _splits(text: str) -> tuple[float, float, float]:
+    try:
+        shares = [float(word) for word in text.split(",")]
+    except ValueError:
+        shares = []
+    total = sum(shares)
+    if len(shares) != 3 or not all(0.0 <= share < 1e6 for share in shares) or not total > 0.0:
+        raise argparse.ArgumentTypeError(f"'{text}' is not three shares, such as 0.8,0.1,0.1")
+    return shares[0] / total, shares[1] / total, shares[2] / total

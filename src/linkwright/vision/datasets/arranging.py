@@ -1,0 +1,226 @@
+"""Where the camera and the things are in a picture."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import atan2, cos, exp, log, pi, radians, sin, tan
+
+import numpy as np
+
+from linkwright.geometry.arrays import Array
+from linkwright.geometry.single import Transform, quaternion_from_rpy
+from linkwright.simulation.rendering.optics import Optics
+from linkwright.vision.datasets.options import Options
+from linkwright.vision.datasets.stage import Prop, Stage
+
+_TRIES = 20
+_NEAREST, _FARTHEST = 0.3, 8.0
+"""In m: how far from the camera things are put."""
+_SEEN_FROM = 30.0
+"""In m: what is farther is not drawn."""
+_ROOM = 0.12
+"""In m: how far a camera keeps away from everything."""
+
+
+@dataclass(frozen=True)
+class Shot:
+    """A camera.
+
+    Attributes:
+        optics: how it projects.
+        pose: where it is; it looks along x, with z up.
+        shown: the things that were put somewhere.
+        structures: the shapes around them that stay.
+    """
+
+    optics: Optics
+    pose: Transform
+    shown: tuple[Prop, ...]
+    structures: tuple[int, ...]
+
+
+class _Ground:
+    """What stands where, seen from above."""
+
+    def __init__(self, stage: Stage, geoms: list[int]) -> None:
+        data = stage.simulation.data
+        reach = np.abs(data.geom_xmat[geoms].reshape(-1, 3, 3)[:, 2, :2]).max(initial=0.0, axis=1)
+        upright = reach < 1e-3
+        half = stage.simulation.model.geom_aabb[geoms, 3:5]
+        middle = stage.simulation.model.geom_aabb[geoms, :2]
+        axes = data.geom_xmat[geoms].reshape(-1, 3, 3)[:, :2, :2]
+        boxes = stage.boxes[geoms]
+        self._half = np.where(upright[:, None], half, (boxes[:, 1, :2] - boxes[:, 0, :2]) / 2)
+        self._axes = np.where(upright[:, None, None], axes, np.eye(2))
+        placed = data.geom_xpos[geoms, :2] + np.einsum("gij,gj->gi", axes, middle)
+        self._middle = np.where(upright[:, None], placed, (boxes[:, 0, :2] + boxes[:, 1, :2]) / 2)
+        self._discs: list[tuple[float, float, float]] = []
+
+    def is_free(self, x: float, y: float, radius: float) -> bool:
+        """Whether nothing is within a radius."""
+        if any((x - a) ** 2 + (y - b) ** 2 < (radius + other) ** 2 for a, b, other in self._discs):
+            return False
+        if not len(self._half):
+            return True
+        local = np.einsum("gji,gj->gi", self._axes, np.array([x, y]) - self._middle)
+        beyond = np.maximum(np.abs(local) - self._half, 0.0)
+        return bool((np.hypot(beyond[:, 0], beyond[:, 1]) > radius).all())
+
+    def take(self, x: float, y: float, radius: float) -> None:
+        """Something is there from now on."""
+        self._discs.append((x, y, radius))
+
+
+def arrange(stage: Stage, options: Options, generator: np.random.Generator) -> Shot:
+    """Put a camera and things into a world.
+
+    Args:
+        stage: the world, begun.
+        options: what is wanted.
+        generator: where chance comes from.
+    """
+    structures = _choose_structures(stage, generator)
+    ground = _Ground(stage, structures)
+    field = radians(generator.uniform(45.0, 100.0))
+    focal = options.width / (2 * tan(field / 2))
+    optics = Optics(
+        options.width, options.height, focal, focal, options.width / 2, options.height / 2, 0.03, _SEEN_FROM
+    )
+    x, y, heading = _camera_place(stage, ground, generator)
+    height = stage.floor + (exp(generator.uniform(log(0.08), log(0.8))) if generator.random() < 0.7 else
+                            generator.uniform(0.6, 2.5))  # fmt: skip
+    ground.take(x, y, _ROOM)
+    shown, target = [], None
+    for prop in _chosen(stage, options, generator):
+        place = _free_place(stage, ground, prop.radius, (x, y, heading), field, generator, _reach(prop, focal, options))
+        if place is not None:
+            _stand(stage, prop, place, generator)
+            shown.append(prop)
+            target = target or (place, float(prop.corners[:, 2].max()))
+    for geom in stage.distractors:
+        if generator.random() < 0.35:
+            radius = stage.shape_distractor(geom, generator)
+            place = _free_place(stage, ground, radius, (x, y, heading), field, generator, _FARTHEST)
+            if place is not None:
+                lift = generator.uniform(0.0, 1.5) if generator.random() < 0.2 else 0.0
+                turn = _any_turn(generator) if generator.random() < 0.5 else _yawed(generator.uniform(-pi, pi))
+                stage.put_distractor(geom, np.array([*place, stage.floor + lift]), turn)
+    if target is None:
+        pitch = generator.uniform(-0.1, 0.5)
+    else:
+        (there_x, there_y), tall = target
+        distance = max(float(np.hypot(there_x - x, there_y - y)), 0.1)
+        across = 2 * atan2(options.height / 2, focal)
+        pitch = atan2(height - stage.floor - tall / 2, distance) + generator.uniform(-0.38, 0.38) * across
+    roll = generator.normal(0.0, radians(12.0 if generator.random() < 0.1 else 1.5))
+    pose = x, y, height, *quaternion_from_rpy((float(roll), float(np.clip(pitch, -1.0, 1.5)), heading))
+    return Shot(optics, pose, tuple(shown), tuple(structures))
+
+
+def _choose_structures(stage: Stage, generator: np.random.Generator) -> list[int]:
+    """Leave out some of what stands around; what stays."""
+    left = []
+    for geoms in stage.structures.values():
+        if generator.random() < 0.25:
+            stage.hide(geoms)
+        else:
+            left += geoms
+    return left
+
+
+def _camera_place(stage: Stage, ground: _Ground, generator: np.random.Generator) -> tuple[float, float, float]:
+    """Where the camera is and to where it looks: where there is room ahead, if there is any."""
+    least, greatest = stage.area
+    x = y = heading = 0.0
+    for _ in range(_TRIES):
+        x, y = (float(each) for each in generator.uniform(least, greatest))
+        heading = float(generator.uniform(-pi, pi))
+        ahead = generator.uniform(0.8, 2.5)
+        free = (ground.is_free(x + share * ahead * cos(heading), y + share * ahead * sin(heading), _ROOM)
+                for share in (0.0, 0.25, 0.5, 0.75, 1.0))  # fmt: skip
+        if all(free):
+            break
+    return x, y, heading
+
+
+def _chosen(stage: Stage, options: Options, generator: np.random.Generator) -> list[Prop]:
+    """Some things: each class is as likely as the others, however many there are of it."""
+    if generator.random() < 0.04:
+        return []
+    by_class: dict[int, list[Prop]] = {}
+    for prop in stage.props:
+        by_class.setdefault(prop.label, []).append(prop)
+    chosen: list[Prop] = []
+    for _ in range(int(generator.integers(1, options.most + 1))):
+        classes = [label for label, props in by_class.items() if props]
+        if not classes:
+            break
+        props = by_class[classes[int(generator.integers(len(classes)))]]
+        chosen.append(props.pop(int(generator.integers(len(props)))))
+    return chosen
+
+
+def _reach(prop: Prop, focal: float, options: Options) -> float:
+    """How far away a thing still is larger than the least size, in m."""
+    spans = prop.corners.max(axis=0) - prop.corners.min(axis=0)
+    return float(min(_FARTHEST, max(focal * spans.min() / (options.least_size * 1.5), 2 * _NEAREST)))
+
+
+def _free_place(
+    stage: Stage,
+    ground: _Ground,
+    radius: float,
+    camera: tuple[float, float, float],
+    field: float,
+    generator: np.random.Generator,
+    reach: float,
+) -> tuple[float, float] | None:
+    """A place for something, most often where the camera looks; None where there is none."""
+    x, y, heading = camera
+    least, greatest = stage.area
+    nearest = _NEAREST + radius
+    for _ in range(_TRIES):
+        if generator.random() < 0.9:
+            bearing = heading + generator.uniform(-0.55, 0.55) * field
+            distance = exp(generator.uniform(log(nearest), log(max(reach, nearest * 1.5))))
+            place = x + distance * cos(bearing), y + distance * sin(bearing)
+        else:
+            first, second = generator.uniform(least, greatest)
+            place = float(first), float(second)
+        inside = bool((least < place).all() and (place < greatest).all())
+        if inside and ground.is_free(*place, radius):
+            ground.take(*place, radius)
+            return place
+    return None
+
+
+def _stand(stage: Stage, prop: Prop, place: tuple[float, float], generator: np.random.Generator) -> None:
+    """Put a thing down: upright most often, sometimes lying or above the ground."""
+    turn = _yawed(generator.uniform(-pi, pi))
+    if prop.is_round or generator.random() < 0.08:
+        turn = _any_turn(generator)
+    elif generator.random() < 0.06:
+        turn = turn @ np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
+    turned = prop.corners @ turn.T
+    least, greatest = turned.min(axis=0), turned.max(axis=0)
+    lift = generator.uniform(0.1, 0.9) if generator.random() < 0.06 else 0.0
+    middle = (least + greatest) / 2
+    tilted = turn[2, 2] < 1.0 - 1e-9
+    across = -middle[:2] if tilted else np.zeros(2)
+    height = -float(least[2])
+    if prop.is_round:  # the box around a turned ball is larger than the ball
+        center = (prop.corners.min(axis=0) + prop.corners.max(axis=0)) / 2
+        height = float(center[2] - (turn @ center)[2])
+    stage.put(prop, np.array([place[0] + across[0], place[1] + across[1], stage.floor + height + lift]), turn)
+
+
+def _yawed(angle: float) -> Array:
+    turned: Array = np.array([[cos(angle), -sin(angle), 0.0], [sin(angle), cos(angle), 0.0], [0.0, 0.0, 1.0]])
+    return turned
+
+
+def _any_turn(generator: np.random.Generator) -> Array:
+    turn, triangle = np.linalg.qr(generator.normal(size=(3, 3)))
+    turn = turn * np.sign(np.diag(triangle))
+    turned: Array = turn * np.linalg.det(turn)
+    return turned

@@ -1,0 +1,219 @@
+"""Which things of a world are of which class."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import yaml
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText, Span, display_path, foreign, phrase
+from linkwright.geometry.arrays import Array
+from linkwright.input_files import read_text
+from linkwright.sdf.models import Model
+from linkwright.sdf.poses import SEPARATOR
+from linkwright.simulation.library import load_mujoco
+from linkwright.simulation.scene.bodies import VISUAL_GROUP
+from linkwright.simulation.sensors.mount import part_of
+from linkwright.simulation.simulation import Simulation
+
+_LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+_NUMBER = re.compile(r"[ _-]*(?:clone)?[ _-]*\(?\d+\)?$")
+_COLOURS = frozenset(
+    ("red", "green", "blue", "yellow", "orange", "purple", "pink", "white", "black", "grey", "gray", "brown", "cyan")
+)
+_BACKGROUND = frozenset(
+    ("ground", "plane", "floor", "floors", "wall", "walls", "room", "rooms", "house", "building", "road", "roads")
+)
+"""Words in the names of models that stand around things, and are none themselves."""
+_LARGEST = 4.0
+"""In m: what never moves and is wider is taken for a part of the place, unless a file of classes names it."""
+_TOUCHING = 0.02
+"""In m: shapes no farther apart are one thing."""
+
+
+@dataclass(frozen=True, slots=True)
+class Thing:
+    """What gets a box of its own.
+
+    Attributes:
+        name: the model, or ``model::link::visual``.
+        label: the place of its class in the list of classes.
+        geoms: the names of its shapes in MuJoCo's model.
+    """
+
+    name: str
+    label: int
+    geoms: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ClassRules:
+    """Which models or visuals are of which class.
+
+    Attributes:
+        patterns: class -> patterns of names as of files: of models, of the models that they were included from, and
+            with ``::`` in them of visuals, ``model::link::visual``. A class has its number by its place.
+    """
+
+    patterns: Mapping[str, tuple[str, ...]]
+
+    def class_of(self, *names: str) -> int | None:
+        """The class of the first rule that fits one of some names."""
+        for number, patterns in enumerate(self.patterns.values()):
+            if any(fnmatchcase(name, pattern) for name in names for pattern in patterns):
+                return number
+        return None
+
+
+def read_classes(path: Path) -> ClassRules:
+    """The rules in a YAML file: ``class: pattern``, ``class: [pattern, ...]``, or ``class:`` for its own name.
+
+    Raises:
+        LinkwrightError: VISION201 it cannot be read, or is something else.
+    """
+    shown = display_path(path)
+    try:
+        source = SourceText(str(path), read_text(path))
+    except (OSError, UnicodeDecodeError) as error:
+        reason = foreign(getattr(error, "strerror", None) or error)
+        message = phrase("the file of classes '{shown}' cannot be read: {reason}", shown=shown, reason=reason)
+        raise LinkwrightError(Diagnostic("VISION201", message)) from None
+    try:
+        root = yaml.compose(source.text, Loader=_LOADER)
+    except (yaml.YAMLError, RecursionError) as error:
+        mark, problem = getattr(error, "problem_mark", None), getattr(error, "problem", None) or str(error)
+        span = None if mark is None else source.span(source.offset(mark.line + 1, mark.column + 1))
+        message = phrase("not valid YAML: {problem}", problem=foreign(problem))
+        raise LinkwrightError(Diagnostic("VISION201", message, span, source=source)) from None
+    if not isinstance(root, yaml.MappingNode) or not root.value:
+        raise _wrong(source, root)
+    patterns: dict[str, tuple[str, ...]] = {}
+    for key, value in root.value:
+        if not isinstance(key, yaml.ScalarNode) or not key.value.strip() or key.value in patterns:
+            raise _wrong(source, key)
+        entries = value.value if isinstance(value, yaml.SequenceNode) else [value]
+        if not entries or not all(isinstance(each, yaml.ScalarNode) for each in entries):
+            raise _wrong(source, value)
+        patterns[key.value] = tuple(str(each.value) or key.value for each in entries)
+    return ClassRules(patterns)
+
+
+def _wrong(source: SourceText, node: yaml.Node | None) -> LinkwrightError:
+    span = None
+    if node is not None and node.start_mark is not None and node.end_mark is not None:
+        start, end = node.start_mark, node.end_mark
+        span = Span(source.name, start.line + 1, start.column + 1, end.line + 1, end.column + 1)
+    message = phrase("classes are names with patterns of models")
+    hint = phrase("such as `ball: [football, '*_ball']`, each name once")
+    return LinkwrightError(Diagnostic("VISION201", message, span, hint=hint, source=source))
+
+
+def usual_class(name: str) -> str:
+    """The class that a model's name tells: without a number at its end and without a colour; ``red_ball_2``: ball."""
+    words = [word for word in re.split(r"[ _-]+", _NUMBER.sub("", name.lower())) if word]
+    plain = [word for word in words if word not in _COLOURS]
+    return "_".join(plain or words) or name
+
+
+def usual_rules(simulations: list[Simulation]) -> ClassRules:
+    """Classes of worlds of which nobody says them, in the order of the alphabet: all models but those around them.
+
+    A model that was included is named by the file that it came from.
+    """
+    patterns: dict[str, set[str]] = {}
+    for simulation in simulations:
+        for name, each in simulation.scene.models.items():
+            if not _is_background(simulation, name, each.model):
+                patterns.setdefault(usual_class(own_name(each.model)), set()).update((name, own_name(each.model)))
+    return ClassRules({name: tuple(sorted(found)) for name, found in sorted(patterns.items())})
+
+
+def things_of(simulation: Simulation, rules: ClassRules) -> list[Thing]:
+    """The things of a world.
+
+    A model is one thing. Of a model that is named by its visuals those that touch each other are one.
+    """
+    things: list[Thing] = []
+    visuals = _visuals(simulation)
+    boxes = geom_boxes(simulation.model, simulation.data)
+    for name, held in simulation.scene.models.items():
+        geoms = visuals.get(name, {})
+        whole = rules.class_of(name, own_name(held.model))
+        if whole is not None:
+            found = tuple(geom for part in geoms.values() for geom in part)
+            things += [Thing(name, whole, found)] if found else []
+            continue
+        named: dict[int, list[str]] = {}
+        for part in geoms:
+            label = rules.class_of(part)
+            if label is not None:
+                named.setdefault(label, []).append(part)
+        for label, parts in named.items():
+            for group in _touching(parts, geoms, simulation.model, boxes):
+                things.append(Thing(group[0], label, tuple(geom for part in group for geom in geoms[part])))
+    return things
+
+
+def own_name(model: Model) -> str:
+    """The name that the file of a model gives it, whatever it is called where it is included."""
+    return (model.element.attributes.get("name") if model.element is not None else None) or model.name
+
+
+def geom_boxes(model: Any, data: Any) -> Array:
+    """Boxes around all geoms along the axes of the world: least and greatest corners in m, shape (geoms, 2, 3)."""
+    turned = data.geom_xmat.reshape(-1, 3, 3)
+    middle = data.geom_xpos + np.einsum("gij,gj->gi", turned, model.geom_aabb[:, :3])
+    half = np.einsum("gij,gj->gi", np.abs(turned), model.geom_aabb[:, 3:])
+    boxes: Array = np.stack([middle - half, middle + half], axis=1)
+    return boxes
+
+
+def _visuals(simulation: Simulation) -> dict[str, dict[str, list[str]]]:
+    """Of each model the names of its visuals, and of each of these the geoms."""
+    found: dict[str, dict[str, list[str]]] = {}
+    for geom in range(simulation.model.ngeom):
+        if simulation.model.geom_group[geom] == VISUAL_GROUP:
+            name = simulation.model.geom(geom).name
+            part = part_of(name).partition("#")[0]
+            found.setdefault(part.partition(SEPARATOR)[0], {}).setdefault(part, []).append(name)
+    return found
+
+
+def _is_background(simulation: Simulation, name: str, model: Model) -> bool:
+    words = set(re.split(r"[ _-]+", own_name(model).lower()))
+    if words & _BACKGROUND:
+        return True
+    numbers = [simulation.model.geom(geom).id for part in _visuals(simulation).get(name, {}).values() for geom in part]
+    if not numbers:
+        return True
+    if (simulation.model.geom_type[numbers] == load_mujoco().mjtGeom.mjGEOM_PLANE).any():
+        return True
+    boxes = geom_boxes(simulation.model, simulation.data)[numbers]
+    width = boxes[:, 1].max(axis=0) - boxes[:, 0].min(axis=0)
+    return model.static and bool((width[:2] > _LARGEST).any())
+
+
+def _touching(parts: list[str], geoms: Mapping[str, list[str]], model: Any, boxes: Array) -> Iterator[list[str]]:
+    """Groups of visuals whose boxes touch each other."""
+    left = list(parts)
+    around = {part: boxes[[model.geom(geom).id for geom in geoms[part]]] for part in parts}
+    around = {part: np.stack([each[:, 0].min(axis=0), each[:, 1].max(axis=0)]) for part, each in around.items()}
+    while left:
+        group, waiting = [], [left.pop(0)]
+        while waiting:
+            part = waiting.pop(0)
+            group.append(part)
+            near = [other for other in left if _meet(around[part], around[other])]
+            waiting += near
+            left = [other for other in left if other not in near]
+        yield group
+
+
+def _meet(one: Array, other: Array) -> bool:
+    return bool((one[0] <= other[1] + _TOUCHING).all() and (other[0] <= one[1] + _TOUCHING).all())

@@ -1,0 +1,50 @@
+"""A sheet of small pictures with their boxes, to look at."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from io import BytesIO
+
+from linkwright.vision.datasets.making import Taken
+
+_COLUMNS, _WIDTH = 5, 320
+MOST = 30
+"""So many pictures are on a sheet."""
+_COLOURS = ("#ffdc00", "#00d5ff", "#ff5ec4", "#7dff5c", "#ff8a3c", "#b09bff", "#ffffff", "#4affc0")
+_IGNORED = "#808080"
+
+
+def contact_sheet(pictures: Sequence[Taken], classes: Sequence[str]) -> bytes:
+    """The first `MOST` of some pictures, with names of classes and how much of each thing is visible, as JPEG.
+
+    Things without a label, because too little of them is visible, have grey boxes.
+    """
+    from PIL import Image, ImageDraw
+
+    shown = sorted(pictures, key=lambda each: each.index)[:MOST]
+    small = []
+    for taken in shown:
+        image = Image.open(BytesIO(taken.data)).convert("RGB")
+        scale = _WIDTH / image.width
+        image = image.resize((_WIDTH, max(round(image.height * scale), 1)))
+        draw = ImageDraw.Draw(image)
+        for each in taken.labels:
+            left, top, right, bottom = (scale * side for side in each.box)
+            colour = _IGNORED if each.ignored else _COLOURS[each.label % len(_COLOURS)]
+            draw.rectangle((left, top, max(right - 1, left), max(bottom - 1, top)), outline=colour)
+            if not each.ignored:
+                words = f"{classes[each.label]} {each.visibility:.0%}"
+                box = draw.textbbox((left + 1, max(top - 11, 0)), words)
+                draw.rectangle(box, fill="#000000")
+                draw.text((left + 1, max(top - 11, 0)), words, fill=colour)
+        draw.text((3, image.height - 13), f"{taken.index:06d} {taken.split}", fill="#ffffff", stroke_width=1,
+                  stroke_fill="#000000")  # fmt: skip
+        small.append(image)
+    height = max((image.height for image in small), default=1)
+    columns = max(min(_COLUMNS, len(small)), 1)
+    sheet = Image.new("RGB", (columns * _WIDTH, max(-(-len(small) // columns), 1) * height))
+    for place, image in enumerate(small):
+        sheet.paste(image, (place % columns * _WIDTH, place // columns * height))
+    file = BytesIO()
+    sheet.save(file, "JPEG", quality=88)
+    return file.getvalue()

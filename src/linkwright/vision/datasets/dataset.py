@@ -1,0 +1,117 @@
+"""Making a dataset: pictures by one or several processes, and what is written of them."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Iterator
+from contextlib import closing
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from linkwright._version import __version__
+from linkwright.vision.datasets.contact_sheet import MOST, contact_sheet
+from linkwright.vision.datasets.folder import SHEET, DatasetFolder, cannot_write
+from linkwright.vision.datasets.making import CHAPTER, Source, Studio, Taken
+from linkwright.vision.datasets.workers import take_in_processes
+from linkwright.whole_files import write_whole_file
+
+
+@dataclass(frozen=True, slots=True)
+class Made:
+    """What came of it.
+
+    Attributes:
+        folder: the dataset.
+        added: how many pictures were made.
+        interrupted: whether Ctrl-C ended it before all were made.
+    """
+
+    folder: DatasetFolder
+    added: int
+    interrupted: bool
+
+
+def make_dataset(
+    source: Source,
+    path: Path,
+    pictures: int,
+    *,
+    formats: tuple[str, ...],
+    workers: int,
+    force: bool = False,
+    append: bool = False,
+    progress: Callable[[int], object] = lambda _: None,
+    begin: Callable[[Studio], object] = lambda _: None,
+) -> Made:
+    """Make a dataset.
+
+    Args:
+        source: what it is made of.
+        path: its folder.
+        pictures: how many are made.
+        formats: ``coco``, ``yolo``.
+        workers: how many processes make pictures.
+        force: remove the dataset that is in the folder.
+        append: add to the dataset that is in the folder.
+        progress: called with how many are done.
+        begin: called with what is known before the first picture.
+
+    Raises:
+        LinkwrightError: VISION201 to VISION208; what is wrong with a world. What was written before is complete.
+    """
+    options = source.options
+    with closing(Studio(source)) as studio:
+        begin(studio)
+        folder = DatasetFolder(path, studio.classes, (options.width, options.height), formats, options.form)
+        folder.open(force=force, append=append)
+        card = _card(source, studio)
+        numbers = range(folder.first, folder.first + pictures)
+        alone = workers == 1 or pictures <= CHAPTER
+        taking = map(studio.take, numbers) if alone else take_in_processes(source, numbers, workers)
+        shown: list[Taken] = []
+        added, interrupted, wrong = 0, False, None
+        try:
+            for taken in _each(taking):
+                folder.add(taken)
+                added += 1
+                if taken.index < folder.first + MOST:
+                    shown.append(taken)
+                progress(added)
+        except KeyboardInterrupt:
+            interrupted = True
+        except OSError as error:
+            wrong = cannot_write(path, error)
+        finally:
+            folder.finish(card)
+    if wrong is not None:
+        raise wrong
+    try:
+        write_whole_file(path / SHEET, contact_sheet(shown, studio.classes))
+    except OSError as error:
+        raise cannot_write(path, error) from None
+    return Made(folder, added, interrupted)
+
+
+def _each(taking: Iterator[Taken]) -> Iterator[Taken]:
+    """The same, and what makes them is closed with it."""
+    try:
+        yield from taking
+    finally:
+        close = getattr(taking, "close", None)
+        if close is not None:
+            close()
+
+
+def _card(source: Source, studio: Studio) -> dict[str, Any]:
+    worlds = [
+        {"name": name, "file": path.name, "sha256": hashlib.sha256(path.read_bytes()).hexdigest()}
+        for name, path in zip(source.worlds, studio.worlds, strict=True)
+    ]
+    return {
+        "version": __version__,
+        "worlds": worlds,
+        "added": list(source.added),
+        "renderer": str(studio.way),
+        "options": asdict(source.options),
+    }

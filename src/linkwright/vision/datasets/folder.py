@@ -1,0 +1,280 @@
+"""The folder of a dataset: pictures, labels for COCO and YOLO, and the card that says what it was made of.
+
+Source of the forms: "Data format" of cocodataset.org, and the chapter "Object detection datasets" of Ultralytics.
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, phrase
+from linkwright.vision.datasets.making import Taken
+from linkwright.vision.datasets.options import SPLITS
+from linkwright.vision.datasets.statistics import ClassStatistics, statistics_of
+from linkwright.whole_files import write_whole_file
+
+CARD = "dataset.json"
+SHEET = "contact_sheet.jpg"
+_FORM = 1
+"""The number of this form of card."""
+_PARTS = ("images", "labels", "annotations")
+_FILES = (CARD, "data.yaml", SHEET)
+
+
+class DatasetFolder:
+    """A dataset on the disk. What `finish` has written is complete, whatever ended the making of pictures.
+
+    Args:
+        path: the folder.
+        classes: the names of the classes.
+        size: width and height of pictures in pixels.
+        formats: ``coco``, ``yolo``.
+        form: of pictures, ``jpg`` or ``png``.
+
+    Attributes:
+        path: the folder.
+        first: the number of the first picture that is to be made.
+        count: how many pictures there are.
+    """
+
+    def __init__(
+        self, path: Path, classes: Sequence[str], size: tuple[int, int], formats: Sequence[str], form: str
+    ) -> None:
+        self.path = path
+        self.first = 0
+        self._classes, self._size, self._formats, self._form = tuple(classes), size, tuple(formats), form
+        self._images: dict[str, list[dict[str, Any]]] = {split: [] for split in SPLITS}
+        self._annotations: dict[str, list[dict[str, Any]]] = {split: [] for split in SPLITS}
+        self._runs: list[Any] = []
+
+    @property
+    def count(self) -> int:
+        """How many pictures there are."""
+        return sum(map(len, self._images.values()))
+
+    def statistics(self) -> dict[str, ClassStatistics]:
+        """What is in the pictures, by class."""
+        annotations = [each for split in SPLITS for each in self._annotations[split]]
+        return statistics_of(self._classes, self._size, annotations)
+
+    def open(self, *, force: bool = False, append: bool = False) -> None:
+        """Make the folder, or go on with the one that is there.
+
+        Args:
+            force: remove the dataset that is in it.
+            append: add to the dataset that is in it.
+
+        Raises:
+            LinkwrightError: VISION205 there is something in it already; VISION206 what is to be added to is no dataset
+                of these classes; VISION207 it cannot be made.
+        """
+        try:
+            there = self.path.exists() and (not self.path.is_dir() or any(self.path.iterdir()))
+            if there and append:
+                self._take_up()
+            elif there and not (force and (self.path / CARD).is_file()):
+                raise _occupied(self.path, is_dataset=(self.path / CARD).is_file())
+            elif there:
+                self._remove()
+            for part in ("images", *(["labels"] if "yolo" in self._formats else [])):
+                for split in SPLITS:
+                    (self.path / part / split).mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise cannot_write(self.path, error) from None
+
+    def add(self, taken: Taken) -> None:
+        """Write a picture and its labels, both or neither.
+
+        Raises:
+            OSError: it cannot be written.
+        """
+        name = f"{taken.index:06d}"
+        image = self.path / "images" / taken.split / f"{name}.{self._form}"
+        text = self.path / "labels" / taken.split / f"{name}.txt"
+        width, height = self._size
+        try:
+            image.write_bytes(taken.data)
+            if "yolo" in self._formats:
+                text.write_text(_yolo(taken, width, height), encoding="utf-8")
+        except BaseException:
+            _remove([image, text])
+            raise
+        self._images[taken.split].append({"id": taken.index, "file_name": image.name, "width": width, "height": height})
+        self._annotations[taken.split] += _coco(taken, width, height)
+
+    def finish(self, card: Mapping[str, Any]) -> None:
+        """Write the lists of all pictures and the card. Where there is no room for them, the last pictures go.
+
+        Args:
+            card: what the pictures that were made now were made of.
+
+        Raises:
+            LinkwrightError: VISION207 not even the card can be written.
+        """
+        error = self._try_to_write(card)
+        while error is not None and self.count:
+            self._drop(-(-self.count // 4))
+            error = self._try_to_write(card)
+        if error is not None:
+            self._remove()
+            raise cannot_write(self.path, error)
+
+    def _try_to_write(self, card: Mapping[str, Any]) -> OSError | None:
+        try:
+            self._write(card)
+        except OSError as error:
+            return error
+        return None
+
+    def _write(self, card: Mapping[str, Any]) -> None:
+        made = {**card, "first": self.first, "pictures": self.count - sum(each["pictures"] for each in self._runs)}
+        splits = {split: len(images) for split, images in self._images.items()}
+        whole = {
+            "form": _FORM,
+            "classes": list(self._classes),
+            "width": self._size[0],
+            "height": self._size[1],
+            "pictures": self.count,
+            "splits": splits,
+            "formats": list(self._formats),
+            "made": [*self._runs, made],
+            "statistics": {name: asdict(each) for name, each in self.statistics().items()},
+        }
+        if "coco" in self._formats:
+            (self.path / "annotations").mkdir(exist_ok=True)
+            for split in SPLITS:
+                self._write_json(Path("annotations") / f"instances_{split}.json", self._coco(split, card))
+        if "yolo" in self._formats:
+            write_whole_file(self.path / "data.yaml", self._data_yaml(splits))
+        self._write_json(Path(CARD), whole)
+
+    def _write_json(self, name: Path, content: Any) -> None:
+        indent = 1 if name.name == CARD else None
+        separators = None if indent else (",", ":")
+        text = json.dumps(content, indent=indent, separators=separators, ensure_ascii=False)
+        write_whole_file(self.path / name, text + "\n")
+
+    def _coco(self, split: str, card: Mapping[str, Any]) -> dict[str, Any]:
+        annotations = sorted(self._annotations[split], key=lambda each: int(each["image_id"]))
+        return {
+            "info": {"description": "made by linkwright dataset", "version": card["version"]},
+            "licenses": [],
+            "images": sorted(self._images[split], key=lambda each: int(each["id"])),
+            "annotations": [{"id": number, **each} for number, each in enumerate(annotations, start=1)],
+            "categories": [
+                {"id": number, "name": name, "supercategory": "object"}
+                for number, name in enumerate(self._classes, start=1)
+            ],
+        }
+
+    def _data_yaml(self, splits: Mapping[str, int]) -> str:
+        lines = ["# Made by linkwright dataset. Paths are relative to the folder of this file."]
+        lines += [f"{split}: images/{split}" for split in SPLITS if splits[split]]
+        lines += ["names:", *(f"  {number}: {json.dumps(name)}" for number, name in enumerate(self._classes))]
+        return "\n".join(lines) + "\n"
+
+    def _take_up(self) -> None:
+        """Read the dataset that is there."""
+        shown = display_path(self.path)
+        try:
+            card = json.loads((self.path / CARD).read_text(encoding="utf-8"))
+            lists = {
+                split: json.loads((self.path / "annotations" / f"instances_{split}.json").read_text(encoding="utf-8"))
+                for split in SPLITS
+            }
+        except (OSError, ValueError):
+            message = phrase("'{folder}' has no dataset in COCO form to add to", folder=shown)
+            raise LinkwrightError(Diagnostic("VISION206", message)) from None
+        ours = (list(self._classes), *self._size, list(self._formats))
+        if (card.get("classes"), card.get("width"), card.get("height"), card.get("formats")) != ours:
+            message = phrase("the dataset in '{folder}' has other classes, sizes or forms", folder=shown)
+            hint = phrase("its classes: {names}", names=", ".join(map(str, card.get("classes") or ())))
+            raise LinkwrightError(Diagnostic("VISION206", message, hint=hint))
+        for split, written in lists.items():
+            self._images[split] = written["images"]
+            self._annotations[split] = [
+                {key: value for key, value in each.items() if key != "id"} for each in written["annotations"]
+            ]
+        self._runs = card["made"]
+        numbers = [each["id"] for images in self._images.values() for each in images]
+        self.first = max(numbers, default=-1) + 1
+
+    def _drop(self, count: int) -> None:
+        """Take the last pictures away."""
+        newest = sorted(each["id"] for images in self._images.values() for each in images)[-count:]
+        gone = set(newest)
+        for split in SPLITS:
+            files = [each["file_name"] for each in self._images[split] if each["id"] in gone]
+            for name in files:
+                text = self.path / "labels" / split / f"{Path(name).stem}.txt"
+                _remove([self.path / "images" / split / name, text])
+            self._images[split] = [each for each in self._images[split] if each["id"] not in gone]
+            self._annotations[split] = [each for each in self._annotations[split] if each["image_id"] not in gone]
+
+    def _remove(self) -> None:
+        """Remove what a dataset has, and leave everything else."""
+        for part in _PARTS:
+            shutil.rmtree(self.path / part, ignore_errors=True)
+        _remove([self.path / name for name in _FILES])
+
+
+def _yolo(taken: Taken, width: int, height: int) -> str:
+    lines = []
+    for each in taken.labels:
+        if not each.ignored:
+            left, top, right, bottom = each.box
+            middle = (left + right) / 2 / width, (top + bottom) / 2 / height
+            size = (right - left) / width, (bottom - top) / height
+            lines.append(" ".join([str(each.label), *(f"{value:.6f}" for value in (*middle, *size))]) + "\n")
+    return "".join(lines)
+
+
+def _coco(taken: Taken, width: int, height: int) -> list[dict[str, Any]]:
+    found = []
+    for each in taken.labels:
+        left, top, right, bottom = each.box
+        whole = each.whole
+        found.append(
+            {
+                "image_id": taken.index,
+                "category_id": each.label + 1,
+                "bbox": [left, top, right - left, bottom - top],
+                "area": each.area,
+                "segmentation": {"size": [height, width], "counts": list(each.counts)},
+                "iscrowd": int(each.ignored),
+                "visibility": round(each.visibility, 4),
+                "truncated": each.truncated,
+                "amodal_bbox": [whole[0], whole[1], whole[2] - whole[0], whole[3] - whole[1]],
+            }
+        )
+    return found
+
+
+def _remove(files: Sequence[Path]) -> None:
+    for path in files:
+        with suppress(OSError):
+            path.unlink(missing_ok=True)
+
+
+def _occupied(path: Path, *, is_dataset: bool) -> LinkwrightError:
+    shown = display_path(path)
+    if is_dataset:
+        message = phrase("there is a dataset in '{folder}' already", folder=shown)
+        hint = phrase("--append adds to it, --force replaces it")
+    else:
+        message = phrase("'{folder}' is there already, and is no dataset", folder=shown)
+        hint = phrase("name a folder that is empty or not there yet")
+    return LinkwrightError(Diagnostic("VISION205", message, hint=hint))
+
+
+def cannot_write(path: Path, error: OSError) -> LinkwrightError:
+    """VISION207: something of a dataset cannot be written."""
+    reason = foreign(error.strerror or error)
+    message = phrase("the dataset '{folder}' cannot be written: {reason}", folder=display_path(path), reason=reason)
+    return LinkwrightError(Diagnostic("VISION207", message))

@@ -1,0 +1,160 @@
+"""Labels of a picture from its exact segmentation."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise
+from math import ceil, floor
+from typing import Any
+
+import numpy as np
+
+from linkwright.simulation.rendering.optics import Optics
+from linkwright.simulation.rendering.renderer import Pixels, Wanted, axes_of
+from linkwright.vision.datasets.arranging import Shot
+from linkwright.vision.datasets.stage import Prop, Stage
+
+Box = tuple[int, int, int, int]
+"""Left, top, right, bottom in pixels: what is in it has left <= column < right."""
+
+_BEYOND = 1.0
+"""How far outside of a picture a thing is looked for, in widths of the picture."""
+
+
+@dataclass(frozen=True, slots=True)
+class Label:
+    """What is known of a thing in a picture.
+
+    Attributes:
+        label: the place of its class.
+        box: around what is visible of it, in pixels of the picture.
+        whole: around all of it, as if nothing hid it; may reach beyond the picture.
+        area: the pixels that show it.
+        visibility: their share of all pixels that would show it if nothing hid it and the picture had no end.
+        truncated: whether it reaches beyond the picture.
+        ignored: whether so little of it is visible that nobody can be expected to find it.
+        counts: the runs of its mask, down the columns: pixels outside, inside, outside ...
+    """
+
+    label: int
+    box: Box
+    whole: Box
+    area: int
+    visibility: float
+    truncated: bool
+    ignored: bool
+    counts: tuple[int, ...]
+
+
+def label_picture(stage: Stage, shot: Shot, geoms: Pixels, least_size: int, least_visible: float) -> list[Label]:
+    """The labels of a picture.
+
+    Args:
+        stage: the world, as it is in the picture.
+        shot: the camera.
+        geoms: the shapes that its pixels show, shape (height, width).
+        least_size: the shorter side of a box in pixels, below which a thing is ignored.
+        least_visible: the share of a thing that is visible, below which it is ignored.
+    """
+    numbers = np.zeros(stage.simulation.model.ngeom + 1, dtype=np.uint8)  # the last is for nothing
+    for number, prop in enumerate(shot.shown, start=1):
+        numbers[prop.geoms] = number
+    things = numbers[geoms]
+    found = []
+    for number, prop in enumerate(shot.shown, start=1):
+        box = box_of(things == number)
+        if box is None:
+            continue
+        left, top, right, bottom = box
+        mask = things == number
+        area = int(np.count_nonzero(mask[top:bottom, left:right]))
+        whole, count = _uncovered(stage, shot, prop, box)
+        count = max(count, area)
+        small = min(right - left, bottom - top) < least_size
+        beyond = whole[0] < 0 or whole[1] < 0 or whole[2] > geoms.shape[1] or whole[3] > geoms.shape[0]
+        ignored = small or area < least_visible * count
+        found.append(Label(prop.label, box, whole, area, area / count, beyond, ignored, runs_of(mask)))
+    return found
+
+
+def box_of(mask: Any) -> Box | None:
+    """The box around what is true in a mask of shape (height, width); None where nothing is."""
+    rows = np.flatnonzero(mask.any(axis=1))
+    if not len(rows):
+        return None
+    top, bottom = int(rows[0]), int(rows[-1]) + 1
+    columns = np.flatnonzero(mask[top:bottom].any(axis=0))
+    return int(columns[0]), top, int(columns[-1]) + 1, bottom
+
+
+def runs_of(mask: Any) -> tuple[int, ...]:
+    """The runs of a mask down its columns, beginning with false ones: COCO's uncompressed run lengths."""
+    flat = mask.ravel(order="F")
+    changes = np.flatnonzero(flat[1:] != flat[:-1]) + 1
+    ends = [0, *changes.tolist(), len(flat)]
+    counts = [after - before for before, after in pairwise(ends)]
+    return tuple([0, *counts] if flat[0] else counts)
+
+
+def mask_of(counts: tuple[int, ...], height: int, width: int) -> Any:
+    """The mask of runs, the inverse of `runs_of`: shape (height, width)."""
+    values = np.arange(len(counts)) % 2 == 1
+    return np.repeat(values, counts).reshape((height, width), order="F")
+
+
+def _uncovered(stage: Stage, shot: Shot, prop: Prop, visible: Box) -> tuple[Box, int]:
+    """The box around a thing as if nothing hid it and the picture had no end, and how many pixels show it.
+
+    Of what is larger than the picture it is made smaller, and the box is right to some pixels.
+    """
+    left, top, right, bottom = _window(stage, shot, prop, visible)
+    optics = shot.optics
+    scale = min(1.0, optics.width / (right - left), optics.height / (bottom - top))
+    width, height = max(int((right - left) * scale), 1), max(int((bottom - top) * scale), 1)
+    middle = (optics.cx - left) * scale, (optics.cy - top) * scale
+    part = Optics(width, height, optics.fx * scale, optics.fy * scale, *middle, optics.near, optics.far)
+    geoms = _alone(stage, prop, lambda: stage.renderer.render(part, shot.pose, Wanted.GEOMS).geoms)
+    mask = np.isin(geoms, prop.geoms)
+    box = box_of(mask)
+    if box is None:
+        return visible, 0
+    whole = (
+        min(floor(box[0] / scale) + left, visible[0]),
+        min(floor(box[1] / scale) + top, visible[1]),
+        max(ceil(box[2] / scale) + left, visible[2]),
+        max(ceil(box[3] / scale) + top, visible[3]),
+    )
+    return whole, round(np.count_nonzero(mask) / scale**2)
+
+
+def _window(stage: Stage, shot: Shot, prop: Prop, visible: Box) -> Box:
+    """The part of the plane of the picture that a thing is in, some pixels more, and not too far away."""
+    optics, data, model = shot.optics, stage.simulation.data, stage.simulation.model
+    signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+    local = model.geom_aabb[prop.geoms, None, :3] + signs * model.geom_aabb[prop.geoms, None, 3:]
+    turns = data.geom_xmat[prop.geoms].reshape(-1, 3, 3)
+    corners = np.einsum("gij,gcj->gci", turns, local) + data.geom_xpos[prop.geoms, None, :]
+    seen = (corners.reshape(-1, 3) - np.array(shot.pose[:3])) @ axes_of(shot.pose)
+    wide, high = int(_BEYOND * optics.width), int(_BEYOND * optics.height)
+    least, greatest = np.array([-wide, -high]), np.array([optics.width + wide, optics.height + high])
+    if (seen[:, 2] > optics.near).all():
+        places = optics.project(seen)
+        least = np.maximum(least, np.floor(places.min(axis=0)) - 1)
+        greatest = np.minimum(greatest, np.ceil(places.max(axis=0)) + 1)
+    left, top = np.minimum(least, visible[:2]).astype(int).tolist()
+    right, bottom = np.maximum(greatest, visible[2:]).astype(int).tolist()
+    return left, top, right, bottom
+
+
+def _alone(stage: Stage, prop: Prop, look: Callable[[], Any]) -> Any:
+    """What `look` says while a thing is the only one in the world."""
+    data = stage.simulation.data
+    places = data.geom_xpos.copy()
+    own = places[prop.geoms].copy()
+    try:
+        stage.hide(range(stage.simulation.model.ngeom))
+        data.geom_xpos[prop.geoms] = own
+        return look()
+    finally:
+        data.geom_xpos[:] = places

@@ -1,0 +1,132 @@
+"""How a picture looks: lights, colours and patterns, what is behind everything, and what a camera does to it."""
+
+from __future__ import annotations
+
+import colorsys
+from typing import Any
+
+import numpy as np
+
+from linkwright.geometry.arrays import Array
+from linkwright.sdf.lights import Light
+from linkwright.vision.datasets.arranging import Shot
+from linkwright.vision.datasets.stage import Stage
+from linkwright.vision.datasets.textures import Pixels, smooth
+
+_POOL = 1 << 21
+"""So many random numbers are drawn once; each picture takes them from another place on."""
+
+
+def light(stage: Stage, generator: np.random.Generator) -> None:
+    """Light a world by one to three lights of some colour, from some direction.
+
+    None is near: how OpenGL lights an endless plane by one depends on what was drawn before.
+    """
+    lights = []
+    for number in range(int(generator.integers(1, 4))):
+        share = 1.0 if number == 0 else 0.5
+        colour = _tinted(generator, 0.25) * generator.uniform(0.3, 1.0) * share
+        red, green, blue = (float(each) for each in colour)
+        diffuse = red, green, blue, 1.0
+        across, along, down = (float(each) for each in generator.normal(size=3))
+        direction = across, along, -abs(down) - 0.2
+        lights.append(Light(f"light {number}", "directional", diffuse=diffuse, direction=direction))
+    ambient = _tinted(generator, 0.15) * generator.uniform(0.1, 0.55)
+    stage.light(lights, ambient, generator.random(3))
+
+
+def paint(stage: Stage, shot: Shot, generator: np.random.Generator) -> None:
+    """Give everything other colours; things keep theirs, or one near to it, more often than not."""
+    for prop in shot.shown:
+        way, groups = generator.random(), {}
+        textured = generator.random() < 0.3
+        number = int(generator.integers(1 << 16))
+        for geom in prop.geoms:
+            own = tuple(float(each) for each in stage.colour_of(geom)[:3])
+            if own not in groups:
+                groups[own] = _recoloured(own, way, generator)
+            if not stage.has_picture(geom):
+                stage.paint(geom, groups[own], "thing" if textured else "", number)
+    for geom in stage.distractors:
+        patterned = generator.random() < 0.5
+        stage.paint(geom, generator.random(3), "wall" if patterned else "", int(generator.integers(1 << 16)))
+    for kind, geoms in (("wall", shot.structures), ("ground", stage.ground)):
+        together = generator.random() < 0.7
+        colour, patterned, number = _surface(generator)
+        for geom in geoms:
+            if not together:
+                colour, patterned, number = _surface(generator)
+            stage.paint(geom, colour, kind if patterned else "", number)
+
+
+def backdrop(colour: Pixels, geoms: Any, generator: np.random.Generator) -> None:
+    """Put something behind everything, where a picture shows nothing: a gradient with clouds."""
+    nothing = geoms < 0
+    if not nothing.any():
+        return
+    height, width = geoms.shape
+    above, below = generator.uniform(0.2, 1.0, 3), generator.uniform(0.2, 1.0, 3)
+    share = np.linspace(0.0, 1.0, height)[:, None]
+    if generator.random() < 0.5:
+        share = 0.5 * share + 0.5 * smooth(generator, int(generator.integers(2, 12)), height, width)
+    share = np.broadcast_to(share, (height, width))[nothing].astype(np.float32)
+    for channel in range(3):
+        colour[..., channel][nothing] = (255 * (above[channel] + (below[channel] - above[channel]) * share)).astype(
+            np.uint8
+        )
+
+
+class Camera:
+    """What a lens and a sensor make of a picture: exposure, white balance, blur, noise."""
+
+    def __init__(self) -> None:
+        self._noise = np.random.default_rng(0).standard_normal(_POOL, dtype=np.float32)
+
+    def develop(self, colour: Pixels, generator: np.random.Generator) -> Pixels:
+        """A picture as a camera would have taken it."""
+        gain, gamma = np.exp(generator.normal(0.0, 0.18)), np.exp(generator.normal(0.0, 0.15))
+        balance = np.exp(generator.normal(0.0, 0.05, 3))
+        levels = np.linspace(0.0, 1.0, 256)[:, None] ** gamma * gain * balance
+        table = np.clip(np.round(levels * 255), 0, 255).astype(np.uint8)
+        developed = np.empty_like(colour)
+        for channel in range(3):
+            developed[..., channel] = table[:, channel].take(colour[..., channel])
+        if generator.random() < 0.35:
+            developed = _blurred(developed, float(generator.uniform(0.3, 1.6)))
+        if generator.random() < 0.7:
+            strength = np.float32(generator.uniform(0.5, 9.0))
+            start = int(generator.integers(_POOL - developed.size)) if developed.size < _POOL else 0
+            noise = np.resize(self._noise[start:], developed.size).reshape(developed.shape)
+            developed = np.clip(developed + strength * noise, 0, 255).astype(np.uint8)
+        return developed
+
+
+def _blurred(colour: Pixels, radius: float) -> Pixels:
+    from PIL import Image, ImageFilter
+
+    blurred: Pixels = np.asarray(Image.fromarray(colour).filter(ImageFilter.GaussianBlur(radius)))
+    return blurred
+
+
+def _tinted(generator: np.random.Generator, most: float) -> Array:
+    """White with a tint: red, green and blue, the greatest of them 1."""
+    return np.array(colorsys.hsv_to_rgb(generator.random(), generator.uniform(0.0, most), 1.0))
+
+
+def _recoloured(own: tuple[float, ...], way: float, generator: np.random.Generator) -> Array:
+    """A colour instead of that of a thing: the same, one of the same hue, or any."""
+    hue, saturation, value = colorsys.rgb_to_hsv(*own)
+    if way < 0.35:
+        return np.array(own)
+    if way < 0.75:
+        hue = (hue + generator.normal(0.0, 0.02)) % 1.0
+        saturation = float(np.clip(saturation * generator.uniform(0.7, 1.2), 0.0, 1.0))
+        value = float(np.clip(value * generator.uniform(0.6, 1.2) + generator.uniform(0.0, 0.05), 0.0, 1.0))
+    else:
+        hue, saturation, value = generator.random(), generator.uniform(0.0, 1.0), generator.uniform(0.1, 1.0)
+    return np.array(colorsys.hsv_to_rgb(hue, saturation, value))
+
+
+def _surface(generator: np.random.Generator) -> tuple[Array, bool, int]:
+    colour = np.array(colorsys.hsv_to_rgb(generator.random(), generator.beta(1.0, 2.5), generator.uniform(0.25, 1.0)))
+    return colour, bool(generator.random() < 0.6), int(generator.integers(1 << 16))

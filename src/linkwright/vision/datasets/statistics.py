@@ -1,0 +1,87 @@
+"""What is in a dataset: how many things of each class, how large, where, and how much of them is visible."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from math import sqrt
+from typing import Any
+
+_SIZES = (("small", 32), ("medium", 96), ("large", 1 << 30))
+"""COCO's sizes of things: the square roots of the areas in pixels that they are below."""
+_MOSTLY = 0.75
+"""Of what a smaller share is visible, something hides a good part."""
+
+
+@dataclass
+class ClassStatistics:
+    """What is known of a class.
+
+    Attributes:
+        things: how many have a label.
+        pictures: in how many pictures there is one.
+        ignored: how many are seen too little of for a label.
+        small, medium, large: things by COCO's sizes.
+        hidden: things of which less than three quarters are visible.
+        truncated: things that reach beyond their picture.
+        thirds: how many have their middle in each ninth of the picture, row by row.
+    """
+
+    things: int = 0
+    pictures: int = 0
+    ignored: int = 0
+    small: int = 0
+    medium: int = 0
+    large: int = 0
+    hidden: int = 0
+    truncated: int = 0
+    thirds: list[int] = field(default_factory=lambda: [0] * 9)
+
+
+def statistics_of(
+    classes: Sequence[str], size: tuple[int, int], annotations: Iterable[Mapping[str, Any]]
+) -> dict[str, ClassStatistics]:
+    """The statistics of each class.
+
+    Args:
+        classes: their names.
+        size: width and height of pictures in pixels.
+        annotations: of all pictures, in COCO's form.
+    """
+    found = {name: ClassStatistics() for name in classes}
+    pictures: dict[str, set[int]] = {name: set() for name in classes}
+    for each in annotations:
+        name = classes[each["category_id"] - 1]
+        facts = found[name]
+        if each["iscrowd"]:
+            facts.ignored += 1
+            continue
+        pictures[name].add(each["image_id"])
+        facts.things += 1
+        side = next(side for side, most in _SIZES if sqrt(each["area"]) < most)
+        setattr(facts, side, getattr(facts, side) + 1)
+        facts.hidden += each["visibility"] < _MOSTLY
+        facts.truncated += bool(each["truncated"])
+        left, top, width, height = each["bbox"]
+        column = min(int(3 * (left + width / 2) / size[0]), 2)
+        row = min(int(3 * (top + height / 2) / size[1]), 2)
+        facts.thirds[3 * row + column] += 1
+    for name, numbers in pictures.items():
+        found[name].pictures = len(numbers)
+    return found
+
+
+def as_table(statistics: Mapping[str, ClassStatistics]) -> str:
+    """Statistics as lines of text."""
+    titles = ("class", "things", "pictures", "small", "medium", "large", "hidden", "truncated", "ignored")
+    rows: list[tuple[str, ...]] = [titles]
+    for name, each in statistics.items():
+        rows.append((name, *(str(getattr(each, title)) for title in titles[1:])))
+    widths = [max(len(row[column]) for row in rows) for column in range(len(titles))]
+    lines = [
+        "  ".join(
+            [row[0].ljust(widths[0]), *(text.rjust(width) for text, width in zip(row[1:], widths[1:], strict=True))]
+        )
+        for row in rows
+    ]
+    return "\n".join(lines) + "\n"

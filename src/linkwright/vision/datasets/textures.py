@@ -1,0 +1,86 @@
+"""Patterns that surfaces get: noise, checks, stripes, dots, gradients."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+Pixels = np.ndarray[Any, np.dtype[np.uint8]]
+
+
+def pattern(generator: np.random.Generator, size: int, *, soft: bool) -> Pixels:
+    """A square picture of some pattern.
+
+    Args:
+        generator: where chance comes from.
+        size: in pixels.
+        soft: whether it is light grey all over, so that what it covers keeps its colour; else it has two colours.
+
+    Returns:
+        Red, green, blue: shape (size, size, 3).
+    """
+    kind = generator.integers(5)
+    if kind == 0:
+        shade = _noise(generator, size)
+    elif kind == 1:
+        shade = _checks(generator, size)
+    elif kind == 2:
+        shade = _stripes(generator, size)
+    elif kind == 3:
+        shade = _dots(generator, size)
+    else:
+        shade = _gradient(generator, size)
+    shade = np.clip(shade + generator.normal(0.0, 0.03, shade.shape), 0.0, 1.0)[..., None]
+    if soft:
+        first, second = np.full(3, generator.uniform(0.55, 0.85)), np.ones(3)
+    else:
+        first, second = generator.uniform(0.25, 1.0, 3), generator.uniform(0.25, 1.0, 3)
+    mixed: Pixels = np.round((first + (second - first) * shade) * 255).astype(np.uint8)
+    return mixed
+
+
+def smooth(generator: np.random.Generator, cells: int, height: int, width: int) -> Any:
+    """Random heights between 0 and 1 on so many cells across, and even between them: shape (height, width)."""
+    grid = generator.random((cells + 1, cells + 1))
+    down, across = np.linspace(0, cells, height, endpoint=False), np.linspace(0, cells, width, endpoint=False)
+    rows = _between(grid, down)
+    return _between(rows.T, across).T
+
+
+def _between(values: Any, places: Any) -> Any:
+    first = places.astype(int)
+    share = (places - first)[:, None]
+    return values[first] * (1 - share) + values[first + 1] * share
+
+
+def _noise(generator: np.random.Generator, size: int) -> Any:
+    shade, weight, cells = np.zeros((size, size)), 0.0, int(generator.integers(2, 6))
+    for octave in range(4):
+        share = 0.5**octave
+        shade, weight = shade + share * smooth(generator, min(cells << octave, size), size, size), weight + share
+    return shade / weight
+
+
+def _checks(generator: np.random.Generator, size: int) -> Any:
+    fields = int(generator.integers(1, 9)) * 2
+    places = np.arange(size) * fields // size
+    return ((places[:, None] + places) % 2).astype(np.float64)
+
+
+def _stripes(generator: np.random.Generator, size: int) -> Any:
+    waves = 2 * np.pi * generator.integers(1, 9) * np.arange(size) / size
+    shade = np.broadcast_to(0.5 + 0.5 * np.sin(waves), (size, size))
+    shade = shade if generator.random() < 0.5 else shade.T
+    return np.round(shade) if generator.random() < 0.5 else shade
+
+
+def _dots(generator: np.random.Generator, size: int) -> Any:
+    count, radius = int(generator.integers(2, 9)), generator.uniform(0.15, 0.45)
+    place = (np.arange(size) * count / size) % 1.0 - 0.5
+    return (place[:, None] ** 2 + place**2 < radius**2).astype(np.float64)
+
+
+def _gradient(generator: np.random.Generator, size: int) -> Any:
+    ramp = np.broadcast_to(np.linspace(0.0, 1.0, size), (size, size))
+    return ramp if generator.random() < 0.5 else ramp.T

@@ -1,0 +1,136 @@
+"""Processes that make pictures."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import sys
+import threading
+from collections import deque
+from collections.abc import Iterator
+from contextlib import suppress
+from multiprocessing.connection import Connection, wait
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+from linkwright.vision.datasets.making import CHAPTER, Source, Studio, Taken
+
+_PATIENCE = 10.0
+"""Seconds for a process that was told to end, before it is killed."""
+
+
+def take_in_processes(source: Source, numbers: range, workers: int) -> Iterator[Taken]:
+    """Make pictures in processes of their own.
+
+    Args:
+        source: what they are made of.
+        numbers: of the pictures.
+        workers: how many processes there are.
+
+    Yields:
+        The pictures, in the order in which they are done.
+
+    Raises:
+        LinkwrightError: VISION208 a process has died.
+    """
+    waiting = deque(_chapters(numbers))
+    started: list[_Worker] = []
+    try:
+        started += [_Worker(source) for _ in range(min(workers, len(waiting)))]
+        busy = {worker.connection: worker for worker in started}
+        for worker in started:
+            worker.take(waiting.popleft())
+        while busy:
+            for ready in wait(list(busy)):
+                worker = busy[ready]  # type: ignore[index]  # connections only were waited for
+                taken = worker.result()
+                if isinstance(taken, Taken):
+                    yield taken
+                    worker.left -= 1
+                if not worker.left:
+                    if waiting:
+                        worker.take(waiting.popleft())
+                    else:
+                        del busy[worker.connection]
+    finally:
+        for worker in started:
+            worker.stop()
+
+
+def _chapters(numbers: range) -> Iterator[range]:
+    """Numbers in parts that share their patterns."""
+    start = numbers.start
+    while start < numbers.stop:
+        end = min((start // CHAPTER + 1) * CHAPTER, numbers.stop)
+        yield range(start, end)
+        start = end
+
+
+class _Worker:
+    def __init__(self, source: Source) -> None:
+        spawn = multiprocessing.get_context("spawn")
+        self.connection, theirs = spawn.Pipe()
+        self.left = 0
+        self._process = spawn.Process(target=_serve, args=(source, theirs), daemon=True)
+        before = signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for who reads the pictures
+        try:
+            self._process.start()
+        finally:
+            signal.signal(signal.SIGINT, before)
+        theirs.close()
+
+    def take(self, numbers: range) -> None:
+        """Have it make some pictures."""
+        self.left = len(numbers)
+        with suppress(OSError):  # it has died; that is found out by who waits for the result
+            self.connection.send(numbers)
+
+    def result(self) -> Taken:
+        """The next picture.
+
+        Raises:
+            LinkwrightError: what the process says; VISION208 it has died.
+        """
+        try:
+            said = self.connection.recv()
+        except (EOFError, OSError):
+            message = phrase("a process that makes pictures has died")
+            hint = phrase("where memory is short, fewer of them may do: --workers 1")
+            raise LinkwrightError(Diagnostic("VISION208", message, hint=hint)) from None
+        if isinstance(said, Taken):
+            return said
+        raise LinkwrightError(*said)
+
+    def stop(self) -> None:
+        """End it, whatever it does."""
+        self.connection.close()
+        self._process.terminate()
+        self._process.join(_PATIENCE)
+        if self._process.is_alive():
+            self._process.kill()
+            self._process.join()
+        self._process.close()
+
+
+def _serve(source: Source, connection: Connection) -> None:
+    """What a process does."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+    sys.stdout = sys.stderr
+    with suppress(EOFError, OSError):
+        try:
+            studio = Studio(source)
+        except LinkwrightError as error:
+            connection.send(error.diagnostics)
+            return
+        while True:
+            for number in connection.recv():
+                connection.send(studio.take(number))
+
+
+def _end_with_parent() -> None:
+    """Let nothing outlive what wants the pictures, whatever ended that."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+    os._exit(1)

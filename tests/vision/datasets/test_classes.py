@@ -1,0 +1,71 @@
+"""Which things of a world are of which class."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.vision.datasets.classes import ClassRules, read_classes, things_of, usual_class, usual_rules
+from tests.simulation.worlds import loaded
+from tests.vision.datasets.places import yard
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [("ball", "ball"), ("red_ball", "ball"), ("ball_2", "ball"), ("Blue-Ball (3)", "ball"), ("box12", "box"),
+     ("traffic_cone_clone_1", "traffic_cone"), ("red", "red"), ("7", "7"), ("stop_sign", "stop_sign")],
+)  # fmt: skip
+def test_a_class_is_a_name_without_numbers_and_colours(name, expected):
+    assert usual_class(name) == expected
+
+
+def test_what_stands_around_is_no_thing(tmp_path):
+    simulation = loaded(yard(tmp_path))
+    rules = usual_rules([simulation])
+    assert list(rules.patterns) == ["ball", "crate", "drums"]
+    things = things_of(simulation, rules)
+    assert [(thing.name, thing.label) for thing in things] == [
+        ("red_ball", 0),
+        ("ball_2", 0),
+        ("crate", 1),
+        ("drums", 2),
+    ]
+
+
+def test_visuals_that_touch_each_other_are_one_thing(tmp_path):
+    simulation = loaded(yard(tmp_path))
+    things = things_of(simulation, ClassRules({"drum": ("drums::*",), "ball": ("*ball*",)}))
+    assert [(thing.name, thing.label, len(thing.geoms)) for thing in things] == [
+        ("red_ball", 1, 1),
+        ("ball_2", 1, 1),
+        ("drums::link::blue", 0, 2),
+        ("drums::link::green", 0, 1),
+    ]
+
+
+def test_classes_of_a_file_keep_their_order(tmp_path):
+    path = tmp_path / "classes.yaml"
+    path.write_text('mbot:\nball: [football, "*_ball"]\ncone: traffic_cone\n')
+    rules = read_classes(path)
+    assert list(rules.patterns) == ["mbot", "ball", "cone"]
+    assert [rules.class_of(name) for name in ("mbot", "red_ball", "traffic_cone", "ball")] == [0, 1, 2, None]
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [("", None), ("- ball\n", 1), ("ball: []\n", 1), ("ball: {a: b}\n", 1), ("ball:\nball:\n", 2), ("a: [b\n", 2),
+     ("? [a]\n: b\n", 1), ("a:\n  - [b]\n", 2)],
+)  # fmt: skip
+def test_a_wrong_file_of_classes_is_told_with_its_place(tmp_path, text, line):
+    path = tmp_path / "classes.yaml"
+    path.write_text(text)
+    with pytest.raises(LinkwrightError) as caught:
+        read_classes(path)
+    (finding,) = caught.value.diagnostics
+    assert finding.code == "VISION201"
+    assert (finding.span.line if finding.span else None) == line
+
+
+def test_a_file_of_classes_that_is_not_there_is_told(tmp_path):
+    with pytest.raises(LinkwrightError, match="cannot be read"):
+        read_classes(tmp_path / "none.yaml")

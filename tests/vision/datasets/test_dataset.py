@@ -1,0 +1,205 @@
+"""Datasets on the disk."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+from PIL import Image
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.vision.datasets.dataset import make_dataset
+from linkwright.vision.datasets.labels import box_of, mask_of
+from linkwright.vision.datasets.making import Source, Studio, split_of
+from linkwright.vision.datasets.options import SPLITS, Options
+from tests.vision.datasets.places import BALL, GROUND, WALL, world_text, yard
+
+OPTIONS = Options(width=160, height=120, seed=3, copies=2, distractors=4)
+
+
+@pytest.fixture
+def source(tmp_path):
+    return Source((str(yard(tmp_path)),), (), None, OPTIONS)
+
+
+def make(source, path, pictures, **options):
+    words = {"formats": ("coco", "yolo"), "workers": 1, **options}
+    return make_dataset(source, path, pictures, **words)
+
+
+def files(folder: Path) -> dict[str, bytes]:
+    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+def code_of(caught) -> str:
+    return caught.value.diagnostics[0].code
+
+
+def lists_of(folder: Path):
+    return {split: json.loads((folder / f"annotations/instances_{split}.json").read_text()) for split in SPLITS}
+
+
+def test_all_forms_say_the_same(source, tmp_path):
+    folder = tmp_path / "set"
+    make(source, folder, 20)
+    assert yaml.safe_load((folder / "data.yaml").read_text()) == {
+        "train": "images/train",
+        "val": "images/val",
+        "test": "images/test",
+        "names": {0: "ball", 1: "crate", 2: "drums"},
+    }
+    things = 0
+    for split, said in lists_of(folder).items():
+        assert [each["name"] for each in said["categories"]] == ["ball", "crate", "drums"]
+        assert len({each["id"] for each in said["annotations"]}) == len(said["annotations"])
+        for image in said["images"]:
+            with Image.open(folder / "images" / split / image["file_name"]) as picture:
+                assert picture.size == (160, 120) == (image["width"], image["height"])
+            lines = (folder / "labels" / split / f"{Path(image['file_name']).stem}.txt").read_text().splitlines()
+            known = [each for each in said["annotations"] if each["image_id"] == image["id"] and not each["iscrowd"]]
+            assert len(lines) == len(known)
+            for line, each in zip(lines, known, strict=True):
+                number, *shares = line.split()
+                x, y, width, height = np.array(shares, float) * [160, 120, 160, 120]
+                assert int(number) + 1 == each["category_id"]
+                assert [x - width / 2, y - height / 2, width, height] == pytest.approx(each["bbox"], abs=1e-3)
+                things += 1
+        for each in said["annotations"]:
+            mask = mask_of(tuple(each["segmentation"]["counts"]), *each["segmentation"]["size"])
+            left, top, right, bottom = box_of(mask)
+            assert each["bbox"] == [left, top, right - left, bottom - top]
+            assert each["area"] == mask.sum()
+    card = json.loads((folder / "dataset.json").read_text())
+    assert card["splits"] == {"train": 16, "val": 2, "test": 2}
+    assert sum(each["things"] for each in card["statistics"].values()) == things > 10
+    assert card["made"][0]["options"]["seed"] == 3
+    assert (folder / "contact_sheet.jpg").stat().st_size > 0
+
+
+def test_the_same_seed_gives_the_same_bytes(source, tmp_path):
+    make(source, tmp_path / "a", 4)
+    make(source, tmp_path / "b", 4)
+    assert files(tmp_path / "a") == files(tmp_path / "b")
+    make(replace(source, options=replace(OPTIONS, seed=4)), tmp_path / "c", 4)
+    assert files(tmp_path / "a") != files(tmp_path / "c")
+
+
+def test_a_picture_does_not_depend_on_those_before(source):
+    first, second = Studio(source), Studio(source)
+    try:
+        for number in (0, 49, 3):
+            first.take(number)
+        assert first.take(52) == second.take(52)
+        assert first.take(1) == second.take(1)
+    finally:
+        first.close()
+        second.close()
+
+
+def test_processes_make_the_same(source, tmp_path):
+    make(source, tmp_path / "a", 52)
+    make(source, tmp_path / "b", 52, workers=2)
+    assert files(tmp_path / "a") == files(tmp_path / "b")
+
+
+def test_splits_have_their_shares():
+    options = replace(OPTIONS, splits=(0.5, 0.3, 0.2))
+    found = [split_of(index, options) for index in range(200)]
+    assert [found.count(split) for split in SPLITS] == [100, 60, 40]
+    assert [split_of(index, options) for index in range(200)] == found
+    assert {split_of(index, replace(OPTIONS, splits=(1.0, 0.0, 0.0))) for index in range(50)} == {"train"}
+
+
+def test_pictures_are_added(source, tmp_path):
+    folder = tmp_path / "set"
+    make(source, folder, 3)
+    made = make(source, folder, 4, append=True)
+    assert (made.added, made.folder.count) == (4, 7)
+    numbers = sorted(image["id"] for said in lists_of(folder).values() for image in said["images"])
+    assert numbers == list(range(7))
+    make(source, tmp_path / "whole", 7)
+    assert {
+        name: data for name, data in files(tmp_path / "whole").items() if name.startswith(("images", "labels"))
+    } == {name: data for name, data in files(folder).items() if name.startswith(("images", "labels"))}
+
+
+def test_what_is_there_is_not_written_over(source, tmp_path):
+    folder = tmp_path / "set"
+    folder.mkdir()
+    (folder / "diary.txt").write_text("dear diary")
+    for words in ({}, {"force": True}):
+        with pytest.raises(LinkwrightError) as caught:
+            make(source, folder, 1, **words)
+        assert code_of(caught) == "VISION205"
+    with pytest.raises(LinkwrightError) as caught:
+        make(source, folder, 1, append=True)
+    assert code_of(caught) == "VISION206"
+    assert files(folder) == {"diary.txt": b"dear diary"}
+
+
+def test_a_dataset_is_replaced_if_that_is_asked_for(source, tmp_path):
+    folder = tmp_path / "set"
+    make(source, folder, 3)
+    with pytest.raises(LinkwrightError) as caught:
+        make(source, folder, 1)
+    assert code_of(caught) == "VISION205"
+    (folder / "notes.txt").write_text("kept")
+    assert make(source, folder, 1, force=True).folder.count == 1
+    assert len([name for name in files(folder) if name.startswith("images")]) == 1
+    assert (folder / "notes.txt").read_text() == "kept"
+
+
+def test_other_classes_cannot_be_added(source, tmp_path):
+    folder = tmp_path / "set"
+    make(source, folder, 1)
+    (tmp_path / "classes.yaml").write_text("ball: '*ball*'\n")
+    with pytest.raises(LinkwrightError) as caught:
+        make(replace(source, classes=str(tmp_path / "classes.yaml")), folder, 1, append=True)
+    assert code_of(caught) == "VISION206"
+
+
+def test_an_interrupted_dataset_is_complete(source, tmp_path):
+    folder = tmp_path / "set"
+
+    def stop(done):
+        if done == 3:
+            raise KeyboardInterrupt
+
+    made = make(source, folder, 9, progress=stop)
+    assert made.interrupted
+    assert made.folder.count == 3
+    assert json.loads((folder / "dataset.json").read_text())["pictures"] == 3
+    assert len([name for name in files(folder) if name.startswith("images")]) == 3
+    assert make(source, folder, 2, append=True).folder.count == 5
+
+
+def test_a_world_without_things_is_told(tmp_path):
+    path = tmp_path / "empty.world"
+    path.write_text(world_text(GROUND, WALL))
+    with pytest.raises(LinkwrightError) as caught:
+        Studio(Source((str(path),), (), None, OPTIONS))
+    assert code_of(caught) == "VISION202"
+
+
+def test_things_of_one_world_are_in_the_others(source, tmp_path):
+    path = tmp_path / "wall.world"
+    path.write_text(world_text(GROUND, WALL, BALL.format(name="green_ball", pose="0 0 0.2 0 0 0")))
+    studio = Studio(replace(source, worlds=(*source.worlds, str(path))))
+    try:
+        assert studio.classes == ("ball", "crate", "drums")
+        labels = {each.label for index in range(1, 30, 2) for each in studio.take(index).labels}
+        assert labels == {0, 1, 2}
+    finally:
+        studio.close()
+
+
+def test_what_is_added_must_be_seen(source, tmp_path):
+    path = tmp_path / "bare.urdf"
+    path.write_text('<robot name="bare"><link name="base"/></robot>')
+    with pytest.raises(LinkwrightError) as caught:
+        Studio(replace(source, added=(str(path),)))
+    assert code_of(caught) == "VISION203"

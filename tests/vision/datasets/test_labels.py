@@ -1,0 +1,155 @@
+"""Labels are exact: against shapes that are projected, and against another renderer."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from linkwright.simulation.rendering.choice import make_renderer
+from linkwright.simulation.rendering.renderer import Wanted, axes_of
+from linkwright.vision.datasets.arranging import Shot, arrange
+from linkwright.vision.datasets.classes import things_of, usual_rules
+from linkwright.vision.datasets.labels import box_of, label_picture, mask_of, runs_of
+from linkwright.vision.datasets.options import Options
+from linkwright.vision.datasets.stage import Stage
+from tests.simulation.worlds import loaded
+from tests.vision.datasets.places import yard
+
+OPTIONS = Options(width=320, height=240)
+
+
+@pytest.fixture
+def stage(tmp_path):
+    simulation = loaded(yard(tmp_path))
+    made = Stage(simulation, things_of(simulation, usual_rules([simulation])), 2, 4)
+    made.set_patterns(np.random.default_rng(0))
+    yield made
+    made.close()
+
+
+def shots(stage, count):
+    for number in range(count):
+        stage.begin()
+        yield arrange(stage, OPTIONS, np.random.default_rng(number))
+
+
+def labelled(stage, shot):
+    geoms = stage.renderer.render(shot.optics, shot.pose, Wanted.GEOMS).geoms
+    return label_picture(stage, shot, geoms, OPTIONS.least_size, OPTIONS.least_visible), geoms
+
+
+def alone(shot, prop):
+    return Shot(shot.optics, shot.pose, (prop,), ())
+
+
+def test_runs_are_the_mask():
+    masks = np.random.default_rng(0).random((20, 7, 5)) < 0.5
+    for mask in (*masks, np.zeros((7, 5), bool), np.ones((7, 5), bool)):
+        counts = runs_of(mask)
+        assert sum(counts) == mask.size
+        assert all(count > 0 for count in counts[1:])
+        assert (mask_of(counts, 7, 5) == mask).all()
+
+
+def test_the_box_of_a_mask():
+    mask = np.zeros((6, 8), bool)
+    assert box_of(mask) is None
+    mask[2, 3] = mask[4, 1] = True
+    assert box_of(mask) == (1, 2, 4, 5)
+
+
+def test_whole_boxes_of_balls_are_those_of_their_outlines(stage):
+    """The outline of a ball is the cone of rays that touch it: its ends are known to the last digit."""
+    compared = 0
+    for shot in shots(stage, 12):
+        labels, _ = labelled(stage, shot)
+        seen = {each.whole: each for each in labels}
+        axes = axes_of(shot.pose)
+        for prop in (each for each in shot.shown if each.label == 0):
+            center = (stage.simulation.data.geom_xpos[prop.geoms[0]] - np.array(shot.pose[:3])) @ axes
+            if center[2] < 0.5:
+                continue
+            ends = [outline(center[axis], center[2], 0.2) for axis in (0, 1)]
+            expected = np.array(
+                [
+                    shot.optics.cx + shot.optics.fx * ends[0][0],
+                    shot.optics.cy + shot.optics.fy * ends[1][0],
+                    shot.optics.cx + shot.optics.fx * ends[0][1],
+                    shot.optics.cy + shot.optics.fy * ends[1][1],
+                ]
+            )
+            if not ((expected > -100) & (expected < 340)).all():
+                continue
+            near = [box for box in seen if np.abs(np.array(box) - expected).max() <= 2.0]
+            hidden = not any(each.label == 0 for each in labels)
+            assert near or hidden or is_covered(stage, shot, prop)
+            compared += bool(near)
+    assert compared >= 5
+
+
+def is_covered(stage, shot, prop):
+    geoms = stage.renderer.render(shot.optics, shot.pose, Wanted.GEOMS).geoms
+    return not np.isin(geoms, prop.geoms).any()
+
+
+def outline(across, ahead, radius):
+    """The least and the greatest slope of rays in a plane that touch a circle."""
+    distance = np.hypot(across, ahead)
+    middle, half = np.arctan2(across, ahead), np.arcsin(min(radius / distance, 1.0))
+    return np.tan(middle - half), np.tan(middle + half)
+
+
+def test_labels_are_those_of_another_renderer(stage):
+    other = make_renderer(stage.simulation, "mujoco")
+    compared = 0
+    for shot in shots(stage, 8):
+        labels, _ = labelled(stage, shot)
+        geoms = other.render(shot.optics, shot.pose, Wanted.GEOMS).geoms
+        boxes = [box_of(np.isin(geoms, prop.geoms)) for prop in shot.shown]
+        for each in labels:
+            if min(each.box[2] - each.box[0], each.box[3] - each.box[1]) >= 4:
+                assert min(np.abs(np.array(box) - each.box).max() for box in boxes if box is not None) <= 1
+                compared += 1
+    assert compared >= 10
+
+
+def test_visible_and_whole_fit_together(stage):
+    for shot in shots(stage, 8):
+        labels, geoms = labelled(stage, shot)
+        for each in labels:
+            left, top, right, bottom = each.box
+            assert mask_of(each.counts, *geoms.shape).sum() == each.area
+            assert box_of(mask_of(each.counts, *geoms.shape)) == each.box
+            assert each.whole[0] <= left
+            assert each.whole[1] <= top
+            assert each.whole[2] >= right
+            assert each.whole[3] >= bottom
+            assert 0.0 < each.visibility <= 1.0
+            inside = each.whole[0] >= 0 and each.whole[1] >= 0 and each.whole[2] <= 320 and each.whole[3] <= 240
+            assert each.truncated != inside
+
+
+def test_what_nothing_hides_is_visible(stage):
+    for shot in shots(stage, 4):
+        for prop in shot.shown:
+            for geoms in stage.structures.values():
+                stage.hide(geoms)
+            stage.hide(stage.distractors)
+            for other in shot.shown:
+                if other is not prop:
+                    stage.hide(other.geoms)
+            labels, _ = labelled(stage, alone(shot, prop))
+            assert all(each.visibility > 0.97 or each.truncated for each in labels)
+            break
+
+
+def test_things_do_not_reach_into_each_other(stage):
+    for shot in shots(stage, 12):
+        places = [
+            (stage.simulation.data.geom_xpos[prop.geoms, :2].mean(axis=0), prop.radius)
+            for prop in shot.shown
+            if prop.label == 0
+        ]
+        for number, (place, _) in enumerate(places):
+            for other, _ in places[:number]:
+                assert np.linalg.norm(place - other) >= 0.4 - 1e-6
