@@ -60,6 +60,13 @@ def test_whether_this_is_it(asked, name, colour, is_it):
     assert wanted(asked).is_it(name, colour) is is_it
 
 
+def test_a_patch_of_a_colour_is_a_ball_if_it_is_as_wide_as_high():
+    assert wanted("red ball").is_it("red", None, 1.1)
+    assert not wanted("red ball").is_it("red", None, 0.4)
+    assert wanted("red ball").is_it("ball", "red", 0.4), "a class counts whatever part of the thing is seen"
+    assert wanted("red").is_it("red", None, 0.4)
+
+
 def test_what_is_seen_in_a_sentence():
     seen = [
         Sighting("crate", None, 3.0, 2.0),

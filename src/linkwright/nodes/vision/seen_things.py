@@ -30,6 +30,7 @@ class Thing:
         colour: in a word, if known.
         x, y: of its middle in the fixed frame, metres.
         radius: half of its width, metres.
+        shape: its width by its height.
         seen_ns: the time of the picture, nanoseconds.
     """
 
@@ -39,6 +40,7 @@ class Thing:
     x: float
     y: float
     radius: float
+    shape: float
     seen_ns: int
 
 
@@ -106,4 +108,6 @@ class SeenThings:
             colours = self._votes.get(each.id)
             colour = colours.most_common(1)[0][0] if colours else None
             name, _ = best_hypothesis(each)
-            self.things.append(Thing(name, each.id, colour, x, y, each.bbox.size.y / 2, time_ns))
+            size = each.bbox.size
+            shape = size.y / size.z if size.z > 0 else 1.0
+            self.things.append(Thing(name, each.id, colour, x, y, size.y / 2, shape, time_ns))

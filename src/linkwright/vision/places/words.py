@@ -47,6 +47,7 @@ _NUMBERS = {
     "en": ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten"),
     "zh": ("零", "一", "两", "三", "四", "五", "六", "七", "八", "九", "十"),
 }
+_ROUND, _ABOUT_ONE = "ball", (0.75, 1.33)
 _AHEAD, _BESIDE = 20.0, 110.0
 """Up to how many degrees off a thing is ahead, and to the left or right; beyond it is behind."""
 
@@ -95,11 +96,16 @@ class Wanted:
         """The language that it was said in: ``zh`` or ``en``."""
         return "en" if self.text.isascii() else "zh"
 
-    def is_it(self, name: str, colour: str | None) -> bool:
-        """Whether this is a thing of that class; `colour` is the one it was seen in, if any.
+    def is_it(self, name: str, colour: str | None, shape: float = 1.0) -> bool:
+        """Whether this is a thing of that class.
 
         A class may have its colour in its name, as ``red_ball`` does; one that is nothing but a colour may be any
-        thing.
+        thing, and a ball if it is about as wide as high.
+
+        Args:
+            name: its class.
+            colour: in which it was seen, if any.
+            shape: its width by its height.
         """
         words = _words(name)
         told = next((_ENGLISH_COLOURS[word] for word in words if word in _ENGLISH_COLOURS), None)
@@ -109,7 +115,7 @@ class Wanted:
         if not self.thing:
             return True
         if not rest:
-            return self.colour is not None
+            return self.colour is not None and (self.thing != _ROUND or _ABOUT_ONE[0] < shape < _ABOUT_ONE[1])
         return self.thing in (thing_of(rest), thing_of(rest.split()[-1]))
 
 
