@@ -19,6 +19,7 @@ from linkwright.nodes.frame_poses import FramePoses
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 from linkwright.nodes.settings import bad_value, positive, tell_unknown
 from linkwright.nodes.velocity_topic import VelocityTopic
+from linkwright.nodes.vision.nav2_trip import Nav2Trip
 from linkwright.nodes.vision.seen_things import SeenThings, Thing
 from linkwright.vision.places.seeking import Phase, Seeker, SeekSettings, View
 from linkwright.vision.places.words import LANGUAGES, Answer, Sighting, Wanted, answer, described, wanted
@@ -36,8 +37,8 @@ class ObjectSeeker(SingleNode):
 
     Parameters: ``distance`` (from the robot's middle to the thing's nearest side, m), ``max_linear_velocity`` (m/s),
     ``max_angular_velocity`` (rad/s), ``lost_time`` (s), ``obstacle_distance`` (m), ``blocked_time`` (s),
-    ``robot_radius`` (m), ``base_frame``, ``fixed_frame``, ``language`` (en or zh; a request in Chinese is answered
-    in Chinese anyway).
+    ``robot_radius`` (m), ``base_frame``, ``fixed_frame``, ``use_nav2`` (go by ``navigate_to_pose`` once the thing is
+    seen, where that is served), ``language`` (en or zh; a request in Chinese is answered in Chinese anyway).
 
     Raises:
         LinkwrightError: a parameter cannot have its value (NODE433, GRAPH201).
@@ -58,6 +59,7 @@ class ObjectSeeker(SingleNode):
         self._began_ns = 0
         self._scan: Any = None
         text = get_message("std_msgs/msg/String")
+        self._trip = Nav2Trip(node, self._trip_ended) if self._by_nav2 else None
         self._velocity = VelocityTopic(node, "cmd_vel", frame_id=self._base)
         self._response = node.create_publisher(text, "/voice/response", _DEPTH)
         self._commander = Commander(self._commander_lost)
@@ -75,6 +77,7 @@ class ObjectSeeker(SingleNode):
         """Stop the robot, and end."""
         if self._seeker.phase is not Phase.IDLE:
             self._velocity.stop()
+        self._cancel_trip()
         super().close()
 
     def _declare(self) -> None:
@@ -92,6 +95,7 @@ class ObjectSeeker(SingleNode):
         self._radius = self._positive("robot_radius", 0.22)
         self._base: str = self._node.declare_parameter("base_frame", "base_link").value
         self._fixed: str = self._node.declare_parameter("fixed_frame", "odom").value
+        self._by_nav2: bool = self._node.declare_parameter("use_nav2", False).value
         self._language: str = self._node.declare_parameter("language", "en").value
         if self._language not in LANGUAGES:
             raise bad_value("language", self._language, self._node.get_name(), LANGUAGES)
@@ -115,6 +119,7 @@ class ObjectSeeker(SingleNode):
             return
         if self._seeker.phase is Phase.IDLE:
             self._velocity.review()
+        self._cancel_trip()
         self._wanted, self._target, self._began_ns = request, None, self._now_ns()
         self._seeker.begin(follow=follow)
         self._say(Answer.LOOKING)
@@ -122,6 +127,7 @@ class ObjectSeeker(SingleNode):
     def _stop(self) -> None:
         if self._seeker.phase is not Phase.IDLE:
             self._seeker.stop()
+            self._cancel_trip()
             self._velocity.stop()
             self._say(Answer.STOPPED)
 
@@ -145,12 +151,33 @@ class ObjectSeeker(SingleNode):
         return response
 
     def _step(self) -> None:
-        if self._seeker.phase is Phase.IDLE:
+        if self._seeker.phase is Phase.IDLE or (self._trip is not None and self._trip.is_under_way):
             return
         move = self._seeker.step(self._view())
         if move.event is not None:
             self._say(move.event)
+        if move.event is Answer.FOUND and self._begin_trip():
+            self._velocity.stop()
+            return
         self._velocity.publish((move.linear, 0.0, 0.0), (0.0, 0.0, move.angular))
+
+    def _begin_trip(self) -> bool:
+        """Have nav2 go to the thing that was found; whether that is wanted, and nav2 there."""
+        trip, target = self._trip, self._target
+        pose = self._poses.pose(self._fixed, self._base, 0)
+        if trip is None or target is None or pose is None or self._seeker.follow or not trip.is_served:
+            return False
+        distance = self._seeker.settings.distance + target.radius
+        trip.begin(self._fixed, (pose[0], pose[1]), (target.x, target.y), distance)
+        return True
+
+    def _trip_ended(self, reached: bool) -> None:
+        self._seeker.stop()
+        self._say(Answer.ARRIVED if reached else Answer.BLOCKED)
+
+    def _cancel_trip(self) -> None:
+        if self._trip is not None:
+            self._trip.cancel()
 
     def _view(self) -> View:
         now_ns = self._now_ns()

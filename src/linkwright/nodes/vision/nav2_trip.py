@@ -1,0 +1,79 @@
+"""Going to a thing by nav2, around what stands in the way: the action ``navigate_to_pose``."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import atan2, cos, hypot, sin
+from typing import Any
+
+from linkwright.graph import ActionClient, GoalStatus, Node
+from linkwright.messages import get_action
+
+_ACTION = "nav2_msgs/action/NavigateToPose"
+
+
+class Nav2Trip:
+    """One goal at a time.
+
+    Args:
+        node: whose it is.
+        ended: called when a goal that was not canceled has ended, with whether it was reached.
+    """
+
+    def __init__(self, node: Node, ended: Callable[[bool], None]) -> None:
+        self._node, self._ended = node, ended
+        self._client = ActionClient(node, _ACTION, "navigate_to_pose")
+        self._trip: object | None = None
+        self._goal: Any = None
+
+    @property
+    def is_served(self) -> bool:
+        """Whether nav2 is there."""
+        return self._client.server_is_ready()
+
+    @property
+    def is_under_way(self) -> bool:
+        """Whether a goal was sent and has not ended."""
+        return self._trip is not None
+
+    def begin(self, frame: str, robot: tuple[float, float], thing: tuple[float, float], distance: float) -> None:
+        """Send the goal: before a thing, on the robot's side of it, with a look at it.
+
+        Args:
+            frame: of the places.
+            robot: where the robot is, x and y in metres.
+            thing: where the thing is.
+            distance: between the middles of both in the end, metres.
+        """
+        yaw = atan2(thing[1] - robot[1], thing[0] - robot[0])
+        way = max(0.0, hypot(thing[0] - robot[0], thing[1] - robot[1]) - distance)
+        goal = get_action(_ACTION).Goal()
+        goal.pose.header.frame_id = frame
+        goal.pose.header.stamp = self._node.get_clock().now().to_msg()
+        at, turn = goal.pose.pose.position, goal.pose.pose.orientation
+        at.x, at.y = robot[0] + way * cos(yaw), robot[1] + way * sin(yaw)
+        turn.z, turn.w = sin(yaw / 2), cos(yaw / 2)
+        trip = self._trip = object()
+        self._client.send_goal_async(goal).add_done_callback(lambda future: self._answered(trip, future.result()))
+
+    def cancel(self) -> None:
+        """Give up, if a goal is under way."""
+        self._trip = None
+        if self._goal is not None:
+            self._goal.cancel_goal_async()
+            self._goal = None
+
+    def _answered(self, trip: object, goal: Any) -> None:
+        if trip is not self._trip:
+            if goal.accepted:
+                goal.cancel_goal_async()
+        elif goal.accepted:
+            self._goal = goal
+            goal.get_result_async().add_done_callback(lambda future: self._end(trip, future.result().status))
+        else:
+            self._end(trip, GoalStatus.ABORTED)
+
+    def _end(self, trip: object, status: int) -> None:
+        if trip is self._trip:
+            self._trip = self._goal = None
+            self._ended(status == GoalStatus.SUCCEEDED)
