@@ -85,6 +85,23 @@ def test_what_cannot_serve_as_an_example_is_not_taken_and_told_why(samples, code
     assert words.names == ()
 
 
+def test_a_take_that_is_unlike_the_word_is_not_taken():
+    words = enrolled()
+    (finding,) = enrol(words, "stop", say("mumi", seed=5))
+    assert (finding.code, finding.severity) == ("VOICE208", Severity.ERROR)
+    assert len(words.takes("stop")) == 3
+
+
+def test_a_word_that_sounds_like_another_is_taken_with_a_warning_that_names_it():
+    words = enrolled()
+    assert enrol(words, "halt", say(WORDS["stop"], seed=6)) == ()
+    (finding,) = enrol(words, "halt", say(WORDS["stop"], seed=7))
+    assert (finding.code, finding.severity) == ("VOICE209", Severity.WARNING)
+    assert "'halt'" in str(finding.message)
+    assert "'stop'" in str(finding.message)
+    assert len(words.takes("halt")) == 2
+
+
 @pytest.mark.parametrize("name", ["", "  ", "a\nb", "x" * 200])
 def test_a_name_that_cannot_be_shown_is_not_taken(name):
     (finding,) = enrol(Words(), name, say(WORDS["stop"]))
@@ -93,9 +110,10 @@ def test_a_name_that_cannot_be_shown_is_not_taken(name):
 
 def test_there_is_a_most_of_words():
     take = enrolled(("stop",)).takes("stop")
-    words = Words({str(number): take for number in range(MOST_WORDS)})
+    words = Words({str(number): take[:1] for number in range(MOST_WORDS)})
     assert enrol(words, "more", say(WORDS["stop"]))[0].code == "VOICE204"
-    assert enrol(words, "7", say(WORDS["stop"])) == ()
+    assert enrol(words, "7", say(WORDS["stop"]))[0].code == "VOICE209"
+    assert len(words.takes("7")) == 2
 
 
 def damage(document, change):

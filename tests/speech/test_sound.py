@@ -112,7 +112,7 @@ def test_what_is_above_half_the_rate_does_not_come_back_as_an_alias(hertz):
     assert np.sqrt(np.mean(found[500:7000] ** 2)) < 1e-3
 
 
-@pytest.mark.parametrize("length", [1, 100, 777, 4410])
+@pytest.mark.parametrize("length", [50, 777, 4410])
 def test_a_stream_is_resampled_as_the_whole(length):
     values = np.random.default_rng(1).normal(size=20_000) / 10
     resampler = Resampler(44_100)

@@ -72,6 +72,7 @@ def say(
         sound += (
             (np.maximum(voiced, 0.0) * hum + 0.4 * np.clip(1.0 - np.abs(voiced), 0, 1) * hiss) * carrier / (1 + formant)
         )
+    sound += 0.05 * breath * np.maximum(voiced, 0.0)
     sound *= np.clip((voiced + 1.0) * 3.0, 0.0, 1.0)
     sound *= level / np.sqrt(np.mean(sound**2))
     rest = np.zeros(int(silence * RATE))

@@ -63,6 +63,11 @@ class SpeechEngine(ABC):
     def finish(self) -> Sequence[Heard]:
         """The sound has ended, as when a button is let go: what was said until then. The stream may go on after it."""
 
+    @property
+    def problem(self) -> Diagnostic | None:
+        """Why it can hear nothing, or less than it should, at the moment; None when all is well."""
+        return None
+
     def close(self) -> None:  # noqa: B027 - few engines hold anything
         """Let go of what it holds. Nothing else is called after it."""
 

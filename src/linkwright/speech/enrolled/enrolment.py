@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from linkwright.diagnostics import Diagnostic, Phrase, Severity, phrase
+from linkwright.speech.enrolled.recognition import Recogniser
 from linkwright.speech.enrolled.words import MOST_WORDS, Take, Words, name_problem, rounded
 from linkwright.speech.sound.activity import speech_span
 from linkwright.speech.sound.samples import Samples
@@ -15,7 +16,7 @@ _QUIETEST = 60.0  # effective value of the loudest 50 ms, in steps of 16 bits: -
 _LEAST_ABOVE_NOISE = 8.0  # dB, mean of the bands of the loudest frames
 _CLIPPED_SHARE = 0.01
 _CLIPPED_AT = 32_700
-_BESIDE = 2  # frames that are kept before and after
+_UNLIKE = 0.85  # of its distance to what it is not: takes of a word are at 0.7 and less
 
 
 def enrol(words: Words, name: str, samples: Samples) -> tuple[Diagnostic, ...]:
@@ -28,7 +29,8 @@ def enrol(words: Words, name: str, samples: Samples) -> tuple[Diagnostic, ...]:
 
     Returns:
         What is wrong with it. Errors, for which it is not taken: VOICE204 the name cannot be used; VOICE205 nothing is
-        heard, or too little above the noise; VOICE206 it is too short or too long; VOICE207 it is overdriven.
+        heard, or too little above the noise; VOICE206 it is too short or too long; VOICE207 it is overdriven;
+        VOICE208 it is unlike what was said for the word before. A warning: VOICE209 it sounds much like another word.
     """
     reason = name_problem(name)
     if reason is not None:
@@ -47,9 +49,33 @@ def enrol(words: Words, name: str, samples: Samples) -> tuple[Diagnostic, ...]:
         )
     if finding is not None:
         return (finding,)
-    first, last = max(0, first - _BESIDE), min(len(powers), last + _BESIDE)
-    words.add(name, Take(rounded(powers[first:last]), rounded(noise)))
-    return ()
+    take = Take(rounded(powers[first:last]), rounded(noise))
+    found = _compared(words, name, take)
+    if found is None or found.severity is not Severity.ERROR:
+        words.add(name, take)
+    return () if found is None else (found,)
+
+
+def _compared(words: Words, name: str, take: Take) -> Diagnostic | None:
+    """Whether a take is like those of its word, and unlike other words; nothing is known of a word's first take."""
+    if not words.takes(name):
+        return None
+    costs, backwards = Recogniser(words).compare(take)
+    own = costs.pop(name)
+    if own > _UNLIKE * backwards:
+        return _refused(
+            "VOICE208",
+            phrase("what was said for '{name}' is unlike what was said for it before", name=name),
+            phrase("say it again as before, or remove the word and enrol it anew"),
+        )
+    other = min(costs, key=lambda one: costs[one], default=name)
+    if other != name and own > _UNLIKE * costs[other]:
+        message = phrase(
+            "'{name}' sounds much like '{other}', so one may be taken for the other", name=name, other=other
+        )
+        hint = phrase("choose a longer or a more different word for one of them")
+        return Diagnostic("VOICE209", message, severity=Severity.WARNING, hint=hint)
+    return None
 
 
 def _above(powers: np.ndarray, noise: np.ndarray) -> np.ndarray:

@@ -1,8 +1,8 @@
 """Where somebody speaks: frames against a noise floor that follows what is heard.
 
-The floor of each band follows its power while nobody speaks, down faster than up. While somebody speaks it rises only
-to the least that the band had in the last 0.8 s (minimum statistics, after R. Martin): so a fan that is switched on
-is speech for no longer than that.
+The floor of each band follows its power while nobody speaks. While somebody speaks it falls with it, and rises only to
+the least that the band had in the last 0.8 s (minimum statistics, after R. Martin): so a fan that is switched on is
+speech for no longer than that.
 """
 
 from __future__ import annotations
@@ -18,13 +18,14 @@ HANGOVER = 40
 """Frames without speech after which an utterance is over: 0.4 s, longer than the closure of a plosive."""
 
 _LEAST_POWER = 1.0  # below the noise of any microphone at 16 bits
-_BEGINS, _GOES_ON = 4.0, 2.5  # dB above the floor, mean of all bands, of the last frames
+_BEGINS, _GOES_ON = 3.0, 2.0  # dB above the floor, mean of all bands, of the last frames
+_IN_A_TAKE = 4.0  # dB, of an example, which is to be clear
 _MOST_OF_A_BAND = 25.0  # dB: one band alone, as of a whistle, is no speech
 _SMOOTHED = 3  # frames
 _TO_BEGIN = 4  # frames in a row
 _WATCHED = 80  # frames in which the least is looked for
 _OVER_THE_LEAST = 1.4  # the mean of noise over its least, of sums of three frames
-_UP, _DOWN = 0.03, 0.1
+_UP, _DOWN = 0.05, 0.08  # shares by which the floor comes nearer with each frame
 
 
 class VoiceActivity:
@@ -71,8 +72,7 @@ class VoiceActivity:
 
     def _follow(self, smooth: NDArray[np.float64], loud: bool) -> None:
         lower = smooth < self.floor
-        up = 0.0 if loud else max(_UP, 1.0 / self._seen)
-        rate = np.where(lower, _DOWN, up)
+        rate = np.where(lower, _DOWN, 0.0 if loud else max(_UP, 1.0 / self._seen))
         self.floor = self.floor + rate * (smooth - self.floor)
         if self._seen % 10 == 0 and len(self._watched) == _WATCHED:
             self.floor = np.maximum(self.floor, _OVER_THE_LEAST * np.min(self._watched, axis=0))
@@ -91,7 +91,7 @@ def speech_span(powers: Powers) -> tuple[int, int, NDArray[np.float64]]:
     smooth[1:-1] = (smooth[:-2] + smooth[1:-1] + smooth[2:]) / 3.0
     floor = np.maximum(_LEAST_POWER, _OVER_THE_LEAST * np.quantile(smooth, 0.1, axis=0))
     above = np.mean(np.clip(10.0 * np.log10(smooth / floor), 0.0, _MOST_OF_A_BAND), axis=1)
-    loud = np.flatnonzero(above > _BEGINS)
+    loud = np.flatnonzero(above > _IN_A_TAKE)
     if not len(loud):
         return 0, 0, floor
     cuts = np.flatnonzero(np.diff(loud) > HANGOVER) + 1

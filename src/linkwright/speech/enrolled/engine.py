@@ -1,0 +1,158 @@
+"""The engine ``enrolled``: words that the user said three times each, in any language, with no model to fetch."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import suppress
+from pathlib import Path
+
+import numpy as np
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, display_path, phrase
+from linkwright.speech.engine import EngineOptions, Heard, SpeechEngine
+from linkwright.speech.enrolled.recognition import ACCEPTED, Guess, Recogniser
+from linkwright.speech.enrolled.words import Words, words_path
+from linkwright.speech.sound.activity import VoiceActivity
+from linkwright.speech.sound.samples import RATE, Samples
+from linkwright.speech.sound.spectra import BANDS, HOP, MelFrames, Powers
+
+_BEFORE = 20  # frames kept from before somebody speaks: a word begins softly
+_STEP = 5  # frames that must be new before an utterance is looked at again
+_TOO_LONG = 2.5  # times the longest take: no word
+
+
+class EnrolledEngine(SpeechEngine):
+    """Compares what is said between two silences with the enrolled words.
+
+    The file may come, change and go while it listens: it is looked at with each block.
+
+    Args:
+        options: `model` is the file of words, `words_path` where it is None. Of its words those of the phrases count;
+            others only tell what is none of them. Case and outer spaces make no difference.
+
+    Raises:
+        LinkwrightError: the file is there and cannot be read, see `Words.read`.
+    """
+
+    def __init__(self, options: EngineOptions) -> None:
+        self._path = options.model or words_path()
+        self._phrases = {_plain(text): text for text in options.phrases}
+        self._stamp = _stamp(self._path)
+        self._problem: Diagnostic | None = None
+        self._recogniser: Recogniser | None = None
+        if self._stamp is not None:
+            self._take(Words.read(self._path))
+        else:
+            self._nothing_enrolled()
+        self._frames = MelFrames()
+        self._activity = VoiceActivity()
+        self._kept: Powers = np.zeros((0, BANDS))
+        self._seen = 0
+        self._looked = 0
+        self._partial: str | None = None
+
+    @property
+    def problem(self) -> Diagnostic | None:
+        """VOICE201 no word is enrolled that counts; VOICE202, VOICE203 the file was changed to one that is damaged."""
+        return self._problem
+
+    def hear(self, samples: Samples) -> Sequence[Heard]:
+        """See `SpeechEngine.hear`; a word is told as a partial with the block in which it ends."""
+        self._follow_file()
+        heard: list[Heard] = []
+        for frame in self._frames.feed(samples):
+            spoke = self._activity.speaking
+            speaks = self._activity.step(frame)
+            self._seen += 1
+            self._keep(frame, speaks or spoke)
+            if spoke and not speaks:
+                heard += self._end()
+        if self._activity.speaking and self._seen - self._looked >= _STEP:
+            heard += self._look()
+        return heard
+
+    def finish(self) -> Sequence[Heard]:
+        """See `SpeechEngine.finish`."""
+        return self._end() if self._activity.speaking else []
+
+    def _keep(self, frame: np.ndarray, speech: bool) -> None:
+        most = self._most() if speech else _BEFORE
+        self._kept = np.concatenate((self._kept, frame[None]))[-most:]
+
+    def _most(self) -> int:
+        longest = self._recogniser.longest if self._recogniser is not None else 100
+        return int(_TOO_LONG * longest) + 2 * _BEFORE
+
+    def _look(self) -> list[Heard]:
+        """What is known of an utterance that goes on."""
+        self._looked = self._seen
+        guess = self._guess()
+        name = self._name(guess)
+        if guess is None or name is None or name == self._partial:
+            return []
+        self._partial = name
+        return [self._heard(name, guess, final=False)]
+
+    def _end(self) -> list[Heard]:
+        """The utterance is over."""
+        guess = self._guess()
+        self._activity.end()
+        name = self._name(guess)
+        self._partial = None
+        heard = self._heard(name or "", guess, final=True)
+        self._kept = self._kept[-_BEFORE:]
+        return [heard]
+
+    def _guess(self) -> Guess | None:
+        if self._recogniser is None or len(self._kept) >= self._most():
+            return None
+        return self._recogniser.guess(self._kept, self._activity.floor)
+
+    def _name(self, guess: Guess | None) -> str | None:
+        """The phrase that was said, if it was one of them."""
+        if guess is None or guess.confidence < ACCEPTED:
+            return None
+        return self._phrases.get(_plain(guess.name))
+
+    def _heard(self, name: str, guess: Guess | None, *, final: bool) -> Heard:
+        begin = self._seen - len(self._kept)
+        first, last = (guess.first, guess.last + 1) if guess is not None else (0, len(self._kept))
+        confidence = guess.confidence if guess is not None and name else 0.0
+        return Heard(name, confidence, final, (begin + first) * HOP / RATE, (begin + last) * HOP / RATE)
+
+    def _follow_file(self) -> None:
+        stamp = _stamp(self._path)
+        if stamp == self._stamp:
+            return
+        self._stamp = stamp
+        if stamp is None:
+            self._recogniser = None
+            self._nothing_enrolled()
+            return
+        try:
+            self._take(Words.read(self._path))
+        except LinkwrightError as error:
+            self._problem = error.diagnostics[0]
+
+    def _take(self, words: Words) -> None:
+        self._problem = None
+        self._recogniser = Recogniser(words) if words.names else None
+        if not self._phrases.keys() & {_plain(name) for name in words.names}:
+            self._nothing_enrolled()
+
+    def _nothing_enrolled(self) -> None:
+        message = phrase("none of the phrases is enrolled in '{path}'", path=display_path(self._path))
+        hint = phrase("enrol words on the page, or with 'linkwright voice enrol'")
+        self._problem = Diagnostic("VOICE201", message, severity=Severity.WARNING, hint=hint)
+
+
+def _plain(name: str) -> str:
+    return " ".join(name.casefold().split())
+
+
+def _stamp(path: Path) -> tuple[int, int, int] | None:
+    """What changes when a file is written; None where there is none."""
+    with suppress(OSError):
+        facts = path.stat()
+        return facts.st_mtime_ns, facts.st_size, facts.st_ino
+    return None

@@ -1,0 +1,151 @@
+"""How far a sound is from each enrolled take: dynamic time warping of cepstra, over all takes at once.
+
+For each frame of the sound a path goes on by no, one or two frames of a take: a word may be said twice as fast, and all
+paths have as many costs as the sound has frames. Before and after the word, paths stay in the background. So there is
+no loop over takes: a frame is a few operations on an array with all their frames.
+
+Noise is masked, after Klatt and after Holmes and Sedgwick: what lies below the noise of now, or far below the loudest,
+is raised to there, in takes and sound alike. So they look the same, whatever noise there is now and was at enrolment.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.speech.enrolled.words import Take
+from linkwright.speech.sound.spectra import BANDS, Powers
+
+_Array = NDArray[np.float32]
+
+_MASK = 2.0  # of the power of the noise
+_RANGE = 40.0  # dB below the loudest
+_LOUDEST = 12  # frames
+_CEPSTRA = 12
+_OF_LEVEL = 0.3  # weight of the zeroth coefficient
+_OF_CHANGE = 1.5  # weight of the differences
+_STAYING = np.float32(1.0)  # costs of a path that stays in a frame of a take: it waits in the background instead
+_FAR = np.float32(1e9)
+_BESIDE = 2  # frames on each side that differences are made of
+
+
+@dataclass(frozen=True, slots=True)
+class Match:
+    """How well each take explains a sound. Arrays have the shape ``(takes,)``.
+
+    Attributes:
+        cost: mean distance of a frame of the word to the frame of the take, with all that is left over beside the word.
+        first: the frame of the sound with which the word begins.
+        last: the frame with which it ends.
+        background: mean distance of the frames from first to last to the background.
+    """
+
+    cost: _Array
+    first: NDArray[np.intp]
+    last: NDArray[np.intp]
+    background: _Array
+
+
+class Templates:
+    """Takes, ready to be compared with sounds.
+
+    Args:
+        takes: at least one.
+    """
+
+    def __init__(self, takes: tuple[Take, ...]) -> None:
+        self.lengths = np.array([len(take.powers) for take in takes])
+        clean = [np.maximum(take.powers - take.noise, 0.0) for take in takes]
+        beside = ((_BESIDE, _BESIDE), (0, 0))
+        self._clean = np.concatenate([np.pad(powers / _loudness(powers), beside, "edge") for powers in clean])
+        self._inner = np.concatenate([_inner(length) for length in self.lengths])
+        starts = np.cumsum(self.lengths + 2) - self.lengths
+        self._places = np.concatenate(
+            [start + np.arange(length) for start, length in zip(starts, self.lengths, strict=True)]
+        )
+        self._firsts, self._lasts = starts, starts + self.lengths - 1
+
+    def match(self, powers: Powers, noise: NDArray[np.float64]) -> Match:
+        """Compare a sound with them.
+
+        Args:
+            powers: at least one frame, with the word in it and some background before and after.
+            noise: power of the background, shape ``(BANDS,)``.
+        """
+        loudness = _loudness(np.maximum(powers - noise, 0.0))
+        mask = np.maximum(_MASK * noise, loudness / BANDS * 10.0 ** (-_RANGE / 10.0))
+        sound = _features(powers, mask)
+        background = _features(mask[None], mask)[0]
+        states = _features(loudness * self._clean, mask)[self._inner]
+        distances = _distances(sound, states)
+        silent = np.sqrt(np.sum((sound - background) ** 2, axis=1))
+        cost, first, last = self._paths(distances, silent)
+        waited = np.concatenate(([0.0], np.cumsum(silent)))
+        beside = (waited[last + 1] - waited[first]) / (last + 1 - first)
+        return Match(cost, first, last, beside.astype(np.float32))
+
+    def _paths(self, distances: _Array, silent: _Array) -> tuple[_Array, NDArray[np.intp], NDArray[np.intp]]:
+        """Costs, first and last frames of the best paths; they enter a take through two places before it."""
+        count, size = len(distances), int(self._lasts[-1]) + 1
+        waited = np.concatenate((np.zeros(1, np.float32), np.cumsum(silent, dtype=np.float32)))
+        entries = np.concatenate((self._firsts - 1, self._firsts - 2))
+        here = np.zeros(size, np.float32)
+        past, found = np.full(size, _FAR, np.float32), np.empty(size, np.float32)
+        begun, begins = np.zeros(size, np.int32), np.empty(size, np.int32)
+        ends = np.empty((count, len(self.lengths)), np.float32)
+        firsts = np.empty((count, len(self.lengths)), np.intp)
+        for frame in range(count):
+            past[entries] = waited[frame]
+            begun[entries] = frame
+            here[self._places] = distances[frame]
+            np.add(past, _STAYING, out=found)
+            np.copyto(begins, begun)
+            for step in (1, 2):
+                better = past[:-step] < found[step:]
+                np.copyto(found[step:], past[:-step], where=better)
+                np.copyto(begins[step:], begun[:-step], where=better)
+            found += here
+            ends[frame] = found[self._lasts]
+            firsts[frame] = begins[self._lasts]
+            past, found, begun, begins = found, past, begins, begun
+        total = ends + (waited[-1] - waited[1:])[:, None]
+        last = total.argmin(axis=0)
+        each = np.arange(len(self.lengths))
+        first = firsts[last, each]
+        return total[last, each] / (last + 1 - first), first, last
+
+
+def _inner(length: int) -> NDArray[np.bool_]:
+    """Which frames of a take with its repeated edges are its own."""
+    return np.pad(np.ones(length, dtype=np.bool_), _BESIDE)
+
+
+def _loudness(powers: Powers) -> float:
+    """Power of all bands of the loudest frames."""
+    return float(np.sort(powers.sum(axis=1))[-_LOUDEST:].mean()) + 1e-6
+
+
+def _features(powers: NDArray[np.float64], mask: NDArray[np.float64]) -> _Array:
+    """Cepstra of masked powers and how they change, shape ``(frames, 2 * (_CEPSTRA + 1))``."""
+    cepstra = 10.0 * np.log10(np.maximum(powers, mask)) @ _COSINES
+    padded = np.pad(cepstra, ((_BESIDE, _BESIDE), (0, 0)), "edge")
+    changes = (2.0 * (padded[4:] - padded[:-4]) + (padded[3:-1] - padded[1:-3])) / 10.0
+    return np.concatenate((cepstra, _OF_CHANGE * changes), axis=1).astype(np.float32)
+
+
+def _distances(sound: _Array, states: _Array) -> _Array:
+    """Euclidean, shape ``(frames of the sound, frames of all takes)``."""
+    squares = np.sum(sound**2, axis=1)[:, None] + np.sum(states**2, axis=1)[None] - 2.0 * (sound @ states.T)
+    return np.asarray(np.sqrt(np.maximum(squares, 0.0)), dtype=np.float32)
+
+
+def _cosines() -> NDArray[np.float64]:
+    """The discrete cosine transform (DCT-II) of the bands, the level weighted, shape ``(BANDS, _CEPSTRA + 1)``."""
+    bands, orders = np.arange(BANDS) + 0.5, np.arange(_CEPSTRA + 1)
+    weights = np.where(orders == 0, _OF_LEVEL, 1.0) * np.sqrt(2.0 / BANDS)
+    return np.asarray(np.cos(np.pi * np.outer(bands, orders) / BANDS) * weights)
+
+
+_COSINES = _cosines()

@@ -1,0 +1,162 @@
+"""The engine of enrolled words, on words made of numbers, in blocks as they come from a microphone."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.speech.engine import EngineOptions, make_engine
+from linkwright.speech.enrolled.engine import EnrolledEngine
+from linkwright.speech.enrolled.enrolment import enrol
+from linkwright.speech.enrolled.words import Words
+from linkwright.speech.sound.samples import BLOCK, RATE
+from tests.speech.voices import WORDS, say
+
+OTHERS = ("mumi", "faso.t", "ri.tamu", "om", "se.pifu", "tatata", "u", "moramifu")
+"""What is no command, in the letters of `voices`."""
+
+
+@pytest.fixture(scope="module")
+def words():
+    found = Words()
+    for name, phones in WORDS.items():
+        for number in range(3):
+            assert (
+                enrol(found, name, say(phones, speed=0.95 + 0.05 * number, pitch=115 + 5 * number, seed=number)) == ()
+            )
+    return found
+
+
+@pytest.fixture
+def path(words, tmp_path):
+    words.write(tmp_path / "words.json")
+    return tmp_path / "words.json"
+
+
+@pytest.fixture
+def engine(path):
+    return EnrolledEngine(EngineOptions(tuple(WORDS), model=path))
+
+
+def heard(engine, samples, block=BLOCK):
+    found = []
+    for at in range(0, len(samples), block):
+        found += engine.hear(samples[at : at + block])
+    return found
+
+
+def finals(engine, samples):
+    return [one.text for one in heard(engine, samples) if one.final]
+
+
+@pytest.mark.parametrize("name", WORDS)
+@pytest.mark.parametrize(("speed", "pitch", "level"), [(0.9, 122, 1000), (1.1, 117, 8000), (1.0, 120, 300)])
+def test_a_word_is_recognised_faster_slower_higher_lower_and_softer(engine, name, speed, pitch, level):
+    samples = say(WORDS[name], speed=speed, pitch=pitch, level=level, silence=0.8, seed=9)
+    (found,) = [one for one in heard(engine, samples) if one.final]
+    assert found.text == name
+    assert 0.5 < found.confidence <= 1.0
+    assert abs(found.start - 0.8) < 0.15
+    assert abs(found.end - (len(samples) / RATE - 0.8)) < 0.15
+
+
+@pytest.mark.parametrize("name", WORDS)
+def test_a_word_is_recognised_in_noise(engine, name):
+    samples = say(WORDS[name], speed=1.05, level=2000, noise=2000 / 10 ** (15 / 20), silence=0.8, seed=10)
+    assert finals(engine, samples) == [name]
+
+
+@pytest.mark.parametrize("phones", OTHERS)
+def test_what_was_not_enrolled_is_told_as_unknown(engine, phones):
+    assert finals(engine, say(phones, silence=0.8, seed=11)) == [""]
+
+
+@pytest.mark.parametrize("kind", ["silence", "noise", "hum", "click", "chirp"])
+def test_what_is_no_speech_is_no_command(engine, kind):
+    rng = np.random.default_rng(12)
+    at = np.arange(10 * RATE) / RATE
+    sound = {
+        "silence": np.zeros(len(at)),
+        "noise": 500 * rng.normal(size=len(at)) * (at > 3),
+        "hum": 3000 * np.sin(2 * np.pi * 50 * at) + 1000 * np.sin(2 * np.pi * 150 * at),
+        "click": 20_000.0 * (np.arange(len(at)) % RATE < 30) + rng.normal(size=len(at)),
+        "chirp": 3000 * np.sin(2 * np.pi * (200 * at + 300 * at**2)) + rng.normal(size=len(at)),
+    }[kind]
+    assert not [one.text for one in heard(engine, sound.astype(np.int16)) if one.text]
+
+
+def test_a_partial_comes_with_the_block_after_the_word_before_the_final(engine):
+    samples = say(WORDS["stop"], silence=0.8, seed=13)
+    end = len(samples) - int(0.8 * RATE)
+    known = None
+    for at in range(0, len(samples), BLOCK):
+        found = engine.hear(samples[at : at + BLOCK])
+        if known is None and any(one.text == "stop" for one in found):
+            known = at + BLOCK
+            assert not found[0].final
+    assert known is not None
+    assert known - end <= 0.3 * RATE
+
+
+def test_the_end_of_the_sound_ends_the_utterance_at_once(engine):
+    samples = say(WORDS["back"], silence=0.5, seed=14)
+    heard(engine, samples[: -int(0.45 * RATE)])
+    (found,) = engine.finish()
+    assert (found.text, found.final) == ("back", True)
+    assert engine.finish() == []
+
+
+@pytest.mark.parametrize("block", [37, 480, 16_000])
+def test_what_is_heard_does_not_depend_on_the_blocks(engine, block):
+    sound = np.concatenate([say(WORDS[name], silence=0.6, seed=15) for name in ("forward", "stop")])
+    assert [one.text for one in heard(engine, sound, block) if one.final] == ["forward", "stop"]
+
+
+def test_words_that_are_no_phrases_are_not_told(path):
+    engine = EnrolledEngine(EngineOptions(("stop",), model=path))
+    assert finals(engine, say(WORDS["forward"], silence=0.8)) == [""]
+    assert finals(engine, say(WORDS["stop"], silence=0.8)) == ["stop"]
+
+
+def test_phrases_are_told_as_they_were_asked_for(path):
+    engine = EnrolledEngine(EngineOptions(("Turn  Left",), model=path))
+    assert finals(engine, say(WORDS["turn left"], silence=0.8)) == ["Turn  Left"]
+
+
+def test_a_long_speech_is_no_command_and_is_not_kept(engine):
+    sound = np.concatenate([say(WORDS[name], silence=0.0, seed=16) for name in list(WORDS) * 4])
+    found = heard(engine, np.concatenate((say("a", level=1.0), sound, np.zeros(RATE, np.int16))))
+    assert [one.text for one in found if one.final] == [""]
+
+
+def test_one_enrolled_word_is_enough(words, tmp_path):
+    alone = Words({"stop": words.takes("stop")[:1]})
+    alone.write(tmp_path / "words.json")
+    engine = EnrolledEngine(EngineOptions(("stop",), model=tmp_path / "words.json"))
+    assert finals(engine, say(WORDS["stop"], silence=0.8, seed=17)) == ["stop"]
+    assert finals(engine, say("mumi", silence=0.8, seed=18)) == [""]
+
+
+def test_the_file_is_followed_as_it_comes_changes_and_goes(words, tmp_path):
+    path = tmp_path / "words.json"
+    engine = EnrolledEngine(EngineOptions(("stop", "back"), model=path))
+    said = say(WORDS["stop"], silence=0.8)
+    assert engine.problem.code == "VOICE201"
+    assert finals(engine, said) == [""]
+    words.write(path)
+    assert finals(engine, said) == ["stop"]
+    assert engine.problem is None
+    path.write_text("{", encoding="utf-8")
+    assert finals(engine, said) == ["stop"]
+    assert engine.problem.code == "VOICE203"
+    path.unlink()
+    assert finals(engine, said) == [""]
+    assert engine.problem.code == "VOICE201"
+
+
+def test_a_file_that_is_damaged_from_the_start_is_an_error(tmp_path):
+    (tmp_path / "words.json").write_text("[]", encoding="utf-8")
+    with pytest.raises(LinkwrightError) as caught:
+        make_engine("enrolled", EngineOptions(("stop",), model=tmp_path / "words.json"))
+    assert caught.value.diagnostics[0].code == "VOICE203"
