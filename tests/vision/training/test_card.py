@@ -1,10 +1,13 @@
 from __future__ import annotations
 
+import json
+
 import numpy as np
+import pytest
 
 from linkwright.vision.detections import Detections
 from linkwright.vision.evaluation import Things, evaluate
-from linkwright.vision.training.card import Examination, card, confusion
+from linkwright.vision.training.card import Examination, card, confusion, made_of
 
 BOXES = np.array([[0, 0, 8, 8], [20, 20, 60, 60]], np.float32)
 
@@ -41,3 +44,21 @@ def test_confusion_has_a_row_for_what_is_there_and_a_column_for_what_was_said():
         "| box | 1 |  |  |",
         "| nothing |  |  |  |",
     ]
+
+
+def test_a_card_says_how_the_dataset_was_made(tmp_path):
+    world = {"name": "playground", "file": "playground.world", "sha256": "0123456789abcdef"}
+    made = {"worlds": [world], "added": ["mbot.urdf"], "options": {"seed": 3, "most": 10}}
+    (tmp_path / "dataset.json").write_text(json.dumps({"made": [made, made]}))
+    assert made_of(tmp_path) == {
+        "worlds": "playground (sha256 0123456789ab)",
+        "options of linkwright dataset": "seed 3, most 10; seed 3, most 10",
+        "robots and models put in": "mbot.urdf",
+    }
+
+
+@pytest.mark.parametrize("content", [None, "", "{}", '{"made": [1]}', '{"made": [{"worlds": [{}]}]}'])
+def test_of_datasets_that_others_made_it_says_nothing(tmp_path, content):
+    if content is not None:
+        (tmp_path / "dataset.json").write_text(content)
+    assert made_of(tmp_path) == {}

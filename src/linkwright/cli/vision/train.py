@@ -72,7 +72,7 @@ def run(arguments: argparse.Namespace) -> int:
         threads=arguments.threads,
         resume=arguments.resume,
         held_out=tuple(arguments.held_out),
-        command=shlex.join(["linkwright", *sys.argv[1:]]),
+        command=shlex.join(["linkwright", *(word for word in sys.argv[1:] if word != "--resume")]),
     )
     taught = teach(options, lambda epoch: _tell(epoch, options.epochs))
     for each in taught.examinations:

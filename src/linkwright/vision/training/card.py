@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from linkwright.vision.evaluation import ClassFigures, Evaluation
 
@@ -40,6 +42,19 @@ def card(name: str, facts: Mapping[str, str], examinations: Sequence[Examination
     failures = [line for each in examinations for line in _failures(each)]
     lines += failures or ["Nothing stands out in these pictures."]
     return "\n".join(lines) + "\n"
+
+
+def made_of(folder: Path) -> dict[str, str]:
+    """What the card of `linkwright dataset` says of the making; nothing where another program made the dataset."""
+    try:
+        runs = json.loads((folder / "dataset.json").read_text(encoding="utf-8"))["made"]
+        worlds = {f"{each['name']} (sha256 {each['sha256'][:12]})" for run in runs for each in run["worlds"]}
+        added = {str(each) for run in runs for each in run["added"]}
+        options = "; ".join(", ".join(f"{key} {value}" for key, value in run["options"].items()) for run in runs)
+    except (OSError, ValueError, KeyError, TypeError):
+        return {}
+    made = {"worlds": ", ".join(sorted(worlds)), "options of linkwright dataset": options}
+    return {**made, "robots and models put in": ", ".join(sorted(added))} if added else made
 
 
 def table(figures: Evaluation) -> list[str]:

@@ -24,7 +24,7 @@ class Options:
         threads: of the processor.
         resume: go on from ``last.pt`` of the folder.
         held_out: folders of datasets that only judge the result, with their split ``test``, or else ``val``.
-        command: what the user typed, for the card.
+        command: what the user typed, for the card; without ``--resume``, with which the result is the same.
     """
 
     dataset: Path

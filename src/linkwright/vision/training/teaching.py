@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import platform
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, phrase
 from linkwright.vision.evaluation import Evaluation
-from linkwright.vision.training.card import Examination, card
+from linkwright.vision.training.card import Examination, card, made_of
 from linkwright.vision.training.library import need_pytorch
 from linkwright.vision.training.measuring import measure
 from linkwright.vision.training.options import Options
@@ -69,7 +68,7 @@ def teach(options: Options, tell: Callable[[Epoch], None]) -> Taught:
     course = Course(dataset.names, options, read_lesson(lesson, *size), read_lesson(exam, *size))
     if options.resume:
         course.load(options.output / "last.pt")
-    began, interrupted = time.monotonic(), False
+    interrupted = False
     try:
         course.run(tell)
     except KeyboardInterrupt:
@@ -78,9 +77,8 @@ def teach(options: Options, tell: Callable[[Epoch], None]) -> Taught:
         interrupted = True
     except OSError as error:
         raise _cannot_write(options.output, error) from None
-    minutes = (time.monotonic() - began) / 60
     facts = _facts(options, dataset, lesson, course.epoch, course.best_epoch, course.network)
-    facts["time"] = f"{minutes:.0f} minutes, {options.threads} threads, {platform.machine()}"
+    facts["time"] = f"{course.seconds / 60:.0f} minutes with {options.threads} threads, {platform.machine()}"
     network = options.output / f"{options.name}.onnx"
     described = {"description": f"{options.name}, trained by linkwright vision train", "seed": str(options.seed)}
     described["dataset"] = facts["pictures' sha256"]
@@ -128,6 +126,7 @@ def _facts(
         "command": f"`{options.command}`",
         "classes": ", ".join(dataset.names),
         "taught with": f"{len(lesson)} pictures with {asked} things of the dataset {dataset.folder.name}",
+        **made_of(dataset.folder),
         "pictures' sha256": sum_of(lesson),
         "input": f"{options.width} x {options.height}, red, green, blue, 0 to 1",
         "output": "YOLOv8's: [1, 4 + classes, cells], middle, width, height in pixels, scores",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import pickle
+import time
 from collections.abc import Callable, Iterator, Sequence
 from copy import deepcopy
 from dataclasses import asdict, dataclass
@@ -57,6 +58,18 @@ class Course:
         options: see there.
         lesson: what it learns from.
         exam: what it is judged by.
+
+    Attributes:
+        names: of the classes.
+        options: see there.
+        shape: of the network.
+        network: what learns.
+        smooth: a copy that follows it slowly, and is judged.
+        best: the weights of the copy when it did best.
+        best_map: how well that was, mAP50-95; -1 before it was judged.
+        best_epoch: when.
+        epoch: how many are done.
+        seconds: how long they took.
     """
 
     def __init__(self, names: Sequence[str], options: Options, lesson: Lesson, exam: Lesson) -> None:
@@ -72,6 +85,7 @@ class Course:
         self.best_map = -1.0
         self.best_epoch = 0
         self.epoch = 0
+        self.seconds = 0.0
         self._step = 0
         self._optimizer = torch.optim.AdamW(_groups(self.network), lr=options.rate, betas=(0.9, 0.98))
 
@@ -85,12 +99,14 @@ class Course:
             KeyboardInterrupt: it was interrupted; `best` is what was best so far.
         """
         while self.epoch < self.options.epochs:
+            began = time.monotonic()
             losses = self._learn(self.epoch)
             self.epoch += 1
             judged = self.judge() if self._is_exam() else None
             best = judged is not None and judged.map >= self.best_map
             if judged is not None and best:
                 self.best, self.best_map, self.best_epoch = deepcopy(self.smooth.state_dict()), judged.map, self.epoch
+            self.seconds += time.monotonic() - began
             self.save(self.options.output / "last.pt")
             tell(Epoch(self.epoch, losses, judged, best))
 
@@ -194,6 +210,7 @@ class Course:
             "optimizer": self._optimizer.state_dict(),
             "epoch": self.epoch,
             "step": self._step,
+            "seconds": self.seconds,
         }
         draft = path.with_suffix(".part")
         torch.save(state, draft)
@@ -220,7 +237,7 @@ class Course:
         self.smooth.load_state_dict(state["smooth"])
         self._optimizer.load_state_dict(state["optimizer"])
         self.best, self.best_map, self.best_epoch = state["best"], state["best_map"], state["best_epoch"]
-        self.epoch, self._step = state["epoch"], state["step"]
+        self.epoch, self._step, self.seconds = state["epoch"], state["step"], state["seconds"]
 
 
 def _tensor(pictures: NDArray[np.uint8]) -> Tensor:
