@@ -14,7 +14,7 @@ OVERLAPS = tuple(round(0.5 + 0.05 * step, 2) for step in range(10))
 """Intersection over union from which on a box is right: 0.50, 0.55, ... 0.95."""
 MOST = 100
 """Detections of a picture that count, the most certain ones."""
-_RECALLS: NDArray[np.float64] = np.linspace(0.0, 1.0, 101)
+_RECALLS: NDArray[np.floating] = np.linspace(0.0, 1.0, 101)
 _CONFUSION_SCORE, _CONFUSION_OVERLAP = 0.5, 0.5
 
 
