@@ -37,6 +37,7 @@ import type {
   Diagnostics,
   InertiaFindings,
 } from "./description";
+import type { PictureBoxes, SolidBoxes } from "./detections";
 import type { DisplayProperties, DisplayStatus, PropertyChanged, SetProperty, Tree } from "./displays";
 import type { AskExport, ExportFailed, ExportReady } from "./export";
 import type { EffortRings, ParticleMarks, PointMarks, PolygonLine, PoseMarks, RangeCone, Screw } from "./geometry";
@@ -129,6 +130,7 @@ import type { WorldPoses, WorldRays, WorldScene } from "./worlds";
 export * from "./binary";
 export * from "./configuration";
 export * from "./description";
+export * from "./detections";
 export * from "./displays";
 export * from "./export";
 export * from "./geometry";
@@ -296,11 +298,13 @@ export type DataContent =
   | MarkersChanged
   | OccupancyMap
   | ParticleMarks
+  | PictureBoxes
   | PointMarks
   | PolygonLine
   | PoseMarks
   | RangeCone
   | Screw
+  | SolidBoxes
   | WorldPoses
   | WorldRays
   | WorldScene;

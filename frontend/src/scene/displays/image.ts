@@ -11,12 +11,14 @@ export class ImageDrawing implements Drawing {
   readonly root = new Group();
   readonly isElsewhere = true;
   private readonly picture: PictureCanvas;
-  private readonly panel: OwnPanel;
+  protected readonly panel: OwnPanel;
+  /** When the image on the canvas was taken, s. */
+  protected imageStamp = 0;
   private frame: ImageFrame | null = null;
   private readonly resizing = new ResizeObserver(() => this.tellSize());
   private readonly stopListening: () => void;
 
-  constructor(private readonly context: DrawingContext) {
+  constructor(protected readonly context: DrawingContext) {
     this.picture = new PictureCanvas(context.beside);
     this.panel = new OwnPanel(context, "image", this.picture.canvas);
     this.panel.say(strings.pictures.none);
@@ -29,13 +31,18 @@ export class ImageDrawing implements Drawing {
     this.panel.match();
   }
 
-  dataChanged({ content }: DisplayData): void {
+  dataChanged({ content, stamp }: DisplayData): void {
     if (content.kind !== "image_frame") return;
     this.frame = content;
-    this.picture.take(content, (shown) => this.panel.say(shown ? "" : strings.pictures.unreadable));
+    this.picture.take(content, (shown) => {
+      this.panel.say(shown ? "" : strings.pictures.unreadable);
+      if (!shown) return;
+      this.imageStamp = stamp;
+      this.painted();
+    });
   }
 
-  dataForgotten(): void {
+  dataForgotten(_key: string | null): void {
     this.frame = null;
     this.picture.clear();
     this.panel.say(strings.pictures.none);
@@ -50,11 +57,21 @@ export class ImageDrawing implements Drawing {
     const [x, y] = [Math.floor(canvas.width / 2), Math.floor(canvas.height / 2)];
     return {
       images: this.picture.count,
-      width: this.frame?.width || canvas.width,
-      height: this.frame?.height || canvas.height,
+      ...this.size,
       middle: this.picture.colorAt(x, y),
       corner: this.picture.colorAt(0, 0),
     };
+  }
+
+  /** The image has come onto the canvas. */
+  protected painted(): void {
+    // Nothing is drawn over it.
+  }
+
+  /** Pixels of the message's image, 0 while there is none. */
+  protected get size(): { width: number; height: number } {
+    const { canvas } = this.picture;
+    return { width: this.frame?.width || canvas.width, height: this.frame?.height || canvas.height };
   }
 
   dispose(): void {

@@ -1,9 +1,11 @@
+import { BoxesDrawing } from "./boxes";
 import { CameraDrawing } from "./camera";
 import { CloudDrawing } from "./cloud";
 import { ImageDrawing } from "./image";
 import { MapDrawing } from "./map";
 import type { DrawingClass } from "./drawing";
 import { AxesDrawing } from "./axes";
+import { DetectionPictureDrawing } from "./detection-picture";
 import { EffortDrawing } from "./effort";
 import { GridCellsDrawing } from "./grid-cells";
 import { GridDrawing } from "./grid";
@@ -55,5 +57,10 @@ export const DRAWINGS: ReadonlyMap<string, DrawingClass> = new Map<string, Drawi
   ["rviz_default_plugins/Camera", CameraDrawing],
   ["rviz_default_plugins/Image", ImageDrawing],
   ["rviz_default_plugins/Map", MapDrawing],
+  ["vision_msgs_rviz_plugins/BoundingBox3D", BoxesDrawing],
+  ["vision_msgs_rviz_plugins/BoundingBox3DArray", BoxesDrawing],
+  ["vision_msgs_rviz_plugins/Detection3D", BoxesDrawing],
+  ["vision_msgs_rviz_plugins/Detection3DArray", BoxesDrawing],
+  ["linkwright/Detections", DetectionPictureDrawing],
   ["linkwright/World", WorldDrawing],
 ]);

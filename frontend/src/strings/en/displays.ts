@@ -33,6 +33,11 @@ const about: Readonly<Record<DisplayIcon, string>> = {
   TF: "The frames of tf and how they hang together.",
   Temperature: "Measured temperatures, as coloured points.",
   TwistStamped: "A velocity, as arrows: linear and angular.",
+  BoundingBox3D: "A box, of one colour.",
+  BoundingBox3DArray: "Boxes, of one colour.",
+  Detection3D: "A thing that was found, as a box.",
+  Detection3DArray: "Things that were found, as boxes with the colours of their classes.",
+  Detections: "An image, with boxes around what was found in it.",
   World: "A simulated world: all its models, where the simulation has them.",
   Wrench: "A force and a torque, as arrows.",
 };

@@ -1,0 +1,82 @@
+import { BoxGeometry, EdgesGeometry, Matrix4, Vector3, type Box3 } from "three";
+import { CopyBatch } from "../objects/copy-batch";
+import { cubeGeometry } from "../objects/geometries";
+import { LabelBatch } from "../objects/label-batch";
+import { WideLines } from "../objects/wide-lines";
+import { ContentDrawing } from "./content-drawing";
+import type { DrawingContext } from "./drawing";
+import { colorOf, poseAt } from "./styles";
+
+/** x y z of both ends of each of the twelve edges of a cube of one metre. */
+const EDGES = new EdgesGeometry(new BoxGeometry(1, 1, 1)).getAttribute("position").array as Float32Array;
+/** Height of a line of text, m: a third of the box, in these bounds. */
+const TEXT = [0.05, 0.5] as const;
+
+/** The displays of vision_msgs_rviz_plugins: boxes, or only their edges, with the colours of their classes. */
+export class BoxesDrawing extends ContentDrawing<"solid_boxes"> {
+  private readonly boxes = new CopyBatch(this.root, cubeGeometry());
+  private readonly edges = new WideLines();
+  private readonly labels = new LabelBatch();
+  private texts: string[] = [];
+
+  constructor(context: DrawingContext) {
+    super(context, "solid_boxes");
+    this.root.add(this.edges.root, this.labels.root);
+  }
+
+  dispose(): void {
+    this.boxes.dispose();
+    this.edges.dispose();
+    this.labels.dispose();
+  }
+
+  protected override told(): object {
+    return { boxes: this.latest?.sizes.length ? this.latest.sizes.length / 3 : 0, solid: this.boxes.size, texts: [...this.texts] };
+  }
+
+  protected expandBox(box: Box3): void {
+    this.boxes.expandBox(box);
+    this.edges.expandBox(box);
+  }
+
+  protected arrange(): void {
+    const { rows } = this.context.display;
+    const onlyEdges = rows.bool(false, "Only Edge");
+    const alpha = rows.number(1, "Alpha");
+    // Boxes without classes are white, for the one colour of the display.
+    const own = rows.text("", "Color") === "" ? null : colorOf(rows, "#ffff00", "Color");
+    const [placed] = this.placed();
+    const content = placed?.content;
+    const count = content ? content.sizes.length / 3 : 0;
+    const segments: number[] = [];
+    const colors: number[] = [];
+    this.texts = [];
+    const anchors: { at: Vector3; height: number }[] = [];
+    this.boxes.begin(onlyEdges ? 0 : count);
+    for (let i = 0; i < count && content && placed; i++) {
+      const size = new Vector3().fromArray(content.sizes, 3 * i);
+      const matrix = poseAt(content.poses, i, new Matrix4()).premultiply(placed.pose);
+      const middle = new Vector3().setFromMatrixPosition(matrix);
+      const [r = 0, g = 0, b = 0] = content.colors.subarray(3 * i, 3 * i + 3);
+      const color = own ?? (r << 16) | (g << 8) | b;
+      matrix.scale(size);
+      if (onlyEdges) {
+        for (let at = 0; at < EDGES.length; at += 3) {
+          segments.push(...new Vector3().fromArray(EDGES, at).applyMatrix4(matrix).toArray());
+          colors.push((color >> 16) / 255, ((color >> 8) & 255) / 255, (color & 255) / 255, 1);
+        }
+      } else this.boxes.add(matrix, 0, alpha, color);
+      const score = content.scores[i] ?? -1;
+      if (score < 0 || !rows.bool(false, "Show Score")) continue;
+      const height = Math.min(TEXT[1], Math.max(TEXT[0], size.z / 3));
+      this.texts.push(`${content.names[i] ?? ""} ${score.toFixed(2)}`.trim());
+      anchors.push({ at: middle.setZ(middle.z + 0.6 * size.z + height), height });
+    }
+    this.boxes.end();
+    this.edges.setStyle(0xffffff, alpha, rows.number(0.05, "Line Width"));
+    this.edges.setSegments(Float32Array.from(segments), Float32Array.from(colors));
+    this.labels.begin(this.texts.join("").length);
+    anchors.forEach(({ at, height }, i) => this.labels.add(this.texts[i] ?? "", at, height, 0, 1));
+    this.labels.end();
+  }
+}

@@ -1,0 +1,108 @@
+import type { DisplayData } from "../../connection/data";
+import type { PictureBoxes } from "../../protocol";
+import type { DrawingContext } from "./drawing";
+import { ImageDrawing } from "./image";
+
+/** Pixels of the canvas that boxes are drawn on, at least: small images have fine lines and texts, too. */
+const SHARP = 1280;
+const LINE = 3;
+const TEXT = 24;
+const MOST_KEPT = 10;
+
+/** linkwright/Detections: an image with boxes over it. */
+export class DetectionPictureDrawing extends ImageDrawing {
+  private readonly overlay = document.createElement("canvas");
+  /** The boxes of images that are yet to be painted, or are, by their stamps. */
+  private readonly found = new Map<number, PictureBoxes>();
+  /** Boxes of an image that is not there any more. */
+  private loose: PictureBoxes | null = null;
+  private shown: string[] = [];
+
+  constructor(context: DrawingContext) {
+    super(context);
+    this.overlay.className = "picture-overlay";
+    this.overlay.setAttribute("aria-hidden", "true");
+    this.panel.element.append(this.overlay);
+  }
+
+  override propertiesChanged(): void {
+    super.propertiesChanged();
+    this.draw();
+  }
+
+  override dataChanged(data: DisplayData): void {
+    const { content, stamp } = data;
+    if (content.kind === "picture_boxes") {
+      this.loose = content.of_image ? null : content;
+      if (content.of_image) this.found.set(stamp, content);
+      for (const old of [...this.found.keys()].slice(0, -MOST_KEPT)) this.found.delete(old);
+      if (this.loose) this.draw();
+    } else super.dataChanged(data);
+  }
+
+  override dataForgotten(key: string | null): void {
+    this.found.clear();
+    this.loose = null;
+    if (key === "boxes") this.draw();
+    else super.dataForgotten(key);
+  }
+
+  override inspect(): object {
+    return { ...super.inspect(), boxes: [...this.shown] };
+  }
+
+  /** The image is on the canvas. */
+  protected override painted(): void {
+    this.draw();
+  }
+
+  private draw(): void {
+    const { overlay } = this;
+    const boxes = this.found.get(this.imageStamp) ?? this.loose;
+    const { width, height } = this.size;
+    const context = overlay.getContext("2d");
+    if (!context || width === 0) return;
+    const scale = Math.max(1, SHARP / width);
+    overlay.width = Math.round(width * scale);
+    overlay.height = Math.round(height * scale);
+    this.shown = [];
+    if (!boxes) return;
+    context.scale(scale, scale);
+    const { rows } = this.context.display;
+    const least = rows.number(0, "Threshold");
+    const written = rows.bool(true, "Show Score");
+    for (let i = 0; i < boxes.boxes.length / 5; i++) {
+      const score = boxes.scores[i] ?? -1;
+      if (score >= 0 && score < least) continue;
+      const name = boxes.names[i] ?? "";
+      const text = score < 0 ? name : `${name} ${score.toFixed(2)}`.trim();
+      this.shown.push(text);
+      drawBox(context, boxes, i, scale, written ? text : "");
+    }
+  }
+}
+
+/** One box, with its text above its upper left corner, or below it where there is no room. */
+function drawBox(context: CanvasRenderingContext2D, { boxes, colors }: PictureBoxes, i: number, scale: number, text: string): void {
+  const [x = 0, y = 0, width = 0, height = 0, turn = 0] = boxes.subarray(5 * i, 5 * i + 5);
+  const [red = 0, green = 0, blue = 0] = colors.subarray(3 * i, 3 * i + 3);
+  const color = `rgb(${red} ${green} ${blue})`;
+  context.save();
+  context.translate(x, y);
+  context.rotate(turn);
+  context.strokeStyle = color;
+  context.lineWidth = LINE / scale;
+  context.strokeRect(-width / 2, -height / 2, width, height);
+  if (text !== "") {
+    const line = TEXT / scale;
+    context.font = `${0.75 * line}px sans-serif`;
+    const top = y - height / 2 < line ? -height / 2 : -height / 2 - line;
+    context.fillStyle = color;
+    context.fillRect(-width / 2, top, context.measureText(text).width + line / 2, line);
+    // Dark on light colours, light on dark ones.
+    context.fillStyle = 0.3 * red + 0.59 * green + 0.11 * blue > 110 ? "#101010" : "#ffffff";
+    context.textBaseline = "middle";
+    context.fillText(text, -width / 2 + line / 4, top + line / 2);
+  }
+  context.restore();
+}

@@ -1,0 +1,73 @@
+"""The colours of classes of things: the same for a name wherever it is shown."""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TypeAlias
+
+import yaml
+
+from linkwright.diagnostics import foreign, phrase
+
+Color: TypeAlias = tuple[int, int, int]
+
+KNOWN: dict[str, Color] = {
+    "car": (255, 165, 0),
+    "person": (0, 0, 255),
+    "cyclist": (255, 255, 0),
+    "motorcycle": (230, 230, 250),
+}
+"""The classes to which vision_msgs_rviz_plugins gives colours of their own."""
+
+UNNAMED: Color = (255, 22, 80)
+"""As there, of what has no class."""
+
+_PALETTE: tuple[Color, ...] = (
+    (230, 25, 75),
+    (60, 180, 75),
+    (255, 225, 25),
+    (67, 133, 255),
+    (245, 130, 48),
+    (178, 80, 220),
+    (66, 212, 244),
+    (240, 50, 230),
+    (191, 239, 69),
+    (250, 170, 190),
+    (70, 190, 180),
+    (200, 130, 60),
+)
+
+
+def class_color(name: str, table: Mapping[str, Color]) -> Color:
+    """The colour of a class, by the table, else by vision_msgs_rviz_plugins, else one of a palette by the name."""
+    if not name:
+        return UNNAMED
+    lower = name.lower()
+    return table.get(lower) or KNOWN.get(lower) or _PALETTE[zlib.crc32(name.encode()) % len(_PALETTE)]
+
+
+def read_class_colors(path: str) -> dict[str, Color]:
+    """The table in a YAML file, ``NAME: {r: 255, g: 165, b: 0}``, with names in lower case.
+
+    Raises:
+        ValueError: it cannot be read, or holds something else; the text says why.
+    """
+    try:
+        document = yaml.safe_load(Path(path).expanduser().read_text(encoding="utf-8"))
+    except OSError as error:
+        raise ValueError(phrase("cannot read '{path}': {reason}", path=path, reason=foreign(error.strerror))) from None
+    except (yaml.YAMLError, UnicodeDecodeError) as error:
+        text = " ".join(str(error).split())
+        raise ValueError(phrase("cannot read '{path}': {reason}", path=path, reason=foreign(text))) from None
+    if not isinstance(document, dict) or not all(_is_color(each) for each in document.values()):
+        raise ValueError(phrase("'{path}' holds no colours, such as: 'ball: {{r: 255, g: 0, b: 0}}'", path=path))
+    return {str(name).lower(): (each["r"], each["g"], each["b"]) for name, each in document.items()}
+
+
+def _is_color(value: object) -> bool:
+    if not isinstance(value, dict):
+        return False
+    parts = [value.get(part) for part in "rgb"]
+    return all(isinstance(part, int) and 0 <= part <= 255 for part in parts)

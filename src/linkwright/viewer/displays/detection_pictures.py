@@ -1,0 +1,137 @@
+"""Detections: an image, with boxes of vision_msgs/Detection2DArray over it."""
+
+from __future__ import annotations
+
+import asyncio
+from collections import deque
+from typing import Any
+
+import numpy as np
+
+from linkwright.viewer.config.property_store import qos_of
+from linkwright.viewer.config.rviz_config import DisplayConfig
+from linkwright.viewer.config.schema import Path, PropertySpec, Schema, topic_spec
+from linkwright.viewer.displays.base.display import DisplayHost, Pose
+from linkwright.viewer.displays.base.topic_display import SideTopic
+from linkwright.viewer.displays.class_colors import class_color
+from linkwright.viewer.displays.detections import best_result
+from linkwright.viewer.displays.image import ImageDisplay
+from linkwright.viewer.protocol.detections import PictureBoxes
+
+DETECTIONS = "Detections Topic"
+_TYPE = "vision_msgs/msg/Detection2DArray"
+_BOXES = "boxes"
+_MOST_IMAGES = 10
+"""Images that wait for what is found in them."""
+
+_PATIENCE = 1.0
+"""Seconds without detections after which images are shown as they come."""
+
+
+class DetectionPictureDisplay(ImageDisplay):
+    """Images with boxes around what was found in them, in a panel of their own.
+
+    While detections come, an image is shown together with those of its stamp, as late as the detector is. Detections of
+    an image that is not there any more are drawn over the one that is shown.
+    """
+
+    CLASS = "linkwright/Detections"
+    SCHEMA = (
+        *ImageDisplay.SCHEMA,
+        topic_spec(DETECTIONS, "/yolo/detections", _TYPE, messages=(_TYPE,)),
+        PropertySpec(
+            "Threshold",
+            "float",
+            0.0,
+            "Detections of a lower score are not shown. What the detector publishes is a parameter of its node.",
+            minimum=0.0,
+            maximum=1.0,
+        ),
+        PropertySpec("Show Score", "bool", True, "Write class and score above each box."),
+    )
+
+    def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
+        super().__init__(host, identity, config)
+        self._side = SideTopic(host, _TYPE, self._detected)
+        self._images: deque[Any] = deque(maxlen=_MOST_IMAGES)
+        self._detected_at = float("-inf")
+
+    def schema(self) -> Schema:
+        """Those of an image, and those of boxes."""
+        return (*super().schema(), *self.SCHEMA[len(ImageDisplay.SCHEMA) :])
+
+    def changed(self, path: Path) -> None:
+        """Listen to other detections."""
+        super().changed(path)
+        if path[0] == DETECTIONS and self.enabled:
+            self._listen()
+
+    def take_image(self, message: Any, pose: Pose | None) -> None:
+        """Show an image, or keep it until it is known what is in it."""
+        if asyncio.get_running_loop().time() - self._detected_at < _PATIENCE:
+            self._images.append(message)
+            return
+        self._images.clear()
+        self.forget(_BOXES)
+        super().take_image(message, pose)
+
+    def time_changed(self) -> None:
+        """Show what came while time stood still."""
+        self._side.go_on()
+        super().time_changed()
+
+    def reset(self) -> None:
+        """Forget image and boxes."""
+        self._images.clear()
+        self._detected_at = float("-inf")
+        super().reset()
+
+    def _subscribe(self) -> None:
+        super()._subscribe()
+        self._listen()
+
+    def _unsubscribe(self) -> None:
+        super()._unsubscribe()
+        self._side.close()
+
+    def _listen(self) -> None:
+        topic = self.properties.text(DETECTIONS).strip()
+        problem = self._side.listen(topic, qos_of(self.properties, DETECTIONS)) if topic else "Empty topic name"
+        if problem:
+            self.say(DETECTIONS, "error", problem)
+        else:
+            self.unsay(DETECTIONS)
+
+    def _detected(self, message: Any) -> None:
+        self._detected_at = asyncio.get_running_loop().time()
+        _, stamp_ns = self.frame_of(message)
+        image = next((each for each in self._images if self.frame_of(each)[1] == stamp_ns), None)
+        content = _boxes(message, of_image=image is not None)
+        if content is None:
+            self.say(DETECTIONS, "error", "Message contained invalid floating point values (nans or infs)")
+            return
+        self.unsay(DETECTIONS)
+        self.send(content, key=_BOXES, stamp_ns=stamp_ns)
+        if image is not None:
+            while self._images.popleft() is not image:
+                pass
+            super().take_image(image, None)
+
+
+def _boxes(message: Any, *, of_image: bool) -> PictureBoxes | None:
+    """The boxes; None when a number is none."""
+    detections = list(message.detections)
+    results = [best_result(each) for each in detections]
+    middles = [each.bbox.center for each in detections]
+    boxes = np.array(
+        [
+            (middle.position.x, middle.position.y, each.bbox.size_x, each.bbox.size_y, middle.theta)
+            for middle, each in zip(middles, detections, strict=True)
+        ],
+        dtype=np.float32,
+    ).reshape(-1, 5)
+    if not np.isfinite(boxes).all():
+        return None
+    colors = np.array([class_color(name, {}) for name, _ in results], dtype=np.uint8).reshape(-1, 3)
+    scores = np.array([score for _, score in results], dtype=np.float32)
+    return PictureBoxes(boxes, colors, scores, [name for name, _ in results], of_image)

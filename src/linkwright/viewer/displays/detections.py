@@ -1,0 +1,187 @@
+"""Detection3D, Detection3DArray, BoundingBox3D and BoundingBox3DArray: boxes of vision_msgs in the scene."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from linkwright.viewer.config.rviz_config import DisplayConfig
+from linkwright.viewer.config.schema import Path, PropertySpec, Schema, topic_spec
+from linkwright.viewer.displays.base.display import DisplayHost, Pose
+from linkwright.viewer.displays.base.topic_display import RecentDisplay
+from linkwright.viewer.displays.class_colors import Color, class_color, read_class_colors
+from linkwright.viewer.protocol.detections import SolidBoxes
+from linkwright.viewer.protocol.message import DataContent
+
+ONLY_EDGE, CONFIG_PATH, LIFETIME = "Only Edge", "ConfigPath", "Lifetime"
+
+_LOOK: Schema = (
+    PropertySpec(ONLY_EDGE, "bool", False, "Draw only the edges of the boxes."),
+    PropertySpec(
+        "Line Width",
+        "float",
+        0.05,
+        "Width of the edges, in metres.",
+        minimum=0.01,
+        maximum=0.1,
+        when=((ONLY_EDGE,), True),
+    ),
+    PropertySpec("Alpha", "float", 1.0, "Opacity of the boxes.", minimum=0.1, maximum=1.0),
+)
+_COLOUR = PropertySpec("Color", "color", "#ffff00", "Colour of the boxes.")
+CLASS_COLOURS = PropertySpec(
+    CONFIG_PATH, "string", "", "A YAML file with colours of classes, such as 'ball: {r: 255, g: 0, b: 0}'."
+)
+_CLASSES: Schema = (
+    PropertySpec("Show Score", "bool", False, "Write class and score above each box."),
+    CLASS_COLOURS,
+    PropertySpec(
+        LIFETIME, "int", 0, "Seconds after which a message is shown no more; 0 shows it until the next.", minimum=0
+    ),
+)
+
+
+class _BoxDisplay(RecentDisplay):
+    """The boxes of the last message."""
+
+    def _content(
+        self, boxes: Sequence[Any], colors: Sequence[Color], scores: Sequence[float], names: Sequence[str]
+    ) -> DataContent | None:
+        poses = np.array([_numbers(box.center) for box in boxes], dtype=np.float32).reshape(-1, 7)
+        sizes = np.array([(box.size.x, box.size.y, box.size.z) for box in boxes], dtype=np.float32).reshape(-1, 3)
+        if not self.is_finite(poses, sizes):
+            return None
+        marked = np.array(colors, dtype=np.uint8).reshape(-1, 3)
+        return SolidBoxes(poses, sizes, marked, np.array(scores, dtype=np.float32), list(names))
+
+
+def _numbers(pose: Any) -> tuple[float, ...]:
+    """X y z qx qy qz qw; a quaternion of zeros, as of messages that leave it out, is no turn."""
+    position, turn = pose.position, pose.orientation
+    w = turn.w if any((turn.x, turn.y, turn.z, turn.w)) else 1.0
+    return (position.x, position.y, position.z, turn.x, turn.y, turn.z, w)
+
+
+class BoundingBox3DArrayDisplay(_BoxDisplay):
+    """Boxes of one colour."""
+
+    CLASS = "vision_msgs_rviz_plugins/BoundingBox3DArray"
+    MESSAGE = "vision_msgs/msg/BoundingBox3DArray"
+    SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *_LOOK, _COLOUR)
+
+    def content(self, message: Any) -> DataContent | None:
+        """The boxes."""
+        boxes = self.boxes_of(message)
+        return self._content(boxes, [(255, 255, 255)] * len(boxes), [-1.0] * len(boxes), [""] * len(boxes))
+
+    def boxes_of(self, message: Any) -> Sequence[Any]:
+        """The BoundingBox3D of a message."""
+        return list(message.boxes)
+
+
+class BoundingBox3DDisplay(BoundingBox3DArrayDisplay):
+    """A box, in the Fixed Frame: its message has no header."""
+
+    CLASS = "vision_msgs_rviz_plugins/BoundingBox3D"
+    MESSAGE = "vision_msgs/msg/BoundingBox3D"
+    SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *_LOOK, _COLOUR)
+
+    def frame_of(self, message: Any) -> tuple[str, int]:
+        """The Fixed Frame, now."""
+        return self.host.frames.fixed_frame, 0
+
+    def boxes_of(self, message: Any) -> Sequence[Any]:
+        """The one box."""
+        return [message]
+
+
+def best_result(detection: Any) -> tuple[str, float]:
+    """Class and score of the likeliest hypothesis of a Detection2D or Detection3D; no class and -1 without any."""
+    best = max((each.hypothesis for each in detection.results), key=lambda each: each.score, default=None)
+    return ("", -1.0) if best is None else (best.class_id, best.score)
+
+
+class Detection3DArrayDisplay(_BoxDisplay):
+    """Things that were found, as boxes with the colours of their classes."""
+
+    CLASS = "vision_msgs_rviz_plugins/Detection3DArray"
+    MESSAGE = "vision_msgs/msg/Detection3DArray"
+    SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *_LOOK, *_CLASSES)
+
+    def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
+        super().__init__(host, identity, config)
+        self._table: dict[str, Color] = {}
+        self._end: asyncio.TimerHandle | None = None
+
+    def start(self) -> None:
+        """Read the colours, and listen."""
+        self._read_colors()
+        super().start()
+
+    def stop(self) -> None:
+        """Stop listening."""
+        self._cancel_end()
+        super().stop()
+
+    def changed(self, path: Path) -> None:
+        """Take other colours, another end."""
+        super().changed(path)
+        if path == (CONFIG_PATH,):
+            self._read_colors()
+        if path in ((CONFIG_PATH,), (LIFETIME,)):
+            self.show_again()
+
+    def take(self, message: Any, pose: Pose | None) -> None:
+        """Show the boxes, for as long as is asked for."""
+        super().take(message, pose)
+        self._cancel_end()
+        seconds = int(self.properties.number(LIFETIME))
+        if seconds:
+            self._end = asyncio.get_running_loop().call_later(seconds, self.reset)
+
+    def reset(self) -> None:
+        """Forget the boxes."""
+        self._cancel_end()
+        super().reset()
+
+    def content(self, message: Any) -> DataContent | None:
+        """The boxes."""
+        detections = self.detections_of(message)
+        results = [best_result(each) for each in detections]
+        colors = [class_color(name, self._table) for name, _ in results]
+        boxes = [each.bbox for each in detections]
+        return self._content(boxes, colors, [score for _, score in results], [name for name, _ in results])
+
+    def detections_of(self, message: Any) -> Sequence[Any]:
+        """The Detection3D of a message."""
+        return list(message.detections)
+
+    def _read_colors(self) -> None:
+        path = self.properties.text(CONFIG_PATH).strip()
+        self._table = {}
+        self.unsay(CONFIG_PATH)
+        if path:
+            try:
+                self._table = read_class_colors(path)
+            except ValueError as error:
+                self.say(CONFIG_PATH, "error", str(error))
+
+    def _cancel_end(self) -> None:
+        if self._end is not None:
+            self._end.cancel()
+            self._end = None
+
+
+class Detection3DDisplay(Detection3DArrayDisplay):
+    """One thing that was found."""
+
+    CLASS = "vision_msgs_rviz_plugins/Detection3D"
+    MESSAGE = "vision_msgs/msg/Detection3D"
+    SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *_LOOK, *_CLASSES)
+
+    def detections_of(self, message: Any) -> Sequence[Any]:
+        """The one detection."""
+        return [message]
