@@ -3,10 +3,9 @@ import type { PictureBoxes } from "../../protocol";
 import type { DrawingContext } from "./drawing";
 import { ImageDrawing } from "./image";
 
-/** Pixels of the canvas that boxes are drawn on, at least: small images have fine lines and texts, too. */
-const SHARP = 1280;
-const LINE = 3;
-const TEXT = 24;
+/** Pixels of the page: lines and texts are as large whatever the size of image and panel. */
+const LINE = 2;
+const TEXT = 16;
 const MOST_KEPT = 10;
 
 /** linkwright/Detections: an image with boxes over it. */
@@ -62,7 +61,10 @@ export class DetectionPictureDrawing extends ImageDrawing {
     const { width, height } = this.size;
     const context = overlay.getContext("2d");
     if (!context || width === 0) return;
-    const scale = Math.max(1, SHARP / width);
+    const { clientWidth, clientHeight } = this.panel.element;
+    const points = Math.min(clientWidth / width, clientHeight / height);
+    if (points === 0) return;
+    const scale = points * window.devicePixelRatio;
     overlay.width = Math.round(width * scale);
     overlay.height = Math.round(height * scale);
     this.shown = [];
@@ -77,7 +79,7 @@ export class DetectionPictureDrawing extends ImageDrawing {
       const name = boxes.names[i] ?? "";
       const text = score < 0 ? name : `${name} ${score.toFixed(2)}`.trim();
       this.shown.push(text);
-      drawBox(context, boxes, i, scale, written ? text : "");
+      drawBox(context, boxes, i, points, written ? text : "");
     }
   }
 }

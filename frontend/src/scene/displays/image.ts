@@ -15,7 +15,10 @@ export class ImageDrawing implements Drawing {
   /** When the image on the canvas was taken, s. */
   protected imageStamp = 0;
   private frame: ImageFrame | null = null;
-  private readonly resizing = new ResizeObserver(() => this.tellSize());
+  private readonly resizing = new ResizeObserver(() => {
+    this.tellSize();
+    this.painted();
+  });
   private readonly stopListening: () => void;
 
   constructor(protected readonly context: DrawingContext) {
@@ -63,7 +66,7 @@ export class ImageDrawing implements Drawing {
     };
   }
 
-  /** The image has come onto the canvas. */
+  /** The image has come onto the canvas, or the panel has another size. */
   protected painted(): void {
     // Nothing is drawn over it.
   }
