@@ -19,7 +19,7 @@ _DARK_ORANGE = 0.55
 _LEAST_SHARE = 0.35
 """Of the middle of a box that has one colour, so that the thing is called so."""
 _MIDDLE = 0.7
-_MOST_PIXELS = 40
+_MOST_PIXELS = 24
 """Along a side: of larger boxes only so many pixels are looked at."""
 
 
