@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from linkwright import extensions
+from linkwright.diagnostics import Diagnostic
 from linkwright.messages import get_message
 from linkwright.nodes import NodeOptions
 from linkwright.nodes.voice.audio_messages import AUDIO_STAMPED, audio_stamped
@@ -29,14 +30,20 @@ class ToldEngine(SpeechEngine):
         made: with which options engines were made.
         says: value of samples -> what is heard.
         finished: how often the sound ended.
+        trouble: why it hears nothing.
     """
 
     made: ClassVar[list[EngineOptions]] = []
     says: ClassVar[dict[int, list[Heard]]] = {}
     finished: ClassVar[list[int]] = []
+    trouble: ClassVar[list[Diagnostic]] = []
 
     def __init__(self, options: EngineOptions) -> None:
         self.made.append(options)
+
+    @property
+    def problem(self) -> Diagnostic | None:
+        return self.trouble[0] if self.trouble else None
 
     def hear(self, samples: Any) -> Sequence[Heard]:
         return self.says[int(samples[0])]

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import pytest
 
-from linkwright.diagnostics import LinkwrightError
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.graph import ActionServer
 from linkwright.graph.actions.goal import CancelResponse, GoalEvent
 from linkwright.messages import get_action, get_message, get_service
@@ -38,6 +38,7 @@ def engine(monkeypatch):
     monkeypatch.setattr("linkwright.speech.engine.extensions", lambda group: {"told": ENTRY})
     ToldEngine.made.clear()
     ToldEngine.finished.clear()
+    ToldEngine.trouble.clear()
     return ToldEngine
 
 
@@ -222,6 +223,32 @@ async def test_stop_is_done_from_what_is_heard_so_far_and_once(engine, talk):
     assert robot.speed == (0.0, 0.0, 0.0)
     await robot.say(partial("stop", start=2.0), final("stop", start=2.0))
     assert robot.said["command"] == ["forward", "stop"]
+
+
+async def test_a_stop_counts_again_when_the_robot_moves_again(engine, talk):
+    robot = talk(engine="told", open_listening=True)
+    for _ in range(2):
+        await robot.type("forward")
+        await robot.say(partial("stop"))
+        assert robot.speed == (0.0, 0.0, 0.0)
+
+
+async def test_after_a_stop_nothing_else_of_the_utterance_is_done(engine, talk):
+    robot = talk(engine="told", open_listening=True)
+    await robot.say(final("left"))
+    await robot.say(partial("stop"), final("forward"))
+    assert robot.said["command"] == ["left", "stop"]
+    await robot.hold(True)
+    await robot.say(partial("go to the stop"), final("go to the stop sign"))
+    assert robot.said["command"] == ["left", "stop", "stop", "go_to_object object=stop_sign"]
+
+
+async def test_it_is_told_why_an_engine_hears_nothing(engine, talk, said):
+    engine.trouble.append(Diagnostic("VOICE201", phrase("nothing is enrolled"), hint=phrase("enrol something")))
+    robot = talk(engine="told")
+    await eventually(lambda: said("WARN"))
+    assert said("WARN") == ["nothing is enrolled", "enrol something"]
+    assert not robot.running.finished.done()
 
 
 async def test_a_stop_that_is_uncertain_stops_a_robot_that_moves_and_tells_nobody_else(engine, talk):

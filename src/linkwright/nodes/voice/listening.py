@@ -23,6 +23,7 @@ class Listener:
         node: whose callbacks `heard` and `failed` are.
         make: makes the engine, in the thread; it may take seconds.
         heard: takes what was heard.
+        warn: takes why an engine hears nothing, whenever that changes.
         failed: takes the error that the engine ended with.
     """
 
@@ -31,11 +32,12 @@ class Listener:
         node: Node,
         make: Callable[[], SpeechEngine],
         heard: Callable[[Heard], None],
+        warn: Callable[[Diagnostic], None],
         failed: Callable[[LinkwrightError], None],
     ) -> None:
-        self._make, self._heard, self._failed = make, heard, failed
+        self._make, self._heard, self._warn, self._failed = make, heard, warn, failed
         self._sound: SimpleQueue[Samples | bool | None] = SimpleQueue()
-        self._found: deque[Heard | LinkwrightError] = deque()
+        self._found: deque[Heard | Diagnostic | LinkwrightError] = deque()
         self._ready = node.create_guard_condition(self._tell)
         self._thread = threading.Thread(target=self._run, name="speech engine", daemon=True)
         self._thread.start()
@@ -67,14 +69,21 @@ class Listener:
 
     def _serve(self) -> None:
         engine = self._make()
+        problem = None
         try:
-            while (block := self._sound.get()) is not None:
+            while True:
+                if engine.problem != problem:
+                    problem = engine.problem
+                    if problem is not None:
+                        self._pass(problem)
+                if (block := self._sound.get()) is None:
+                    return
                 for heard in engine.finish() if isinstance(block, bool) else engine.hear(block):
                     self._pass(heard)
         finally:
             engine.close()
 
-    def _pass(self, found: Heard | LinkwrightError) -> None:
+    def _pass(self, found: Heard | Diagnostic | LinkwrightError) -> None:
         self._found.append(found)
         self._ready.trigger()
 
@@ -83,5 +92,7 @@ class Listener:
             found = self._found.popleft()
             if isinstance(found, LinkwrightError):
                 self._failed(found)
+            elif isinstance(found, Diagnostic):
+                self._warn(found)
             else:
                 self._heard(found)

@@ -11,7 +11,7 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
-from linkwright.diagnostics import LinkwrightError, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.diagnostics.translation import localized
 from linkwright.graph import Clock, ClockType, Graph, ParameterType, Publisher, Subscription
 from linkwright.graph.endpoints.commander import Commander
@@ -65,7 +65,7 @@ class VoiceCommander(SingleNode):
         self._listener: Listener | None = None
         self._held = False
         self._spoken = False
-        self._stopped: float | None = None
+        self._stopped = False
         with starting(self._node):
             self._start()
 
@@ -121,7 +121,10 @@ class VoiceCommander(SingleNode):
         self._silence = node.create_timer(silence, self._silent, clock=clock, autostart=False)
         if engine:
             where = words if engine == "enrolled" and words else model
-            given = EngineOptions(commands.phrases(language), language, Path(where) if where else None)
+            # Who enrols words may say them in any language.
+            languages = [language, *commands.languages] if engine == "enrolled" else [language]
+            phrases = tuple(dict.fromkeys(text for each in languages for text in commands.phrases(each)))
+            given = EngineOptions(phrases, language, Path(where) if where else None)
             self._listen(lambda: make_engine(engine, given), clock)
 
     def _positive(self, name: str, default: float) -> float:
@@ -139,7 +142,7 @@ class VoiceCommander(SingleNode):
 
     def _listen(self, make: Any, clock: Clock) -> None:
         node = self._node
-        self._listener = Listener(node, make, self._heard, self._failed)
+        self._listener = Listener(node, make, self._heard, self._warn, self._failed)
         self._reader = AudioReader()
         node.create_subscription(AUDIO_INFO, "audio/audio_info", self._on_info, INFO_QOS)
         self._audio: Subscription[Any] = node.create_subscription(
@@ -173,17 +176,18 @@ class VoiceCommander(SingleNode):
     def _on_listen(self, held: bool) -> None:
         if self._held and not held and self._listener is not None:
             self._listener.finish()
+        self._stopped = False
         self._held = held
 
     def _heard(self, heard: Heard) -> None:
         if not heard.final:
             self._said["partial_text"](heard.text)
-            if self._commands.is_stop(heard.text) and (self._held or self._conversation.is_busy):
-                self._stop_early(heard)
+            self._stop_early(heard.text)
             return
         self._said["text"](heard.text)
-        stopped, self._stopped = self._stopped == heard.start, None
-        if stopped and self._commands.is_stop(heard.text):
+        stopped, self._stopped = self._stopped, False
+        # After a stop nothing else of the utterance is done, but a command in which the word is: "go to the stop sign".
+        if stopped and not (self._commands.is_stop(heard.text) and self._commands.is_other(heard.text)):
             return
         is_certain = heard.confidence >= self._confidence
         if is_certain and self._take(heard.text, by_voice=True):
@@ -191,12 +195,19 @@ class VoiceCommander(SingleNode):
         if self._commands.is_stop(heard.text) and (self._held or self._conversation.is_busy):
             self._conversation.stop(heard.text)
 
-    def _stop_early(self, heard: Heard) -> None:
+    def _stop_early(self, text: str) -> None:
         """Stop from what was heard so far, unless it is another command in which that word is."""
-        if self._stopped == heard.start or self._commands.is_other(heard.text):
+        if not self._commands.is_stop(text) or self._commands.is_other(text):
             return
-        self._stopped = heard.start
-        self._conversation.stop(heard.text)
+        if self._conversation.is_busy or (self._held and not self._stopped):
+            self._stopped = True
+            self._conversation.stop(text)
+
+    def _warn(self, problem: Diagnostic) -> None:
+        logger = self._node.get_logger()
+        logger.warning(localized(problem.message))
+        if problem.hint:
+            logger.warning(localized(problem.hint))
 
     def _failed(self, error: LinkwrightError) -> None:
         finding = error.diagnostics[0]

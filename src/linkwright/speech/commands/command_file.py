@@ -182,7 +182,7 @@ class _Reader:
         return {ANY: keys.texts(ANY)}
 
     def _count(self, found: CommandSet) -> None:
-        languages = {"en", "zh"}.union(*(command.phrases for command in found.commands))
+        languages = {"en", "zh", *found.languages}
         for language in sorted(languages):
             count = found.phrase_count(language)
             if count > MOST_PHRASES:

@@ -100,6 +100,11 @@ class CommandSet:
         return None if best is None else best[1]
 
     @property
+    def languages(self) -> tuple[str, ...]:
+        """The languages that commands are said in."""
+        return tuple(dict.fromkeys(name for each in self.commands for name in each.phrases))
+
+    @property
     def stops(self) -> tuple[Command, ...]:
         """The commands that stop."""
         return tuple(each for each in self.commands if isinstance(each.action, Stop))
