@@ -11,6 +11,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.speech.engine import Heard, SpeechEngine
 from linkwright.speech.sound.samples import BLOCK, RATE
 from linkwright.speech.sound.wav import write_wav
+from tests.full_disk import full_disk, needs_limits
 
 FORWARD, STOP, OTHER = 1_000, 2_000, 3_000
 TEXTS = {FORWARD: "forward", STOP: "stop", OTHER: ""}
@@ -139,3 +140,13 @@ def test_of_recordings_with_one_that_is_not_fit_none_is_learned(capsys, home):
     printed = capsys.readouterr().err
     assert "'silence.wav'" in printed
     assert not (home / "mine.json").exists()
+
+
+@needs_limits
+def test_a_full_disk_leaves_the_words_that_were_there(capsys, home):
+    assert main(["voice", "enrol", "stop", word("a.wav"), "--file", "mine.json"]) == 0
+    before = (home / "mine.json").read_bytes()
+    with full_disk(50):
+        assert main(["voice", "enrol", "stop", "a.wav", "--file", "mine.json"]) == 1
+    assert "error[CLI201]" in capsys.readouterr().err
+    assert (home / "mine.json").read_bytes() == before

@@ -1,0 +1,155 @@
+"""A user's own network in an ONNX file: a keyword spotter, which tells which word a stretch of sound is.
+
+Its input is ``[1, n]`` float32, the sound at 16 kHz with full scale at 1; its output ``[1, classes]``, scores or
+probabilities. The metadata ``names`` has the classes, as JSON (a list, or an object of numbers and names) or with
+commas between them. Classes that are none of the phrases, such as ``background``, stand for all other sound.
+
+What is said between two silences is cut to ``n`` samples around its middle, or filled up with silence on both sides.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, foreign, missing_extra, phrase
+from linkwright.speech.engine import EngineOptions, Heard, SpeechEngine
+from linkwright.speech.sound.activity import VoiceActivity
+from linkwright.speech.sound.samples import RATE, Samples
+from linkwright.speech.sound.spectra import HOP, MelFrames
+
+LEAST_PROBABILITY = 0.6
+"""Of a class that counts."""
+
+_BEFORE = RATE // 5  # samples kept from before somebody speaks
+_LONGEST = 10 * RATE  # of what is kept
+_FULL = 32_768.0
+
+
+class OnnxEngine(SpeechEngine):
+    """The engine ``onnx``; its model is the option ``model``.
+
+    Raises:
+        LinkwrightError: VOICE102 onnxruntime is not installed; VOICE104 the file is none of such a network.
+    """
+
+    def __init__(self, options: EngineOptions) -> None:
+        if options.model is None:
+            hint = phrase("give the ONNX file of your network as the model")
+            raise LinkwrightError(
+                Diagnostic("VOICE104", phrase("the engine 'onnx' has no model of its own"), hint=hint)
+            )
+        self._session = _session(options.model)
+        self._input, self._length, self._names = _form(self._session, options.model)
+        self._phrases = {_plain(each): each for each in options.phrases}
+        self._frames, self._activity = MelFrames(), VoiceActivity()
+        self._kept: Samples = np.zeros(0, np.int16)
+        self._heard = 0  # samples
+
+    def hear(self, samples: Samples) -> Sequence[Heard]:
+        """There are no partials: the network is asked when an utterance is over."""
+        self._kept = np.concatenate((self._kept, samples))[-_LONGEST:]
+        self._heard += len(samples)
+        found: list[Heard] = []
+        for frame in self._frames.feed(samples):
+            spoke = self._activity.speaking
+            speaks = self._activity.step(frame)
+            if spoke and not speaks:
+                found += self._end()
+            elif not spoke and not speaks:
+                self._kept = self._kept[-_BEFORE - len(samples) :]
+        return found
+
+    def finish(self) -> Sequence[Heard]:
+        """What was said until now."""
+        if not self._activity.speaking:
+            return []
+        self._activity.end()
+        return self._end()
+
+    def _end(self) -> list[Heard]:
+        said = self._kept[: max(1, len(self._kept) - self._activity.quiet_frames * HOP)]
+        end = (self._heard - len(self._kept) + len(said)) / RATE
+        scores = self._session.run(None, {self._input: _fitted(said, self._length)[None]})[0][0]
+        chances = _probabilities(np.asarray(scores, np.float64))
+        best = int(np.argmax(chances))
+        name, probability = self._names[best], float(chances[best])
+        text = self._phrases.get(_plain(name), "") if probability >= LEAST_PROBABILITY else ""
+        self._kept = self._kept[-_BEFORE:]
+        return [Heard(text, probability, True, max(0.0, end - len(said) / RATE), end)]
+
+
+def _plain(text: str) -> str:
+    return " ".join(text.replace("_", " ").lower().split())
+
+
+def _fitted(said: Samples, length: int) -> NDArray[np.float32]:
+    """Sound of a length: its middle, or all of it with silence on both sides."""
+    first = (len(said) - length) // 2
+    whole: NDArray[np.float32] = np.zeros(length, np.float32)
+    if first >= 0:
+        whole[:] = said[first : first + length] / _FULL
+    else:
+        whole[-first : -first + len(said)] = said / _FULL
+    return whole
+
+
+def _probabilities(scores: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Scores as probabilities; those that are some already stay as they are."""
+    if scores.min() >= 0.0 and abs(scores.sum() - 1.0) < 1e-3:
+        return scores
+    powers: NDArray[np.float64] = np.exp(scores - scores.max())
+    return np.asarray(powers / powers.sum())
+
+
+def _session(path: Path) -> Any:
+    try:
+        import onnxruntime  # type: ignore[import-untyped, import-not-found, unused-ignore]
+    except ModuleNotFoundError as error:
+        raise missing_extra("VOICE102", error) from None
+    settings = onnxruntime.SessionOptions()
+    settings.intra_op_num_threads = 1
+    settings.log_severity_level = 4
+    try:
+        return onnxruntime.InferenceSession(str(path), settings, providers=["CPUExecutionProvider"])
+    except Exception as error:  # noqa: BLE001 - onnxruntime has an exception for each kind of damage
+        raise _unfit(path, foreign(str(error).partition("\n")[0])) from None
+
+
+def _form(session: Any, path: Path) -> tuple[str, int, tuple[str, ...]]:
+    """Name and length of the input, and the names of the classes."""
+    inputs, outputs = session.get_inputs(), session.get_outputs()
+    shape = inputs[0].shape if len(inputs) == 1 else []
+    if len(shape) != 2 or not isinstance(shape[1], int) or not 0 < shape[1] <= _LONGEST:
+        raise _unfit(path, phrase("its input is not one array of [1, n], but {shape}", shape=foreign(shape)))
+    if inputs[0].type != "tensor(float)":
+        raise _unfit(path, phrase("its input is {type}, not float32", type=foreign(inputs[0].type)))
+    names = _names(session.get_modelmeta().custom_metadata_map.get("names", ""))
+    classes = outputs[0].shape[-1] if outputs[0].shape else None
+    if not names or (isinstance(classes, int) and classes != len(names)):
+        raise _unfit(path, phrase("its metadata 'names' does not have a name for each class"))
+    return inputs[0].name, shape[1], names
+
+
+def _names(text: str) -> tuple[str, ...]:
+    try:
+        found = json.loads(text)
+    except json.JSONDecodeError:
+        found = [each.strip() for each in text.split(",") if each.strip()]
+    if isinstance(found, dict):
+        try:
+            found = [found[key] for key in sorted(found, key=int)]
+        except ValueError:
+            return ()
+    return tuple(map(str, found)) if isinstance(found, list) else ()
+
+
+def _unfit(path: Path, reason: Phrase) -> LinkwrightError:
+    message = phrase("'{path}' is no keyword spotter: {reason}", path=path, reason=reason)
+    hint = phrase("it takes 16 kHz sound [1, n] float32, gives [1, classes], and names them in its metadata 'names'")
+    return LinkwrightError(Diagnostic("VOICE104", message, hint=hint))

@@ -1,0 +1,121 @@
+"""The engine onnx with small networks that tell loud sound from soft."""
+
+from __future__ import annotations
+
+import json
+import sys
+
+import numpy as np
+import onnx
+import pytest
+from onnx import TensorProto, helper
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.speech.engine import EngineOptions
+from linkwright.speech.engines.onnx_engine import OnnxEngine
+from linkwright.speech.sound.samples import RATE
+
+NAMES = ["background", "go_forward", "stop"]
+
+
+def network(path, names=NAMES, shape=(1, RATE), kind=TensorProto.FLOAT, classes=3):
+    """Scores: 0, the sound's mean of squares times 500, and twice that less 20."""
+    weights = helper.make_tensor("weights", TensorProto.FLOAT, [1, 3], [0.0, 1.0, 2.0])
+    offsets = helper.make_tensor("offsets", TensorProto.FLOAT, [3], [0.0, 0.0, -20.0])
+    factor = helper.make_tensor("factor", TensorProto.FLOAT, [1], [500.0])
+    axes = helper.make_tensor("axes", TensorProto.INT64, [1], [1])
+    nodes = [
+        helper.make_node("Mul", ["sound", "sound"], ["squares"]),
+        helper.make_node("ReduceMean", ["squares", "axes"], ["mean"], keepdims=1),
+        helper.make_node("Mul", ["mean", "factor"], ["power"]),
+        helper.make_node("MatMul", ["power", "weights"], ["scaled"]),
+        helper.make_node("Add", ["scaled", "offsets"], ["scores"]),
+    ]
+    graph = helper.make_graph(
+        nodes,
+        "spotter",
+        [helper.make_tensor_value_info("sound", kind, shape)],
+        [helper.make_tensor_value_info("scores", TensorProto.FLOAT, [1, classes])],
+        [weights, offsets, factor, axes],
+    )
+    model = helper.make_model(graph, opset_imports=[helper.make_opsetid("", 18)], ir_version=9)
+    if names is not None:
+        helper.set_model_props(model, {"names": names if isinstance(names, str) else json.dumps(names)})
+    onnx.save(model, path)
+    return path
+
+
+def sound(level, seconds=0.5):
+    """Something like a word between silences with a little noise."""
+    count = round(seconds * RATE)
+    times = np.arange(count) / RATE
+    tones = sum(np.sin(2 * np.pi * (pitch + 300 * times) * times) for pitch in (300, 900, 2_100))
+    whole = np.concatenate((np.zeros(RATE), level * tones / 3, np.zeros(RATE)))
+    return (whole + np.random.default_rng(5).normal(0, 5, len(whole))).astype(np.int16)
+
+
+def heard(engine, samples):
+    return [each for at in range(0, len(samples), 1_600) for each in engine.hear(samples[at : at + 1_600])]
+
+
+def refused(path):
+    with pytest.raises(LinkwrightError) as caught:
+        OnnxEngine(EngineOptions(("stop",), "en", path))
+    (diagnostic,) = caught.value.diagnostics
+    return diagnostic
+
+
+@pytest.mark.parametrize("names", [NAMES, {"0": "background", "2": "stop", "1": "go forward"}, ", ".join(NAMES)])
+def test_the_class_of_an_utterance_is_a_phrase(names, tmp_path):
+    engine = OnnxEngine(EngineOptions(("Go forward", "stop"), "en", network(tmp_path / "net.onnx", names)))
+    (first,) = heard(engine, sound(12_000))
+    assert (first.text, first.final) == ("Go forward", True)
+    assert first.confidence > 0.9
+    assert 0.7 < first.start < 1.1
+    assert 1.3 < first.end < 1.8
+    (second,) = heard(engine, sound(30_000, 0.8))
+    assert second.text == "stop"
+    assert second.start > 3.0
+
+
+def test_what_is_uncertain_or_none_of_the_phrases_is_empty(tmp_path):
+    engine = OnnxEngine(EngineOptions(("stop",), "en", network(tmp_path / "net.onnx")))
+    assert [each.text for each in heard(engine, sound(12_000))] == [""]  # a class, and no phrase
+    assert [each.text for each in heard(engine, sound(1_500))] == [""]  # no class for sure
+    assert heard(engine, np.zeros(3 * RATE, np.int16)) == []
+
+
+def test_the_end_of_a_button_press_ends_the_utterance(tmp_path):
+    engine = OnnxEngine(EngineOptions(("stop",), "en", network(tmp_path / "net.onnx")))
+    assert heard(engine, sound(30_000, 0.8)[: round(1.8 * RATE)]) == []
+    assert [each.text for each in engine.finish()] == ["stop"]
+    assert list(engine.finish()) == []
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"names": None},
+        {"names": ["one"]},
+        {"names": {"first": "a"}},
+        {"shape": (1, 1, RATE)},
+        {"shape": (1, "n")},
+        {"kind": TensorProto.DOUBLE},
+    ],
+)
+def test_other_networks_are_told(changes, tmp_path):
+    assert refused(network(tmp_path / "net.onnx", **changes)).code == "VOICE104"
+
+
+def test_what_is_no_network(tmp_path):
+    (tmp_path / "net.onnx").write_bytes(b"nothing")
+    assert refused(tmp_path / "net.onnx").code == "VOICE104"
+    assert refused(tmp_path / "nowhere.onnx").code == "VOICE104"
+    assert "model" in str(refused(None).hint)
+
+
+def test_without_onnxruntime(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "onnxruntime", None)
+    diagnostic = refused(network(tmp_path / "net.onnx"))
+    assert diagnostic.code == "VOICE102"
+    assert "linkwright[vision]" in str(diagnostic.hint)
