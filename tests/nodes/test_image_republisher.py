@@ -96,7 +96,7 @@ async def test_what_cannot_be_packed_or_unpacked_is_told(test):
     broken.format, broken.data = "rgb8; jpeg compressed bgr8", b"no image"
     await send(test, "/in/compressed", broken)
     (text,) = [record.text for record in test.log if record.level.name == "ERROR"]
-    assert text.startswith("An image cannot be republished: cannot identify image file")
+    assert text.startswith("An image cannot be republished: The image is neither a PNG nor a JPEG")
 
 
 @pytest.mark.parametrize(

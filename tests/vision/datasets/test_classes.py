@@ -53,7 +53,7 @@ def test_classes_of_a_file_keep_their_order(tmp_path):
 
 @pytest.mark.parametrize(
     ("text", "line"),
-    [("", None), ("- ball\n", 1), ("ball: []\n", 1), ("ball: {a: b}\n", 1), ("ball:\nball:\n", 2), ("a: [b\n", 2),
+    [("", 1), ("- ball\n", 1), ("ball: []\n", 1), ("ball: {a: b}\n", 1), ("ball:\nball:\n", 2), ("a: [b\n", 2),
      ("? [a]\n: b\n", 1), ("a:\n  - [b]\n", 2)],
 )  # fmt: skip
 def test_a_wrong_file_of_classes_is_told_with_its_place(tmp_path, text, line):

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import yaml
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText, Span, display_path, foreign, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText, display_path, foreign, phrase
 from linkwright.geometry.arrays import Array
 from linkwright.input_files import read_text
 from linkwright.sdf.models import Model
@@ -21,8 +21,8 @@ from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.scene.bodies import VISUAL_GROUP
 from linkwright.simulation.sensors.mount import part_of
 from linkwright.simulation.simulation import Simulation
+from linkwright.yaml_documents import YamlDocument
 
-_LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _NUMBER = re.compile(r"[ _-]*(?:clone)?[ _-]*\(?\d+\)?$")
 _COLOURS = frozenset(
     ("red", "green", "blue", "yellow", "orange", "purple", "pink", "white", "black", "grey", "gray", "brown", "cyan")
@@ -84,34 +84,24 @@ def read_classes(path: Path) -> ClassRules:
         reason = foreign(getattr(error, "strerror", None) or error)
         message = phrase("the file of classes '{shown}' cannot be read: {reason}", shown=shown, reason=reason)
         raise LinkwrightError(Diagnostic("VISION201", message)) from None
-    try:
-        root = yaml.compose(source.text, Loader=_LOADER)
-    except (yaml.YAMLError, RecursionError) as error:
-        mark, problem = getattr(error, "problem_mark", None), getattr(error, "problem", None) or str(error)
-        span = None if mark is None else source.span(source.offset(mark.line + 1, mark.column + 1))
-        message = phrase("not valid YAML: {problem}", problem=foreign(problem))
-        raise LinkwrightError(Diagnostic("VISION201", message, span, source=source)) from None
+    document = YamlDocument(source, "VISION201")
+    root = document.root
     if not isinstance(root, yaml.MappingNode) or not root.value:
-        raise _wrong(source, root)
+        raise _wrong(document, root)
     patterns: dict[str, tuple[str, ...]] = {}
     for key, value in root.value:
         if not isinstance(key, yaml.ScalarNode) or not key.value.strip() or key.value in patterns:
-            raise _wrong(source, key)
+            raise _wrong(document, key)
         entries = value.value if isinstance(value, yaml.SequenceNode) else [value]
         if not entries or not all(isinstance(each, yaml.ScalarNode) for each in entries):
-            raise _wrong(source, value)
+            raise _wrong(document, value)
         patterns[key.value] = tuple(str(each.value) or key.value for each in entries)
     return ClassRules(patterns)
 
 
-def _wrong(source: SourceText, node: yaml.Node | None) -> LinkwrightError:
-    span = None
-    if node is not None and node.start_mark is not None and node.end_mark is not None:
-        start, end = node.start_mark, node.end_mark
-        span = Span(source.name, start.line + 1, start.column + 1, end.line + 1, end.column + 1)
-    message = phrase("classes are names with patterns of models")
+def _wrong(document: YamlDocument, node: yaml.Node | None) -> LinkwrightError:
     hint = phrase("such as `ball: [football, '*_ball']`, each name once")
-    return LinkwrightError(Diagnostic("VISION201", message, span, hint=hint, source=source))
+    return document.error(phrase("classes are names with patterns of models"), node, hint)
 
 
 def usual_class(name: str) -> str:
