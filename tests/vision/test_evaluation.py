@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from linkwright.vision.detections import Detections
-from linkwright.vision.evaluation import Things, evaluate, overlap
+from linkwright.vision.evaluation import Things, balanced_score, evaluate, overlap
 
 NAMES = ("ball", "box")
 BOX = (10.0, 10.0, 30.0, 30.0)
@@ -96,6 +96,14 @@ def test_recall_is_told_by_size():
         ("32 to 96 pixels", 1, 1.0),
         ("over 96 pixels", 0, 0.0),
     )
+
+
+def test_the_balanced_score_is_that_of_the_last_detection_that_is_worth_it():
+    truth = [things((0, *BOX), (1, *ELSEWHERE), (1, 200, 200, 240, 240), ignored={2})]
+    rows = [(0, 0.9, *BOX), (1, 0.6, *ELSEWHERE), (0, 0.4, 90, 90, 99, 99), (1, 0.7, 200, 200, 240, 240)]
+    assert balanced_score(NAMES, truth, [found(*rows)]) == pytest.approx(0.6)
+    assert balanced_score(NAMES, truth, [found(*rows[2:])]) == 0.5
+    assert balanced_score(NAMES, truth, [found()]) == 0.5
 
 
 @given(st.lists(st.tuples(st.integers(0, 1), st.integers(0, 60), st.integers(0, 60)), max_size=6), st.randoms())

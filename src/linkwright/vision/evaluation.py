@@ -138,6 +138,36 @@ def evaluate(names: Sequence[str], truth: Sequence[Things], found: Sequence[Dete
     )
 
 
+def balanced_score(names: Sequence[str], truth: Sequence[Things], found: Sequence[Detections]) -> float:
+    """The score from which on detections are worth most: where F1 of all classes together is greatest.
+
+    The arguments are those of `evaluate`.
+
+    Returns:
+        A score between 0.05 and 0.95; 0.5 where nothing was found.
+    """
+    known = {name: place for place, name in enumerate(names)}
+    scores: list[NDArray[np.float32]] = [np.zeros(0, np.float32)]
+    right: list[NDArray[np.bool_]] = [np.zeros(0, bool)]
+    there = 0
+    for things, each in zip(truth, found, strict=True):
+        detections, asked = _in_terms_of(known, each), things.where(~things.ignored)
+        same = overlap(detections.boxes, asked.boxes) * (detections.classes[:, None] == asked.classes[None])
+        hits = _matches(same, _CONFUSION_OVERLAP) >= 0
+        hidden = _within(detections.boxes, things.boxes[things.ignored]) >= _CONFUSION_OVERLAP
+        counts = hits | ~hidden
+        scores.append(detections.scores[counts])
+        right.append(hits[counts])
+        there += len(asked.classes)
+    whole: NDArray[np.float32] = np.concatenate(scores)
+    order = np.argsort(-whole, kind="stable")
+    hits_until: NDArray[np.int64] = np.concatenate(right)[order].cumsum()
+    if not len(order) or not hits_until[-1]:
+        return 0.5
+    worth = 2 * hits_until / (np.arange(1, len(order) + 1) + there)
+    return float(np.clip(whole[order[int(worth.argmax())]], 0.05, 0.95))
+
+
 @dataclass(frozen=True, slots=True)
 class _Found:
     """Detections by the dataset's numbers of classes, the most certain first."""

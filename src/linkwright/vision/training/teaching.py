@@ -82,7 +82,10 @@ def teach(options: Options, tell: Callable[[Epoch], None]) -> Taught:
     network = options.output / f"{options.name}.onnx"
     described = {"description": f"{options.name}, trained by linkwright vision train", "seed": str(options.seed)}
     described["dataset"] = facts["pictures' sha256"]
-    content = to_onnx(course.best_network(), dataset.names, *size, described)
+    best = course.best_network()
+    balance = course.balance(best)
+    facts["scores"] = f"{balance:.2f} of the network is 0.5 in the file, where F1 on the split val is greatest"
+    content = to_onnx(best, dataset.names, *size, described, balance)
     facts["file"] = f"{network.name}, {len(content) / 1e6:.2f} MB, sha256 {hashlib.sha256(content).hexdigest()}"
     try:
         write_whole_file(network, content)

@@ -19,7 +19,7 @@ from torch import Tensor, nn
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, phrase
 from linkwright.vision.detections import Detections
 from linkwright.vision.detectors.suppression import suppressed
-from linkwright.vision.evaluation import Evaluation, Things, evaluate
+from linkwright.vision.evaluation import Evaluation, Things, balanced_score, evaluate
 from linkwright.vision.training.learning.losses import loss
 from linkwright.vision.training.learning.network import Network, Shape, cells
 from linkwright.vision.training.measuring import LIMITS
@@ -176,17 +176,25 @@ class Course:
             else:
                 value.copy_(here[name])
 
-    @torch.no_grad()
     def judge(self) -> Evaluation:
         """How well the smoothed network does."""
+        return evaluate(self.names, *self._examine(self.smooth))
+
+    def balance(self, network: Network) -> float:
+        """The score of a network from which on its detections are worth most, see `balanced_score`."""
+        return balanced_score(self.names, *self._examine(network))
+
+    @torch.no_grad()
+    def _examine(self, network: Network) -> tuple[list[Things], list[Detections]]:
+        """What is in the pictures that judge, and what a network finds in them."""
         found: list[Detections] = []
         for start in range(0, len(self._exam.things), self.options.batch):
             pictures = _tensor(self._exam.pictures[start : start + self.options.batch])
-            boxes, logits = self.smooth(pictures)
+            boxes, logits = network(pictures)
             scores = logits.sigmoid()
             pairs = zip(boxes.numpy(), scores.numpy(), strict=True)
             found += [self._found(each, score) for each, score in pairs]
-        return evaluate(self.names, [_truth(things) for things in self._exam.things], found)
+        return [_truth(things) for things in self._exam.things], found
 
     def _found(self, boxes: NDArray[np.float32], scores: NDArray[np.float32]) -> Detections:
         """What is in one picture, of boxes (cells, 4) and scores (cells, classes)."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from collections.abc import Mapping
 from io import BytesIO
@@ -22,18 +23,26 @@ _LARGE = 64  # numbers; those of fewer stay as they are
 class _Decoded(nn.Module):
     """Boxes and scores in one table, as YOLOv8 puts them out."""
 
-    def __init__(self, network: Network) -> None:
+    def __init__(self, network: Network, balance: float) -> None:
         super().__init__()
         self.network = network
+        self.shift = math.log((1 - balance) / balance)
 
     def forward(self, pictures: Tensor) -> Tensor:
         """Shape (batch, 4 + classes, cells): middle, width and height in pixels, then the classes' scores."""
         boxes, logits = self.network(pictures)
         first, last = boxes[..., :2], boxes[..., 2:]
-        return torch.cat(((first + last) / 2, last - first, logits.sigmoid()), 2).transpose(1, 2)
+        return torch.cat(((first + last) / 2, last - first, (logits + self.shift).sigmoid()), 2).transpose(1, 2)
 
 
-def to_onnx(network: Network, names: tuple[str, ...], width: int, height: int, facts: Mapping[str, str]) -> bytes:
+def to_onnx(
+    network: Network,
+    names: tuple[str, ...],
+    width: int,
+    height: int,
+    facts: Mapping[str, str],
+    balance: float = 0.5,
+) -> bytes:
     """An ONNX file of a network.
 
     Its input is one picture of this size, its output ``[1, 4 + classes, cells]``. Weights are stored with 16 bits and
@@ -45,6 +54,7 @@ def to_onnx(network: Network, names: tuple[str, ...], width: int, height: int, f
         width: of its pictures, a multiple of 32.
         height: likewise.
         facts: what else the file shall say of itself.
+        balance: the network's score that becomes 0.5; all others move with it, and their order stays.
     """
     file = BytesIO()
     picture = torch.zeros(1, 3, height, width)
@@ -52,7 +62,7 @@ def to_onnx(network: Network, names: tuple[str, ...], width: int, height: int, f
         # The newer exporter needs one more library, and gives the same graph.
         warnings.simplefilter("ignore")
         torch.onnx.export(
-            _Decoded(network).eval(),
+            _Decoded(network, balance).eval(),
             (picture,),
             file,
             dynamo=False,

@@ -1,0 +1,20 @@
+"""The network ``things``, which finds what stands in the worlds that come with us; its card is ``things.md``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from linkwright.vision.detector import Detector
+from linkwright.vision.detectors.network import NetworkDetector
+from linkwright.vision.detectors.options import DetectorOptions
+
+FILE = Path(__file__).with_name("things.onnx")
+
+
+def make_things(options: DetectorOptions) -> Detector:
+    """The detector `things`.
+
+    Raises:
+        LinkwrightError: VISION101 onnxruntime or OpenCV is missing.
+    """
+    return NetworkDetector(FILE, options)

@@ -1,0 +1,97 @@
+"""The network that comes with us, in pictures of our worlds that are rendered here."""
+
+from __future__ import annotations
+
+import re
+from math import atan2, hypot, tan
+
+import numpy as np
+import pytest
+
+from linkwright.geometry.single import quaternion_from_rpy
+from linkwright.simulation.rendering.choice import make_renderer
+from linkwright.simulation.rendering.optics import Optics
+from linkwright.simulation.rendering.renderer import Wanted
+from linkwright.simulation.server.worlds import load_world
+from linkwright.simulation.simulation import Simulation
+from linkwright.vision.detector import Limits
+from linkwright.vision.detectors.options import DetectorOptions
+from linkwright.vision.detectors.registry import make_detector
+from linkwright.vision.evaluation import overlap
+from linkwright.vision.models.things import FILE
+
+pytest.importorskip("mujoco", reason="MuJoCo has no wheel here")
+
+WIDTH, HEIGHT = 640, 480
+FOCAL = WIDTH / (2 * tan(0.6))
+
+# Where a camera stands in the playground, and at what it looks: model, class.
+LOOKS = [
+    ((1.0, -1.6, 0.4), "red_ball", "ball"),
+    ((0.3, 0.4, 0.5), "football", "ball"),
+    ((1.6, -0.35, 0.4), "cone_1", "cone"),
+]
+
+
+@pytest.fixture(scope="module")
+def playground():
+    loaded = load_world("playground")
+    simulation = Simulation(loaded.world, loaded.finder)
+    simulation.refresh()
+    renderer = make_renderer(simulation)
+    yield simulation, renderer
+    renderer.close()
+
+
+@pytest.fixture(scope="module")
+def things():
+    return make_detector("things", DetectorOptions())
+
+
+def look(playground, eye, model):
+    """A picture with a model in the middle, and the box around the pixels that show it."""
+    simulation, renderer = playground
+    geoms = [
+        number
+        for number in range(simulation.model.ngeom)
+        if simulation.model.geom(number).name.startswith(f"{model}::")
+    ]
+    assert geoms, [simulation.model.geom(number).name for number in range(simulation.model.ngeom)]
+    x, y, z = simulation.data.geom_xpos[geoms].mean(axis=0) - eye
+    turn = quaternion_from_rpy((0.0, atan2(-z, hypot(x, y)), atan2(y, x)))
+    optics = Optics(WIDTH, HEIGHT, FOCAL, FOCAL, WIDTH / 2, HEIGHT / 2, 0.05, 30.0)
+    picture = renderer.render(optics, (*eye, *turn), Wanted.COLOUR | Wanted.GEOMS)
+    rows, columns = np.nonzero(np.isin(picture.geoms, geoms))
+    return picture.colour, np.array([[columns.min(), rows.min(), columns.max() + 1, rows.max() + 1]], np.float32)
+
+
+@pytest.mark.parametrize(("eye", "model", "name"), LOOKS, ids=[each[1] for each in LOOKS])
+def test_it_finds_what_stands_before_it(playground, things, eye, model, name):
+    picture, box = look(playground, eye, model)
+    found = things.detect(picture, Limits())
+    shares = overlap(box, found.boxes)[0]
+    right = [shares[place] for place in range(len(found)) if found.name(place) == name]
+    assert max(right, default=0.0) > 0.5
+
+
+def test_it_finds_nothing_on_an_empty_floor(things):
+    floor = np.full((HEIGHT, WIDTH, 3), 150, np.uint8)
+    floor[: HEIGHT // 2] = (184, 204, 224)
+    assert len(things.detect(floor, Limits())) == 0
+
+
+def test_it_is_small_and_says_what_it_knows(things):
+    assert FILE.stat().st_size < 5_000_000
+    assert {"ball", "box", "cone", "cylinder", "person", "stop_sign", "table", "yield_sign", "mbot"} == set(
+        things.names
+    )
+    assert things.notes == ()
+
+
+def test_its_card_is_of_this_file_and_says_where_it_fails():
+    from hashlib import sha256
+
+    card = FILE.with_suffix(".md").read_text(encoding="utf-8")
+    assert sha256(FILE.read_bytes()).hexdigest() in card
+    assert "linkwright vision train" in card
+    assert re.search(r"^## Where it fails$", card, re.MULTILINE)
