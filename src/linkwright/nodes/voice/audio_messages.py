@@ -124,7 +124,7 @@ def _values(data: bytes, form: AudioForm) -> NDArray[np.float64]:
         wide = np.zeros((len(data) // 3, 4), np.uint8)
         three = np.frombuffer(data, np.uint8).reshape(-1, 3)
         wide[:, 1:] = three if order == "<" else three[:, ::-1]
-        raw = wide.reshape(-1).view("<i4" if kind == "S" else "<u4").astype(np.float64)
+        raw: NDArray[np.float64] = wide.reshape(-1).view("<i4" if kind == "S" else "<u4").astype(np.float64)
         size = 4
     else:
         raw = np.frombuffer(data, f"{order}{'i' if kind == 'S' else 'u'}{size}").astype(np.float64)

@@ -7,6 +7,7 @@ from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, display_path, phrase
 from linkwright.speech.engine import EngineOptions, Heard, SpeechEngine
@@ -75,7 +76,7 @@ class EnrolledEngine(SpeechEngine):
         """See `SpeechEngine.finish`."""
         return self._end() if self._activity.speaking else []
 
-    def _keep(self, frame: np.ndarray, speech: bool) -> None:
+    def _keep(self, frame: NDArray[np.float64], speech: bool) -> None:
         most = self._most() if speech else _BEFORE
         self._kept = np.concatenate((self._kept, frame[None]))[-most:]
 

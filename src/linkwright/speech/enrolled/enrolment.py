@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from linkwright.diagnostics import Diagnostic, Phrase, Severity, phrase
 from linkwright.speech.enrolled.recognition import Recogniser
@@ -78,7 +79,7 @@ def _compared(words: Words, name: str, take: Take) -> Diagnostic | None:
     return None
 
 
-def _above(powers: np.ndarray, noise: np.ndarray) -> np.ndarray:
+def _above(powers: NDArray[np.float64], noise: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(np.mean(10.0 * np.log10(np.maximum(powers, 1.0) / noise), axis=1))
 
 

@@ -132,7 +132,8 @@ def _features(powers: NDArray[np.float64], mask: NDArray[np.float64]) -> _Array:
     cepstra = 10.0 * np.log10(np.maximum(powers, mask)) @ _COSINES
     padded = np.pad(cepstra, ((_BESIDE, _BESIDE), (0, 0)), "edge")
     changes = (2.0 * (padded[4:] - padded[:-4]) + (padded[3:-1] - padded[1:-3])) / 10.0
-    return np.concatenate((cepstra, _OF_CHANGE * changes), axis=1).astype(np.float32)
+    features: _Array = np.concatenate((cepstra, _OF_CHANGE * changes), axis=1).astype(np.float32)
+    return features
 
 
 def _distances(sound: _Array, states: _Array) -> _Array:

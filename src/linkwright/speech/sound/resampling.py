@@ -41,7 +41,7 @@ class Resampler:
         table = cutoff * np.sinc(cutoff * offsets) * window
         self._table = table / table.sum(axis=1, keepdims=True)
         self._half = half
-        self._kept = np.zeros(half - 1)
+        self._kept: NDArray[np.float64] = np.zeros(half - 1)
         self._position = 0  # of the next output, in 1/up of an input sample, counted from the first that is kept
 
     def feed(self, values: NDArray[np.floating]) -> Samples:

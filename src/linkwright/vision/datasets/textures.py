@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 Pixels = np.ndarray[Any, np.dtype[np.uint8]]
 
@@ -32,6 +33,8 @@ def pattern(generator: np.random.Generator, size: int, *, soft: bool) -> Pixels:
     else:
         shade = _gradient(generator, size)
     shade = np.clip(shade + generator.normal(0.0, 0.03, shade.shape), 0.0, 1.0)[..., None]
+    first: NDArray[np.float64]
+    second: NDArray[np.float64]
     if soft:
         first, second = np.full(3, generator.uniform(0.55, 0.85)), np.ones(3)
     else:
