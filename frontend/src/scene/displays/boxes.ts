@@ -53,7 +53,7 @@ export class BoxesDrawing extends ContentDrawing<"solid_boxes"> {
     this.texts = [];
     const anchors: { at: Vector3; height: number }[] = [];
     this.boxes.begin(onlyEdges ? 0 : count);
-    for (let i = 0; i < count && content && placed; i++) {
+    for (let i = 0; i < count && content; i++) {
       const size = new Vector3().fromArray(content.sizes, 3 * i);
       const matrix = poseAt(content.poses, i, new Matrix4()).premultiply(placed.pose);
       const middle = new Vector3().setFromMatrixPosition(matrix);

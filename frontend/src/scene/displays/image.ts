@@ -45,7 +45,8 @@ export class ImageDrawing implements Drawing {
     });
   }
 
-  dataForgotten(_key: string | null): void {
+  dataForgotten(key: string | null): void {
+    if (key) return; // the image has none
     this.frame = null;
     this.picture.clear();
     this.panel.say(strings.pictures.none);
