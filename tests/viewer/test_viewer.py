@@ -21,9 +21,10 @@ from linkwright.packages import PackageFinder
 from linkwright.viewer import RvizConfig, Viewer
 from linkwright.viewer.protocol.session import PROTOCOL_VERSION
 from linkwright.viewer.web import server
+from linkwright.viewer.web.server import listen
 from tests.places import TUTORIAL_PACKAGES, without_meshes
 from tests.skipping import graph_clock, skipping
-from tests.viewer.scene import ARM, page, world
+from tests.viewer.scene import ARM, World, page, world
 
 Clock = get_message("rosgraph_msgs/msg/Clock")
 
@@ -276,6 +277,23 @@ async def test_a_taken_port_leaves_no_node_behind():
             await second.start()
         assert caught.value.diagnostics[0].code == "VIEW101"
         assert "/second" not in made.graph.node_names()
+
+
+@pytest.mark.parametrize("steps", range(1, 6))
+async def test_a_start_that_is_broken_off_leaves_no_node_and_no_socket_behind(steps, monkeypatch):
+    listening = []
+    monkeypatch.setattr(server, "listen", lambda host, port: listening.append(listen(host, port)) or listening[0])
+    made = World()
+    start = asyncio.ensure_future(made.viewer.start())
+    for _ in range(steps):
+        await asyncio.sleep(0)
+    broken_off = start.cancel()
+    await asyncio.wait([start])
+    if not broken_off:  # it had started: ended as ever
+        await made.viewer.close()
+    assert listening[0].fileno() == -1
+    assert made.graph.node_names() == ["/publishers"]
+    await made.graph.close()
 
 
 async def test_without_a_built_page_the_answer_says_how_to_build_it(tmp_path, monkeypatch):

@@ -104,11 +104,11 @@ class Viewer:
 
         try:
             listener = listen(self._host, self._port)
-        except Exception:
+            self._server = WebServer(Gate(self._host), self._audience, self.context.meshes, self.context.downloads)
+            self._url = await self._server.start(listener)
+        except BaseException:  # cancelled, too: whoever ends the program does not know this viewer yet
             self._node.destroy_node()
             raise
-        self._server = WebServer(Gate(self._host), self._audience, self.context.meshes, self.context.downloads)
-        self._url = await self._server.start(listener)
         if is_open_to_others(listener):
             self._node.get_logger().warning(
                 f"Listening on '{self._host}': whoever reaches it and knows the token can see and move the robot"

@@ -117,7 +117,7 @@ class WebServer:
         self._reading = asyncio.Lock()
 
     async def start(self, listener: socket.socket) -> str:
-        """Serve on a listening socket; the address to open, token included."""
+        """Serve on a listening socket, which is closed when this fails; the address to open, token included."""
         application = web.Application(middlewares=[self._guard])
         application.on_response_prepare.append(self._add_headers)
         application.router.add_get("/", self._index)
@@ -133,10 +133,18 @@ class WebServer:
             shutdown_timeout=_GOODBYE,
             keepalive_timeout=_IDLE,
         )
-        await self._runner.setup()
-        loop = asyncio.get_running_loop()
-        self._admission = Admission(cast("web.Server", self._runner.server))
-        self._listening = await loop.create_server(self._admission, sock=listener, backlog=_BACKLOG)
+        try:
+            await self._runner.setup()
+            loop = asyncio.get_running_loop()
+            self._admission = Admission(cast("web.Server", self._runner.server))
+            self._listening = await loop.create_server(
+                self._admission, sock=listener, backlog=_BACKLOG, start_serving=False
+            )
+            await self._listening.start_serving()
+        except BaseException:
+            await self.close()
+            listener.close()
+            raise
         return f"{url_of(listener)}?{TOKEN_PARAMETER}={self._gate.token}"
 
     async def close(self) -> None:
