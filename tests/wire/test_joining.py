@@ -10,7 +10,7 @@ import pytest
 from linkwright.graph import Graph, LogRecord
 from linkwright.messages import String
 from linkwright.wire.dds import available, join, why_not
-from linkwright.wire.dds.settings import PARTICIPANTS
+from linkwright.wire.dds.settings import MAX_DOMAIN_ID, most_participants
 
 
 @pytest.fixture
@@ -94,7 +94,7 @@ def test_a_wrong_range_is_told_and_stays_on_the_machine(graph, log, monkeypatch)
 
 def test_a_domain_without_free_ports_is_told(graph, log, domain, capfd):
     with ExitStack() as taken:
-        for index in range(PARTICIPANTS + 1):
+        for index in range(most_participants(domain) + 1):
             each = taken.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))
             with suppress(OSError):
                 each.bind(("", 7410 + 250 * domain + 2 * index))
@@ -103,3 +103,9 @@ def test_a_domain_without_free_ports_is_told(graph, log, domain, capfd):
     assert transport.problem.diagnostics[0].code == "DDS103"
     assert goes_on(graph)
     capfd.readouterr()
+
+
+def test_the_highest_domain_is_one_to_join(graph, monkeypatch):
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(MAX_DOMAIN_ID))
+    transport = join(graph)
+    assert transport.wait_until_ready(60), transport.problem

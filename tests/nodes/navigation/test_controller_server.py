@@ -87,7 +87,7 @@ async def test_canceling_stops_the_robot(start):
     assert scene.velocity == STILL
 
 
-async def test_another_path_takes_over_while_the_robot_drives(start):
+async def test_another_path_takes_over_while_the_robot_drives(start, log):
     scene, goal, _ = await start()
     await goal.send(path=path_message(PATH))
     await scene.run(2.0)
@@ -97,6 +97,8 @@ async def test_another_path_takes_over_while_the_robot_drives(start):
     assert await goal.ends(1.0) == GoalStatus.ABORTED
     assert await second.ends(30.0) == GoalStatus.SUCCEEDED
     assert scene.distance_to(3.0, 1.0) < 0.26
+    beginnings = ["Received a goal, begin computing control effort.", "Passing new path to controller."]
+    assert [record.text for record in log if record.text in beginnings] == beginnings
 
 
 async def test_an_obstacle_on_the_path_stops_the_robot(start, log):

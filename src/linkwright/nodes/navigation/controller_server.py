@@ -142,7 +142,10 @@ class ControllerNode(ManagedNode):
         """Begin with a goal; a robot that drives goes on driving."""
         request = goal.request
         assert self._goals is not None, "it is configured"
-        self.get_logger().info("Received a goal, begin computing control effort.")
+        drives = self._timer is not None
+        self.get_logger().info(
+            "Passing new path to controller." if drives else "Received a goal, begin computing control effort."
+        )
         try:
             self._follower = _chosen(self._followers, request.controller_id, "controller", "INVALID_CONTROLLER")
             self._checker = _chosen(self._checkers, request.goal_checker_id, "goal checker", "INVALID_CONTROLLER")
@@ -152,7 +155,7 @@ class ControllerNode(ManagedNode):
         except _GoalError as failure:
             self._fail(failure)
             return
-        if self._timer is None:
+        if not drives:
             self._progress_checker = checker
             self._progress_checker.begin()
             self._good_ns = self._now_ns()

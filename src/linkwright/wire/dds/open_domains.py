@@ -7,7 +7,7 @@ from threading import Lock
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.wire.dds.cyclone import LOG_ERRORS, load
-from linkwright.wire.dds.settings import PARTICIPANTS, Settings
+from linkwright.wire.dds.settings import Settings, most_participants
 from linkwright.wire.dds.topic_types import TopicTypes
 from linkwright.wire.dds.type_descriptions import WireTypes
 
@@ -100,7 +100,7 @@ def _create_domain(settings: Settings) -> int:
                 "at most {most} processes may be on it, no other program may hold its ports"
                 " (7400 and what follows, 250 a domain), and a network interface must be up; another"
                 " ROS_DOMAIN_ID has other ports, CYCLONEDDS_URI can name an interface",
-                most=PARTICIPANTS,
+                most=most_participants(settings.domain_id),
             ),
         )
     )

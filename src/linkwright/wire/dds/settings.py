@@ -21,13 +21,25 @@ from linkwright.wire.dds.discovery_info import GID_SIZE, OLD_GID_SIZE
 MAX_DOMAIN_ID = 232
 """Beyond it the ports of RTPS (7400 + 250 a domain) do not exist."""
 
-PARTICIPANTS = 99
-"""How many processes on one machine find each other without multicast."""
+_PARTICIPANTS = 99
+"""How many processes on one machine find each other without multicast, where the domain has ports for them."""
+
+_LAST_PORT = 0xFFFF
+_FIRST_UNICAST_PORT = 7411
+_PORTS_OF_A_DOMAIN = 250
 
 LEASE = 5
 """Seconds of silence after which a process counts as gone, where the configuration is our own."""
 
 _STATIC_PEERS_SEPARATOR = ";"
+
+
+def most_participants(domain_id: int) -> int:
+    """How many processes on one machine a domain has room for: each takes two ports, and the highest domains have few.
+
+    The ports are those of RTPS (DDSI-RTPS 2.5, 9.6.1).
+    """
+    return min(_PARTICIPANTS, (_LAST_PORT - _FIRST_UNICAST_PORT - _PORTS_OF_A_DOMAIN * domain_id) // 2)
 
 
 class Range(Enum):
@@ -82,9 +94,10 @@ def read_settings(environment: Mapping[str, str] | None = None, *, domain_id: in
     if peers and reach in (Range.OFF, Range.SYSTEM_DEFAULT):
         warnings.append(f"{len(peers)} static peers were specified, but discovery is {reach.value}: they are ignored")
     user = variables.get("CYCLONEDDS_URI", "")
-    own = tuple(_fragments(reach, peers))
+    domain_id = _domain(variables, domain_id)
+    own = tuple(_fragments(reach, peers, most_participants(domain_id)))
     return Settings(
-        domain_id=_domain(variables, domain_id),
+        domain_id=domain_id,
         range=reach,
         configurations=tuple(",".join(part for part in (each, user) if part) for each in own),
         gid_size=OLD_GID_SIZE if is_before_iron(variables) else GID_SIZE,
@@ -148,7 +161,7 @@ _LOOPBACK = '<NetworkInterface address="127.0.0.1" multicast="true"/>'
 _OTHERS = '<NetworkInterface autodetermine="true"/>'
 
 
-def _machine(interfaces: str, addresses: list[str], *, multicast: bool) -> str:
+def _machine(interfaces: str, addresses: list[str], most: int, *, multicast: bool) -> str:
     """Discovery on this machine: by unicast to each index at its own addresses, by multicast that never leaves (TTL 0).
 
     Multicast is listened to on loopback alone, so that no announcement of another machine is heard.
@@ -163,21 +176,21 @@ def _machine(interfaces: str, addresses: list[str], *, multicast: bool) -> str:
     return (
         f"<CycloneDDS><Domain><General><Interfaces>{interfaces}</Interfaces>{by_multicast}"
         "<MaxMessageSize>65000 B</MaxMessageSize><FragmentSize>60000 B</FragmentSize></General>"
-        f"<Discovery>{_AUTO_INDEX.format(PARTICIPANTS)}<LeaseDuration>{LEASE} s</LeaseDuration>"
+        f"<Discovery>{_AUTO_INDEX.format(most)}<LeaseDuration>{LEASE} s</LeaseDuration>"
         f"<Peers>{peers}</Peers></Discovery>"
         f"{_BUFFERS}</Domain></CycloneDDS>"
     )
 
 
-def _fragments(reach: Range, peers: list[str]) -> list[str]:
+def _fragments(reach: Range, peers: list[str], most: int) -> list[str]:
     """Configurations in the order of preference, without the user's own."""
     if reach is Range.MACHINE:
         addresses = own_addresses()[:_OWN_ADDRESSES]
         loopback_alone = [
-            _machine(_LOOPBACK, [], multicast=True),
-            _machine('<NetworkInterface address="127.0.0.1"/>', [], multicast=False),
+            _machine(_LOOPBACK, [], most, multicast=True),
+            _machine('<NetworkInterface address="127.0.0.1"/>', [], most, multicast=False),
         ]
-        on_network = [_machine(_LOOPBACK + _OTHERS, addresses, multicast=True)] if addresses else []
+        on_network = [_machine(_LOOPBACK + _OTHERS, addresses, most, multicast=True)] if addresses else []
         return on_network + loopback_alone
     if reach is Range.SYSTEM_DEFAULT:
         return [""]
