@@ -97,6 +97,19 @@ class Stack:
         nodes: dict[str, Any] = {name: server.node for name, server in self.servers.items()}
         return {name: node.lifecycle_state.label for name, node in nodes.items()}
 
+    async def health(self) -> tuple[str, int, str]:
+        """What the next message on ``/diagnostics`` says."""
+        told: list[Any] = []
+        node = self.graph.create_node("hears")
+        node.create_subscription("diagnostic_msgs/msg/DiagnosticArray", "/diagnostics", told.append, 10)
+        while not told:
+            await self.clock.advance(0.5)
+            await self.graph.settle()
+        node.destroy_node()
+        (status,) = told[-1].status
+        assert status.hardware_id == "Nav2"
+        return status.name, status.level[0], status.message
+
     def errors(self) -> list[str]:
         return [record.text for record in self.log if record.level >= LogLevel.ERROR]
 
@@ -133,6 +146,25 @@ async def test_nodes_are_configured_and_activated_in_order(stack: Stack) -> None
         "Server b connected with bond.",
         "Managed nodes are active",
     ]
+
+
+async def test_diagnostics_tell_how_the_nodes_are(stack: Stack) -> None:
+    name = "lifecycle_manager: Nav2 Health"
+    stack.add("a")
+    await stack.manage("a", until="Creating and initializing", autostart=False)
+    assert await stack.health() == (name, 0, "Managed nodes are unconfigured")
+    assert await stack.command(STARTUP)
+    assert await stack.health() == (name, 0, "Managed nodes are active")
+    assert await stack.command(PAUSE)
+    assert await stack.health() == (name, 0, "Managed nodes are inactive")
+    assert await stack.command(SHUTDOWN)
+    assert await stack.health() == (name, 1, "Managed nodes have been shut down")
+
+
+async def test_an_error_is_in_the_diagnostics(stack: Stack) -> None:
+    stack.add("broken")
+    await stack.manage("broken", until="Aborting bringup")
+    assert (await stack.health())[1:] == (2, "An error has occurred during a node state transition")
 
 
 async def test_it_waits_for_nodes_that_come_later(stack: Stack) -> None:

@@ -2,7 +2,7 @@
 
 Services, parameters, order and lines are those of nav2. Different on purpose: an answer is waited for as long as its
 node is there, with a word each ``service_timeout``, so that a slow machine is no failure; and when a node dies the
-others are brought down without waiting for it. There are no diagnostics.
+others are brought down without waiting for it.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from linkwright.graph.lifecycle.states import ACTIVE, FINALIZED, INACTIVE, UNCON
 from linkwright.graph.loop.callback_groups import ReentrantCallbackGroup
 from linkwright.messages import get_service
 from linkwright.nodes.answers import answered, is_served
+from linkwright.nodes.diagnostic_updater import DiagnosticUpdater, Health, Level
 from linkwright.nodes.navigation.bond import TIMEOUT, Bond
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 from linkwright.nodes.settings import bad_value, tell_unknown
@@ -45,6 +46,16 @@ class _State(Enum):
     ACTIVE = auto()
     FINALIZED = auto()
     UNKNOWN = auto()
+
+
+_HEALTH = {
+    _State.UNCONFIGURED: Health(Level.OK, "Managed nodes are unconfigured"),
+    _State.INACTIVE: Health(Level.OK, "Managed nodes are inactive"),
+    _State.ACTIVE: Health(Level.OK, "Managed nodes are active"),
+    _State.FINALIZED: Health(Level.WARN, "Managed nodes have been shut down"),
+    _State.UNKNOWN: Health(Level.ERROR, "An error has occurred during a node state transition"),
+}
+"""What ``/diagnostics`` says, in the words of Jazzy; Humble's know but active and inactive."""
 
 
 class _ManagedNodeClient:
@@ -145,6 +156,7 @@ class LifecycleManager(SingleNode):
             ("std_srvs/srv/Trigger", "is_active", self._on_is_active),
         ):
             self._node.create_service(get_service(kind), f"{name}/{service}", answer, callback_group=group)
+        DiagnosticUpdater(self._node, "Nav2 Health", lambda: _HEALTH[self._state], hardware_id="Nav2")
         if self._autostart:
             self._begin(self._alone(self._startup))
 

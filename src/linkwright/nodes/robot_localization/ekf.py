@@ -24,6 +24,7 @@ from linkwright.control.filters.readings import PoseReader
 from linkwright.geometry.single import Transform, compose, normalized, quaternion_from_rpy
 from linkwright.graph import TF_QOS, Duration, Graph, JumpThreshold, TransformException
 from linkwright.messages import TFMessage, Time, TransformBatch, get_message, get_service
+from linkwright.nodes.diagnostic_updater import DiagnosticUpdater, Health, Level
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 from linkwright.nodes.robot_localization.configuration import configuration_of
 from linkwright.nodes.robot_localization.sources import Source, Surroundings
@@ -69,9 +70,7 @@ class EkfNode(SingleNode):
             kind = get_message("geometry_msgs/msg/AccelWithCovarianceStamped")
             self._acceleration_publisher = node.create_publisher(kind, "accel/filtered", 10)
         if self._configuration.diagnostics:
-            kind = get_message("diagnostic_msgs/msg/DiagnosticArray")
-            self._diagnostics = node.create_publisher(kind, "/diagnostics", 1)
-            node.create_timer(1.0, self._diagnose)
+            DiagnosticUpdater(node, "Filter diagnostic updater", self._health)
         if self._configuration.filter.control is not None:
             stamped: bool = node.get_parameter("stamped_control").value
             kind = get_message(f"geometry_msgs/msg/Twist{'Stamped' if stamped else ''}")
@@ -191,20 +190,10 @@ class EkfNode(SingleNode):
         message.accel.covariance = covariance.reshape(36)
         return message
 
-    def _diagnose(self) -> None:
-        message = get_message("diagnostic_msgs/msg/DiagnosticArray")()
-        message.header.stamp = self._clock.now().to_msg()
-        status = get_message("diagnostic_msgs/msg/DiagnosticStatus")()
-        status.name = f"{self._node.get_name()}: Filter diagnostic updater"
-        status.hardware_id = "none"
-        status.level = bytes([0 if self._filter.initialized else 1])
-        status.message = (
-            "The robot_localization state estimation node appears to be functioning properly."
-            if self._filter.initialized
-            else "No measurement has come yet."
-        )
-        message.status = [status]
-        self._diagnostics.publish(message)
+    def _health(self) -> Health:
+        if not self._filter.initialized:
+            return Health(Level.WARN, "No measurement has come yet.")
+        return Health(Level.OK, "The robot_localization state estimation node appears to be functioning properly.")
 
     # --- commands ----------------------------------------------------------------------------------------------------
 

@@ -17,14 +17,13 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, phrase
 from linkwright.diagnostics.translation import localized
 from linkwright.graph import Graph, MessageInfo, Node, Publisher, Subscription
 from linkwright.graph.endpoints.commander import Commander
-from linkwright.messages import get_message
+from linkwright.nodes.diagnostic_updater import DiagnosticUpdater, Health, Level
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 from linkwright.nodes.teleop.standstill import send_stop
 from linkwright.nodes.velocity_topic import TWIST, TWIST_STAMPED
 
 _DEPTH = 10
 _MOST = 255
-_DIAGNOSTICS_SECONDS = 1.0
 _NANOSECONDS = 1e9
 
 
@@ -98,11 +97,7 @@ class TwistMux(SingleNode):
                 f"Topic handler '{source.name}' subscribed to topic '{source.topic}': "
                 f"timeout = {timeout} , priority = {source.priority}."
             )
-        self._array = get_message("diagnostic_msgs/msg/DiagnosticArray")
-        self._status = get_message("diagnostic_msgs/msg/DiagnosticStatus")
-        self._pair = get_message("diagnostic_msgs/msg/KeyValue")
-        self._diagnostics = node.create_publisher(self._array, "/diagnostics", _DEPTH)
-        node.create_timer(_DIAGNOSTICS_SECONDS, self._diagnose)
+        DiagnosticUpdater(node, "Twist mux status", self._health)
 
     def _now_ns(self) -> int:
         return self._node.get_clock().now().nanoseconds
@@ -126,7 +121,7 @@ class TwistMux(SingleNode):
     def _masked(self, source: _Source, lock: int, now_ns: int) -> bool:
         return source.silent or source.expired(now_ns) or source.priority < lock
 
-    def _diagnose(self) -> None:
+    def _health(self) -> Health:
         now = self._now_ns()
         lock = self._lock_priority(now)
         said = {
@@ -138,12 +133,7 @@ class TwistMux(SingleNode):
             for each in self._locks
         }
         said["current priority"] = str(lock)
-        message = self._array()
-        message.header.stamp = self._node.get_clock().now().to_msg()
-        status = self._status(name=f"{self._node.get_name()}: Twist mux status", message="ok", hardware_id="none")
-        status.values = [self._pair(key=key, value=value) for key, value in said.items()]
-        message.status = [status]
-        self._diagnostics.publish(message)
+        return Health(Level.OK, "ok", said)
 
 
 def _sources(node: Node, group: str) -> list[_Source]:

@@ -1,0 +1,63 @@
+"""Nodes that say each second on ``/diagnostics`` how they are, as with diagnostic_updater."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from enum import IntEnum
+
+from linkwright.graph import Node
+from linkwright.messages import get_message
+
+_PERIOD = 1.0
+_DEPTH = 1
+
+
+class Level(IntEnum):
+    """The levels of diagnostic_msgs/DiagnosticStatus."""
+
+    OK = 0
+    WARN = 1
+    ERROR = 2
+
+
+@dataclass(frozen=True, slots=True)
+class Health:
+    """How something is: a level, a sentence, and values by name."""
+
+    level: Level
+    message: str
+    values: Mapping[str, str] = field(default_factory=dict)
+
+
+class DiagnosticUpdater:
+    """Publishes how a node is, each second of its clock.
+
+    Args:
+        node: whose name stands before that of the task.
+        task: the name of what is told.
+        ask: says how it is.
+        hardware_id: the hardware it is about; ``none`` for none, as in diagnostic_updater.
+    """
+
+    def __init__(self, node: Node, task: str, ask: Callable[[], Health], hardware_id: str = "none") -> None:
+        self._node = node
+        self._task = task
+        self._ask = ask
+        self._hardware_id = hardware_id
+        self._array = get_message("diagnostic_msgs/msg/DiagnosticArray")
+        self._status = get_message("diagnostic_msgs/msg/DiagnosticStatus")
+        self._pair = get_message("diagnostic_msgs/msg/KeyValue")
+        self._publisher = node.create_publisher(self._array, "/diagnostics", _DEPTH)
+        node.create_timer(_PERIOD, self._tell)
+
+    def _tell(self) -> None:
+        health = self._ask()
+        status = self._status(
+            name=f"{self._node.get_name()}: {self._task}", message=health.message, hardware_id=self._hardware_id
+        )
+        status.level = bytes([health.level])
+        status.values = [self._pair(key=key, value=value) for key, value in health.values.items()]
+        message = self._array(status=[status])
+        message.header.stamp = self._node.get_clock().now().to_msg()
+        self._publisher.publish(message)
