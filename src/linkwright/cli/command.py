@@ -27,6 +27,7 @@ GROUPS = {
         "drive": "put a robot into a simulated world and drive it; masses, collisions and wheels are inferred",
         "xacro": "expand a xacro file to URDF, list its arguments, or explain its parts",
         "check": "check URDF and xacro files, and the packages in folders; of one file, print the link tree",
+        "diff": "say what changed from one description to another, or since a commit: links, joints, origins, masses",
         "explain": "say what a diagnostic code means and what to do, or what an element or attribute of URDF means",
         "inertia": "judge mass and inertia of each link by its shapes, print those computed from them, or write them",
         "world": "list the worlds and models that there are, begin a new world, or check one",

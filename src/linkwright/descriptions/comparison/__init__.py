@@ -1,0 +1,17 @@
+"""What has changed from one robot description to another: links, joints, origins, masses, with places in both."""
+
+from linkwright.descriptions.comparison.compare import Comparison, Difference, Kind, Place, Side, Subject, compare
+from linkwright.descriptions.comparison.report import as_data, as_text, sentence
+
+__all__ = [
+    "Comparison",
+    "Difference",
+    "Kind",
+    "Place",
+    "Side",
+    "Subject",
+    "as_data",
+    "as_text",
+    "compare",
+    "sentence",
+]

@@ -1,0 +1,356 @@
+"""The comparison of two descriptions."""
+
+from __future__ import annotations
+
+import filecmp
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Literal
+
+from linkwright.descriptions.comparison.facts import (
+    Block,
+    Fact,
+    blocks_of_joint,
+    blocks_of_link,
+    collisions_of,
+    nearest,
+    pairs_of,
+    visuals_of,
+)
+from linkwright.descriptions.comparison.matching import Matches, match
+from linkwright.diagnostics import LinkwrightError, Span
+from linkwright.urdf import Collision, Joint, Link, Mesh, Robot, Visual
+from linkwright.xacro.origin import Frame, frames
+from linkwright.xmltree import Element
+
+Kind = Literal["added", "removed", "renamed", "changed"]
+Subject = Literal["robot", "link", "joint", "extension"]
+_Pair = tuple[Element | None, Element | None]
+"""Where something is written in the old and in the new description."""
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where something is written, and the macro calls and includes that brought it there, innermost first."""
+
+    span: Span
+    calls: tuple[Span, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """One thing that two descriptions say otherwise.
+
+    Attributes:
+        subject: what it is about; ``extension`` is a ``<gazebo>``, ``<ros2_control>``, ``<transmission>``, ...
+        name: its name in the new description; in the old one where it was removed.
+        kind: what happened to it.
+        property: what has changed of it, such as ``mass`` or ``visual 2 origin xyz``; empty when it is all of it.
+        old: what the old description says, without the unit; None where it says nothing.
+        new: what the new one says.
+        unit: the unit of both; empty for words.
+        old_place: where the old description says so, or where what it says something of begins.
+        new_place: the same of the new one.
+    """
+
+    subject: Subject
+    name: str
+    kind: Kind
+    property: str = ""
+    old: str | None = None
+    new: str | None = None
+    unit: str = ""
+    old_place: Place | None = None
+    new_place: Place | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """How two descriptions differ.
+
+    Attributes:
+        differences: the robot, then links and joints in the order of the new description, those removed behind them,
+            then everything that other programs read.
+        links: name in the old description -> name in the new one, of links that both have.
+        joints: the same of joints.
+    """
+
+    differences: tuple[Difference, ...]
+    links: Mapping[str, str]
+    joints: Mapping[str, str]
+
+
+@dataclass(frozen=True)
+class Side:
+    """One of two descriptions.
+
+    Attributes:
+        robot: what it says.
+        normalize: makes what it says in words comparable, such as paths in a folder that stands for another.
+        resolve: the file that the address of a mesh means; where given, the bytes of meshes are compared, too.
+
+    """
+
+    robot: Robot
+    normalize: Callable[[str], str] = field(default=lambda words: words)
+    resolve: Callable[[str], Path] | None = None
+
+    def mesh(self, address: str) -> Path | None:
+        """The file of a mesh; None where it is not known or not there."""
+        if self.resolve is None:
+            return None
+        try:
+            path = self.resolve(address)
+        except LinkwrightError:
+            return None
+        return path if path.is_file() else None
+
+
+def compare(old: Side, new: Side) -> Comparison:
+    """How two descriptions differ.
+
+    Links and joints are matched by name, and recognised under a new name where all else is equal. Poses are compared as
+    poses, not as text; the tolerances stand in `linkwright.descriptions.comparison.facts`. What is outside the robot
+    model (``<gazebo>``, ``<ros2_control>``, sensors) is compared as XML whose blanks, comments and order of attributes
+    do not count.
+    """
+    return _Comparer(old, new).run()
+
+
+class _Comparer:
+    def __init__(self, old: Side, new: Side) -> None:
+        self.old = old
+        self.new = new
+        self.matches = Matches({}, {})
+
+    def run(self) -> Comparison:
+        old, new = self.old.robot, self.new.robot
+        self.matches = match(old, new, self._same_link, self._same_joint)
+        found = [*self._robot(), *self._links(), *self._joints(), *self._extensions()]
+        return Comparison(tuple(found), self.matches.links, self.matches.joints)
+
+    # --- which is which -----------------------------------------------------------------------------------------
+
+    def _same(self, old: Block, new: Block) -> bool:
+        return old.equals(new, self.old.normalize, self.new.normalize)
+
+    def _same_link(self, old: Link, new: Link) -> bool:
+        return not any(self._in_link(old, new))
+
+    def _same_joint(self, old: Joint, new: Joint) -> bool:
+        return all(each.property in ("parent", "child", "mimic joint") for each in self._in_joint(old, new))
+
+    # --- subjects -----------------------------------------------------------------------------------------------
+
+    def _robot(self) -> Iterator[Difference]:
+        old, new = self.old.robot, self.new.robot
+        if old.name != new.name:
+            places = _place(old.element, "name"), _place(new.element, "name")
+            yield Difference("robot", new.name, "changed", "name", old.name, new.name, "", *places)
+
+    def _links(self) -> Iterator[Difference]:
+        old, new = self.old.robot.links, self.new.robot.links
+        names = {after: before for before, after in self.matches.links.items()}
+        for name, link in new.items():
+            if name not in names:
+                yield Difference("link", name, "added", new_place=_place(link.element))
+                continue
+            before = old[names[name]]
+            yield from _renamed("link", before, link)
+            yield from self._in_link(before, link)
+        for name, link in old.items():
+            if name not in self.matches.links:
+                yield Difference("link", name, "removed", old_place=_place(link.element))
+
+    def _joints(self) -> Iterator[Difference]:
+        old, new = self.old.robot.joints, self.new.robot.joints
+        names = {after: before for before, after in self.matches.joints.items()}
+        for name, joint in new.items():
+            if name not in names:
+                yield Difference("joint", name, "added", new_place=_place(joint.element))
+                continue
+            before = old[names[name]]
+            yield from _renamed("joint", before, joint)
+            yield from (each for each in self._in_joint(before, joint) if not self._follows_a_name(each))
+        for name, joint in old.items():
+            if name not in self.matches.joints:
+                yield Difference("joint", name, "removed", old_place=_place(joint.element))
+
+    def _follows_a_name(self, difference: Difference) -> bool:
+        """Whether a reference says another name only because what it means was renamed."""
+        if difference.property in ("parent", "child"):
+            return self.matches.links.get(difference.old or "") == difference.new
+        return difference.property == "mimic joint" and self.matches.joints.get(difference.old or "") == difference.new
+
+    def _in_joint(self, old: Joint, new: Joint) -> Iterator[Difference]:
+        around = old.element, new.element
+        yield from self._blocks("joint", new.name, blocks_of_joint(old), blocks_of_joint(new), around)
+
+    def _in_link(self, old: Link, new: Link) -> Iterator[Difference]:
+        around = old.element, new.element
+        yield from self._blocks("link", new.name, blocks_of_link(old), blocks_of_link(new), around)
+        yield from self._shapes(new.name, visuals_of(old), visuals_of(new), around)
+        yield from self._shapes(new.name, collisions_of(old), collisions_of(new), around)
+        yield from self._meshes(old, new)
+
+    def _shapes(self, link: str, old: Sequence[Block], new: Sequence[Block], around: _Pair) -> Iterator[Difference]:
+        for before, after in pairs_of(old, new, self._same):
+            number = after if after is not None else before or 0
+            some = new[number] if after is not None else old[number]
+            several = max(len(old), len(new)) > 1
+            name = (
+                f"{some.name} '{some.label}'" if some.label else f"{some.name} {number + 1}" if several else some.name
+            )
+            first = None if before is None else old[before]
+            second = None if after is None else new[after]
+            yield from self._block("link", link, name, first, second, around)
+
+    def _meshes(self, old: Link, new: Link) -> Iterator[Difference]:
+        """Meshes of one name whose files differ."""
+        for tag, before, after in (("visual", old.visuals, new.visuals), ("collision", old.collisions, new.collisions)):
+            known, wanted = _meshes_of(before), _meshes_of(after)
+            for name in (name for name in wanted if name in known):
+                old_file, new_file = self.old.mesh(name), self.new.mesh(name)
+                if old_file and new_file and not _same_bytes(old_file, new_file):
+                    sizes = str(old_file.stat().st_size), str(new_file.stat().st_size)
+                    places = _place(known[name]), _place(wanted[name])
+                    yield Difference("link", new.name, "changed", f"{tag} mesh {name}", *sizes, "bytes", *places)
+
+    # --- blocks of facts ------------------------------------------------------------------------------------------
+
+    def _blocks(
+        self, subject: Subject, name: str, old: Sequence[Block], new: Sequence[Block], around: _Pair
+    ) -> Iterator[Difference]:
+        before, after = {each.name: each for each in old}, {each.name: each for each in new}
+        for block in dict.fromkeys([*after, *before]):
+            yield from self._block(subject, name, block, before.get(block), after.get(block), around)
+
+    def _block(
+        self, subject: Subject, name: str, block: str, old: Block | None, new: Block | None, around: _Pair
+    ) -> Iterator[Difference]:
+        if old is None or new is None:
+            texts = None if old is None else old.text, None if new is None else new.text
+            first, second = around[0] if old is None else old.element, around[1] if new is None else new.element
+            yield Difference(subject, name, "changed", block, *texts, "", _place(first), _place(second))
+            return
+        for fact in dict.fromkeys([*new.facts, *old.facts]):
+            before, after = old.facts.get(fact), new.facts.get(fact)
+            if before and after and before.equals(after, self.old.normalize, self.new.normalize):
+                continue
+            yield _changed(subject, name, f"{block} {fact}".strip(), (before, old), (after, new))
+
+    # --- what other programs read -----------------------------------------------------------------------------------
+
+    def _extensions(self) -> Iterator[Difference]:
+        yield from self._elements(self.old.robot.extensions, self.new.robot.extensions, "", None)
+
+    def _elements(
+        self,
+        old: Sequence[Element],
+        new: Sequence[Element],
+        path: str,
+        around: tuple[str, Element, Element] | None,
+    ) -> Iterator[Difference]:
+        """Differences of elements: those of a robot, or those inside of a pair of them, `around`, with its name."""
+        before, after = _keyed(old), _keyed(new)
+        for key in dict.fromkeys([*after, *before]):
+            first, second = before.get(key), after.get(key)
+            here = f"{path} {key}".strip()
+            if first is not None and second is not None:
+                name, start = (key, "") if around is None else (around[0], here)
+                yield from self._element(name, start, first, second)
+            elif around is None:
+                kind: Kind = "added" if first is None else "removed"
+                yield Difference("extension", key, kind, "", None, None, "", _place(first), _place(second))
+            else:
+                texts = None if first is None else _flat(first), None if second is None else _flat(second)
+                places = _place(first or around[1]), _place(second or around[2])
+                yield Difference("extension", around[0], "changed", here, *texts, "", *places)
+
+    def _element(self, name: str, path: str, old: Element, new: Element) -> Iterator[Difference]:
+        for attribute in dict.fromkeys([*new.attributes, *old.attributes]):
+            before, after = old.attributes.get(attribute), new.attributes.get(attribute)
+            if not self._same_words(before, after):
+                places = _place(old, attribute), _place(new, attribute)
+                yield Difference(
+                    "extension", name, "changed", f"{path} @{attribute}".strip(), before, after, "", *places
+                )
+        texts = " ".join(old.text().split()), " ".join(new.text().split())
+        if not self._same_words(*texts):
+            yield Difference("extension", name, "changed", path, *texts, "", _place(old), _place(new))
+        yield from self._elements(list(old.elements()), list(new.elements()), path, (name, old, new))
+
+    def _same_words(self, old: str | None, new: str | None) -> bool:
+        if old is None or new is None:
+            return old is new
+        return " ".join(self.old.normalize(old).split()) == " ".join(self.new.normalize(new).split())
+
+
+def _keyed(elements: Sequence[Element]) -> dict[str, Element]:
+    """Elements by tag and by name or reference, in their order; several of one kind are numbered."""
+    found: dict[str, Element] = {}
+    for element in elements:
+        name = element.attributes.get("name") or element.attributes.get("reference")
+        key = f"{element.tag} {name}" if name else element.tag
+        number = 2
+        unique = key
+        while unique in found:
+            unique = f"{key} {number}"
+            number += 1
+        found[unique] = element
+    return found
+
+
+def _flat(element: Element) -> str:
+    """An element in one line: its attributes and its text."""
+    words = [f"{name}={value}" for name, value in element.attributes.items()]
+    words += element.text().split()
+    words += [f"<{child.tag}>" for child in element.elements()]
+    return " ".join(words)
+
+
+def _renamed(subject: Subject, old: Link | Joint, new: Link | Joint) -> Iterator[Difference]:
+    if old.name != new.name:
+        places = _place(old.element, "name"), _place(new.element, "name")
+        yield Difference(subject, new.name, "renamed", "name", old.name, new.name, "", *places)
+
+
+def _changed(
+    subject: Subject, name: str, fact: str, old: tuple[Fact | None, Block], new: tuple[Fact | None, Block]
+) -> Difference:
+    def place(side: tuple[Fact | None, Block]) -> Place | None:
+        found, block = side
+        return _place(block.element) if found is None else _place(found.element, found.attribute)
+
+    before, after = old[0], new[0]
+    some = after or before
+    texts = None if before is None else before.text, None if after is None else after.text
+    return Difference(subject, name, "changed", fact, *texts, some.unit if some else "", place(old), place(new))
+
+
+def _place(element: Element | None, attribute: str = "") -> Place | None:
+    """Where an element, or one of its attributes, is written."""
+    if element is None:
+        return None
+    span = element.attribute_span(attribute) if attribute in element.attributes else element.span()
+    if span is None:
+        return None
+    calls = (frame.site.span() for frame in frames(element.origin if isinstance(element.origin, Frame) else None))
+    return Place(span, tuple(call for call in calls if call is not None))
+
+
+def _meshes_of(shapes: Sequence[Visual | Collision]) -> dict[str, Element | None]:
+    """Addresses of meshes, and where they are written."""
+    return {
+        each.geometry.filename: nearest(each.element, "geometry", "mesh")
+        for each in shapes
+        if isinstance(each.geometry, Mesh)
+    }
+
+
+def _same_bytes(old: Path, new: Path) -> bool:
+    try:
+        return filecmp.cmp(old, new, shallow=False)
+    except OSError:
+        return True

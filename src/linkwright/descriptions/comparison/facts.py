@@ -1,0 +1,265 @@
+"""What a description says of a link or joint, property by property, each with the place where it is written."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+from math import sqrt
+
+from linkwright.geometry.shapes import Box, Sphere
+from linkwright.geometry.single import Pose, quaternion_of
+from linkwright.urdf import Geometry, Inertial, Joint, Link, Mesh, Visual
+from linkwright.urdf.model import Collision
+from linkwright.xmltree import Element
+
+LENGTH_TOLERANCE = 1e-6
+"""Metres; lengths that differ by no more are the same."""
+ROTATION_TOLERANCE = 1e-6
+"""Radians; rotations, and directions of axes, with no more between them are the same."""
+RELATIVE_TOLERANCE = 1e-6
+"""All other numbers are the same when they differ by no more than this part of the greater one."""
+
+Normalize = Callable[[str], str]
+
+
+@dataclass(frozen=True, slots=True)
+class Fact:
+    """One property.
+
+    Attributes:
+        words: what it says in words, such as a name or the kind of a shape; empty for numbers alone.
+        numbers: its numbers, in SI units.
+        unit: the unit of the numbers.
+        rotation: the quaternion (x, y, z, w) that the numbers stand for, where they are roll, pitch and yaw.
+        direction: whether the numbers are an axis, whose length means nothing.
+        element: where it is written, or the nearest element around where it is a default.
+        attribute: the attribute of the element.
+    """
+
+    words: str
+    numbers: tuple[float, ...]
+    unit: str
+    element: Element | None
+    attribute: str
+    rotation: tuple[float, ...] = ()
+    direction: bool = False
+
+    def equals(self, other: Fact, here: Normalize, there: Normalize) -> bool:
+        """Whether two descriptions say the same, within the tolerances.
+
+        Args:
+            other: what the other one says.
+            here: makes the words of this one comparable.
+            there: makes the words of the other one comparable.
+        """
+        if here(self.words) != there(other.words) or len(self.numbers) != len(other.numbers):
+            return False
+        if self.rotation:
+            return _angle(self.rotation, other.rotation) <= ROTATION_TOLERANCE
+        if self.direction:
+            return _distance(_unit(self.numbers), _unit(other.numbers)) <= ROTATION_TOLERANCE
+        return all(map(self._near, self.numbers, other.numbers))
+
+    def _near(self, ours: float, theirs: float) -> bool:
+        if ours == theirs:
+            return True
+        least = LENGTH_TOLERANCE if self.unit == "m" else 0.0
+        return abs(ours - theirs) <= max(least, RELATIVE_TOLERANCE * max(abs(ours), abs(theirs)))
+
+    @property
+    def text(self) -> str:
+        """The words and numbers, without the unit."""
+        return " ".join(filter(None, (self.words, *(f"{number:.9g}" for number in self.numbers))))
+
+
+@dataclass(slots=True)
+class Block:
+    """Facts that come and go together: an ``<inertial>``, a ``<limit>``, a ``<visual>``.
+
+    Attributes:
+        name: its tag; empty for what a joint always says.
+        element: where it is written.
+        facts: property -> what is said.
+        label: the name that the description gives it.
+    """
+
+    name: str
+    element: Element | None
+    facts: dict[str, Fact] = field(default_factory=dict)
+    label: str = ""
+
+    @property
+    def text(self) -> str:
+        """All facts in one line, with their units."""
+        return ", ".join(" ".join(filter(None, (name, fact.text, fact.unit))) for name, fact in self.facts.items())
+
+    def equals(self, other: Block, here: Normalize, there: Normalize) -> bool:
+        """Whether all facts of two blocks are the same."""
+        return self.facts.keys() == other.facts.keys() and all(
+            fact.equals(other.facts[name], here, there) for name, fact in self.facts.items()
+        )
+
+    def number(self, name: str, value: float | None, unit: str, element: Element | None, attribute: str) -> None:
+        """Add a number; None is not said."""
+        if value is not None:
+            self.facts[name] = Fact("", (value,), unit, element, attribute)
+
+    def words(self, name: str, value: str, element: Element | None, attribute: str) -> None:
+        """Add words; empty ones are not said."""
+        if value:
+            self.facts[name] = Fact(value, (), "", element, attribute)
+
+    def origin(self, pose: Pose, around: Element | None) -> None:
+        """Add the pose of a frame in the one around it."""
+        element = nearest(around, "origin")
+        attribute = "rpy" if pose.quaternion is None else "quat_xyzw"
+        self.facts["origin xyz"] = Fact("", pose.xyz, "m", element, "xyz")
+        self.facts["origin rpy"] = Fact("", pose.rpy, "rad", element, attribute, quaternion_of(pose))
+
+
+def nearest(element: Element | None, *tags: str) -> Element | None:
+    """The element inside that the tags lead to, or the last one on the way that is there."""
+    for tag in tags:
+        inner = None if element is None else element.first(tag)
+        if inner is None:
+            break
+        element = inner
+    return element
+
+
+def blocks_of_link(link: Link) -> list[Block]:
+    """What is said of a link, all but its shapes."""
+    return [] if link.inertial is None else [_inertial(link.inertial)]
+
+
+def visuals_of(link: Link) -> list[Block]:
+    """What is said of each ``<visual>`` of a link."""
+    return [_visual(each) for each in link.visuals]
+
+
+def collisions_of(link: Link) -> list[Block]:
+    """What is said of each ``<collision>`` of a link."""
+    return [_shape("collision", each) for each in link.collisions]
+
+
+def blocks_of_joint(joint: Joint) -> list[Block]:
+    """What is said of a joint."""
+    element = joint.element
+    own = Block("", element)
+    own.words("type", joint.type, element, "type")
+    own.words("parent", joint.parent, nearest(element, "parent"), "link")
+    own.words("child", joint.child, nearest(element, "child"), "link")
+    own.origin(joint.origin, element)
+    if joint.type not in ("fixed", "floating"):
+        own.facts["axis"] = Fact("", joint.axis, "", nearest(element, "axis"), "xyz", direction=True)
+    unit = "m" if joint.type == "prismatic" else "rad"
+    force = "N" if joint.type == "prismatic" else "N m"
+    per = {"lower": unit, "upper": unit, "effort": force, "velocity": f"{unit}/s"}
+    per |= {"acceleration": f"{unit}/s2", "deceleration": f"{unit}/s2", "jerk": f"{unit}/s3"}
+    per |= {"multiplier": "", "offset": unit, "soft_lower_limit": unit, "soft_upper_limit": unit}
+    per |= {"k_position": "", "k_velocity": "", "rising": unit, "falling": unit}
+    per |= {"damping": f"{force} s/{unit}", "friction": force}
+    found = [own]
+    for tag, part in (
+        ("limit", joint.limit),
+        ("mimic", joint.mimic),
+        ("safety_controller", joint.safety),
+        ("dynamics", joint.dynamics),
+        ("calibration", joint.calibration),
+    ):
+        if part is None:
+            continue
+        inner = nearest(element, tag)
+        block = Block(tag, inner)
+        if joint.mimic is not None and tag == "mimic":
+            block.words("joint", joint.mimic.joint, inner, "joint")
+        for name in per:
+            block.number(name, getattr(part, name, None), per[name], inner, name)
+        found.append(block)
+    return found
+
+
+def _inertial(inertial: Inertial) -> Block:
+    block = Block("inertial", inertial.element)
+    block.number("mass", inertial.mass, "kg", nearest(inertial.element, "mass"), "value")
+    block.origin(inertial.origin, inertial.element)
+    tensor = nearest(inertial.element, "inertia")
+    for name in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"):
+        block.number(f"inertia {name}", getattr(inertial, name), "kg m2", tensor, name)
+    return block
+
+
+def _visual(visual: Visual) -> Block:
+    block = _shape("visual", visual)
+    element, material = nearest(visual.element, "material"), visual.material
+    block.words("material", visual.material_name, element, "name")
+    if material is not None and material.rgba is not None:
+        where = nearest(material.element, "color")
+        block.facts["color rgba"] = Fact("", material.rgba, "", where or element, "rgba")
+    if material is not None and material.texture:
+        where = nearest(material.element, "texture")
+        block.words("texture", material.texture, where or element, "filename")
+    return block
+
+
+def _shape(tag: str, shape: Visual | Collision) -> Block:
+    block = Block(tag, shape.element, label=shape.name)
+    block.origin(shape.origin, shape.element)
+    block.facts["geometry"] = _geometry(shape.geometry, shape.element)
+    return block
+
+
+def _geometry(geometry: Geometry, around: Element | None) -> Fact:
+    kind = type(geometry).__name__.lower()
+    element = nearest(around, "geometry", kind)
+    if isinstance(geometry, Mesh):
+        scale = () if geometry.scale == (1.0, 1.0, 1.0) else geometry.scale
+        return Fact(" ".join([kind, geometry.filename, *(["scale"] if scale else [])]), scale, "", element, "filename")
+    if isinstance(geometry, Box):
+        return Fact(kind, geometry.size, "m", element, "size")
+    if isinstance(geometry, Sphere):
+        return Fact(f"{kind} radius", (geometry.radius,), "m", element, "radius")
+    return Fact(f"{kind} radius, length", (geometry.radius, geometry.length), "m", element, "radius")
+
+
+def pairs_of(
+    old: Sequence[Block], new: Sequence[Block], same: Callable[[Block, Block], bool]
+) -> list[tuple[int | None, int | None]]:
+    """Which of several visuals, or collisions, were which: equal ones, then those of one name, then by their order.
+
+    Returns:
+        Positions in `old` and in `new`; None for what is not there.
+    """
+    left, right = list(range(len(old))), list(range(len(new)))
+    found: list[tuple[int | None, int | None]] = []
+
+    def pair(matches: Callable[[int, int], bool]) -> None:
+        for before in tuple(left):
+            after = next((each for each in right if matches(before, each)), None)
+            if after is not None:
+                left.remove(before)
+                right.remove(after)
+                found.append((before, after))
+
+    pair(lambda before, after: same(old[before], new[after]))
+    pair(lambda before, after: old[before].label != "" and old[before].label == new[after].label)
+    pair(lambda _before, _after: True)
+    return [
+        *sorted(found, key=lambda each: each[1] or 0),
+        *((each, None) for each in left),
+        *((None, each) for each in right),
+    ]
+
+
+def _angle(ours: Sequence[float], theirs: Sequence[float]) -> float:
+    """The angle between two rotations in radians; exact where it is small."""
+    return 2.0 * min(_distance(ours, theirs), _distance(ours, [-each for each in theirs]))
+
+
+def _unit(vector: Sequence[float]) -> tuple[float, ...]:
+    length = sqrt(sum(each * each for each in vector))
+    return tuple(each / length for each in vector) if length > 0.0 else tuple(vector)
+
+
+def _distance(ours: Iterable[float], theirs: Iterable[float]) -> float:
+    return sqrt(sum((a - b) ** 2 for a, b in zip(ours, theirs, strict=True)))

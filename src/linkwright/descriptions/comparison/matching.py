@@ -1,0 +1,72 @@
+"""Which link and joint of one description is which of another: by name, and renamed where all else is equal."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from linkwright.urdf import Joint, Link, Robot, children_of
+
+
+@dataclass(frozen=True, slots=True)
+class Matches:
+    """Names in the old description -> names in the new one, the same or renamed.
+
+    Attributes:
+        links: of links.
+        joints: of joints.
+    """
+
+    links: Mapping[str, str]
+    joints: Mapping[str, str]
+
+
+def match(
+    old: Robot, new: Robot, same_link: Callable[[Link, Link], bool], same_joint: Callable[[Joint, Joint], bool]
+) -> Matches:
+    """Match two robots, from the root down.
+
+    What is there under one name in both is the same. A joint that is only in the old one is renamed when one that is
+    only in the new one has the same parent, an equal child and says the same; a link, when it is equal and the joint
+    above it is the same.
+
+    Args:
+        old: the old robot.
+        new: the new one.
+        same_link: whether two links say the same, whatever their names.
+        same_joint: whether two joints say the same, whatever their names and those of their links.
+    """
+    links = {name: name for name in old.links if name in new.links}
+    joints = {name: name for name in old.joints if name in new.joints}
+    taken = set(joints)
+
+    def renamed(before: str, after: str) -> bool:
+        """Whether a link is the other one, which it then counts as."""
+        if links.get(before) == after:
+            return True
+        if before in new.links or after in old.links or before in links or after in links.values():
+            return False
+        if not same_link(old.links[before], new.links[after]):
+            return False
+        links[before] = after
+        return True
+
+    renamed(old.root, new.root)
+    below_old, below_new = children_of(old), children_of(new)
+    pending = deque([old.root])
+    while pending:
+        parent = pending.popleft()
+        rivals = below_new.get(links.get(parent, ""), ())
+        for joint in below_old.get(parent, ()):
+            if joint.name in new.joints:
+                renamed(joint.child, new.joints[joint.name].child)
+            else:
+                for rival in rivals:
+                    free = rival.name not in taken and rival.name not in old.joints
+                    if free and same_joint(joint, rival) and renamed(joint.child, rival.child):
+                        joints[joint.name] = rival.name
+                        taken.add(rival.name)
+                        break
+            pending.append(joint.child)
+    return Matches(links, joints)

@@ -1,0 +1,90 @@
+"""A comparison as text for people and as data for programs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from linkwright.descriptions.comparison.compare import Comparison, Difference, Place
+from linkwright.diagnostics import Phrase, Span, counted, phrase, term
+from linkwright.diagnostics.translation import localized
+
+Label = Callable[[str], str]
+"""What readers know a file by."""
+
+
+def as_text(comparison: Comparison, label: Label) -> str:
+    """Each difference in a line, and below it where both descriptions say so; in the reader's language.
+
+    Args:
+        comparison: the differences.
+        label: makes the name of a file what readers know it by.
+    """
+    found = comparison.differences
+    if not found:
+        return localized(phrase("no differences")) + "\n"
+    lines = []
+    for each in found:
+        places = [_where(place, label) for place in (each.old_place, each.new_place) if place is not None]
+        lines += [localized(sentence(each)), *(["  " + " -> ".join(places)] if places else [])]
+    lines.append(localized(counted("{count} difference", "{count} differences", len(found))))
+    return "\n".join(lines) + "\n"
+
+
+def sentence(difference: Difference) -> Phrase:
+    """What has changed, in one line."""
+    subject, name = term(difference.subject), difference.name
+    if difference.kind == "added":
+        return phrase("{subject} '{name}' added", subject=subject, name=name)
+    if difference.kind == "removed":
+        return phrase("{subject} '{name}' removed", subject=subject, name=name)
+    if difference.kind == "renamed":
+        return phrase("{subject} '{old}' renamed to '{name}'", subject=subject, old=difference.old or "", name=name)
+    return phrase(
+        "{subject} '{name}': {property} {old} -> {new}",
+        subject=subject,
+        name=name,
+        property=difference.property,
+        old="-" if difference.old is None else difference.old,
+        new=" ".join(filter(None, ("-" if difference.new is None else difference.new, difference.unit))),
+    )
+
+
+def as_data(comparison: Comparison, label: Label) -> list[dict[str, Any]]:
+    """The differences as JSON-ready data: places are 1-based, absent ones are None."""
+    return [
+        {
+            "subject": each.subject,
+            "name": each.name,
+            "kind": each.kind,
+            "property": each.property,
+            "old": each.old,
+            "new": each.new,
+            "unit": each.unit,
+            "old_place": _place_data(each.old_place, label),
+            "new_place": _place_data(each.new_place, label),
+        }
+        for each in comparison.differences
+    ]
+
+
+def _place_data(place: Place | None, label: Label) -> dict[str, Any] | None:
+    if place is None:
+        return None
+    return {**_span_data(place.span, label), "calls": [_span_data(call, label) for call in place.calls]}
+
+
+def _span_data(span: Span, label: Label) -> dict[str, Any]:
+    return {"file": label(span.file), "line": span.line, "column": span.column}
+
+
+def _where(place: Place, label: Label) -> str:
+    """Where something is written, and what called or included that; outer calls are data for programs."""
+    written = _written(place.span, label)
+    if not place.calls:
+        return written
+    return localized(phrase("{place} called at {call}", place=written, call=_written(place.calls[0], label)))
+
+
+def _written(span: Span, label: Label) -> str:
+    return f"{label(span.file)}:{span.line}:{span.column}"

@@ -1,0 +1,135 @@
+"""Two descriptions that are to be compared: two files, or one file and what it was in a commit."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from linkwright.descriptions.comparison import Comparison, Side, compare
+from linkwright.descriptions.description import Description
+from linkwright.descriptions.service import examine
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Span, display_path
+from linkwright.packages import PackageFinder
+
+if TYPE_CHECKING:
+    from linkwright.descriptions.revisions import Revision
+
+
+@dataclass(frozen=True)
+class Model:
+    """One of the two.
+
+    Attributes:
+        path: the file, absolute.
+        values: those of its ``<xacro:arg>``.
+        finder: where its packages are.
+        revision: the commit that the file is of; None for one of the working tree.
+    """
+
+    path: Path
+    values: Mapping[str, str]
+    finder: PackageFinder
+    revision: Revision | None = None
+
+    def label(self) -> str:
+        """What readers know the file by."""
+        return self.named(str(self.path))
+
+    def named(self, file: str) -> str:
+        """What readers know one of its files by: ``HEAD:robots/arm.urdf``, or a path from the current folder."""
+        name = file if self.revision is None else self.revision.label(file)
+        return display_path(name) if name == file else name
+
+    def read(self) -> Description:
+        """The description, with a robot.
+
+        Raises:
+            LinkwrightError: it cannot be read or expanded, or urdfdom would refuse it.
+        """
+        try:
+            found = examine(self.path, arguments=self.values, packages=self.finder)
+        except LinkwrightError as error:
+            raise LinkwrightError(*map(self._relabelled, error.diagnostics)) from None
+        if found.robot is None:
+            raise LinkwrightError(*map(self._relabelled, found.diagnostics))
+        return found
+
+    def _relabelled(self, diagnostic: Diagnostic) -> Diagnostic:
+        """A finding that names files of a commit as git does."""
+        if self.revision is None:
+            return diagnostic
+        notes = tuple(replace(note, span=self._span(note.span)) for note in diagnostic.notes)
+        return replace(diagnostic, span=self._span(diagnostic.span), notes=notes)
+
+    def _span(self, span: Span | None) -> Span | None:
+        return None if span is None else replace(span, file=self.named(span.file))
+
+
+@dataclass(frozen=True)
+class Pair:
+    """An old description and a new one.
+
+    Attributes:
+        old: the old one.
+        new: the new one.
+    """
+
+    old: Model
+    new: Model
+
+    def close(self) -> None:
+        """Remove the files of a commit."""
+        if self.old.revision is not None:
+            self.old.revision.close()
+
+    def label(self, file: str) -> str:
+        """What readers know a file of either by."""
+        return self.old.named(file)
+
+    def compared(self) -> Comparison:
+        """How they differ.
+
+        Raises:
+            LinkwrightError: see `Model.read`.
+        """
+        return self.compare(self.old.read(), self.new.read())
+
+    def compare(self, old: Description, new: Description) -> Comparison:
+        """How they differ, where both were read and have robots."""
+        if old.robot is None or new.robot is None:
+            raise ValueError("a description without a robot cannot be compared")
+        before, after = Side(old.robot), Side(new.robot)
+        if self.old.revision is not None:
+            ours, theirs = self.old.revision.normalizers(self.new.finder)
+            before = Side(old.robot, ours, lambda address: self.old.finder.resolve(address, self.old.path.parent))
+            after = Side(new.robot, theirs, lambda address: self.new.finder.resolve(address, self.new.path.parent))
+        return compare(before, after)
+
+
+def pair_of(old: Path, new: Path, values: Mapping[str, str]) -> Pair:
+    """Two files.
+
+    Args:
+        old: the old one.
+        new: the new one.
+        values: for the ``<xacro:arg>`` of both.
+    """
+    first, second = (
+        Model(path.absolute(), values, PackageFinder(start=[path.absolute().parent, Path.cwd()])) for path in (old, new)
+    )
+    return Pair(first, second)
+
+
+def against(path: Path, commit: str, values: Mapping[str, str]) -> Pair:
+    """A file, and what it was in a commit, whose files stay until the pair is closed.
+
+    Raises:
+        LinkwrightError: see `linkwright.descriptions.revisions.Revision`.
+    """
+    from linkwright.descriptions.revisions import Revision
+
+    revision = Revision(path, commit)
+    new = Model(path.absolute(), values, PackageFinder(start=[path.absolute().parent, Path.cwd()]))
+    return Pair(Model(revision.path, values, revision.finder, revision), new)

@@ -1,0 +1,163 @@
+"""Files as a commit of git has them, beside those that are being edited."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import tempfile
+from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property
+from pathlib import Path
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, phrase
+from linkwright.packages import PackageFinder
+from linkwright.packages.share_layout import share_of_sources
+from linkwright.packages.sources import SourceScan
+
+_OF_HOOKS = ("GIT_DIR", "GIT_WORK_TREE", "GIT_INDEX_FILE", "GIT_PREFIX")
+"""Variables with which git starts hooks; they would stand in the way of asking about the folder of a file."""
+
+
+class Revision:
+    """All files of a commit, in a temporary folder: what a description includes and its meshes come from there, too.
+
+    Neither the repository nor its working tree is changed. Packages that are not in the commit are looked for where
+    those of the working tree are.
+
+    Args:
+        path: a file of the working tree.
+        name: the commit, as git names it: ``HEAD``, ``main~2``, a tag or a hash.
+
+    Attributes:
+        name: the same.
+        path: the file in the temporary folder.
+
+    Raises:
+        LinkwrightError: CLI341, there is no git; CLI342, the file is in no repository; CLI343, there is no such commit;
+            CLI344, the commit has no such file; CLI345, git cannot write the files.
+    """
+
+    def __init__(self, path: Path, name: str) -> None:
+        self.name = name
+        real = path.resolve()
+        if not real.is_file():
+            hint = phrase("name a file that is there; the commit is what comes after `--against`")
+            raise LinkwrightError(
+                Diagnostic("CLI344", phrase("there is no file '{path}'", path=display_path(path)), hint=hint)
+            )
+        self._top = _top_of(real)
+        commit = _commit(self._top, name)
+        inside = real.relative_to(self._top)
+        if _git(self._top, "cat-file", "-e", f"{commit}:{inside.as_posix()}").returncode != 0:
+            message = phrase("commit '{name}' has no file '{inside}'", name=name, inside=inside.as_posix())
+            hint = phrase("`git log -- {inside}` tells which commits have it", inside=inside.as_posix())
+            raise LinkwrightError(Diagnostic("CLI344", message, hint=hint))
+        self._folder = tempfile.TemporaryDirectory(prefix="linkwright-")
+        self._root = Path(self._folder.name).resolve() / "files"
+        try:
+            self._write(commit)
+        except BaseException:
+            self.close()
+            raise
+        self.path = self._root / inside
+
+    def close(self) -> None:
+        """Remove the folder."""
+        self._folder.cleanup()
+
+    @cached_property
+    def finder(self) -> PackageFinder:
+        """Finds the packages of the commit, and otherwise those that are found from the working tree."""
+        return PackageFinder(start=[self.path.parent, self._top, Path.cwd()], extra=self._packages)
+
+    @cached_property
+    def _packages(self) -> Mapping[str, Path]:
+        found = SourceScan(self._root.parent).packages()
+        return {name: share_of_sources(name, folder) for name, folder in found.items()}
+
+    def label(self, file: str) -> str:
+        """The name of a file as git writes it, ``HEAD:robots/arm.urdf``; any other file's as it is."""
+        try:
+            inside = Path(os.path.realpath(file)).relative_to(self._root)
+        except ValueError:
+            return file
+        return f"{self.name}:{inside.as_posix()}"
+
+    def normalizers(self, finder: PackageFinder) -> tuple[Callable[[str], str], Callable[[str], str]]:
+        """What makes paths in the texts of both comparable: of the commit's descriptions, and of those found otherwise.
+
+        Args:
+            finder: finds the packages of the other description.
+        """
+        theirs = {name: share for name in self._packages if (share := finder.find(name)) is not None}
+        return _replacing(self._packages, self._root), _replacing(theirs, self._top)
+
+    def _write(self, commit: str) -> None:
+        index = {"GIT_INDEX_FILE": str(self._root.parent / "index")}
+        done = _git(self._top, "read-tree", commit, environment=index)
+        if done.returncode == 0:
+            words = ("checkout-index", "--all", "--quiet", f"--prefix={self._root}{os.sep}")
+            done = _git(self._top, *words, environment=index)
+        if done.returncode != 0:
+            message = phrase(
+                "git cannot write the files of commit '{name}': {reason}",
+                name=self.name,
+                reason=foreign(done.stderr.strip()),
+            )
+            raise LinkwrightError(Diagnostic("CLI345", message))
+
+
+def _top_of(path: Path) -> Path:
+    """The folder of the working tree that a file is in."""
+    done = _git(path.parent, "rev-parse", "--show-toplevel")
+    if done.returncode != 0:
+        message = phrase("'{path}' is in no git repository", path=display_path(path))
+        hint = phrase("compare it with another file: `linkwright diff OLD NEW`")
+        if "dubious ownership" in done.stderr:
+            message = phrase("git does not trust the repository of '{path}'", path=display_path(path))
+            hint = phrase("another user owns it; git's safe.directory says which of those it trusts")
+        raise LinkwrightError(Diagnostic("CLI342", message, hint=hint))
+    return Path(done.stdout.rstrip("\r\n")).resolve()
+
+
+def _commit(top: Path, name: str) -> str:
+    words = ("rev-parse", "--verify", "--quiet", f"{name}^{{commit}}")
+    done = None if name.startswith("-") else _git(top, *words)
+    if done is None or done.returncode != 0:
+        message = phrase("there is no commit '{name}' in {folder}", name=name, folder=display_path(top))
+        hint = phrase("HEAD is the last one; `git log --oneline` lists others, and `git fetch` gets those of a server")
+        raise LinkwrightError(Diagnostic("CLI343", message, hint=hint))
+    return done.stdout.strip()
+
+
+def _git(folder: Path, *words: str, environment: Mapping[str, str] | None = None) -> subprocess.CompletedProcess[str]:
+    """Run git in a folder, in English."""
+    variables = {name: value for name, value in os.environ.items() if name not in _OF_HOOKS}
+    try:
+        return subprocess.run(  # noqa: S603 - no shell; what the user gave is no option
+            ["git", *words],  # noqa: S607 - the user's own git, found as the shell finds it
+            cwd=folder,
+            env={**variables, "LC_ALL": "C", **(environment or {})},
+            capture_output=True,
+            encoding="utf-8",
+            errors="replace",
+            check=False,
+        )
+    except FileNotFoundError:
+        hint = phrase("install git, or compare two files: `linkwright diff OLD NEW`")
+        raise LinkwrightError(Diagnostic("CLI341", phrase("there is no program git"), hint=hint)) from None
+
+
+def _replacing(shares: Mapping[str, Path], top: Path) -> Callable[[str], str]:
+    known: Sequence[tuple[str, str]] = [
+        *((str(share), f"package://{name}") for name, share in shares.items()),
+        (str(top), "."),
+    ]
+    longest_first = sorted(known, key=lambda each: -len(each[0]))
+
+    def normalize(words: str) -> str:
+        for path, name in longest_first:
+            words = words.replace(path, name)
+        return words
+
+    return normalize

@@ -1,0 +1,178 @@
+"""``linkwright diff``."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from linkwright.cli import main
+
+BODY = """\
+<robot xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:macro name="body" params="name mass">
+    <link name="${name}"><inertial><mass value="${mass}"/>
+      <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
+      <visual><geometry><mesh filename="package://arm/meshes/body.stl"/></geometry></visual></link>
+  </xacro:macro>
+</robot>
+"""
+ARM = """\
+<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:arg name="mass" default="1"/>
+  <xacro:include filename="$(find arm)/urdf/body.xacro"/>
+  <xacro:body name="base" mass="$(arg mass)"/>
+  <gazebo><plugin name="p"><parameters>$(find arm)/config.yaml</parameters></plugin></gazebo>
+</robot>
+"""
+MANIFEST = "<package format='3'><name>arm</name><version>1.0.0</version></package>"
+
+needs_git = pytest.mark.skipif(shutil.which("git") is None, reason="there is no git")
+
+
+@pytest.fixture
+def package(tmp_path, monkeypatch) -> Path:
+    """A package with a robot, in no repository."""
+    files = {"package.xml": MANIFEST, "urdf/body.xacro": BODY, "urdf/arm.urdf.xacro": ARM, "meshes/body.stl": "solid"}
+    for name, text in files.items():
+        path = tmp_path / "arm" / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+    monkeypatch.chdir(tmp_path / "arm")
+    monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
+    monkeypatch.setenv("GIT_CEILING_DIRECTORIES", str(tmp_path.parent))
+    return tmp_path / "arm"
+
+
+def git(folder: Path, *words: str) -> None:
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("GIT_")}
+    identity = {
+        f"GIT_{who}_{what}": "test@example.org" for who in ("AUTHOR", "COMMITTER") for what in ("NAME", "EMAIL")
+    }
+    nobody = {"GIT_CONFIG_GLOBAL": os.devnull, "GIT_CONFIG_SYSTEM": os.devnull}
+    subprocess.run(
+        ["git", *words], cwd=folder, env={**environment, **identity, **nobody}, check=True, capture_output=True
+    )
+
+
+@pytest.fixture
+def committed(package) -> Path:
+    """The same, committed."""
+    git(package, "init")
+    git(package, "add", "--all")
+    git(package, "commit", "--message", "first")
+    return package
+
+
+def edit(path: Path, old: str, new: str) -> None:
+    text = path.read_text()
+    assert old in text
+    path.write_text(text.replace(old, new))
+
+
+def test_two_files_that_say_the_same_end_with_0(package, capsys):
+    shutil.copy("urdf/arm.urdf.xacro", "urdf/other.urdf.xacro")
+    assert main(["diff", "urdf/arm.urdf.xacro", "urdf/other.urdf.xacro"]) == 0
+    assert capsys.readouterr().out == "no differences\n"
+
+
+def test_two_files_that_differ_end_with_1(package, capsys):
+    Path("urdf/other.urdf.xacro").write_text(ARM.replace('name="base"', 'name="foot"').replace('p"', 'q"'))
+    assert main(["diff", "urdf/arm.urdf.xacro", "urdf/other.urdf.xacro", "mass:=3"]) == 1
+    assert capsys.readouterr().out == (
+        "link 'base' renamed to 'foot'\n"
+        "  urdf/body.xacro:3:17 called at urdf/arm.urdf.xacro:4:3 -> "
+        "urdf/body.xacro:3:17 called at urdf/other.urdf.xacro:4:3\n"
+        "extension 'gazebo': plugin q - -> name=q <parameters>\n"
+        "  urdf/arm.urdf.xacro:5:3 -> urdf/other.urdf.xacro:5:11\n"
+        "extension 'gazebo': plugin p name=p <parameters> -> -\n"
+        "  urdf/arm.urdf.xacro:5:11 -> urdf/other.urdf.xacro:5:3\n"
+        "3 differences\n"
+    )
+
+
+@needs_git
+def test_a_file_does_not_differ_from_its_commit_in_paths(committed, capsys):
+    assert main(["diff", "urdf/arm.urdf.xacro", "--against", "HEAD"]) == 0
+    assert capsys.readouterr().out == "no differences\n"
+
+
+@needs_git
+def test_includes_and_meshes_of_a_commit_are_those_of_the_commit(committed, capsys):
+    edit(committed / "urdf/body.xacro", 'mass value="${mass}"', 'mass value="${2 * mass}"')
+    edit(committed / "meshes/body.stl", "solid", "solid body")
+    assert main(["diff", "urdf/arm.urdf.xacro", "--against", "HEAD", "--format", "json"]) == 1
+    told = json.loads(capsys.readouterr().out)
+    assert (told["old"], told["new"]) == ("HEAD:urdf/arm.urdf.xacro", "urdf/arm.urdf.xacro")
+    mass, mesh = told["differences"]
+    assert (mass["subject"], mass["name"], mass["property"]) == ("link", "base", "inertial mass")
+    assert (mass["old"], mass["new"], mass["unit"]) == ("1", "2", "kg")
+    assert mass["old_place"] == {
+        "file": "HEAD:urdf/body.xacro",
+        "line": 3,
+        "column": 49,
+        "calls": [{"file": "HEAD:urdf/arm.urdf.xacro", "line": 4, "column": 3}],
+    }
+    assert mass["new_place"]["file"] == "urdf/body.xacro"
+    assert (mesh["old"], mesh["new"], mesh["unit"]) == ("5", "10", "bytes")
+
+
+@needs_git
+def test_asking_changes_nothing_in_the_repository_and_leaves_no_folder(committed, monkeypatch, tmp_path):
+    monkeypatch.setenv("TMPDIR", str(tmp_path / "temporary"))
+    (tmp_path / "temporary").mkdir()
+    monkeypatch.setattr("tempfile.tempdir", None)
+    before = (committed / ".git/index").read_bytes()
+    assert main(["diff", "urdf/arm.urdf.xacro", "--against", "HEAD"]) == 0
+    assert (committed / ".git/index").read_bytes() == before
+    assert list((tmp_path / "temporary").glob("linkwright-*/files")) == []
+
+
+@needs_git
+def test_a_commit_that_cannot_be_read_is_told_by_its_name(committed, capsys):
+    edit(committed / "urdf/body.xacro", "</link>", "</lnk>")
+    git(committed, "commit", "--all", "--message", "broken")
+    git(committed, "checkout", "HEAD~1", "--", ".")
+    assert main(["diff", "urdf/arm.urdf.xacro", "--against", "HEAD"]) == 2
+    assert "--> HEAD:urdf/body.xacro:5:" in capsys.readouterr().err
+
+
+@needs_git
+@pytest.mark.parametrize(
+    ("words", "code"),
+    [
+        (["urdf/arm.urdf.xacro", "--against", "nonsense"], "CLI343"),
+        (["urdf/arm.urdf.xacro", "--against=--all"], "CLI343"),
+        (["urdf/new.urdf", "--against", "HEAD"], "CLI344"),
+        (["urdf/missing.urdf", "--against", "HEAD"], "CLI344"),
+        (["../outside.urdf", "--against", "HEAD"], "CLI342"),
+    ],
+)
+def test_what_git_does_not_have_is_trouble(committed, capsys, words, code):
+    for name in ("urdf/new.urdf", "../outside.urdf"):
+        Path(name).write_text("<robot name='r'><link name='a'/></robot>")
+    assert main(["diff", *words]) == 2
+    assert f"error[{code}]" in capsys.readouterr().err
+
+
+def test_without_git_one_error_says_so(package, capsys, monkeypatch):
+    monkeypatch.setenv("PATH", "")
+    assert main(["diff", "urdf/arm.urdf.xacro", "--against", "HEAD"]) == 2
+    assert "error[CLI341]: there is no program git" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "words", [["a.urdf"], ["a.urdf", "b.urdf", "c.urdf"], ["a.urdf", "b.urdf", "--against", "HEAD"]]
+)
+def test_the_wrong_number_of_files_is_wrong_usage(package, capsys, words):
+    assert main(["diff", *words]) == 2
+    assert capsys.readouterr().err == "linkwright diff: give two files, or one and --against COMMIT\n"
+
+
+def test_a_file_that_is_not_there_is_trouble(package, capsys):
+    assert main(["diff", "urdf/arm.urdf.xacro", "missing.urdf"]) == 2
+    assert "error[XML101]" in capsys.readouterr().err
