@@ -2,14 +2,49 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import yaml
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, SourceText, Span, foreign, phrase
+from linkwright.diagnostics import (
+    Diagnostic,
+    LinkwrightError,
+    Phrase,
+    SourceText,
+    Span,
+    display_path,
+    foreign,
+    missing_file_hint,
+    phrase,
+)
+from linkwright.input_files import read_text
 
 _LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _DEEPEST = 50
+
+
+def read_source(path: Path, what: Phrase, code: str) -> SourceText:
+    """The text of a file that a user names.
+
+    Args:
+        path: of the file.
+        what: the kind of file, for the error.
+        code: of the error.
+
+    Raises:
+        LinkwrightError: it is not there, or cannot be read.
+    """
+    shown = display_path(path)
+    try:
+        return SourceText(str(path), read_text(path))
+    except FileNotFoundError:
+        message = phrase("{what} '{shown}' does not exist", what=what, shown=shown)
+        raise LinkwrightError(Diagnostic(code, message, hint=missing_file_hint(path))) from None
+    except (OSError, UnicodeDecodeError) as error:
+        reason = foreign(getattr(error, "strerror", None) or error)
+        message = phrase("{what} '{shown}' cannot be read: {reason}", what=what, shown=shown, reason=reason)
+        raise LinkwrightError(Diagnostic(code, message)) from None
 
 
 class YamlDocument:

@@ -19,13 +19,9 @@ from linkwright.diagnostics import (
     Phrase,
     SourceText,
     did_you_mean,
-    display_path,
-    foreign,
-    missing_file_hint,
     phrase,
 )
-from linkwright.input_files import read_text
-from linkwright.yaml_documents import YamlDocument
+from linkwright.yaml_documents import YamlDocument, read_source
 
 _REQUIRED = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh")
 _TRUE = frozenset({"true", "yes", "on", "y"})
@@ -72,17 +68,7 @@ def read_map_yaml(path: str | Path) -> MapYaml:
     if not str(path):
         raise LinkwrightError(Diagnostic("NAV201", phrase("YAML file name is empty, can't load!")))
     path = Path(path)
-    shown = display_path(path)
-    try:
-        text = read_text(path)
-    except FileNotFoundError:
-        message = phrase("map file '{shown}' does not exist", shown=shown)
-        raise LinkwrightError(Diagnostic("NAV201", message, hint=missing_file_hint(path))) from None
-    except (OSError, UnicodeDecodeError) as error:
-        reason = foreign(getattr(error, "strerror", None) or error)
-        message = phrase("map file '{shown}' cannot be read: {reason}", shown=shown, reason=reason)
-        raise LinkwrightError(Diagnostic("NAV201", message)) from None
-    return _Reader(SourceText(str(path), text)).read(path)
+    return _Reader(read_source(path, phrase("map file"), "NAV201")).read(path)
 
 
 class _Reader:

@@ -14,12 +14,8 @@ from linkwright.diagnostics import (
     Phrase,
     SourceText,
     did_you_mean,
-    display_path,
-    foreign,
-    missing_file_hint,
     phrase,
 )
-from linkwright.input_files import read_text
 from linkwright.speech.commands.action_reading import ActionReader
 from linkwright.speech.commands.actions import MOTIONS
 from linkwright.speech.commands.command_set import ANY, ByLanguage, Command, CommandSet, Place
@@ -27,7 +23,7 @@ from linkwright.speech.commands.phrases import Template, TemplateError, template
 from linkwright.speech.commands.quantities import SAYABLE, quantity
 from linkwright.speech.commands.reading import Keys
 from linkwright.speech.commands.words import Words, words_of
-from linkwright.yaml_documents import YamlDocument
+from linkwright.yaml_documents import YamlDocument, read_source
 
 DEFAULT_FILE = Path(__file__).with_name("default.yaml")
 """The commands of a robot that was given none."""
@@ -47,18 +43,7 @@ def read_command_file(path: str | Path) -> CommandSet:
             VOICE304 two commands are said alike; VOICE305 a message is none of its type; VOICE306 more can be said
             than engines take.
     """
-    path = Path(path)
-    shown = display_path(path)
-    try:
-        text = read_text(path)
-    except FileNotFoundError:
-        message = phrase("file of commands '{shown}' does not exist", shown=shown)
-        raise LinkwrightError(Diagnostic("VOICE301", message, hint=missing_file_hint(path))) from None
-    except (OSError, UnicodeDecodeError) as error:
-        reason = foreign(getattr(error, "strerror", None) or error)
-        message = phrase("file of commands '{shown}' cannot be read: {reason}", shown=shown, reason=reason)
-        raise LinkwrightError(Diagnostic("VOICE301", message)) from None
-    return parse_commands(SourceText(str(path), text))
+    return parse_commands(read_source(Path(path), phrase("file of commands"), "VOICE301"))
 
 
 def parse_commands(source: SourceText) -> CommandSet:

@@ -12,16 +12,15 @@ from typing import Any
 import numpy as np
 import yaml
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText, display_path, foreign, phrase
+from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.geometry.arrays import Array
-from linkwright.input_files import read_text
 from linkwright.sdf.models import Model
 from linkwright.sdf.poses import SEPARATOR
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.scene.bodies import VISUAL_GROUP
 from linkwright.simulation.sensors.mount import part_of
 from linkwright.simulation.simulation import Simulation
-from linkwright.yaml_documents import YamlDocument
+from linkwright.yaml_documents import YamlDocument, read_source
 
 _NUMBER = re.compile(r"[ _-]*(?:clone)?[ _-]*\(?\d+\)?$")
 _COLOURS = frozenset(
@@ -77,14 +76,7 @@ def read_classes(path: Path) -> ClassRules:
     Raises:
         LinkwrightError: VISION201 it cannot be read, or is something else.
     """
-    shown = display_path(path)
-    try:
-        source = SourceText(str(path), read_text(path))
-    except (OSError, UnicodeDecodeError) as error:
-        reason = foreign(getattr(error, "strerror", None) or error)
-        message = phrase("the file of classes '{shown}' cannot be read: {reason}", shown=shown, reason=reason)
-        raise LinkwrightError(Diagnostic("VISION201", message)) from None
-    document = YamlDocument(source, "VISION201")
+    document = YamlDocument(read_source(path, phrase("file of classes"), "VISION201"), "VISION201")
     root = document.root
     if not isinstance(root, yaml.MappingNode) or not root.value:
         raise _wrong(document, root)
