@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import shutil
 import sys
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
+import pocketsphinx
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
@@ -143,6 +146,29 @@ def test_a_folder_without_a_model(tmp_path):
     (tmp_path / "words.dict").write_text("stop S T AA P\n")
     assert refused(("stop",), "en", tmp_path).code == "VOICE104"
     assert refused(("stop",), "en", tmp_path / "nowhere").code == "VOICE104"
+
+
+@pytest.mark.parametrize(
+    ("damaged", "content"),
+    [("mdef", b"nothing"), ("mdef", b"BMDF\x01\0\0\0" + 40 * b"\xff"), ("means", b"")],
+    ids=["text", "numbers", "empty"],
+)
+def test_a_damaged_model_is_an_error_and_not_the_end_of_the_process(tmp_path, damaged, content):
+    model = Path(pocketsphinx.get_model_path()) / "en-us"
+    folder = tmp_path / "model"
+    shutil.copytree(model / "en-us", folder)
+    shutil.copy(model / "cmudict-en-us.dict", folder)
+    (folder / damaged).write_bytes(content)
+    diagnostic = refused(("stop",), "en", folder)
+    assert diagnostic.code == "VOICE104"
+    assert str(folder) in str(diagnostic.message)
+
+
+def test_a_model_of_the_user_is_taken(tmp_path):
+    model = Path(pocketsphinx.get_model_path()) / "en-us"
+    shutil.copytree(model / "en-us", tmp_path / "model")
+    (tmp_path / "model" / "words.dict").write_text("stop S T AA P\n")
+    PocketsphinxEngine(EngineOptions(("stop",), "en", tmp_path / "model")).close()
 
 
 def test_without_the_library(monkeypatch):

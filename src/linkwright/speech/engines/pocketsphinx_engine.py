@@ -6,6 +6,9 @@ measurements. So it is an engine for push-to-talk, and Vosk or enrolled words ar
 
 from __future__ import annotations
 
+import json
+import subprocess
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -17,7 +20,7 @@ from linkwright.speech.sound.samples import RATE, Samples
 
 _LANGUAGE = "en"
 _GRAMMAR = "phrases"
-_MODEL_FILES = ("mdef", "means", "variances", "transition_matrices")  # without one, the library ends the process
+_MODEL_FILES = ("mdef", "means", "variances", "transition_matrices")
 _FILLER = "<"  # how pocketsphinx's names of silence and noise begin
 
 
@@ -124,8 +127,25 @@ def _decoder(pocketsphinx: Any, folder: Path | None) -> Any:
             hint = phrase("it is a folder with 'mdef', what belongs to it, and a dictionary such as 'words.dict'")
             raise LinkwrightError(Diagnostic("VOICE104", message, hint=hint))
         settings |= {"hmm": str(folder), "dict": str(dictionaries[0])}
+        _try_in_another_process(folder, settings)
     try:
         return pocketsphinx.Decoder(**settings)
     except (RuntimeError, ValueError) as error:
         message = phrase("pocketsphinx cannot begin: {reason}", reason=foreign(error))
         raise LinkwrightError(Diagnostic("VOICE104", message)) from None
+
+
+_TRIAL = "import json, sys, pocketsphinx; pocketsphinx.Decoder(**json.loads(sys.argv[1]))"
+
+
+def _try_in_another_process(folder: Path, settings: dict[str, Any]) -> None:
+    """Load a model where nothing is lost when the library ends the process, as it does over a damaged one."""
+    given = [sys.executable, "-c", _TRIAL, json.dumps(settings)]
+    trial = subprocess.run(  # noqa: S603 - this very interpreter
+        given, check=False, stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace"
+    )
+    if trial.returncode:
+        message = phrase("pocketsphinx cannot load the model in '{path}'", path=folder)
+        last = trial.stderr.strip().rpartition("\n")[2]
+        hint = phrase("it says: {reason}", reason=foreign(last)) if last else phrase("one of its files is damaged")
+        raise LinkwrightError(Diagnostic("VOICE104", message, hint=hint))
