@@ -105,6 +105,17 @@ async def test_a_page_that_goes_lets_go_of_the_button():
         assert publishers(made) == [0, 0, 0, 0]
 
 
+async def test_who_listens_only_after_the_button_was_pressed_is_told_too():
+    async with heard() as (made, client, ears):
+        await client.send("talk", mode="held")
+        await eventually(lambda: ears.held == [True])
+        late = Ears(made)
+        await eventually(lambda: late.held == [True])
+        await client.send("talk", mode="ready")
+        await eventually(lambda: late.held == [True, False])
+        assert ears.held == [True, True, False]
+
+
 async def test_of_two_pages_the_one_talks_that_holds_the_button():
     async with heard() as (made, first, ears), page(made.viewer) as second:
         for client in (first, second):

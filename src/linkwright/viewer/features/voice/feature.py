@@ -6,7 +6,8 @@ import asyncio
 from functools import partial
 from typing import Any
 
-from linkwright.graph import Publisher, Subscription
+from linkwright.graph import Publisher, PublisherEventCallbacks, Subscription
+from linkwright.graph.endpoints.event_types import QoSPublisherMatchedInfo
 from linkwright.nodes.voice.audio_topics import NAMESPACE, AudioTopics
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
 from linkwright.viewer.features.voice.floor import Floor, SoundBudget
@@ -57,6 +58,8 @@ class VoiceFeature(PageFeature):
         self._audio: AudioTopics | None = None
         self._listen: Publisher[Any] | None = None
         self._holder: Page | None = None
+        self._told = 0
+        """How many nodes the button's state was published to."""
         self._said = 0
         self._words = WordBook()
 
@@ -96,7 +99,12 @@ class VoiceFeature(PageFeature):
             self._budgets[page] = SoundBudget(asyncio.get_running_loop().time)
         if self._floor and self._audio is None:
             self._audio = AudioTopics(self._node)
-            self._listen = self._node.create_publisher("std_msgs/msg/Bool", _LISTEN, _DEPTH)
+            self._listen = self._node.create_publisher(
+                "std_msgs/msg/Bool",
+                _LISTEN,
+                _DEPTH,
+                event_callbacks=PublisherEventCallbacks(matched=self._listeners_changed),
+            )
         self._pass_on()
         if not self._floor and self._audio is not None:
             self._audio.close()
@@ -112,10 +120,23 @@ class VoiceFeature(PageFeature):
         if holder is self._holder or self._listen is None:
             return
         if self._holder is not None:
-            self._listen.publish(self._listen.msg_type(data=False))
+            self._publish_held(self._listen, False)
         if holder is not None:
-            self._listen.publish(self._listen.msg_type(data=True))
+            self._publish_held(self._listen, True)
         self._holder = holder
+
+    def _publish_held(self, publisher: Publisher[Any], held: bool) -> None:
+        self._told = publisher.get_subscription_count()
+        publisher.publish(publisher.msg_type(data=held))
+
+    def _listeners_changed(self, event: QoSPublisherMatchedInfo) -> None:
+        """Tell who came after the button was pressed: other processes match only some time after a publisher is made.
+
+        The topic is not latched, as who publishes on it by hand does not latch it either.
+        """
+        if event.current_count > self._told and self._holder is not None and self._listen is not None:
+            self._publish_held(self._listen, True)
+        self._told = min(self._told, event.current_count)
 
     def _hear(self, page: Page, block: SoundBlock) -> None:
         budget = self._budgets.get(page)
