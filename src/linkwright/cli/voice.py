@@ -39,7 +39,10 @@ def configure_try(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     parser.add_argument("files", metavar="WAV", nargs="+", help="recordings")
     parser.add_argument(
-        "--engine", metavar="ENGINE", default=_ENGINE, help="the engine: enrolled (default), vosk, pocketsphinx"
+        "--engine",
+        metavar="ENGINE",
+        default=_ENGINE,
+        help="the engine: enrolled (default), vosk, pocketsphinx, onnx, or another that is installed",
     )
     parser.add_argument("--language", metavar="LANGUAGE", default="en", help="what is spoken: en (default), zh")
     parser.add_argument("--model", metavar="PATH", type=Path, help="another model than the engine's usual one")
