@@ -77,6 +77,7 @@ function start(app: HTMLElement): void {
   const scene = new ScenePanel(
     session,
     commands,
+    () => stage?.fit(),
     () => dock.open("diagnostics"),
     () => sheet.toggle(),
   );

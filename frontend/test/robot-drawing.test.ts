@@ -108,7 +108,7 @@ describe("RobotDrawing", () => {
   it("tells how large what is seen of it is, and without anything to see how far its links reach", () => {
     const row = robot(ROW);
     draw(row);
-    expect([row.drawing.linksPosed, row.drawing.linkCount]).toEqual([4, 4]);
+    expect(row.drawing.progress).toEqual({ posed: 4, loading: 0 });
     expect(row.drawing.bounds().max.toArray()).toEqual([1.1, expect.closeTo(3.1), 0.5]);
     draw(row, new PropertyRows([new PropertyNode(property({ id: "v", name: "Visual Enabled", value: false }))]));
     expect(row.drawing.bounds().max.toArray()).toEqual([0, 3, 0]);
@@ -128,7 +128,7 @@ describe("RobotDrawing", () => {
     frames.setTable({ type: "frame_table", revision: 2, names: ["footprint"], parents: [-1] });
     frames.setTransforms({ revision: 2, stamp: 0, poses: new Float32Array([0, 0, 0, 0, 0, 0, 1]), ages: new Float32Array(1) });
     draw({ drawing, frames });
-    expect(drawing.linksPosed).toBe(1);
+    expect(drawing.progress.posed).toBe(1);
     expect(drawing.isInPlace).toBe(false);
   });
 

@@ -109,31 +109,35 @@ describe("the view", () => {
     expect(session.view.values["Yaw"]).toBe(3);
   });
 
-  it("that nobody chose goes where all of the robot is seen, again while more of its links come", () => {
+  it("that nobody chose goes where all of the robot is seen, again when more of it comes that is not seen", () => {
     receive(view(1, 1, true));
-    expect(session.view.awaitsFit(0)).toBe(false);
-    expect(session.view.awaitsFit(2)).toBe(true);
-    session.view.fitFirst(box, size, 2, 3);
+    expect(session.view.awaitsFit("")).toBe(false);
+    expect(session.view.awaitsFit("2 links")).toBe(true);
+    session.view.fitFirst(box, size, "2 links");
     expect(session.view.values).toMatchObject({ Yaw: 1, "Focal Point/X": 0, "Focal Point/Z": 1 });
-    expect(session.view.awaitsFit(2)).toBe(false);
-    expect(session.view.awaitsFit(3)).toBe(true);
-    session.view.fitFirst(box, size, 3, 3);
-    expect(session.view.awaitsFit(4)).toBe(false);
+    expect(session.view.awaitsFit("2 links")).toBe(false);
+    expect(session.view.awaitsFit("3 links")).toBe(true);
+    session.view.fitFirst({ min: [0, 0, 0], max: [1, 1, 1] }, size, "3 links");
+    expect(session.view.values["Focal Point/Z"]).toBe(1);
+    session.view.fitFirst({ min: [-1, -1, 0], max: [1, 1, 4] }, size, "4 links");
+    expect(session.view.values["Focal Point/Z"]).toBe(2);
+    session.view.update({ Yaw: 2 });
+    expect(session.view.awaitsFit("5 links")).toBe(false);
     session.view.reset();
-    expect(session.view.awaitsFit(3)).toBe(true);
+    expect(session.view.awaitsFit("4 links")).toBe(true);
   });
 
   it("stays where the user has put it, or the file", () => {
     receive(view(1));
-    expect(session.view.awaitsFit(3)).toBe(false);
+    expect(session.view.awaitsFit("3 links")).toBe(false);
     receive(view(1, 2, true));
     session.view.update({ Yaw: 2 });
-    expect(session.view.awaitsFit(3)).toBe(false);
+    expect(session.view.awaitsFit("3 links")).toBe(false);
     receive(view(1, 2, true));
-    expect(session.view.awaitsFit(3)).toBe(false);
+    expect(session.view.awaitsFit("3 links")).toBe(false);
     session.view.reset();
     session.view.setClass("rviz_default_plugins/FPS");
-    expect(session.view.awaitsFit(3)).toBe(false);
+    expect(session.view.awaitsFit("3 links")).toBe(false);
   });
 
   it("is told to the server when the user moves it, a few times a second", () => {

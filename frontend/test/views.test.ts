@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 import { FIELD_OF_VIEW, onGround, rayThrough, type Camera } from "../src/state/views/camera";
 import { controllerOf } from "../src/state/views/catalog";
-import { fitted } from "../src/state/views/fit";
+import { spanInTarget } from "../src/state/views/fit";
 import type { Drag, ViewController, ViewValues } from "../src/state/views/view-controller";
 import type { Vector } from "../src/state/views/vector";
 
@@ -244,7 +244,7 @@ describe("a fitted view", () => {
           for (const start of [FOCUSED, { ...FOCUSED, Yaw: 0, Pitch: 0 }, { ...FOCUSED, Pitch: 1.5 }]) {
             const min: Vector = [3, -1, 2];
             const max: Vector = [3 + size * edges[0], -1 + size * edges[1], 2 + size * edges[2]];
-            const [across, up] = reach({ ...start, ...fitted(start, { min, max }, canvas) }, min, max, canvas);
+            const [across, up] = reach({ ...start, ...ORBIT.fit(start, { min, max }, canvas) }, min, max, canvas);
             expect(Math.max(across, up)).toBeLessThan(0.85);
             expect(Math.max(across, up)).toBeGreaterThan(0.5);
           }
@@ -254,10 +254,39 @@ describe("a fitted view", () => {
   });
 
   it("keeps its distance from what is a single point", () => {
-    expect(fitted(FOCUSED, { min: [1, 1, 1], max: [1, 1, 1] }, SIZE)).toEqual({
+    expect(ORBIT.fit(FOCUSED, { min: [1, 1, 1], max: [1, 1, 1] }, SIZE)).toEqual({
       "Focal Point/X": 1,
       "Focal Point/Y": 1,
       "Focal Point/Z": 1,
     });
+  });
+
+  it("shows all of a box in every type of view", () => {
+    const box = { min: [3, -1, 2], max: [3.4, -0.4, 3] } as const;
+    for (const name of ["FPS", "XYOrbit", "ThirdPersonFollower"]) {
+      const start = { Yaw: 1, Pitch: 0.6, Distance: 7 };
+      const values = { ...start, ...view(name).fit(start, box, SIZE) };
+      const camera = view(name).camera(values);
+      close(seen(camera, [3.2, -0.7, 2.5]), [0, 0]);
+      close(camera.back, view(name).camera(start).back);
+      const [, top] = seen(camera, [3, -1, 3]);
+      expect(Math.abs(top)).toBeLessThan(Math.tan(FIELD_OF_VIEW / 2));
+    }
+    expect(MAP.fit({ Scale: 10, Angle: 0 }, box, SIZE)).toEqual({ X: 3.2, Y: -0.7, Scale: expect.closeTo(600 / 0.6 / 1.2) as number });
+  });
+
+  it("does not cut off what is small, and leaves the near clip distance alone before what is not", () => {
+    const ant = { min: [0, 0, 0], max: [0.01, 0.004, 0.003] } as const;
+    const start = { ...FOCUSED, "Near Clip Distance": 0.01 };
+    const near = Number(ORBIT.fit(start, ant, SIZE)["Near Clip Distance"]);
+    expect(near).toBeGreaterThanOrEqual(0.001);
+    expect(near).toBeLessThan(0.01);
+    expect(ORBIT.fit(start, { min: [0, 0, 0], max: [1, 1, 1] }, SIZE)).not.toHaveProperty("Near Clip Distance");
+  });
+
+  it("looks from a frame that moves", () => {
+    const { min, max } = spanInTarget({ min: [1, 2, 0], max: [3, 3, 1] }, { position: [1, 2, 0], yaw: Math.PI / 2 });
+    close(min, [0, -2, 0]);
+    close(max, [1, 0, 1]);
   });
 });

@@ -3,7 +3,7 @@ from __future__ import annotations
 import pytest
 
 from linkwright.urdf import read
-from linkwright.viewer import size_of
+from linkwright.viewer import has_visuals, size_of
 from linkwright.xmltree import parse
 
 
@@ -39,3 +39,13 @@ def test_meshes_are_not_read_for_it():
 
 def test_a_single_point_has_no_size():
     assert measured('<link name="a"/><link name="b"/>' + joint("a", "b", "0 0 0")) is None
+
+
+def test_a_robot_is_seen_without_its_frames_when_a_link_has_a_visual():
+    seen = {}
+    for part in ("visual", "collision"):
+        shape = f'<{part}><geometry><sphere radius="1"/></geometry></{part}>'
+        robot = read(parse(f'<robot name="r"><link name="a">{shape}</link></robot>', "<text>")).robot
+        assert robot is not None
+        seen[part] = has_visuals(robot)
+    assert seen == {"visual": True, "collision": False}

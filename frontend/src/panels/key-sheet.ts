@@ -5,7 +5,7 @@ import { keyText, SHORTCUTS } from "../shell/shortcuts";
 import type { ToolsState } from "../state/tools";
 import { strings } from "../strings";
 import { WORLD_KEYS } from "./modelling/world-commands";
-import { toolName } from "./toolbar";
+import { FIT_KEY, toolName } from "./toolbar";
 import { TALK_KEY } from "./voice/talk-button";
 
 type Row = readonly [keys: string, meaning: string];
@@ -54,6 +54,7 @@ export class KeySheet {
         words.viewTitle,
         [
           ["F", words.focus],
+          [FIT_KEY, strings.tools.fitHint],
           ["Z", words.zero],
           ["Shift Z", words.resetView],
           [words.arrows, words.turn],

@@ -26,8 +26,8 @@ export class ScenePanel implements Panel {
   readonly box: HTMLElement;
   private readonly waiting = h("div", { class: "waiting" }, h("span", { class: "pulse" }), strings.scene.waiting);
 
-  constructor(session: Session, commands: WorldCommands, showDiagnostics: () => void, showKeys: () => void) {
-    const toolbar = new Toolbar(session.tools, showKeys, talkButton(session.voice, "scene-tool small talk"));
+  constructor(session: Session, commands: WorldCommands, fit: () => void, showDiagnostics: () => void, showKeys: () => void) {
+    const toolbar = new Toolbar(session.tools, fit, showKeys, talkButton(session.voice, "scene-tool small talk"));
     const banner = new DiagnosticsBanner(session, showDiagnostics);
     const notice = new ConnectionNotice(session.connection);
     const card = new SelectionCard(session);

@@ -5,6 +5,9 @@ import type { ToolState, ToolsState } from "../state/tools";
 import { strings } from "../strings";
 import { openMenu } from "./menu";
 
+/** Shows all of the robot, or of what is selected. */
+export const FIT_KEY = "Shift F";
+
 /** What a tool is called in the user's language. */
 export function toolName({ cls, name }: Pick<ToolState, "cls" | "name">): string {
   const names: Readonly<Record<string, string>> = strings.tools.names;
@@ -18,6 +21,7 @@ export class Toolbar {
 
   constructor(
     private readonly tools: ToolsState,
+    private readonly fit: () => void,
     private readonly showKeys: () => void,
     /** What stands right of the tools. */
     private readonly talk: HTMLElement,
@@ -47,8 +51,10 @@ export class Toolbar {
     );
     remove.disabled = tools.tools.length === 0;
     for (const each of [add, remove]) each.setAttribute("aria-haspopup", "menu");
+    const fit = button(words.withKey(words.fitHint, FIT_KEY), this.fit, "scene-tool small fit", icon("fit"), h("span", { class: "tool-name" }, words.fit));
+    fit.setAttribute("aria-label", words.fit);
     const help = button(words.help, this.showKeys, "scene-tool small", icon("keys"));
-    this.element.replaceChildren(...this.buttons.values(), add, remove, h("span", { class: "spacer" }), this.talk, help);
+    this.element.replaceChildren(...this.buttons.values(), add, remove, h("span", { class: "spacer" }), fit, this.talk, help);
     this.mark();
   }
 

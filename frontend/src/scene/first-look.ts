@@ -9,8 +9,8 @@ import type { ViewValues } from "../state/views/view-controller";
 import { TOUCHED } from "./layers";
 
 /** What a camera that nobody has put anywhere looks at: a world, and then the robots in it. */
-const WORLD_SEEN = 1;
-const ROBOTS_SEEN = 2;
+const WORLD_SEEN = "world";
+const ROBOTS_SEEN = "robots";
 /** A camera of a world's file that sees nothing turns about a point this far ahead; no nearer one is taken. m. */
 const AHEAD = 5;
 const NEAREST = 0.5;
@@ -35,12 +35,10 @@ export function lookFirst(world: LookedAt, view: ViewState, size: ViewSize): voi
     view.propose(throughCamera(world, camera), ROBOTS_SEEN, true);
     return;
   }
-  const { robots, world: all } = world.extents();
-  if (!robots.isEmpty()) {
-    view.propose(around(view.values, spanOf(robots), size, (eye, place) => sees(world, eye, place)), ROBOTS_SEEN, true);
-  } else {
-    view.propose(all.isEmpty() ? {} : overview(view.values, spanOf(all), size), WORLD_SEEN, false);
-  }
+  const extents = world.extents();
+  const [robots, all] = [spanOf(extents.robots), spanOf(extents.world)];
+  if (robots) view.propose(around(view.values, robots, size, (eye, place) => sees(world, eye, place)), ROBOTS_SEEN, true);
+  else view.propose(all ? overview(view.values, all, size) : {}, WORLD_SEEN, false);
 }
 
 /** The values of an Orbit that looks as a camera of the world's file does, but for its roll. */
@@ -65,6 +63,7 @@ function rayFrom(eye: Vector3, direction: Vector3, far = Infinity): Raycaster {
   return ray;
 }
 
-function spanOf({ min, max }: Box3): Span {
-  return { min: min.toArray(), max: max.toArray() };
+/** A box by its corners; null for an empty one. */
+export function spanOf(box: Box3): Span | null {
+  return box.isEmpty() ? null : { min: box.min.toArray(), max: box.max.toArray() };
 }

@@ -31,10 +31,11 @@ export class Keyboard {
       tools.toggle(tool);
       return true;
     }
-    if (toolbox.current.key?.(key) === true && (tool || key === "f")) return true;
+    if (toolbox.current.key?.(key) === true && (tool || (key === "f" && !shift))) return true;
     switch (key) {
       case "f":
-        this.focus();
+        if (shift) this.stage.fit();
+        else this.focus();
         return true;
       case "z":
         if (shift) session.view.reset();
@@ -56,11 +57,11 @@ export class Keyboard {
     return true;
   }
 
-  /** Looks at what is under the pointer; where nothing is, at what is selected. */
+  /** Looks at what is under the pointer; where nothing is, at all of what is selected, or of what there is. */
   private focus(): void {
     const { place } = this.controls;
     const point = place && this.stage.picker.pointAt(place.x, place.y);
     if (point) this.session.view.lookAt(point);
-    else this.stage.focusSelected();
+    else this.stage.fit();
   }
 }

@@ -1,8 +1,10 @@
-import { Box3, Raycaster, Vector2, Vector3 } from "three";
+import { Box3, Raycaster, Vector2 } from "three";
 import type { Session } from "../state/session";
 import type { SelectedItem, SelectionMode } from "../state/selection";
-import type { Vector } from "../state/views/vector";
+import type { Span } from "../state/views/fit";
+import { add, scale, type Vector } from "../state/views/vector";
 import { DepthMap } from "./depth-map";
+import { spanOf } from "./first-look";
 import type { Drawing } from "./displays/drawing";
 import { TOUCHED } from "./layers";
 import type { Described, Hit } from "./picking";
@@ -93,11 +95,22 @@ export class Picker {
 
   /** The middle of what is selected, or of all that can be selected when nothing is. */
   middleOfSelection(): Vector | null {
-    const { items } = this.session.selection;
+    const span = this.boundsOfSelection() ?? this.boundsOfAll();
+    return span && scale(add(span.min, span.max), 0.5);
+  }
+
+  /** The box around all that can be selected, in the fixed frame. */
+  boundsOfAll(): Span | null {
+    const box = new Box3();
+    for (const [, drawing] of this.drawings()) if (drawing.pick) box.expandByObject(drawing.root);
+    return spanOf(box);
+  }
+
+  /** The box around what is selected, in the fixed frame; null when nothing is. */
+  boundsOfSelection(): Span | null {
     const box = new Box3();
     for (const [display, drawing] of this.drawings()) {
-      if (items.length === 0 && drawing.pick) box.expandByObject(drawing.root);
-      for (const item of items) {
+      for (const item of this.session.selection.items) {
         if (item.display !== display) continue;
         const objects = drawing.objectsOf?.(item.key) ?? [];
         for (const object of objects) box.expandByObject(object);
@@ -105,9 +118,7 @@ export class Picker {
         if (place) box.expandByPoint(place);
       }
     }
-    if (box.isEmpty()) return null;
-    const { x, y, z } = box.getCenter(new Vector3());
-    return [x, y, z];
+    return spanOf(box);
   }
 
   private onScreen(x: number, y: number): Vector2 {

@@ -10,7 +10,7 @@ import { RobotModelDrawing } from "./displays/robot-model";
 import { WorldDrawing } from "./displays/world";
 import { Flash } from "./flash";
 import { FocalShape } from "./focal-shape";
-import { lookFirst } from "./first-look";
+import { lookFirst, spanOf } from "./first-look";
 import { FINEST, FrameLoop, type Detail } from "./frame-loop";
 import { InspectLayer } from "./inspect/inspect-layer";
 import { SERVED, type MeshFiles } from "./meshes/mesh-files";
@@ -113,6 +113,12 @@ export class Stage {
   focusSelected(): void {
     const middle = this.picker.middleOfSelection();
     if (middle) this.session.view.lookAt(middle);
+  }
+
+  /** Looks at all of what is selected, or of what is drawn when nothing is, from the side that the camera is at. */
+  fit(): void {
+    const box = this.picker.boundsOfSelection() ?? this.boundsOfAll();
+    if (box) this.session.view.fit(box, this.viewport.size);
   }
 
   /** Looks at all of the robots, from the side that the camera is at. */
@@ -219,7 +225,7 @@ export class Stage {
       settled &&= drawing.settled?.() ?? true;
     }
     this.robotSettled ||= settled && [...this.robots(), ...this.worlds()].some((each) => each.isInPlace);
-    if (settled) this.fitFirst();
+    this.lookFirst(settled);
     this.viewport.light(this.worlds().find((world) => world.ownLight)?.ownLight ?? null);
     this.marks.update();
     this.outline.set(this.selectedObjects());
@@ -229,21 +235,19 @@ export class Stage {
     this.drawElsewhere();
   }
 
-  /** Puts the camera that nobody has put anywhere before the robot, as far as that is there, or into the world. */
-  private fitFirst(): void {
+  /** Puts the camera that nobody has put anywhere before the robot, as far as that is there, or into a world that is all there. */
+  private lookFirst(settled: boolean): void {
     const { view } = this.session;
     const robots = this.robots();
     const [world] = this.worlds();
     if (robots.length === 0 && world?.isInPlace) {
-      lookFirst(world, view, this.viewport.size);
-      this.viewport.aim(view);
-      return;
+      if (settled) lookFirst(world, view, this.viewport.size);
+    } else {
+      const seen = robots.flatMap((robot) => robot.seen || []).join(";");
+      if (seen === "" || !view.awaitsFit(seen)) return;
+      const box = this.boundsOfRobots();
+      if (box) view.fitFirst(box, this.viewport.size, seen);
     }
-    const posed = robots.reduce((sum, robot) => sum + robot.linksPosed, 0);
-    if (!view.awaitsFit(posed)) return;
-    const box = this.boundsOfRobots();
-    if (!box) return;
-    view.fitFirst(box, this.viewport.size, posed, robots.reduce((sum, robot) => sum + robot.linkCount, 0));
     this.viewport.aim(view);
   }
 
@@ -262,8 +266,14 @@ export class Stage {
   }
 
   private boundsOfRobots(): Span | null {
-    const box = this.robots().reduce((sum, robot) => sum.union(robot.bounds()), new Box3());
-    return box.isEmpty() ? null : { min: box.min.toArray(), max: box.max.toArray() };
+    return spanOf(this.robots().reduce((sum, robot) => sum.union(robot.bounds()), new Box3()));
+  }
+
+  /** The box around robots and the world's models; where there are none, around all that can be selected. */
+  private boundsOfAll(): Span | null {
+    const worlds = this.worlds().reduce((sum, world) => sum.union(world.extents().world), new Box3());
+    const robots = this.robots().reduce((sum, robot) => sum.union(robot.bounds()), worlds);
+    return spanOf(robots) ?? this.picker.boundsOfAll();
   }
 
   /** Has the displays draw that show the scene in panels of their own. */

@@ -21,6 +21,8 @@ import { SkyAndFog, type OwnLight } from "./surroundings";
 
 const LARGEST_PIXEL_RATIO = 2;
 const FAR_CLIP = 1000;
+/** From farther away than so many near clip distances, that is moved off: depths are told apart less and less. */
+const DEEPEST = 2000;
 /** The share of the camera's light beside lights that stand in the scene. */
 const FAINT = 0.15;
 const NOTHING = { background: null, daylight: null, fog: null };
@@ -149,7 +151,8 @@ export class Viewport {
       return;
     }
     const distance = seen.focal ? distanceBetween(seen.position, seen.focal) : 0;
-    Object.assign(perspective, { aspect: width / height, near, far: Math.max(FAR_CLIP, distance * 10) });
+    const clip = { near: Math.max(near, distance / DEEPEST), far: Math.max(FAR_CLIP, distance * 10) };
+    Object.assign(perspective, { aspect: width / height, ...clip });
     perspective.updateProjectionMatrix();
   }
 

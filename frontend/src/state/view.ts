@@ -4,7 +4,7 @@ import type { FrameStore } from "./frames";
 import { Signal } from "./signal";
 import { cameraInFixed, cameraInTarget, FIXED, toTarget, type Camera, type Target, type ViewSize } from "./views/camera";
 import { controllerOf } from "./views/catalog";
-import { fitted, type Span } from "./views/fit";
+import { holds, spanInTarget, type Span } from "./views/fit";
 import type { Vector } from "./views/vector";
 import type { Drag, ViewController, ViewValues } from "./views/view-controller";
 
@@ -24,8 +24,8 @@ export class ViewState {
   private view: View = { cls: ORBIT, name: CURRENT_NAME, values: controllerOf(ORBIT).zero() };
   private configured: View | null = null;
   private showsWholeRobot = false;
-  /** How much, such as links of the robot, was seen when the camera was last put where it shows all of it; null: it is not put. */
-  private linksSeen: number | null = null;
+  /** What there was when the camera was last put where it shows all of it; null: somebody has put it somewhere. */
+  private lookedAt: { readonly what: string; readonly box: Span | null } | null = null;
   private revision: number | null = null;
   private lastTarget: Target = FIXED;
   private timer: ReturnType<typeof setTimeout> | undefined;
@@ -84,25 +84,27 @@ export class ViewState {
     return this.classes.find((each) => each.cls === cls)?.properties ?? [];
   }
 
-  /** Nobody has said where the camera is, and more links have a place than when it was last put before the robot. */
-  awaitsFit(posed: number): boolean {
-    return this.linksSeen !== null && posed > this.linksSeen;
+  /** Nobody has said where the camera is, and there is something else than when it was last put before it. */
+  awaitsFit(what: string): boolean {
+    return this.lookedAt !== null && what !== this.lookedAt.what;
   }
 
   /** Looks at all of a box in the fixed frame, from the side it is seen from, in a canvas of this size. */
   fit(box: Span, size: ViewSize): void {
-    this.update(fitted(this.view.values, box, size));
+    this.update(this.fitted(box, size));
   }
 
-  /** As `fit`, for a camera that nobody has put anywhere; it waits for the robot's other links. */
-  fitFirst(box: Span, size: ViewSize, posed: number, links: number): void {
-    this.propose(fitted(this.view.values, box, size), posed, posed >= links);
+  /** As `fit`, for a camera that nobody has put anywhere; it does so again when the box has grown, until somebody does. */
+  fitFirst(box: Span, size: ViewSize, what: string): void {
+    const before = this.lookedAt?.box;
+    if (!before || !holds(before, box)) this.update(this.fitted(box, size));
+    this.lookedAt = { what, box: before && holds(before, box) ? before : box };
   }
 
   /** Looks as values say with a camera that nobody has put anywhere; it waits for more to be seen, unless `isLast`. */
-  propose(values: ViewValues, posed: number, isLast: boolean): void {
+  propose(values: ViewValues, what: string, isLast: boolean): void {
     this.update(values);
-    if (!isLast) this.linksSeen = posed;
+    if (!isLast) this.lookedAt = { what, box: null };
   }
 
   /** Takes values, each within the bounds of its property. */
@@ -158,7 +160,7 @@ export class ViewState {
   reset(): void {
     if (!this.configured) this.zero();
     else {
-      this.linksSeen = this.showsWholeRobot ? 0 : null;
+      this.awaitFirstLook(this.showsWholeRobot);
       this.show(copyOf(this.configured));
     }
   }
@@ -201,13 +203,21 @@ export class ViewState {
     this.revision = revision;
     this.showsWholeRobot = showsWholeRobot;
     if (known) return;
-    this.linksSeen = showsWholeRobot ? 0 : null;
+    this.awaitFirstLook(showsWholeRobot);
     this.view = copyOf(view);
     this.changed.emit();
   }
 
+  private awaitFirstLook(awaits: boolean): void {
+    this.lookedAt = awaits ? { what: "", box: null } : null;
+  }
+
+  private fitted(box: Span, size: ViewSize): ViewValues {
+    return this.controller.fit(this.view.values, spanInTarget(box, this.target), size);
+  }
+
   private change(view: View): void {
-    this.linksSeen = null;
+    this.lookedAt = null;
     this.show(view);
   }
 

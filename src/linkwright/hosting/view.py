@@ -232,13 +232,14 @@ class ModelView:
         self.host.plan(plan)
 
     def _viewer_config(self) -> RvizConfig:
-        """Grid, RobotModel and TF, with the model's root link as the fixed frame."""
-        from linkwright.viewer import RvizConfig, size_of
+        """Grid, RobotModel and TF, off where there are visuals; the model's root link is the fixed frame."""
+        from linkwright.viewer import RvizConfig, has_visuals, size_of
 
         robot = None if self._text is None else self.descriptions.library.read(self._text).robot
         frame = robot.root if robot is not None else _first_link(self._call.path)
         size = size_of(robot) if robot is not None else None
-        return RvizConfig.for_model(frame, size=size, name=str(self._call.path))
+        frames = robot is None or not has_visuals(robot)
+        return RvizConfig.for_model(frame, size=size, frames=frames, name=str(self._call.path))
 
     # --- what its nodes and signals ask for ---------------------------------------------------------------------
 

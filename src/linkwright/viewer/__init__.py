@@ -2,7 +2,7 @@
 
 from linkwright.viewer.config.locations import find_unsaved
 from linkwright.viewer.config.rviz_config import RvizConfig
-from linkwright.viewer.size import size_of
+from linkwright.viewer.size import has_visuals, size_of
 from linkwright.viewer.viewer import Viewer
 
-__all__ = ["RvizConfig", "Viewer", "find_unsaved", "size_of"]
+__all__ = ["RvizConfig", "Viewer", "find_unsaved", "has_visuals", "size_of"]

@@ -15,7 +15,7 @@ from linkwright.packages import PackageFinder
 from linkwright.urdf import Robot
 from linkwright.viewer.config.rviz_config import RvizConfig
 from linkwright.viewer.features.export.snapshot import Snapshot, snapshot_of
-from linkwright.viewer.size import size_of
+from linkwright.viewer.size import has_visuals, size_of
 from linkwright.viewer.viewer import Viewer
 
 
@@ -33,9 +33,7 @@ def snapshot_of_model(text: str, robot: Robot, library: DescriptionLibrary, find
 
 async def _take(text: str, robot: Robot, library: DescriptionLibrary, finder: PackageFinder) -> Snapshot:
     graph = Graph(on_log=lambda _: None)
-    config = RvizConfig.for_model(robot.root, size=size_of(robot))
-    for display in config.displays:
-        display.checked = not display.cls.endswith("/TF")  # one tick away, and without it the robot is seen better
+    config = RvizConfig.for_model(robot.root, size=size_of(robot), frames=not has_visuals(robot))
     viewer = Viewer(graph, library=library, finder=finder, config=config, title=robot.name)
     viewer.manager.start()
     node = graph.create_node("robot_state_publisher")

@@ -79,6 +79,12 @@ def test_grid_and_axes_are_as_large_as_the_model_asks_for(size, cell, marker_sca
     assert again.views.current.values["Focal Shape Size"] <= min(0.05, size.diagonal / 10)
 
 
+def test_the_frames_of_a_model_are_off_where_they_would_cover_it():
+    assert [display.checked for display in RvizConfig.for_model("base_link").displays] == [True, True, True]
+    config = RvizConfig.for_model("base_link", frames=False)
+    assert [display.checked for display in RvizConfig.parse(config.text()).displays] == [True, True, False]
+
+
 def test_a_model_is_shown_whole_until_somebody_says_where_the_camera_is():
     config = RvizConfig.for_model("base_link")
     assert config.shows_whole_robot

@@ -13,6 +13,7 @@ export class RobotModelDrawing implements Drawing {
   readonly root = new Group();
   private shown: RobotDrawing | null = null;
   private next: RobotDrawing | null = null;
+  private robotsShown = 0;
   private styleIsOld = true;
   private contrast: boolean;
   private readonly forget: readonly (() => void)[];
@@ -39,12 +40,11 @@ export class RobotModelDrawing implements Drawing {
   }
 
   /** Links that have a place. */
-  get linksPosed(): number {
-    return this.shown?.linksPosed ?? 0;
-  }
-
-  get linkCount(): number {
-    return this.shown?.linkCount ?? 0;
+  /** Tells apart which parts of which robot are seen; empty while there is none, or nothing tells where it is. */
+  get seen(): string {
+    const { posed, loading } = this.shown?.progress ?? { posed: 0, loading: 0 };
+    const isPlain = this.visualsDrawn === 0 && loading > 0;
+    return posed === 0 || isPlain ? "" : [this.robotsShown, posed, loading].join();
   }
 
   /** The box around what is seen, in the fixed frame, m; around the links' origins where nothing is. */
@@ -139,6 +139,7 @@ export class RobotModelDrawing implements Drawing {
   private show(robot: RobotDrawing): void {
     this.shown?.dispose();
     this.shown = robot;
+    this.robotsShown += 1;
     this.next = null;
     this.root.add(robot.root);
     this.styleIsOld = true;

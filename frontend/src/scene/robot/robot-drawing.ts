@@ -61,12 +61,9 @@ export class RobotDrawing {
     return (seen.length > 0 ? seen : links).some((link) => link.pose !== null);
   }
 
-  get linkCount(): number {
-    return this.links.size;
-  }
-
-  get linksPosed(): number {
-    return [...this.links.values()].filter((link) => link.pose !== null).length;
+  /** How many of its links have a place, and how many of its meshes and textures are still to come. */
+  get progress(): { posed: number; loading: number } {
+    return { posed: [...this.links.values()].filter((link) => link.pose !== null).length, loading: this.loading };
   }
 
   /** The box around what is seen, in the fixed frame, m; around the links' origins where nothing is. */

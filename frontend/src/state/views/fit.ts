@@ -1,9 +1,8 @@
-import { FIELD_OF_VIEW, type ViewSize } from "./camera";
-import { OrbitController } from "./orbit";
+import { FIELD_OF_VIEW, toTarget, type Camera, type Target, type ViewSize } from "./camera";
 import { add, dot, scale, subtract, type Vector } from "./vector";
-import { vectorValues, type ViewValues } from "./view-controller";
+import { number, type ViewValues } from "./view-controller";
 
-/** A box along the axes of the fixed frame: its lowest and highest corner, m. */
+/** A box along the axes of a frame: its lowest and highest corner, m. */
 export interface Span {
   readonly min: Vector;
   readonly max: Vector;
@@ -11,22 +10,62 @@ export interface Span {
 
 /** Room around what is looked at. */
 const MARGIN = 1.2;
-const orbit = new OrbitController();
+/** The least that the near clip distance can be, and its share of the way to what is looked at. */
+const NEAREST_CLIP = 0.001;
+const CLIP_SHARE = 0.25;
+const NEAR_CLIP = "Near Clip Distance";
 
-/** The values of an Orbit that shows all of a box from where it looks, as large as a canvas of this size has room. */
-export function fitted(values: ViewValues, { min, max }: Span, { width, height }: ViewSize): ViewValues {
-  const middle = scale(add(min, max, 1), 0.5);
-  const { right, up, back } = orbit.camera(values);
+/** How to see all of a box from the side that a camera is at. */
+export interface Framing {
+  /** Of the box. */
+  readonly middle: Vector;
+  /** From the middle to the eye of a camera with perspective, m; 0 for a single point. */
+  readonly distance: number;
+  /** Pixels to a metre of a camera without; 0 for a single point. */
+  readonly scale: number;
+  /** Values that keep the near clip distance before all of the box. */
+  readonly clip: ViewValues;
+}
+
+/** All of a box, as large as a canvas of this size has room. `values` are those of the camera. */
+export function framing(camera: Camera, values: ViewValues, span: Span, { width, height }: ViewSize): Framing {
+  const { right, up, back } = camera;
+  const middle = scale(add(span.min, span.max), 0.5);
   const tangent = Math.tan(FIELD_OF_VIEW / 2) / MARGIN;
-  let distance = 0;
-  for (const x of [min[0], max[0]]) {
-    for (const y of [min[1], max[1]]) {
-      for (const z of [min[2], max[2]]) {
-        const corner = subtract([x, y, z], middle);
-        const aside = Math.max(Math.abs(dot(corner, up)), (Math.abs(dot(corner, right)) * height) / width);
-        distance = Math.max(distance, dot(corner, back) + aside / tangent);
-      }
-    }
+  let [distance, metres, front] = [0, 0, 0];
+  for (const each of corners(span)) {
+    const corner = subtract(each, middle);
+    const [across, along] = [Math.abs(dot(corner, right)), Math.abs(dot(corner, up))];
+    distance = Math.max(distance, dot(corner, back) + Math.max(along, (across * height) / width) / tangent);
+    metres = Math.max(metres, (2 * across) / width, (2 * along) / height);
+    front = Math.max(front, dot(corner, back));
   }
-  return { ...vectorValues("Focal Point", middle), ...(distance > 0 ? { Distance: distance } : {}) };
+  const room = CLIP_SHARE * (distance - front);
+  const isClipped = room > 0 && number(values, NEAR_CLIP, 0) > room;
+  return {
+    middle,
+    distance,
+    scale: metres > 0 ? 1 / (metres * MARGIN) : 0,
+    clip: isClipped ? { [NEAR_CLIP]: Math.max(NEAREST_CLIP, room) } : {},
+  };
+}
+
+/** The box in a target's frame around a box in the fixed frame. */
+export function spanInTarget(span: Span, target: Target): Span {
+  const seen = corners(span).map((corner) => toTarget(corner, target));
+  const extreme = (choose: (...each: number[]) => number): Vector => {
+    const at = (i: 0 | 1 | 2): number => choose(...seen.map((corner) => corner[i]));
+    return [at(0), at(1), at(2)];
+  };
+  return { min: extreme(Math.min), max: extreme(Math.max) };
+}
+
+/** Whether a box has all of another in it. */
+export function holds(outer: Span, inner: Span): boolean {
+  return ([0, 1, 2] as const).every((i) => outer.min[i] <= inner.min[i] && inner.max[i] <= outer.max[i]);
+}
+
+function corners({ min, max }: Span): Vector[] {
+  const ends = [min, max];
+  return ends.flatMap(([x]) => ends.flatMap(([, y]) => ends.map(([, , z]): Vector => [x, y, z])));
 }

@@ -1,4 +1,5 @@
-import { toFixed, toTarget, type Camera, type Target } from "./camera";
+import { toFixed, toTarget, type Camera, type Target, type ViewSize } from "./camera";
+import { framing, type Span } from "./fit";
 import { add, cross, length, subtract, type Vector } from "./vector";
 import {
   clampPitch,
@@ -64,6 +65,12 @@ export class FpsController implements ViewController {
   lookAt(values: ViewValues, point: Vector): ViewValues {
     const { position, up } = this.camera(values);
     return looking(subtract(point, position), up);
+  }
+
+  fit(values: ViewValues, box: Span, size: ViewSize): ViewValues {
+    const camera = this.camera(values);
+    const { middle, distance, clip } = framing(camera, values, box, size);
+    return distance > 0 ? { ...vectorValues("Position", add(middle, camera.back, distance)), ...clip } : this.lookAt(values, middle);
   }
 
   mimic({ camera }: Look): ViewValues {

@@ -1,4 +1,5 @@
-import { FIELD_OF_VIEW, toFixed, toTarget, type Camera, type Target } from "./camera";
+import { FIELD_OF_VIEW, toFixed, toTarget, type Camera, type Target, type ViewSize } from "./camera";
+import { framing, type Span } from "./fit";
 import { add, cross, distanceBetween, length, ORIGIN, scale, type Vector } from "./vector";
 import {
   clampPitch,
@@ -73,6 +74,11 @@ export class OrbitController implements ViewController {
 
   lookAt(values: ViewValues, point: Vector): ViewValues {
     return aroundFrom(point, this.camera(values).position);
+  }
+
+  fit(values: ViewValues, box: Span, size: ViewSize): ViewValues {
+    const { middle, distance, clip } = framing(this.camera(values), values, box, size);
+    return { ...vectorValues("Focal Point", middle), ...(distance > 0 ? { Distance: distance } : {}), ...clip };
   }
 
   mimic({ cls, values, camera }: Look): ViewValues {

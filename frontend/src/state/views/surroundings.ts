@@ -1,5 +1,5 @@
-import { fitted, type Span } from "./fit";
-import { direction } from "./orbit";
+import type { Span } from "./fit";
+import { direction, OrbitController } from "./orbit";
 import { add, scale, subtract, turn, type Vector } from "./vector";
 import { number, wrapYaw, type ViewValues } from "./view-controller";
 import type { ViewSize } from "./camera";
@@ -18,6 +18,7 @@ const HIGHER = 0.15;
 const ASIDE = 0.05;
 /** Places around a robot. */
 const PLACES = 8;
+const orbit = new OrbitController();
 
 /** Whether nothing hides a place from an eye. */
 export type IsSeen = (eye: Vector, place: Vector) => boolean;
@@ -25,7 +26,7 @@ export type IsSeen = (eye: Vector, place: Vector) => boolean;
 /** The values of an Orbit that shows all of a world from above. */
 export function overview(values: ViewValues, world: Span, size: ViewSize): ViewValues {
   const from = { ...values, Pitch: OVERVIEW_PITCH };
-  return { Pitch: OVERVIEW_PITCH, ...fitted(from, world, size) };
+  return { Pitch: OVERVIEW_PITCH, ...orbit.fit(from, world, size) };
 }
 
 /** The values of an Orbit that shows a robot and what is around it, from where most of both is seen. */
@@ -35,7 +36,7 @@ export function around(values: ViewValues, { min, max }: Span, size: ViewSize, i
   const middle = scale(add(min, max), 0.5);
   const top: Vector = [middle[0], middle[1], max[2]];
   const ring = Array.from({ length: PLACES }, (_, i) => add(middle, turn([1, 0, 0], (i * 2 * Math.PI) / PLACES), span / 2 + room));
-  const all = fitted({ ...values, Pitch: ROBOT_PITCH }, { min: add(min, [1, 1, 1], -room), max: add(max, [1, 1, 1], room) }, size);
+  const all = orbit.fit({ ...values, Pitch: ROBOT_PITCH }, { min: add(min, [1, 1, 1], -room), max: add(max, [1, 1, 1], room) }, size);
   const far = number(all, "Distance", 0);
   for (const nearer of NEARER) {
     let best: { score: number; values: ViewValues } | null = null;

@@ -1,4 +1,5 @@
-import { toFixed, toTarget, type Camera, type Target } from "./camera";
+import { toFixed, toTarget, type Camera, type Target, type ViewSize } from "./camera";
+import { framing, type Span } from "./fit";
 import { turn, type Vector } from "./vector";
 import {
   number,
@@ -64,6 +65,11 @@ export class TopDownOrthoController implements ViewController {
 
   lookAt(_values: ViewValues, [x, y]: Vector): ViewValues {
     return { X: x, Y: y };
+  }
+
+  fit(values: ViewValues, box: Span, size: ViewSize): ViewValues {
+    const { middle, scale } = framing(this.camera(values), values, box, size);
+    return { X: middle[0], Y: middle[1], ...(scale > 0 ? { Scale: Math.sign(scaleOf(values)) * scale } : {}) };
   }
 
   mimic({ cls, values, camera }: Look): ViewValues {

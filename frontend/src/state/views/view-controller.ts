@@ -1,5 +1,6 @@
 import type { PropertyValue } from "../../protocol";
 import type { Camera, Target, ViewSize } from "./camera";
+import type { Span } from "./fit";
 import type { Vector } from "./vector";
 
 /** Values of a view by the paths of their properties: `Distance`, `Focal Point/X`. */
@@ -47,6 +48,8 @@ export interface ViewController {
   /** `delta` is 120 a notch, positive away from the user. */
   wheel(values: ViewValues, delta: number, shift: boolean): ViewValues;
   lookAt(values: ViewValues, point: Vector): ViewValues;
+  /** Looks at all of a box from the side that the camera is at, in a canvas of this size. */
+  fit(values: ViewValues, box: Span, size: ViewSize): ViewValues;
   /** Looks as another view does, as far as RViz does that. */
   mimic(look: Look): ViewValues;
   /** Another frame became the target: the camera stays where it is. */

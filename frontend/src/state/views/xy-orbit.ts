@@ -1,4 +1,5 @@
-import { onGround, rayThrough, type Camera } from "./camera";
+import { onGround, rayThrough, type Camera, type ViewSize } from "./camera";
+import { framing, type Span } from "./fit";
 import { aboveMap, aroundFrom, OrbitController, orbitOf, type OrbitMotion } from "./orbit";
 import { add, distanceBetween, length, scale, subtract, type Vector } from "./vector";
 import { vectorValues, type Drag, type Look, type MouseHint, type ViewValues } from "./view-controller";
@@ -23,6 +24,14 @@ export class XYOrbitController extends OrbitController {
 
   override lookAt(values: ViewValues, [x, y]: Vector): ViewValues {
     return aroundFrom([x, y, 0], this.camera(values).position);
+  }
+
+  /** The focal point stays on the ground, wherever the line of sight from the eye that sees all of the box meets it. */
+  override fit(values: ViewValues, box: Span, size: ViewSize): ViewValues {
+    const camera = this.camera(values);
+    const { middle, distance, clip } = framing(camera, values, box, size);
+    const position = add(middle, camera.back, distance > 0 ? distance : orbitOf(values).distance);
+    return { ...this.mimic({ cls: "", values, camera: { ...camera, position } }), ...clip };
   }
 
   /** Keeps the picture where the camera is above the ground and sees some of it; otherwise begins anew, as RViz does. */

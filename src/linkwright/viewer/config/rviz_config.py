@@ -292,12 +292,15 @@ class RvizConfig:
         return cls.parse(_DEFAULT, "<default>")
 
     @classmethod
-    def for_model(cls, fixed_frame: str, *, size: ModelSize | None = None, name: str = "<model>") -> RvizConfig:
+    def for_model(
+        cls, fixed_frame: str, *, size: ModelSize | None = None, frames: bool = True, name: str = "<model>"
+    ) -> RvizConfig:
         """Grid, RobotModel and TF about one robot.
 
         Args:
             fixed_frame: the Fixed Frame, usually the robot's root link.
             size: of the robot, by which grid and axes are made; None leaves them as RViz has them.
+            frames: whether TF is switched on; it covers a robot that has visuals.
             name: of the model's file, by which edits that are not saved are kept.
         """
         config = cls.parse(_DEFAULT, name)
@@ -305,6 +308,7 @@ class RvizConfig:
             display = config.make(_OWN_PREFIX + name, name)
             for key, value in values.items():
                 display.section.put((key,), value, string=True, nested=True)
+            display.checked = frames or name != "TF"
             config.insert(display)
         config.options.set(("Fixed Frame",), fixed_frame)
         view = config.views.current
