@@ -1,15 +1,18 @@
 import { Box3, PerspectiveCamera, Raycaster, Vector3 } from "three";
-import { describe, expect, it } from "vitest";
+import { describe, expect, it, vi } from "vitest";
 import type { LinkScene, Shape } from "../src/protocol";
 import { TOUCHED } from "../src/scene/layers";
 import { MeshLibrary } from "../src/scene/meshes/mesh-library";
 import { framePose } from "../src/scene/pose";
 import { RobotDrawing } from "../src/scene/robot/robot-drawing";
 import { FrameStore } from "../src/state/frames";
+import { MeshProgress } from "../src/state/mesh-progress";
 import { PropertyNode, PropertyRows } from "../src/state/properties";
 import { property } from "./messages";
 
-const meshes = new MeshLibrary();
+vi.mock("../src/strings", async () => ({ strings: (await import("../src/strings/en")).en }));
+
+const meshes = new MeshLibrary(new MeshProgress());
 
 function shape(part: Partial<Shape> & Pick<Shape, "kind" | "size">): Shape {
   return {

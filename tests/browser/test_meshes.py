@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import shutil
+import struct
 
 import pytest
 import trimesh
@@ -51,16 +53,47 @@ def test_every_kind_is_drawn(start, open_page, robot):
     becomes(lambda: [rows(page).get(kind, ("", ""))[0] for kind in KINDS], ["ok"] * len(KINDS))
 
 
-def test_a_mesh_that_cannot_be_read_is_an_error_of_its_link_alone(start, open_page, robot, tmp_path):
-    (tmp_path / "broken.stl").write_bytes(b"solid nothing\n")
-    (tmp_path / "broken.glb").write_bytes(b"glTF\x02\0\0\0")
-    program = start("view", robot(link("broken", f"file://{tmp_path}/broken.glb", -0.4)))
-    page = open_page(program)
-    page.wait_for_function(
-        "() => window.linkwright.displays[1].status.some((row) => row.name === 'broken' && row.level === 'error')"
-    )
-    level, text = rows(page)["broken"]
-    assert level == "error"
-    assert "broken.glb" in text
+STL_OF_NAN = b"\0" * 80 + struct.pack("<I12fH", 1, *[0.0] * 3, math.nan, *[0.0] * 8, 0)
+
+BROKEN = {
+    "short.stl": (b"\0" * 80 + struct.pack("<I", 40_000_000) + b"\0" * 600, "says 40 000 000 triangles and holds 12"),
+    "text.stl": (b"solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 zero\n", "broken at line 4: 'zero'"),
+    "nothing.stl": (b"solid nothing\n", "has no triangles"),
+    "nan.stl": (STL_OF_NAN, "1 vertices are not finite numbers"),
+    "empty.dae": (b"", "the file is empty"),
+    "cut.dae": (b"<?xml version='1.0'?>\n<COLLADA>\n<library_geometries>", "not valid XML, line 3"),
+    "other.dae": (b"<robot name='r'/>", "its root is <robot>"),
+    "points.obj": (b"v 0 0 0\nv 1 0 0\n", "has no faces"),
+    "cut.glb": (b"glTF" + struct.pack("<II", 2, 1_000) + b"\0" * 12, "says 1 000 bytes and holds 24"),
+    "zip.glb": (b"PK\x03\x04 and so on", "does not begin with 'glTF'"),
+}
+"""Files with what is to be said of them."""
+
+
+def test_what_is_wrong_with_a_mesh_is_said_in_words_at_its_link_alone(start, open_page, robot, tmp_path):
+    for name, (data, _) in BROKEN.items():
+        (tmp_path / name).write_bytes(data)
+    links = [link(f"broken_{name[:-4]}", f"file://{tmp_path}/{name}", -0.4) for name in BROKEN]
+    page = open_page(start("view", robot(*links)))
+    named = {f"broken_{name[:-4]}": (name, words) for name, (_, words) in BROKEN.items()}
+    becomes(lambda: {link: rows(page).get(link, ("", ""))[0] for link in named}, dict.fromkeys(named, "error"))
+    for each, (name, words) in named.items():
+        text = rows(page)[each][1]
+        assert name in text
+        assert words in text
     becomes(lambda: [rows(page).get(kind, ("", ""))[0] for kind in KINDS], ["ok"] * len(KINDS))
+    assert state(page, "robot.visuals") == len(KINDS)
+
+
+def test_a_mesh_that_comes_slowly_is_told_until_it_is_there(start, open_page, robot):
+    page = open_page(start("view", robot()))
+    held = []
+    page.route("**/box.stl*", held.append)
+    page.reload()
+    notice = page.locator("[data-notice='meshes']")
+    notice.wait_for()
+    assert "box.stl" in notice.inner_text()
+    held[0].continue_()
+    notice.wait_for(state="hidden")
+    page.wait_for_function("window.linkwright?.ready === true")
     assert state(page, "robot.visuals") == len(KINDS)

@@ -6,6 +6,7 @@ import { DiagnosticsBanner } from "./diagnostics-banner";
 import { InspectMenu } from "./inspect-menu";
 import { OrientationSign } from "./orientation-sign";
 import { LineNotice } from "./line-notice";
+import { MeshNotice } from "./mesh-notice";
 import type { WorldCommands } from "./modelling/world-commands";
 import type { Panel } from "./panel";
 import { showSceneMenus } from "./scene-menu";
@@ -37,7 +38,7 @@ export class ScenePanel implements Panel {
       "div",
       { class: "scene-box" },
       this.container,
-      h("div", { class: "overlay" }, h("div", { class: "notices" }, new SimulationBar(session.simulation, session.modelling, commands).element, notice.element, banner.element), this.waiting, h("div", { class: "corner" }, new LineNotice(session).element, new VoiceNotice(session.voice).element, card.element), inspect.element, sign.element),
+      h("div", { class: "overlay" }, h("div", { class: "notices" }, new SimulationBar(session.simulation, session.modelling, commands).element, notice.element, banner.element), this.waiting, h("div", { class: "corner" }, new LineNotice(session).element, new MeshNotice(session.meshProgress).element, new VoiceNotice(session.voice).element, card.element), inspect.element, sign.element),
     );
     showSceneMenus(this.box, session.sceneMenu);
     this.element = h("div", { class: "scene-panel" }, toolbar.element, this.box);

@@ -50,7 +50,7 @@ export class Stage {
     private readonly panels: PanelHost,
     files: MeshFiles = SERVED,
   ) {
-    this.meshes = new MeshLibrary(files);
+    this.meshes = new MeshLibrary(session.meshProgress, files);
     // A resized canvas is empty until it is drawn: at once, or it would flicker.
     this.viewport = new Viewport(container, () => this.draw(UNSMOOTHED));
     this.picker = new Picker(this.viewport, session, () => this.enabled());

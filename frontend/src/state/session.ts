@@ -9,6 +9,7 @@ import { ElementFocus } from "./element-focus";
 import { FrameStore } from "./frames";
 import { InspectState } from "./inspect";
 import { JointsState } from "./joints";
+import { MeshProgress } from "./mesh-progress";
 import { Modelling } from "./modelling/modelling";
 import { MonitorState } from "./monitor/monitor";
 import { PoseStore } from "./named-poses";
@@ -39,6 +40,7 @@ export class Session {
   readonly time: TimeControlState;
   readonly data: DisplayDataStore;
   readonly slowLine: SlowLine;
+  readonly meshProgress = new MeshProgress();
   readonly simulation: SimulationState;
   readonly modelling: Modelling;
   readonly robotChanged = new Signal<RobotScene>();

@@ -2,6 +2,7 @@ import { details } from "./en/details";
 import { displays } from "./en/displays";
 import { shell } from "./en/shell";
 import { description } from "./en/description";
+import { meshes } from "./en/meshes";
 import { modelling } from "./en/modelling";
 import { monitor } from "./en/monitor";
 import { tools } from "./en/tools";
@@ -26,6 +27,7 @@ export const en = {
   shell,
   sharing,
   simulation,
+  meshes,
   modelling,
   voice,
   details,

@@ -3,6 +3,7 @@ import { displays } from "./zh/displays";
 import { shell } from "./zh/shell";
 import { description } from "./zh/description";
 import type { Strings } from "./en";
+import { meshes } from "./zh/meshes";
 import { modelling } from "./zh/modelling";
 import { monitor } from "./zh/monitor";
 import { tools } from "./zh/tools";
@@ -17,6 +18,7 @@ export const zh: Strings = {
   shell,
   sharing,
   simulation,
+  meshes,
   modelling,
   voice,
   details,

@@ -1,20 +1,35 @@
+import { strings } from "../../strings";
+import { MeshError } from "./mesh-error";
 import type { MeshFiles } from "./mesh-files";
 import type { MeshTemplate } from "./mesh-template";
 
-/** Reads a mesh file; each format's reader is fetched when the first such mesh comes. */
+/**
+ * Reads a mesh file; each format's reader is fetched when the first such mesh comes.
+ *
+ * @throws MeshError when it cannot be drawn.
+ */
 export async function readMesh(data: ArrayBuffer, format: string, url: string, files: MeshFiles): Promise<MeshTemplate> {
-  switch (format) {
-    case "stl":
-    case "stlb":
-      return (await import("./stl")).readStl(data);
-    case "dae":
-      return (await import("./collada")).readCollada(data, url, files);
-    case "obj":
-      return (await import("./obj")).readObj(data, url, files);
-    case "glb":
-    case "gltf":
-      return (await import("./gltf")).readGltf(data, url, files);
-    default:
-      throw new Error(`no reader for '.${format}' meshes; STL, DAE, OBJ, GLB and GLTF are read`);
+  const read = READERS.get(format);
+  if (!read) throw new MeshError(strings.meshes.noReader(format));
+  if (data.byteLength === 0) throw new MeshError(strings.meshes.empty);
+  try {
+    return await read(data, url, files);
+  } catch (error) {
+    if (error instanceof MeshError) throw error;
+    console.warn(`The mesh ${url} cannot be read:`, error);
+    throw new MeshError(strings.meshes.unreadable(format.toUpperCase()));
   }
 }
+
+type Reader = (data: ArrayBuffer, url: string, files: MeshFiles) => Promise<MeshTemplate>;
+
+const stl: Reader = async (data) => (await import("./stl")).readStl(data);
+
+const READERS: ReadonlyMap<string, Reader> = new Map<string, Reader>([
+  ["stl", stl],
+  ["stlb", stl],
+  ["dae", async (data, url, files) => (await import("./collada")).readCollada(data, url, files)],
+  ["obj", async (data, url, files) => (await import("./obj")).readObj(data, url, files)],
+  ["glb", async (data, url, files) => (await import("./gltf")).readGltf(data, url, files, true)],
+  ["gltf", async (data, url, files) => (await import("./gltf")).readGltf(data, url, files, false)],
+]);

@@ -1,16 +1,68 @@
 import { LoaderUtils } from "three";
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
+import { strings } from "../../strings";
 import type { MeshFiles } from "./mesh-files";
-import { flatten, type MeshTemplate } from "./mesh-template";
+import { countText, MeshError, quoted } from "./mesh-error";
+import { flatten, template, type MeshTemplate } from "./mesh-template";
 import { TextureWait } from "./texture-wait";
 
-/** glTF, text or binary: y up by its specification, turned to z up as RViz does. */
-export async function readGltf(data: ArrayBuffer, url: string, files: MeshFiles): Promise<MeshTemplate> {
+const GLB_HEADER_BYTES = 12;
+/** Compressions that need a decoder of their own. */
+const NOT_READ = ["KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_texture_basisu"];
+
+interface Head {
+  asset?: { version?: string };
+  extensionsRequired?: string[];
+}
+
+/**
+ * glTF, text or binary: y up by its specification, turned to z up as RViz does.
+ *
+ * @param isBinary whether its name says so; its first bytes decide.
+ * @throws MeshError when it is none, or needs what is not read.
+ */
+export async function readGltf(data: ArrayBuffer, url: string, files: MeshFiles, isBinary: boolean): Promise<MeshTemplate> {
+  checkHead(headOf(data, isBinary));
   const wait = new TextureWait(files);
-  const { scene } = await new GLTFLoader(wait.manager).parseAsync(data, LoaderUtils.extractUrlBase(url));
+  const loaded = new GLTFLoader(wait.manager).parseAsync(data, LoaderUtils.extractUrlBase(url));
+  const { scene } = await loaded.catch((error: unknown) => {
+    throw wait.missing.length > 0 ? new MeshError(strings.meshes.missing(quoted(wait.missing))) : error;
+  });
   const problem = await wait.settle();
   scene.rotation.set(Math.PI / 2, 0, 0);
-  const parts = flatten(scene, () => true);
-  if (parts.length === 0) throw new Error("the glTF file has no meshes");
-  return { parts, problem };
+  return template("glTF", flatten(scene, () => true), problem);
+}
+
+function headOf(data: ArrayBuffer, isBinary: boolean): Head {
+  const words = strings.meshes.gltf;
+  const magic = String.fromCharCode(...new Uint8Array(data, 0, Math.min(4, data.byteLength)));
+  return magic === "glTF" ? headOfGlb(data) : parsed(data, isBinary ? words.magic : words.notJson);
+}
+
+/** The JSON of a GLB, which is its first chunk. */
+function headOfGlb(data: ArrayBuffer): Head {
+  const words = strings.meshes.gltf;
+  const view = new DataView(data);
+  const said = data.byteLength < GLB_HEADER_BYTES ? GLB_HEADER_BYTES : view.getUint32(8, true);
+  if (said > data.byteLength) throw new MeshError(words.length(countText(said), countText(data.byteLength)));
+  const version = view.getUint32(4, true);
+  if (version !== 2) throw new MeshError(words.version(String(version)));
+  const length = data.byteLength < GLB_HEADER_BYTES + 8 ? 0 : view.getUint32(GLB_HEADER_BYTES, true);
+  const start = GLB_HEADER_BYTES + 8;
+  return parsed(data.slice(start, start + length), words.notJson);
+}
+
+function parsed(json: ArrayBuffer, otherwise: string): Head {
+  try {
+    return JSON.parse(new TextDecoder().decode(json)) as Head;
+  } catch {
+    throw new MeshError(otherwise);
+  }
+}
+
+function checkHead(head: Head): void {
+  const version = head.asset?.version ?? "1.0";
+  if (!version.startsWith("2.")) throw new MeshError(strings.meshes.gltf.version(version));
+  const lacking = NOT_READ.filter((name) => head.extensionsRequired?.includes(name));
+  if (lacking.length > 0) throw new MeshError(strings.meshes.gltf.extension(quoted(lacking)));
 }

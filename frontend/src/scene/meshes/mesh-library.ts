@@ -1,6 +1,12 @@
+import type { LoadReport, MeshProgress } from "../../state/mesh-progress";
+import { strings } from "../../strings";
+import { bytesText, MeshError } from "./mesh-error";
 import { SERVED, type MeshFiles } from "./mesh-files";
 import type { MeshTemplate } from "./mesh-template";
 import { SharedTextures } from "./shared-textures";
+
+/** Browsers hold no longer text, and no graphics card takes so many triangles. */
+const MOST_BYTES = 500_000_000;
 
 interface Shelf {
   /** What the server said identifies the file's content. */
@@ -15,33 +21,45 @@ export class MeshLibrary {
 
   readonly textures = new SharedTextures();
 
-  constructor(readonly files: MeshFiles = SERVED) {}
+  constructor(
+    private readonly progress: MeshProgress,
+    readonly files: MeshFiles = SERVED,
+  ) {}
 
   /**
    * The mesh at `url`. Asks the server every time whether the file is still the same: a robot is loaded anew when its
    * files were edited.
    *
-   * @throws Error with a sentence for the user when the mesh cannot be drawn.
+   * @throws MeshError with a part of a sentence for the user when the mesh cannot be drawn.
    */
   load(url: string, format: string): Promise<MeshTemplate> {
     let promise = this.loading.get(url);
     if (!promise) {
-      promise = this.fetch(url, format.replace(/^\./, "").toLowerCase());
+      const report = this.progress.begin(fileName(url));
+      promise = this.fetch(url, format.replace(/^\./, "").toLowerCase(), report);
       this.loading.set(url, promise);
-      const done = (): boolean => this.loading.delete(url);
+      const done = (): void => {
+        report.ended();
+        this.loading.delete(url);
+      };
       promise.then(done, done);
     }
     return promise;
   }
 
-  private async fetch(url: string, format: string): Promise<MeshTemplate> {
-    const response = await this.files.fetch(url);
-    if (!response.ok) throw new Error(await refusal(response));
+  private async fetch(url: string, format: string, report: LoadReport): Promise<MeshTemplate> {
+    const response = await reached(this.files.fetch(url));
+    if (!response.ok) throw new MeshError(await refusal(response));
     const version = response.headers.get("ETag") ?? response.headers.get("Last-Modified");
     const shelf = this.shelves.get(url);
-    if (shelf && version !== null && shelf.version === version) return shelf.template;
+    if (shelf && version !== null && shelf.version === version) {
+      void response.body?.cancel();
+      return shelf.template;
+    }
+    const data = await bytesOf(response, report);
     const { readMesh } = await import("./formats");
-    const template = await readMesh(await response.arrayBuffer(), format, new URL(url, document.baseURI).href, this.files);
+    await report.reads();
+    const template = await readMesh(data, format, new URL(url, document.baseURI).href, this.files);
     // What is still being drawn of the old one goes back to the GPU by itself.
     for (const part of shelf?.template.parts ?? []) part.geometry.dispose();
     this.shelves.set(url, { version, template });
@@ -49,9 +67,54 @@ export class MeshLibrary {
   }
 }
 
+/** What comes over the line, or words for that it broke. */
+async function reached<T>(answer: Promise<T>): Promise<T> {
+  return answer.catch(() => {
+    throw new MeshError(strings.meshes.lost);
+  });
+}
+
+async function bytesOf(response: Response, report: LoadReport): Promise<ArrayBuffer> {
+  const said = Number(response.headers.get("Content-Length") ?? NaN);
+  const total = Number.isFinite(said) && !response.headers.has("Content-Encoding") ? said : null;
+  if (total !== null) limit(total);
+  const reader = response.body?.getReader();
+  if (!reader) return reached(response.arrayBuffer());
+  const chunks: Uint8Array[] = [];
+  let bytes = 0;
+  for (let next = await reached(reader.read()); !next.done; next = await reached(reader.read())) {
+    chunks.push(next.value);
+    bytes += next.value.length;
+    limit(bytes);
+    report.came(bytes, total);
+  }
+  const all = new Uint8Array(bytes);
+  let at = 0;
+  for (const chunk of chunks) {
+    all.set(chunk, at);
+    at += chunk.length;
+  }
+  return all.buffer;
+}
+
+function limit(bytes: number): void {
+  if (bytes > MOST_BYTES) throw new MeshError(strings.meshes.tooLarge(bytesText(bytes), bytesText(MOST_BYTES)));
+}
+
 /** The server explains a refusal in plain text; its first line will do. */
 async function refusal(response: Response): Promise<string> {
+  if (response.status === 404) return strings.meshes.gone;
   const plain = response.headers.get("Content-Type")?.startsWith("text/plain") ?? false;
-  const [line = ""] = plain ? (await response.text()).trim().split("\n") : [];
-  return line !== "" ? line : `the server answered ${response.status} ${response.statusText}`.trim();
+  const [line = ""] = plain ? (await reached(response.text())).trim().split("\n") : [];
+  return line !== "" ? line : strings.meshes.answered(`${response.status} ${response.statusText}`.trim());
+}
+
+function fileName(url: string): string {
+  const [path = ""] = url.split("?");
+  const name = path.slice(path.lastIndexOf("/") + 1);
+  try {
+    return decodeURIComponent(name);
+  } catch {
+    return name;
+  }
 }

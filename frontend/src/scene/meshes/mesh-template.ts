@@ -8,7 +8,10 @@ import {
   type Object3D,
   type Texture,
 } from "three";
+import { strings } from "../../strings";
 import type { Surface } from "../materials";
+import { MeshError } from "./mesh-error";
+import { collapseUnreal, unrealProblem, type Unreal } from "./mesh-numbers";
 
 /** A material that came with a mesh file. */
 export interface OwnMaterial {
@@ -38,20 +41,40 @@ export interface MeshTemplate {
 /** What Assimp, and with it RViz, gives a mesh that says nothing about its colour. */
 export const UNCOLOURED_GREY = 0.6;
 
+/** What a loader made, as parts. */
+export interface Flattened {
+  parts: MeshPart[];
+  /** Of each part. */
+  unreal: Unreal[];
+}
+
 /** Flattens what a loader made, its textures being there. `isOwn` tells the materials of the file from those the loader made up. */
-export function flatten(root: Object3D, isOwn: (material: Material) => boolean): MeshPart[] {
+export function flatten(root: Object3D, isOwn: (material: Material) => boolean): Flattened {
   root.updateMatrixWorld(true);
   const parts: MeshPart[] = [];
+  const unreal: Unreal[] = [];
   root.traverse((object) => {
     if (!(object instanceof Mesh)) return;
     const mesh = object as Mesh;
     const geometry = mesh.geometry.clone().applyMatrix4(mesh.matrixWorld);
+    unreal.push(collapseUnreal(geometry));
     if (!geometry.hasAttribute("normal")) geometry.computeVertexNormals();
     const materials = Array.isArray(mesh.material) ? mesh.material : [mesh.material];
     const own = materials.map((material) => (isOwn(material) ? ownMaterial(material) : null));
     parts.push({ geometry, materials: own, names: namesOf(object) });
   });
-  return parts;
+  return { parts, unreal };
+}
+
+/**
+ * The template of a file; `problem` is what is missing of it.
+ *
+ * @throws MeshError when nothing of it can be drawn.
+ */
+export function template(format: string, { parts, unreal }: Flattened, problem: string | null): MeshTemplate {
+  if (unreal.every(({ ofTriangles }) => ofTriangles === 0)) throw new MeshError(strings.meshes.noFaces(format));
+  const problems = [problem, unrealProblem(unreal)].filter((each) => each !== null);
+  return { parts, problem: problems.join("; ") || null };
 }
 
 function namesOf(object: Object3D): string[] {

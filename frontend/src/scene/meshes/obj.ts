@@ -1,13 +1,20 @@
 import { LoaderUtils } from "three";
 import { MTLLoader } from "three/addons/loaders/MTLLoader.js";
 import { OBJLoader } from "three/addons/loaders/OBJLoader.js";
+import { strings } from "../../strings";
+import { MeshError } from "./mesh-error";
 import type { MeshFiles } from "./mesh-files";
-import { flatten, type MeshTemplate } from "./mesh-template";
+import { flatten, template, type MeshTemplate } from "./mesh-template";
 import { TextureWait } from "./texture-wait";
 
-/** Wavefront OBJ with its MTL files and their textures. */
+/**
+ * Wavefront OBJ with its MTL files and their textures.
+ *
+ * @throws MeshError when it is none.
+ */
 export async function readObj(data: ArrayBuffer, url: string, files: MeshFiles): Promise<MeshTemplate> {
   const text = new TextDecoder().decode(data);
+  if (!/^[ \t]*v[ \t]/m.test(text)) throw new MeshError(strings.meshes.noVertices);
   const folder = LoaderUtils.extractUrlBase(url);
   const wait = new TextureWait(files);
   const loader = new OBJLoader(wait.manager);
@@ -16,7 +23,7 @@ export async function readObj(data: ArrayBuffer, url: string, files: MeshFiles):
   for (const name of materialFiles(text)) {
     const response = await files.fetch(folder + name.split("/").map(encodeURIComponent).join("/"));
     if (!response.ok) {
-      problems.push(`could not load material file '${name}'`);
+      problems.push(strings.meshes.missingMaterials(name));
       continue;
     }
     const materials = new MTLLoader(wait.manager).parse(await response.text(), folder);
@@ -27,9 +34,7 @@ export async function readObj(data: ArrayBuffer, url: string, files: MeshFiles):
   const root = loader.parse(text);
   const missing = await wait.settle();
   if (missing) problems.push(missing);
-  const parts = flatten(root, (material) => known.has(material.name));
-  if (parts.length === 0) throw new Error("the OBJ file has no faces");
-  return { parts, problem: problems.length > 0 ? problems.join("; ") : null };
+  return template("OBJ", flatten(root, (material) => known.has(material.name)), problems.join("; ") || null);
 }
 
 /** The files named by `mtllib` lines. A name may contain spaces: one line, one file. */

@@ -1,10 +1,13 @@
 import { LoadingManager } from "three";
+import { strings } from "../../strings";
+import { quoted } from "./mesh-error";
 import type { MeshFiles } from "./mesh-files";
 
 /** A loading manager that knows when the textures a loader started have come, and which did not. */
 export class TextureWait {
   readonly manager: LoadingManager;
-  private readonly missing: string[] = [];
+  /** The names of files that did not come. */
+  readonly missing: string[] = [];
   private pending = 0;
   private wake: (() => void) | null = null;
 
@@ -32,6 +35,6 @@ export class TextureWait {
   async settle(): Promise<string | null> {
     if (this.pending > 0) await new Promise<void>((resolve) => (this.wake = resolve));
     if (this.missing.length === 0) return null;
-    return `could not load texture ${this.missing.map((name) => `'${name}'`).join(", ")}`;
+    return strings.meshes.missingTextures(quoted(this.missing));
   }
 }

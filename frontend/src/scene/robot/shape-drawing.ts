@@ -1,7 +1,9 @@
 import { Box3, Color, Group, Matrix4, Mesh, type BufferGeometry, type Material, type MeshLambertMaterial, type Texture } from "three";
 import type { Shape } from "../../protocol";
+import { strings } from "../../strings";
 import { TOUCHED } from "../layers";
 import { errorMaterial, OPAQUE_FROM, RVIZ_RED, type Look, type MaterialPool, type Surface } from "../materials";
+import { quoted } from "../meshes/mesh-error";
 import type { MeshLibrary } from "../meshes/mesh-library";
 import { UNCOLOURED_GREY, type MeshTemplate, type OwnMaterial } from "../meshes/mesh-template";
 import { extrusion, ground, submesh } from "../objects/world-geometries";
@@ -88,7 +90,7 @@ export class ShapeDrawing {
       try {
         return await library.textures.take(url);
       } catch {
-        problems.push(`could not load texture '${decodeURIComponent(address.split("/").pop() ?? address)}'`);
+        problems.push(strings.meshes.missingTextures(quoted([decodeURIComponent(address.split("/").pop() ?? address)])));
         return null;
       }
     };

@@ -1,0 +1,58 @@
+import type { BufferAttribute, BufferGeometry, InterleavedBufferAttribute } from "three";
+import { strings } from "../../strings";
+import { countText, MeshError } from "./mesh-error";
+
+/** Vertices of a geometry that are not finite numbers, and its triangles. */
+export interface Unreal {
+  vertices: number;
+  /** Those with such a vertex. */
+  triangles: number;
+  /** All of the geometry. */
+  ofTriangles: number;
+}
+
+type Positions = BufferAttribute | InterleavedBufferAttribute;
+
+/**
+ * Makes points of triangles with a vertex that is NaN or infinite: nothing is drawn of them, and bounds hold. The
+ * geometry's groups stay.
+ */
+export function collapseUnreal(geometry: BufferGeometry): Unreal {
+  const positions = geometry.getAttribute("position") as Positions | undefined;
+  if (!positions) return { vertices: 0, triangles: 0, ofTriangles: 0 };
+  const { index } = geometry;
+  const ofTriangles = Math.floor((index ?? positions).count / 3);
+  const real = new Uint8Array(positions.count);
+  for (let i = 0; i < real.length; i++) {
+    real[i] = Number.isFinite(positions.getX(i) + positions.getY(i) + positions.getZ(i)) ? 1 : 0;
+  }
+  const vertices = real.reduce((sum, each) => sum + 1 - each, 0);
+  const beyond = index !== null && index.array.some((at) => at >= real.length);
+  if (vertices === 0 && !beyond) return { vertices, triangles: 0, ofTriangles };
+  const some = Math.max(0, real.indexOf(1));
+  const place = [positions.getX(some), positions.getY(some), positions.getZ(some)].map((each) => (Number.isFinite(each) ? each : 0)) as [number, number, number];
+  let triangles = 0;
+  for (let i = 0; i < 3 * ofTriangles; i += 3) {
+    const corners = [i, i + 1, i + 2].map((at) => index?.getX(at) ?? at);
+    if (corners.every((at) => real[at] === 1)) continue;
+    triangles++;
+    for (let j = 0; j < 3; j++) {
+      if (index) index.setX(i + j, some);
+      else positions.setXYZ(i + j, ...place);
+    }
+  }
+  for (let i = 0; i < real.length; i++) if (real[i] === 0) positions.setXYZ(i, ...place);
+  return { vertices, triangles, ofTriangles };
+}
+
+/**
+ * What to say of vertices that are no numbers, or null.
+ *
+ * @throws MeshError when no triangle is left.
+ */
+export function unrealProblem(found: readonly Unreal[]): string | null {
+  const sum = (what: keyof Unreal): number => found.reduce((total, each) => total + each[what], 0);
+  const [vertices, triangles] = [sum("vertices"), sum("triangles")];
+  if (triangles > 0 && triangles === sum("ofTriangles")) throw new MeshError(strings.meshes.onlyNotNumbers(countText(vertices)));
+  return vertices + triangles > 0 ? strings.meshes.notNumbers(countText(vertices), countText(triangles)) : null;
+}

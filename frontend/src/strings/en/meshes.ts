@@ -1,0 +1,45 @@
+/** What is wrong with mesh files, as parts of a sentence, and how far their loading is. */
+export const meshes = {
+  empty: "the file is empty",
+  gone: "the server has no such file (404)",
+  lost: "the connection was lost while it was fetched",
+  answered: (status: string): string => `the server answered ${status}`,
+  tooLarge: (bytes: string, most: string): string => `the file has ${bytes}, and meshes of at most ${most} are drawn`,
+  noReader: (format: string): string => `no reader for '.${format}' meshes; STL, DAE, OBJ, GLB and GLTF are read`,
+  unreadable: (format: string): string => `its reader failed: this is no valid ${format} file, or one with parts that are not known`,
+  noFaces: (format: string): string => `the ${format} file has no faces`,
+  noVertices: "no line of it says a vertex ('v x y z'): this is no OBJ file",
+  missing: (files: string): string => `could not load ${files}`,
+  missingTextures: (files: string): string => `could not load texture ${files}`,
+  missingMaterials: (file: string): string => `could not load material file '${file}'`,
+  notNumbers: (vertices: string, triangles: string): string =>
+    `${vertices} vertices are not finite numbers; ${triangles} triangles with them are left out`,
+  onlyNotNumbers: (vertices: string): string => `none of its triangles can be drawn: ${vertices} vertices are not finite numbers`,
+  stl: {
+    short: (bytes: string): string => `this is no STL: it does not begin with 'solid', and a binary one has 84 bytes or more, this has ${bytes}`,
+    fewer: (said: string, held: string): string => `the STL says ${said} triangles and holds ${held}`,
+    none: "the STL file has no triangles",
+    line: (line: string, what: string): string => `the ASCII STL is broken at line ${line}: ${what}`,
+    word: (found: string, wanted: string): string => `'${found}' instead of ${wanted}`,
+    ends: (wanted: string): string => `the file ends where ${wanted} should be`,
+    number: "a number",
+    corners: (count: string): string => `a facet with ${count} vertices instead of 3`,
+  },
+  dae: {
+    notXml: (line: string): string => `the DAE is not valid XML${line === "" ? "" : `, line ${line}`}`,
+    root: (tag: string): string => `the file is XML but not COLLADA: its root is <${tag}>`,
+  },
+  gltf: {
+    magic: "this is no GLB: it does not begin with 'glTF'",
+    length: (said: string, held: string): string => `the GLB says ${said} bytes and holds ${held}`,
+    notJson: "the glTF is not valid JSON",
+    version: (version: string): string => `it is glTF ${version}, and 2.0 is read`,
+    extension: (names: string): string => `it needs the extension ${names}, which is not read`,
+  },
+  progress: {
+    title: "Meshes are loading",
+    reading: "reading",
+    of: (bytes: string, total: string): string => `${bytes} of ${total}`,
+    more: (count: string): string => `and ${count} more`,
+  },
+};

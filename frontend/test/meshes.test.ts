@@ -1,0 +1,202 @@
+import type { BufferGeometry } from "three";
+import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
+import { progressText } from "../src/panels/mesh-notice";
+import { readMesh } from "../src/scene/meshes/formats";
+import type { MeshFiles } from "../src/scene/meshes/mesh-files";
+import { MeshLibrary } from "../src/scene/meshes/mesh-library";
+import { collapseUnreal } from "../src/scene/meshes/mesh-numbers";
+import type { MeshTemplate } from "../src/scene/meshes/mesh-template";
+import { MeshProgress } from "../src/state/mesh-progress";
+
+vi.mock("../src/strings", async () => ({ strings: (await import("../src/strings/en")).en }));
+
+const NO_FILES: MeshFiles = {
+  fetch: () => Promise.resolve(new Response("no such file", { status: 404 })),
+  address: (url) => url,
+};
+
+function bytes(text: string): ArrayBuffer {
+  return new TextEncoder().encode(text).buffer;
+}
+
+function read(format: string, data: string | ArrayBuffer): Promise<MeshTemplate> {
+  return readMesh(typeof data === "string" ? bytes(data) : data, format, "http://page/mesh/a", NO_FILES);
+}
+
+async function error(format: string, data: string | ArrayBuffer): Promise<string> {
+  return read(format, data).then(
+    () => "",
+    (reason: unknown) => (reason instanceof Error ? reason.message : "?"),
+  );
+}
+
+/** A binary STL with so many triangles, which says that it has `said`; all corners at x, y, z = `value`, 1, 2 and so on. */
+function binaryStl(triangles: number, said = triangles, header = "", value = 0): ArrayBuffer {
+  const data = new ArrayBuffer(84 + 50 * triangles);
+  new Uint8Array(data).set(new TextEncoder().encode(header));
+  const view = new DataView(data);
+  view.setUint32(80, said, true);
+  for (let i = 0; i < triangles; i++) {
+    for (let j = 0; j < 9; j++) view.setFloat32(84 + 50 * i + 12 + 4 * j, j === 0 ? value : j, true);
+  }
+  return data;
+}
+
+function facet(...vertices: string[]): string {
+  return `facet normal 0 0 1\nouter loop\n${vertices.map((each) => `vertex ${each}\n`).join("")}endloop\nendfacet\n`;
+}
+
+const FACET = facet("0 0 0", "1 0 0", "0 1 0");
+
+function positions({ parts: [part] }: MeshTemplate): number[] {
+  return [...(part?.geometry as BufferGeometry).getAttribute("position").array];
+}
+
+function glb(json: string, said?: number, version = 2): ArrayBuffer {
+  const text = new TextEncoder().encode(json);
+  const data = new ArrayBuffer(20 + text.length);
+  const view = new DataView(data);
+  new Uint8Array(data).set(new TextEncoder().encode("glTF"));
+  view.setUint32(4, version, true);
+  view.setUint32(8, said ?? data.byteLength, true);
+  view.setUint32(12, text.length, true);
+  new Uint8Array(data).set(new TextEncoder().encode("JSON"), 16);
+  new Uint8Array(data).set(text, 20);
+  return data;
+}
+
+describe("STL", () => {
+  it("is read, binary and text, also binary that begins as text does", async () => {
+    const triangle = [0, 1, 2, 3, 4, 5, 6, 7, 8];
+    expect(positions(await read("stl", binaryStl(1)))).toEqual(triangle);
+    expect(positions(await read("STL".toLowerCase(), binaryStl(1, 1, "solid of something")))).toEqual(triangle);
+    expect(positions(await read("stl", `solid a box\n${FACET}endsolid a box\n`))).toEqual([0, 0, 0, 1, 0, 0, 0, 1, 0]);
+    expect(positions(await read("stl", `\ufeffSOLID\r\n${FACET.toUpperCase()}${FACET}`))).toHaveLength(18);
+  });
+
+  it("that was cut off says how much it lacks", async () => {
+    expect(await error("stl", binaryStl(12, 40_000_000))).toBe("the STL says 40 000 000 triangles and holds 12");
+    expect(await error("stl", binaryStl(1, 3, "solid"))).toBe("the STL says 3 triangles and holds 1");
+    expect(await error("stl", new ArrayBuffer(12))).toContain("this is no STL");
+    expect(await error("stl", new ArrayBuffer(84))).toBe("the STL file has no triangles");
+    expect(await error("stl", "solid nothing\n")).toBe("the STL file has no triangles");
+    expect(await error("stl", new ArrayBuffer(0))).toBe("the file is empty");
+  });
+
+  it("as text says in which line it is broken", async () => {
+    const at = "the ASCII STL is broken at line ";
+    expect(await error("stl", `solid\n${facet("0 0 0", "1 0,5 0", "0 1 0")}`)).toBe(`${at}5: '0,5' instead of a number`);
+    expect(await error("stl", `solid\n${facet("0 0 0", "1 0 0")}`)).toBe(`${at}6: a facet with 2 vertices instead of 3`);
+    expect(await error("stl", `solid\n${FACET}fac`)).toBe(`${at}9: 'fac' instead of 'facet'`);
+    expect(await error("stl", "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0\n")).toBe(`${at}4: the file ends where a number should be`);
+    expect(await error("stl", "solid\nfacet normal 0 0 1\nouter loop\nvortex 0 0 0\n")).toBe(`${at}4: 'vortex' instead of 'vertex'`);
+  });
+});
+
+describe("vertices that are no numbers", () => {
+  it("are counted, and triangles with them are not drawn", async () => {
+    const some = await read("stl", `solid\n${FACET}${facet("nan 0 0", "5 inf 0", "0 1 0")}endsolid`);
+    expect(some.problem).toBe("2 vertices are not finite numbers; 1 triangles with them are left out");
+    expect(positions(some)).toEqual([0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]);
+    expect(await error("stl", binaryStl(2, 2, "", NaN))).toBe("none of its triangles can be drawn: 2 vertices are not finite numbers");
+  });
+
+  it("are left out of faces that others share", async () => {
+    const some = await read("obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv nan 0 0\nf 1 2 3\nf 1 2 4\n");
+    expect(some.problem).toBe("1 vertices are not finite numbers; 1 triangles with them are left out");
+    const { BufferAttribute, BufferGeometry } = await import("three");
+    const geometry = new BufferGeometry();
+    geometry.setAttribute("position", new BufferAttribute(new Float32Array([9, 9, 9, 1, 0, 0, NaN, 1, 0, 0, 0, 1]), 3));
+    geometry.setIndex([0, 1, 3, 0, 1, 2]);
+    expect(collapseUnreal(geometry)).toEqual({ vertices: 1, triangles: 1, ofTriangles: 2 });
+    expect([...(geometry.index?.array ?? [])]).toEqual([0, 1, 3, 0, 0, 0]);
+    geometry.computeBoundingBox();
+    expect(geometry.boundingBox?.max.toArray()).toEqual([9, 9, 9]);
+  });
+});
+
+describe("other mesh files", () => {
+  it("say in words what is wrong with them", async () => {
+    expect(await error("obj", "v 0 0 0\n# nothing else\n")).toBe("the OBJ file has no faces");
+    expect(await error("obj", "<html>not here</html>")).toContain("this is no OBJ file");
+    expect(await error("glb", "PK\x03\x04, a zip")).toContain("this is no GLB");
+    expect(await error("glb", glb("{}", 4000))).toBe("the GLB says 4 000 bytes and holds 22");
+    expect(await error("glb", glb("{}", undefined, 1))).toBe("it is glTF 1, and 2.0 is read");
+    expect(await error("glb", glb("{]"))).toBe("the glTF is not valid JSON");
+    expect(await error("gltf", "{]")).toBe("the glTF is not valid JSON");
+    expect(await error("gltf", '{"asset": {"version": "1.0"}}')).toBe("it is glTF 1.0, and 2.0 is read");
+    const draco = '{"asset": {"version": "2.0"}, "extensionsRequired": ["KHR_draco_mesh_compression"]}';
+    expect(await error("gltf", draco)).toBe("it needs the extension 'KHR_draco_mesh_compression', which is not read");
+    expect(await error("ply", "ply")).toContain("no reader for '.ply'");
+  });
+
+  it("never tell what JavaScript says", async () => {
+    const warn = vi.spyOn(console, "warn").mockImplementation(() => undefined);
+    expect(await error("glb", glb('{"asset": {"version": "2.0"}, "meshes": 3, "nodes": [{"mesh": 7}], "scenes": [{"nodes": [0]}]}'))).toContain(
+      "its reader failed",
+    );
+    warn.mockRestore();
+  });
+});
+
+describe("the library of meshes", () => {
+  function answering(answer: () => Promise<Response>): Promise<string> {
+    const library = new MeshLibrary(new MeshProgress(), { ...NO_FILES, fetch: answer });
+    return library.load("/mesh/a/b.stl", ".STL").then(
+      () => "",
+      (reason: unknown) => (reason instanceof Error ? reason.message : "?"),
+    );
+  }
+
+  it("says why a file cannot be had", async () => {
+    expect(await answering(() => Promise.resolve(new Response("no", { status: 404 })))).toBe("the server has no such file (404)");
+    expect(await answering(() => Promise.reject(new TypeError("Failed to fetch")))).toBe("the connection was lost while it was fetched");
+    const refused = new Response("a link leads out of the package\nmore", { status: 403, headers: { "Content-Type": "text/plain" } });
+    expect(await answering(() => Promise.resolve(refused))).toBe("a link leads out of the package");
+    const large = new Response("", { headers: { "Content-Length": "7000000000" } });
+    expect(await answering(() => Promise.resolve(large))).toBe("the file has 7000 MB, and meshes of at most 500 MB are drawn");
+  });
+});
+
+describe("the progress of meshes", () => {
+  beforeEach(() => vi.useFakeTimers());
+  afterEach(() => vi.useRealTimers());
+
+  it("is told after half a second, with bytes, then that they are read", async () => {
+    vi.stubGlobal("requestAnimationFrame", (call: () => void) => setTimeout(call, 16));
+    const progress = new MeshProgress();
+    const told = (): string[] => progress.loads.map((load) => `${load.name} ${progressText(load)}`);
+    const report = progress.begin("arm.stl");
+    report.came(20_000, null);
+    expect(told()).toEqual([]);
+    await vi.advanceTimersByTimeAsync(500);
+    expect(told()).toEqual(["arm.stl 20 kB"]);
+    report.came(1_200_000, 4_000_000);
+    expect(told()).toEqual(["arm.stl 1.2 MB of 4.0 MB"]);
+    void report.reads();
+    expect(told()).toEqual(["arm.stl reading"]);
+    report.ended();
+    expect(told()).toEqual([]);
+    vi.unstubAllGlobals();
+  });
+
+  it("is told at once of large files that are read, and never of what was soon there", async () => {
+    vi.stubGlobal("requestAnimationFrame", (call: () => void) => setTimeout(call, 16));
+    const progress = new MeshProgress();
+    const soon = progress.begin("small.stl");
+    soon.came(100, 100);
+    await soon.reads();
+    soon.ended();
+    const large = progress.begin("large.stl");
+    large.came(50_000_000, 50_000_000);
+    let painted = false;
+    void large.reads().then(() => (painted = true));
+    expect([progress.loads.length, painted]).toEqual([1, false]);
+    await vi.advanceTimersByTimeAsync(200);
+    expect(painted).toBe(true);
+    large.ended();
+    await vi.advanceTimersByTimeAsync(1000);
+    expect(progress.loads).toEqual([]);
+    vi.unstubAllGlobals();
+  });
+});
