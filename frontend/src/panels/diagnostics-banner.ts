@@ -1,10 +1,14 @@
 import { button, h } from "../dom";
 import { icon } from "../icons";
+import type { DiagnosticItem } from "../protocol";
 import type { Session } from "../state/session";
 import { strings } from "../strings";
 import { placeText, shortPath } from "./place";
 
-/** Over the scene while the description has an error: the robot seen is the last good one. */
+/** Codes of findings about files of the viewer: the robot is shown in spite of them. */
+const NOT_OF_DESCRIPTIONS = /^(RVIZ|VIEW)/;
+
+/** Over the scene while the description has an error: its cause, its hint, and whether the robot seen is the last good one. */
 export class DiagnosticsBanner {
   readonly element = h("div", { class: "banner", role: "alert" });
 
@@ -30,9 +34,15 @@ export class DiagnosticsBanner {
         "div",
         { class: "banner-text" },
         h("strong", {}, first.message + more),
-        h("span", {}, place ? h("span", { class: "place" }, place) : null, this.session.robot ? words.lastGood : ""),
+        h("span", {}, place ? h("span", { class: "place" }, place) : null, first.hints[0] ?? ""),
+        this.keepsRobot(first) ? h("span", {}, words.lastGood) : null,
       ),
       button(words.show, this.showAll, "tool", words.show),
     );
+  }
+
+  /** A description with an error changes nothing: what is there when the error comes was there before. */
+  private keepsRobot(error: DiagnosticItem): boolean {
+    return this.session.robot !== null && !NOT_OF_DESCRIPTIONS.test(error.code);
   }
 }

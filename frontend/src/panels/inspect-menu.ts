@@ -108,6 +108,11 @@ export class InspectMenu {
     const mass = [...model.links.values()].reduce((sum, { inertia }) => sum + (inertia?.mass ?? 0), 0);
     const findings = this.session.description.findingsOf(model.display);
     const links = new Set(findings.map(({ link }) => link));
+    const weightless = links.size === 0 && [...model.links.values()].every(({ inertia }) => inertia === null);
+    if (weightless) {
+      this.facts.replaceChildren(h("div", {}, words.noInertials));
+      return;
+    }
     const rows = findings.map(({ link, code, message, hint }) => {
       const name = { display: model.display, kind: "link" as const, name: link };
       const row = button(hint || message, () => this.session.focus.select(name), "finding", h("strong", {}, link), ` ${message} `, h("code", { class: "code" }, code));

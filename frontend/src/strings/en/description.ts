@@ -92,6 +92,7 @@ export const description = {
     mass: (kg: string): string => `Mass of the robot: ${kg} kg`,
     implausible: (count: number): string => (count === 1 ? "1 link is implausible:" : `${count} links are implausible:`),
     plausible: "No mass or inertia is implausible.",
+    noInertials: "No link has an <inertial>: there is no mass to show.",
   },
   poses: {
     label: "Poses",
