@@ -19,6 +19,15 @@ from linkwright.vision.places.words import Sighting, described, named, wanted
         ("the blue one", "", "blue"),
         ("glass", "glass", None),
         ("people", "person", None),
+        ("go to the ball", "ball", None),
+        ("Please drive over to the  red ball!", "ball", "red"),
+        ("find me a blue box", "crate", "blue"),
+        ("look for something", "something", None),
+        ("follow the yellow one", "", "yellow"),
+        ("go", "go", None),
+        ("去红色的球", "ball", "red"),
+        ("请走到那个球那里", "ball", None),
+        ("找蓝色的箱子", "crate", "blue"),
         ("球", "ball", None),
         ("红色的球", "ball", "red"),
         ("那个蓝色的箱子", "crate", "blue"),
@@ -65,6 +74,18 @@ def test_a_patch_of_a_colour_is_a_ball_if_it_is_as_wide_as_high():
     assert not wanted("red ball").is_it("red", None, 0.4)
     assert wanted("red ball").is_it("ball", "red", 0.4), "a class counts whatever part of the thing is seen"
     assert wanted("red").is_it("red", None, 0.4)
+
+
+def test_a_round_patch_of_any_colour_is_a_ball_and_a_square_one_is_none():
+    assert wanted("ball").is_it("orange", None, 1.0, 0.79)
+    assert not wanted("ball").is_it("orange", None, 1.0, 0.99)
+    assert not wanted("ball").is_it("orange", None, 0.5, 0.79)
+    assert not wanted("crate").is_it("orange", None, 1.0, 0.79)
+
+
+def test_what_is_said_of_it_has_no_verb():
+    assert wanted("go to the ball").text == "ball"
+    assert wanted("去红色的球那里").text == "红色的球"
 
 
 def test_what_is_seen_in_a_sentence():

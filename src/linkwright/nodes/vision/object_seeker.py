@@ -205,7 +205,9 @@ class ObjectSeeker(SingleNode):
     def _chosen(self, pose: Transform) -> Thing | None:
         """Of the things that are seen, the one to go to: the same as before, or else the nearest."""
         assert self._wanted is not None, "it is asked for while it seeks"
-        fitting = [each for each in self._seen.things if self._wanted.is_it(each.name, each.colour, each.shape)]
+        fitting = [
+            each for each in self._seen.things if self._wanted.is_it(each.name, each.colour, each.shape, each.score)
+        ]
         before = self._target
         if before is not None:
             same = [each for each in fitting if each.id and each.id == before.id]

@@ -31,6 +31,7 @@ class Thing:
         x, y: of its middle in the fixed frame, metres.
         radius: half of its width, metres.
         shape: its width by its height.
+        score: of its detection.
         seen_ns: the time of the picture, nanoseconds.
     """
 
@@ -41,6 +42,7 @@ class Thing:
     y: float
     radius: float
     shape: float
+    score: float
     seen_ns: int
 
 
@@ -107,7 +109,7 @@ class SeenThings:
             x, y, *_ = compose(pose, (at.x, at.y, at.z, 0.0, 0.0, 0.0, 1.0))
             colours = self._votes.get(each.id)
             colour = colours.most_common(1)[0][0] if colours else None
-            name, _ = best_hypothesis(each)
+            name, score = best_hypothesis(each)
             size = each.bbox.size
             shape = size.y / size.z if size.z > 0 else 1.0
-            self.things.append(Thing(name, each.id, colour, x, y, size.y / 2, shape, time_ns))
+            self.things.append(Thing(name, each.id, colour, x, y, size.y / 2, shape, score, time_ns))

@@ -42,12 +42,21 @@ _FIRST = {name: group[0] for group in _ALIKE for name in group}
 _CHINESE = {group[0]: next(name for name in group if not name.isascii()) for group in _ALIKE}
 _PLURALS = {"people": "person", "children": "child", "boxes": "box", "persons": "person"}
 _FILLERS = {"the", "a", "an", "that", "this", "please", "to", "some", "any"}
+_VERBS = re.compile(
+    r"(?:please )?"
+    r"(?:(?:go|drive|move|walk|run|come|get|turn)(?: over)? to|find|search for|look for|approach|follow)(?: me)? "
+)
+_CHINESE_VERBS = re.compile(
+    r"^(?:请|帮我|去|走到|开到|到|前往|寻找|找到|找|跟着|跟随|跟上|靠近)+|(?:那里|那边|旁边|面前|前面)$"
+)
 _CHINESE_FILLERS = re.compile(r"那个|这个|一个|那只|这只|色的|色|的|请")
 _NUMBERS = {
     "en": ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten"),
     "zh": ("零", "一", "两", "三", "四", "五", "六", "七", "八", "九", "十"),
 }
 _ROUND, _ABOUT_ONE = "ball", (0.75, 1.33)
+_FILLED_BY_A_CIRCLE = (0.7, 0.86)
+"""How much of its box a round patch fills: about pi / 4; one that is square fills it."""
 _AHEAD, _BESIDE = 20.0, 110.0
 """Up to how many degrees off a thing is ahead, and to the left or right; beyond it is behind."""
 
@@ -96,16 +105,18 @@ class Wanted:
         """The language that it was said in: ``zh`` or ``en``."""
         return "en" if self.text.isascii() else "zh"
 
-    def is_it(self, name: str, colour: str | None, shape: float = 1.0) -> bool:
+    def is_it(self, name: str, colour: str | None, shape: float = 1.0, score: float = 1.0) -> bool:
         """Whether this is a thing of that class.
 
         A class may have its colour in its name, as ``red_ball`` does; one that is nothing but a colour may be any
-        thing, and a ball if it is about as wide as high.
+        thing of that colour, and a ball if it is about as wide as high. A ball of no colour in particular is a patch
+        that is round, too.
 
         Args:
             name: its class.
             colour: in which it was seen, if any.
             shape: its width by its height.
+            score: of the detection; of a patch of a colour, how much of its box it fills.
         """
         words = _words(name)
         told = next((_ENGLISH_COLOURS[word] for word in words if word in _ENGLISH_COLOURS), None)
@@ -115,7 +126,10 @@ class Wanted:
         if not self.thing:
             return True
         if not rest:
-            return self.colour is not None and (self.thing != _ROUND or _ABOUT_ONE[0] < shape < _ABOUT_ONE[1])
+            if self.thing != _ROUND:
+                return self.colour is not None
+            is_round = self.colour is not None or _FILLED_BY_A_CIRCLE[0] < score < _FILLED_BY_A_CIRCLE[1]
+            return is_round and _ABOUT_ONE[0] < shape < _ABOUT_ONE[1]
         return self.thing in (thing_of(rest), thing_of(rest.split()[-1]))
 
 
@@ -139,13 +153,15 @@ def thing_of(name: str) -> str:
 
 
 def wanted(text: str) -> Wanted | None:
-    """What somebody asks for with ``ball``, ``the red ball``, ``红色的球``; None for nothing."""
+    """What somebody asks for with ``ball``, ``go to the red ball``, ``去红色的球那里``; None for nothing."""
     plain = text.strip().strip(".,!?。，！？").lower()
     if plain.isascii():
+        plain = _VERBS.sub("", f"{' '.join(plain.split())} ", count=1) if _VERBS.match(plain) else plain
         words = [word for word in _words(plain) if word not in _FILLERS]
         colour = next((_ENGLISH_COLOURS[word] for word in words if word in _ENGLISH_COLOURS), None)
         rest = " ".join(word for word in words if word not in _ENGLISH_COLOURS and word not in ("thing", "one"))
         return Wanted(thing_of(rest), colour, " ".join(words)) if colour or rest else None
+    plain = _CHINESE_VERBS.sub("", plain)
     colour = next((_CHINESE_COLOURS[sign] for sign in plain if sign in _CHINESE_COLOURS), None)
     rest = _CHINESE_FILLERS.sub("", plain)
     rest = "".join(sign for sign in rest if sign not in _CHINESE_COLOURS).replace("东西", "").strip()
