@@ -6,6 +6,7 @@ import json
 
 import cv2
 import numpy as np
+import onnx
 import onnxruntime
 import pytest
 
@@ -222,6 +223,80 @@ def test_a_corrupt_file(tmp_path):
     assert refused(path)[0] == "VISION103"
 
 
+@pytest.mark.parametrize(
+    ("content", "reason"),
+    [
+        (b"", "the file is empty"),
+        (b"version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n", "it is a pointer of Git LFS"),
+        (b"\n<!DOCTYPE html><html></html>", "it is a web page"),
+        (b"not a network\n", "it is a text, not an ONNX file"),
+        (bytes(1000), "it is no ONNX file, or not whole"),
+    ],
+)
+def test_files_that_are_no_networks_are_told_apart(tmp_path, content, reason):
+    path = tmp_path / "best.onnx"
+    path.write_bytes(content)
+    code, message, _ = refused(path)
+    assert code == "VISION103"
+    assert message.startswith(f"cannot load the network in '{path}': {reason}")
+
+
+@pytest.mark.parametrize("change", ["ir", "opset"])
+def test_a_file_for_a_newer_onnxruntime(tmp_path, change):
+    path = columns(tmp_path / "new.onnx", metadata=NAMES)
+    model = onnx.load(path)
+    if change == "ir":
+        model.ir_version = 99
+    else:
+        model.opset_import[0].version = 99
+    onnx.save(model, path)
+    code, message, hint = refused(path)
+    assert (code, "made for a newer onnxruntime" in hint) == ("VISION103", True)
+    assert "onnxruntime_src" not in message
+
+
+def test_weights_in_a_second_file_that_is_not_there(tmp_path):
+    path = columns(tmp_path / "two.onnx", metadata=NAMES)
+    onnx.save(onnx.load(path), path, save_as_external_data=True, location="weights.bin", size_threshold=0)
+    (tmp_path / "weights.bin").unlink()
+    code, _, hint = refused(path)
+    assert (code, "second file" in hint) == ("VISION103", True)
+
+
+@pytest.mark.parametrize("device", ["gpu", "tpu", "cuda:x"])
+def test_a_device_that_does_not_exist(tmp_path, device):
+    code, message, hint = refused(columns(tmp_path / "v8.onnx", metadata=NAMES), device=device)
+    assert (code, f"'{device}'" in message, "cuda:0" in hint) == ("VISION109", True, True)
+
+
+def test_sizes_that_no_memory_is_enough_for(tmp_path):
+    path = columns(tmp_path / "any.onnx", size=None, metadata={**NAMES, "imgsz": "[1000000, 1000000]", "stride": "1e9"})
+    assert opened(path).names == ("ball", "box", "cat"), "what metadata say beyond reason counts as not said"
+    assert refused(path, size=(10**6, 64))[0] == "VISION109"
+
+
+@pytest.mark.parametrize("number", [np.nan, np.inf])
+def test_boxes_that_are_no_numbers(tmp_path, picture, number):
+    path = constant(tmp_path / "broken.onnx", np.full((1, 7, 252), number, np.float32), NAMES)
+    with pytest.raises(LinkwrightError, match="not numbers") as raised:
+        opened(path).detect(picture, LIMITS)
+    assert raised.value.diagnostics[0].code == "VISION106"
+
+
+def test_names_in_metadata_that_cannot_be_read_are_told_of(tmp_path):
+    detector = opened(columns(tmp_path / "v8.onnx", metadata={"names": "{0: 'a', 2: 'b', 3: 'c'}"}))
+    assert detector.names == ("0", "1", "2")
+    assert "cannot be read" in str(detector.notes[0])
+
+
+def test_where_in_labels_the_mistake_is(tmp_path):
+    labels = tmp_path / "labels.yaml"
+    labels.write_text("names:\n  0: ball\n  1: [box\n")
+    _, message, hint = refused(columns(tmp_path / "v8.onnx"), labels=labels)
+    assert "line 4, column 1" in message
+    assert "a name in each line" in hint
+
+
 def test_a_file_that_is_not_there_and_names_that_are_wrong(tmp_path):
     code, _, hint = refused(tmp_path / "no.onnx")
     assert (code, "colours" in hint) == ("VISION102", True)
@@ -271,11 +346,11 @@ def test_outputs_that_are_no_boxes(tmp_path, shape):
 def test_names_that_do_not_fit(tmp_path):
     path = columns(tmp_path / "v8.onnx", 5, metadata=NAMES)
     code, message, _ = refused(path)
-    assert (code, message) == ("VISION107", "the network in 'v8.onnx' has 5 classes, and there are 3 names")
+    assert (code, message) == ("VISION107", "the network in 'v8.onnx' has 5 classes, and its metadata name 3")
     labels = tmp_path / "labels.txt"
     labels.write_text("one\ntwo\n")
     code, message, _ = refused(columns(tmp_path / "v8.onnx", metadata=NAMES), labels=labels)
-    assert (code, message) == ("VISION107", "the network in 'v8.onnx' has 3 classes, and there are 2 names")
+    assert (code, message) == ("VISION107", f"the network in 'v8.onnx' has 3 classes, and '{labels}' names 2")
     assert refused(columns(tmp_path / "v8.onnx"), labels=labels)[0] == "VISION107"
 
 

@@ -9,11 +9,12 @@ from typing import Any
 
 import yaml
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, foreign, phrase
 from linkwright.input_files import read_text
 
 _LARGEST = 1_000_000
 """Characters of metadata that are read as names."""
+_FORMS = phrase("write a name in each line, or as YAML a list of names or a mapping from 0, 1, 2, ... to names")
 
 
 def names_in_metadata(text: str) -> tuple[str, ...] | None:
@@ -43,19 +44,32 @@ def read_labels(path: Path) -> tuple[str, ...]:
     """
     try:
         text = read_text(path, "utf-8-sig")
-        if path.suffix.lower() not in (".yaml", ".yml", ".json"):
-            return tuple(line.strip() for line in text.splitlines() if line.strip())
-        document = yaml.safe_load(text)  # JSON is YAML
+        if path.suffix.lower() in (".yaml", ".yml", ".json"):
+            document = yaml.safe_load(text)  # JSON is YAML
+        else:
+            document = [line.strip() for line in text.splitlines() if line.strip()]
     except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
-        reason = error.strerror if isinstance(error, OSError) else error
-        message = phrase("cannot read the labels in '{path}': {reason}", path=path, reason=foreign(reason))
-        raise LinkwrightError(Diagnostic("VISION108", message)) from None
+        message = phrase("cannot read the labels in '{path}': {reason}", path=path, reason=_reason(error))
+        raise LinkwrightError(Diagnostic("VISION108", message, hint=_FORMS)) from None
     names = _in_order(document.get("names", document) if isinstance(document, Mapping) else document)
     if names is None:
         message = phrase("there are no labels in '{path}'", path=path)
-        hint = phrase("write a list of names, or a mapping from 0, 1, 2, ... to names")
-        raise LinkwrightError(Diagnostic("VISION108", message, hint=hint))
+        raise LinkwrightError(Diagnostic("VISION108", message, hint=_FORMS))
     return names
+
+
+def _reason(error: OSError | UnicodeDecodeError | yaml.YAMLError) -> Phrase:
+    if isinstance(error, OSError):
+        return foreign(error.strerror or error)
+    if isinstance(error, yaml.MarkedYAMLError) and error.problem_mark is not None:
+        mark = error.problem_mark
+        return phrase(
+            "line {line}, column {column}: {problem}",
+            line=mark.line + 1,
+            column=mark.column + 1,
+            problem=foreign(error.problem),
+        )
+    return phrase("it is not text in UTF-8") if isinstance(error, UnicodeDecodeError) else foreign(error)
 
 
 def _in_order(found: Any) -> tuple[str, ...] | None:

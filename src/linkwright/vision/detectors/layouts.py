@@ -93,7 +93,12 @@ class Layout:
 
 
 def find_layout(
-    shapes: Sequence[Sequence[int]], size: tuple[int, int], metadata: Metadata, file: Path, labels: int | None
+    shapes: Sequence[Sequence[int]],
+    size: tuple[int, int],
+    metadata: Metadata,
+    file: Path,
+    labels: int | None,
+    labels_file: Path | None = None,
 ) -> Layout:
     """The layout of a network's outputs.
 
@@ -103,6 +108,7 @@ def find_layout(
         metadata: of its file.
         file: for messages.
         labels: how many names a file of labels has, if there is one; it counts more than the metadata.
+        labels_file: that file, for messages.
 
     Raises:
         LinkwrightError: VISION106 it finds something else than boxes, or lays them out in no way that is known;
@@ -126,24 +132,35 @@ def find_layout(
         raise LinkwrightError(Diagnostic("VISION106", message, hint=hint))
     form, classes = next((each for each in forms if each[1] in (0, named)), forms[0])
     if named is not None and classes not in (0, named):
-        raise wrong_number(file, classes, named, from_labels=labels is not None)
+        raise wrong_number(file, classes, named, labels_file)
     return Layout(form, classes, _BOXES[task])
 
 
-def wrong_number(file: Path, classes: int, named: int, *, from_labels: bool) -> LinkwrightError:
-    """The error for names that are more or fewer than the classes of a network: VISION107."""
+def wrong_number(file: Path, classes: int, named: int, labels: Path | None) -> LinkwrightError:
+    """The error for names that are more or fewer than the classes of a network: VISION107.
+
+    Args:
+        file: of the network.
+        classes: that it has.
+        named: how many names there are.
+        labels: the file with the names; None where they are in the file of the network.
+    """
+    if labels is None:
+        message = phrase(
+            "the network in '{file}' has {classes} classes, and its metadata name {named}",
+            file=file.name,
+            classes=classes,
+            named=named,
+        )
+        return LinkwrightError(Diagnostic("VISION107", message, hint=phrase("give a file of labels that has as many")))
     message = phrase(
-        "the network in '{file}' has {classes} classes, and there are {named} names",
+        "the network in '{file}' has {classes} classes, and '{labels}' names {named}",
         file=file.name,
         classes=classes,
+        labels=labels,
         named=named,
     )
-    hint = (
-        phrase("give the labels that it was trained with")
-        if from_labels
-        else phrase("give a file of labels that has as many")
-    )
-    return LinkwrightError(Diagnostic("VISION107", message, hint=hint))
+    return LinkwrightError(Diagnostic("VISION107", message, hint=phrase("give the labels that it was trained with")))
 
 
 def _more_numbers(shapes: Sequence[Sequence[int]], metadata: Metadata) -> tuple[int, str]:

@@ -9,20 +9,21 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, foreign, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, phrase
 from linkwright.vision.detections import Detections
 from linkwright.vision.detector import Detector, Limits
 from linkwright.vision.detectors.class_names import read_labels
-from linkwright.vision.detectors.layouts import Form, find_layout, wrong_number
+from linkwright.vision.detectors.layouts import Candidates, Form, find_layout, wrong_number
 from linkwright.vision.detectors.letterbox import letterboxed, tensor_of
-from linkwright.vision.detectors.library import load_onnxruntime
 from linkwright.vision.detectors.metadata import Metadata
 from linkwright.vision.detectors.options import DetectorOptions
+from linkwright.vision.detectors.sessions import load_session, reason_of
+from linkwright.vision.detectors.settings import bad_setting
 from linkwright.vision.detectors.suppression import suppressed
 
 _NUMBERS: dict[str, type[np.floating]] = {"tensor(float)": np.float32, "tensor(float16)": np.float16}
 _USUAL_SIZE = (640, 640)
-_CPU, _CUDA = "CPUExecutionProvider", "CUDAExecutionProvider"
+_LARGEST_SIZE = 8192
 
 
 class NetworkDetector(Detector):
@@ -34,14 +35,18 @@ class NetworkDetector(Detector):
 
     Raises:
         LinkwrightError: VISION101 onnxruntime or OpenCV is missing, VISION103 the file cannot be loaded, VISION105 its
-            input is no picture, VISION106 and VISION107 see `find_layout`, VISION108 the labels cannot be read.
+            input is no picture, VISION106 and VISION107 see `find_layout`, VISION108 the labels cannot be read,
+            VISION109 there is no such device, or no input of that size.
     """
 
     def __init__(self, file: Path, options: DetectorOptions) -> None:
-        self._file = file
-        self._notes: list[Phrase] = []
+        self._file, self._labels = file, options.labels
         labels = read_labels(options.labels) if options.labels is not None else None
-        self._session = self._load(options.device)
+        if options.size is not None and max(options.size) > _LARGEST_SIZE:
+            raise bad_setting(
+                "imgsz", max(options.size), phrase("it is at most {largest} pixels", largest=_LARGEST_SIZE)
+            )
+        self._session, self._notes = load_session(file, options.device)
         metadata = Metadata.of(self._session.get_modelmeta().custom_metadata_map)
         self._input, self._kind, fixed = _picture_input(file, self._session.get_inputs())
         self._stride = None if fixed else metadata.stride
@@ -52,7 +57,7 @@ class NetworkDetector(Detector):
         grey = np.full((*self._size, 3), 114, np.uint8)
         shapes = [output.shape for output in self._run(tensor_of(grey, self._kind))]
         named = len(labels) if labels is not None else None
-        self._layout = find_layout(shapes, self._size, metadata, file, named)
+        self._layout = find_layout(shapes, self._size, metadata, file, named, options.labels)
         self._names = self._named(metadata.names, labels)
         if self._layout.left_out:
             left_out = phrase("masks") if self._layout.left_out == "masks" else phrase("key points")
@@ -74,13 +79,12 @@ class NetworkDetector(Detector):
         """Find what is in a picture.
 
         Raises:
-            LinkwrightError: VISION105 the network fails.
+            LinkwrightError: VISION105 the network fails, VISION106 what it gives are not numbers.
         """
         if not picture.size:
             return Detections.none(self._names)
         pixels, place = letterboxed(picture, self._size, self._stride)
-        outputs = self._run(tensor_of(pixels, self._kind))
-        found = self._layout.candidates(np.asarray(outputs[0], np.float32), limits.threshold)
+        found = self._candidates(np.asarray(self._run(tensor_of(pixels, self._kind))[0], np.float32), limits.threshold)
         boxes, scores, classes = found.boxes, found.scores, found.classes
         if limits.classes is not None:
             wanted = [index for index, name in enumerate(self._names) if name in limits.classes]
@@ -93,33 +97,21 @@ class NetworkDetector(Detector):
             kept = suppressed(boxes, scores, classes, limits.iou, limits.most)
         return Detections(place.boxes_in_picture(boxes[kept]), scores[kept], classes[kept], self._names)
 
-    def _load(self, device: str) -> Any:
-        onnxruntime = load_onnxruntime()
-        providers: list[Any] = [_CPU]
-        kind, _, number = device.lower().partition(":")
-        if kind not in ("", "cpu"):
-            if _CUDA in onnxruntime.get_available_providers():
-                which = number or (kind if kind.isdigit() else "0")
-                providers.insert(0, (_CUDA, {"device_id": which}))
-            else:
-                self._notes.append(
-                    phrase("onnxruntime has no '{device}' here; the network runs on the CPU", device=device)
-                )
-        how = onnxruntime.SessionOptions()
-        how.add_session_config_entry("session.intra_op.allow_spinning", "0")  # others need the processor, too
-        try:
-            return onnxruntime.InferenceSession(str(self._file), how, providers=providers)
-        except Exception as error:  # noqa: BLE001 - of many classes, which onnxruntime does not document
-            message = phrase("cannot load the network in '{file}': {reason}", file=self._file, reason=_reason(error))
-            hint = phrase("the file is broken, not whole, or made for a newer onnxruntime: export it anew")
-            raise LinkwrightError(Diagnostic("VISION103", message, hint=hint)) from None
+    def _candidates(self, output: NDArray[np.float32], threshold: float) -> Candidates:
+        with np.errstate(invalid="ignore"):
+            found = self._layout.candidates(output, threshold)
+        if np.isnan(output).any() or not (np.isfinite(found.boxes).all() and np.isfinite(found.scores).all()):
+            message = phrase("the network in '{file}' gives boxes or scores that are not numbers", file=self._file.name)
+            hint = phrase("it is broken, or 16 bits are too few for it: export it with 32")
+            raise LinkwrightError(Diagnostic("VISION106", message, hint=hint))
+        return found
 
     def _run(self, tensor: NDArray[np.floating]) -> Sequence[NDArray[Any]]:
         try:
             outputs: Sequence[NDArray[Any]] = self._session.run(None, {self._input: tensor})
         except Exception as error:  # noqa: BLE001 - see above
             shape = list(tensor.shape)
-            reason = _reason(error)
+            reason = reason_of(error)
             message = phrase(
                 "the network in '{file}' fails on an input of {shape}: {reason}",
                 file=self._file.name,
@@ -133,14 +125,21 @@ class NetworkDetector(Detector):
         classes = self._layout.classes or (len(own) if own is not None else 0)
         if labels is not None:
             if classes and len(labels) != classes:
-                raise wrong_number(self._file, classes, len(labels), from_labels=True)
+                raise wrong_number(self._file, classes, len(labels), self._labels)
             return labels
         if own is not None:
             return own
-        hint = phrase(
-            "'{file}' does not name its classes: they are numbered; give a file of labels", file=self._file.name
-        )
-        self._notes.append(hint)
+        said = self._session.get_modelmeta().custom_metadata_map.get("names")
+        if said:
+            note = phrase(
+                "the names of the classes in '{file}' cannot be read: they are numbered; give a file of labels",
+                file=self._file.name,
+            )
+        else:
+            note = phrase(
+                "'{file}' does not name its classes: they are numbered; give a file of labels", file=self._file.name
+            )
+        self._notes.append(note)
         return tuple(map(str, range(classes or 1000)))
 
 
@@ -152,7 +151,7 @@ def _picture_input(file: Path, inputs: Sequence[Any]) -> tuple[str, type[np.floa
         message = phrase("the network in '{file}' takes {count} pictures at once", file=file.name, count=shape[0])
         raise LinkwrightError(Diagnostic("VISION105", message, hint=phrase("export it with batch 1")))
     if kind is None or len(shape) != 4 or shape[1] != 3:
-        shown = ", ".join(f"{each.type[7:-1]} {list(each.shape)}" for each in inputs)
+        shown = ", ".join(f"{each.type[7:-1]} {list(each.shape)}" for each in inputs) or "none"
         message = phrase(
             "the network in '{file}' does not take a picture: its inputs are {inputs}", file=file.name, inputs=shown
         )
@@ -165,9 +164,3 @@ def _picture_input(file: Path, inputs: Sequence[Any]) -> tuple[str, type[np.floa
 
 def _multiple(size: tuple[int, int], stride: int) -> tuple[int, int]:
     return -(-size[0] // stride) * stride, -(-size[1] // stride) * stride
-
-
-def _reason(error: Exception) -> Phrase:
-    """The last part of what onnxruntime says, which is the reason."""
-    lines = str(error).strip().splitlines() or [type(error).__name__]
-    return foreign(lines[0].rpartition(" : ")[2].strip() or type(error).__name__)
