@@ -182,3 +182,15 @@ def test_a_fan_that_is_switched_on_is_speech_for_no_longer_than_two_seconds():
     levels = np.where(np.arange(8 * RATE) < 2 * RATE, 5.0, 300.0)
     found = spoken(np.rint(levels * rng.normal(size=8 * RATE)).astype(np.int16))
     assert not found[450:].any()
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
+def test_floating_point_that_is_no_sound_is_an_error(value):
+    sound = np.array([0.0, 0.5, value, 0.1], "<f4").tobytes()
+    with pytest.raises(LinkwrightError) as caught:
+        parse_wav(wav(sound, kind=3, bits=32), "sound.wav")
+    assert caught.value.diagnostics[0].code == "VOICE402"
+
+
+def test_values_far_beyond_full_scale_are_clipped():
+    assert resample(np.array([1e308, -1e308, np.inf]), RATE).tolist() == [32767, -32768, 32767]

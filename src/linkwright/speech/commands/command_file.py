@@ -163,8 +163,8 @@ class _Reader:
         if isinstance(node, yaml.MappingNode):
             keys = Keys(self._document, node, phrase("texts by language"), None)
             return {language: keys.texts(language) for language in keys.names()}
-        keys = Keys.of(self._document, ANY, node)
-        return {ANY: keys.texts(ANY)}
+        what = "texts"
+        return {ANY: Keys.of(self._document, what, node).texts(what)}
 
     def _count(self, found: CommandSet) -> None:
         languages = {"en", "zh", *found.languages}

@@ -80,5 +80,5 @@ def resample(values: NDArray[np.floating], rate: int) -> Samples:
 
 def to_samples(values: NDArray[np.floating]) -> Samples:
     """Values with full scale at 1 as 16 bits; what is beyond full scale is clipped, what is no number is silence."""
-    steps = np.rint(np.nan_to_num(values, nan=0.0) * 32_768.0)
+    steps = np.rint(np.clip(np.nan_to_num(values, nan=0.0), -1.0, 1.0) * 32_768.0)
     return np.asarray(np.clip(steps, -32_768, 32_767), dtype=np.int16)

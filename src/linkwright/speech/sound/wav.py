@@ -82,6 +82,8 @@ def parse_wav(data: bytes, name: str) -> Samples:
         )
     frame = form.channels * form.bits // 8
     values = _values(sound[: len(sound) // frame * frame], form).reshape(-1, form.channels)
+    if not np.isfinite(values).all():
+        raise _no_wav(name, phrase("some of its samples are infinite, or no numbers"))
     return resample(values.mean(axis=1), form.rate)
 
 
