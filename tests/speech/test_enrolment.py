@@ -85,6 +85,16 @@ def test_what_cannot_serve_as_an_example_is_not_taken_and_told_why(samples, code
     assert words.names == ()
 
 
+@pytest.mark.parametrize(("name", "other"), [("forward", "back"), ("back", "stop"), ("stop", "turn left")])
+def test_another_word_is_not_taken_after_one_take(name, other):
+    words = Words()
+    assert enrol(words, name, say(WORDS[name], seed=1)) == ()
+    (finding,) = enrol(words, name, say(WORDS[other], seed=2))
+    assert finding.code == "VOICE208"
+    assert enrol(words, name, say(WORDS[name], speed=1.1, pitch=130, seed=3)) == ()
+    assert len(words.takes(name)) == 2
+
+
 def test_a_take_that_is_unlike_the_word_is_not_taken():
     words = enrolled()
     (finding,) = enrol(words, "stop", say("mumi", seed=5))

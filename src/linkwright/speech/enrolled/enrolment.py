@@ -17,7 +17,8 @@ _QUIETEST = 60.0  # effective value of the loudest 50 ms, in steps of 16 bits: -
 _LEAST_ABOVE_NOISE = 8.0  # dB, mean of the bands of the loudest frames
 _CLIPPED_SHARE = 0.01
 _CLIPPED_AT = 32_700
-_UNLIKE = 0.85  # of its distance to what it is not: takes of a word are at 0.7 and less
+_UNLIKE = 0.7  # of its distance to a word played backwards: another word is farther three times in four
+_MUCH_ALIKE = 0.85  # of its distance to another word
 
 
 def enrol(words: Words, name: str, samples: Samples) -> tuple[Diagnostic, ...]:
@@ -70,7 +71,7 @@ def _compared(words: Words, name: str, take: Take) -> Diagnostic | None:
             phrase("say it again as before, or remove the word and enrol it anew"),
         )
     other = min(costs, key=lambda one: costs[one], default=name)
-    if other != name and own > _UNLIKE * costs[other]:
+    if other != name and own > _MUCH_ALIKE * costs[other]:
         message = phrase(
             "'{name}' sounds much like '{other}', so one may be taken for the other", name=name, other=other
         )
