@@ -59,7 +59,7 @@ class Templates:
         self.lengths = np.array([len(take.powers) for take in takes])
         clean = [np.maximum(take.powers - take.noise, 0.0) for take in takes]
         beside = ((_BESIDE, _BESIDE), (0, 0))
-        self._clean = np.concatenate([np.pad(powers / _loudness(powers), beside, "edge") for powers in clean])
+        self._clean = np.concatenate([np.pad(powers / loudness(powers), beside, "edge") for powers in clean])
         self._inner = np.concatenate([_inner(length) for length in self.lengths])
         starts = np.cumsum(self.lengths + 2) - self.lengths
         self._places = np.concatenate(
@@ -74,11 +74,11 @@ class Templates:
             powers: at least one frame, with the word in it and some background before and after.
             noise: power of the background, shape ``(BANDS,)``.
         """
-        loudness = _loudness(np.maximum(powers - noise, 0.0))
-        mask = np.maximum(_MASK * noise, loudness / BANDS * 10.0 ** (-_RANGE / 10.0))
+        loud = loudness(np.maximum(powers - noise, 0.0))
+        mask = np.maximum(_MASK * noise, loud / BANDS * 10.0 ** (-_RANGE / 10.0))
         sound = _features(powers, mask)
         background = _features(mask[None], mask)[0]
-        states = _features(loudness * self._clean, mask)[self._inner]
+        states = _features(loud * self._clean, mask)[self._inner]
         distances = _distances(sound, states)
         silent = np.sqrt(np.sum((sound - background) ** 2, axis=1))
         cost, first, last = self._paths(distances, silent)
@@ -122,7 +122,7 @@ def _inner(length: int) -> NDArray[np.bool_]:
     return np.pad(np.ones(length, dtype=np.bool_), _BESIDE)
 
 
-def _loudness(powers: Powers) -> float:
+def loudness(powers: Powers) -> float:
     """Power of all bands of the loudest frames."""
     return float(np.sort(powers.sum(axis=1))[-_LOUDEST:].mean()) + 1e-6
 

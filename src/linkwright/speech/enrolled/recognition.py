@@ -1,19 +1,21 @@
 """Which enrolled word was said, and how sure that is.
 
-A word is judged by logistic regression on what its best take costs relative to what the user's own takes of the word
-cost each other, to the next word or the background, and to takes played backwards, which are speech of the same voice
-but no words. The cost by itself does not count: what is usual differs between voices and microphones.
+A word counts only where nothing else is nearer: no other word, not the background, and no take played backwards, which
+is speech of the same voice but no word. Then it is judged by logistic regression on what its best take costs relative
+to what the user's own takes of the word cost each other, to the background and to takes played backwards, and on how
+far the sound is above the noise: in noise all costs come near each other, and more is asked of a word. The cost by
+itself does not count: what is usual differs between voices and microphones.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import exp, log
+from math import exp, log, log10
 
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.speech.enrolled.matching import Match, Templates
+from linkwright.speech.enrolled.matching import Match, Templates, loudness
 from linkwright.speech.enrolled.words import Take, Words
 from linkwright.speech.sound.spectra import Powers
 
@@ -32,7 +34,7 @@ class Guess:
         confidence: how likely it is that this word was said and nothing else, 0 to 1.
         first: the frame of the sound with which it begins.
         last: the frame with which it ends.
-        figures: what the confidence was made of, shape ``(3,)``.
+        figures: what the confidence was made of, shape ``(4,)``.
     """
 
     name: str
@@ -71,15 +73,18 @@ class Recogniser:
         order = np.argsort(costs)
         word = int(order[0])
         take = int(np.flatnonzero(self._word == word)[match.cost[self._word == word].argmin()])
-        figures = self._figures(match, costs, word, take)
         first, last = int(match.first[take]), int(match.last[take])
-        return Guess(self.names[word], _confidence(figures), first, last, figures)
+        above_noise = 10.0 * log10(loudness(powers[first : last + 1]) / float(noise.sum()))
+        figures = self._figures(match, costs, word, take, above_noise)
+        is_nearest = costs[word] < min(self._nonsense(match), float(match.background[take]))
+        confidence = _confidence(figures) if is_nearest else 0.0
+        return Guess(self.names[word], confidence, first, last, figures)
 
     def compare(self, take: Take) -> tuple[dict[str, float], float]:
         """How far a take is from each word, and from the nearest of those played backwards, which are no words."""
         match = self._templates.match(take.powers, take.noise)
         costs = self._costs(match).tolist()
-        return dict(zip(self.names, costs, strict=True)), float(match.cost[self._word == -1].min())
+        return dict(zip(self.names, costs, strict=True)), self._nonsense(match)
 
     def _own_cost(self, word: int) -> float:
         """How far a word's own takes are from each other, in the middle; asked for when the word is heard first."""
@@ -93,14 +98,17 @@ class Recogniser:
     def _costs(self, match: Match) -> NDArray[np.float32]:
         return np.array([match.cost[self._word == number].min() for number in range(len(self.names))])
 
-    def _figures(self, match: Match, costs: NDArray[np.float32], word: int, take: int) -> NDArray[np.float64]:
-        cost = float(costs[word])
-        backwards = float(match.cost[self._word == -1].min())
-        others = np.delete(costs, word).tolist()
-        nearest = min(backwards, float(match.background[take]), *others)
-        compared = (self._own_cost(word), nearest, backwards)
-        own, next_word, nonsense = (log(max(cost, _LEAST) / max(against, _LEAST)) for against in compared)
-        return np.array([max(own, _NEARER), next_word, nonsense])
+    def _nonsense(self, match: Match) -> float:
+        """What the nearest take that is played backwards costs."""
+        return float(match.cost[self._word == -1].min())
+
+    def _figures(
+        self, match: Match, costs: NDArray[np.float32], word: int, take: int, above_noise: float
+    ) -> NDArray[np.float64]:
+        cost = max(float(costs[word]), _LEAST)
+        compared = (self._own_cost(word), float(match.background[take]), self._nonsense(match))
+        own, background, nonsense = (log(cost / max(against, _LEAST)) for against in compared)
+        return np.array([max(own, _NEARER), background, nonsense, min(max(above_noise, 0.0), _CLEAR)])
 
 
 def _backwards(takes: tuple[Take, ...]) -> Take:
@@ -111,12 +119,10 @@ def _backwards(takes: tuple[Take, ...]) -> Take:
 
 _USUAL_COST = 10.0  # of a word that was said once
 _NEARER = -0.3  # to be still nearer than own takes are to each other says nothing more
-_WEIGHTS = np.array([-5.8, -1.1, -4.4])  # fitted to 17 synthetic voices of three languages, clean and in noise
-_OFFSET = -3.0
+_CLEAR = 30.0  # dB above the noise: more makes no difference
+_WEIGHTS = np.array([-8.2, -4.6, -1.1, 0.123])  # fitted to 17 synthetic voices of three languages, clean and in noise
+_OFFSET = -7.7
 
 
 def _confidence(figures: NDArray[np.float64]) -> float:
-    """0 where something else is as near."""
-    if figures[1] >= 0.0:
-        return 0.0
     return 1.0 / (1.0 + exp(-(_OFFSET + float(_WEIGHTS @ figures))))
