@@ -27,6 +27,7 @@ TITLES = {
     "simulation": ("Simulation", "仿真"),
     "drives": ("Controllers of drives", "底盘控制器"),
     "sizes": ("Sizes", "规模"),
+    "voice": ("Voice", "语音"),
 }
 _ENGLISH = """# Benchmarks
 
