@@ -99,6 +99,11 @@ def test_a_partial_comes_with_the_block_after_the_word_before_the_final(engine):
     assert known - end <= 0.3 * RATE
 
 
+def test_all_that_hearing_needs_is_computed_before_the_first_word(engine, monkeypatch):
+    monkeypatch.setattr("linkwright.speech.enrolled.recognition.Templates", None)
+    assert finals(engine, say(WORDS["stop"], silence=0.8, seed=13)) == ["stop"]
+
+
 def test_the_end_of_the_sound_ends_the_utterance_at_once(engine):
     samples = say(WORDS["back"], silence=0.5, seed=14)
     heard(engine, samples[: -int(0.45 * RATE)])

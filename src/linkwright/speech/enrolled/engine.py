@@ -138,6 +138,8 @@ class EnrolledEngine(SpeechEngine):
     def _take(self, words: Words) -> None:
         self._problem = None
         self._recogniser = Recogniser(words) if words.names else None
+        if self._recogniser is not None:
+            self._recogniser.prepare()
         if not self._phrases.keys() & {_plain(name) for name in words.names}:
             self._nothing_enrolled()
 

@@ -86,12 +86,18 @@ class Recogniser:
         costs = self._costs(match).tolist()
         return dict(zip(self.names, costs, strict=True)), self._nonsense(match)
 
+    def prepare(self) -> None:
+        """Compute beforehand what hearing a word for the first time would take longer for."""
+        for word in range(len(self.names)):
+            self._own_cost(word)
+
     def _own_cost(self, word: int) -> float:
-        """How far a word's own takes are from each other, in the middle; asked for when the word is heard first."""
+        """How far a word's own takes are from each other, in the middle."""
         if word not in self._own:
-            mine = self._word == word
-            matches = (self._templates.match(take.powers, take.noise) for take in self._takes[word])
-            costs = [float(np.sort(match.cost[mine])[1]) for match in matches] if np.sum(mine) > 1 else [_USUAL_COST]
+            takes = self._takes[word]
+            alone = Templates(takes)
+            matches = (alone.match(take.powers, take.noise) for take in takes)
+            costs = [float(np.sort(match.cost)[1]) for match in matches] if len(takes) > 1 else [_USUAL_COST]
             self._own[word] = float(np.median(costs))
         return self._own[word]
 
