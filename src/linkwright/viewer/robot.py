@@ -18,7 +18,8 @@ from linkwright.descriptions import examine
 from linkwright.diagnostics import Diagnostic, LinkwrightError
 from linkwright.geometry.arrays import quaternion_from_matrix
 from linkwright.geometry.single import quaternion_of
-from linkwright.graph import DurabilityPolicy
+from linkwright.graph import DurabilityPolicy, MessageInfo
+from linkwright.graph.introspection.answers import TopicEndpointInfo
 from linkwright.messages import String
 from linkwright.urdf import Box, Capsule, Collision, Cylinder, Inertial, Link, Material, Mesh, Robot, Sphere, Visual
 from linkwright.viewer.config.property_store import PropertyStore, qos_of
@@ -80,6 +81,9 @@ class DescriptionSource:
         self._on_refusal = on_refusal
         self._subscriptions: list[Any] = []
         self._reading: asyncio.Task[None] | None = None
+        self._heard: set[bytes] = set()
+        self.publisher: bytes | None = None
+        """The GID of who published the description that was received last; None before, and of files."""
 
     def follow(self) -> str | None:
         """Follow the source named now instead of the one before; returns RViz's words for why that failed, or None."""
@@ -94,6 +98,8 @@ class DescriptionSource:
             with suppress(ValueError):  # the node may have been destroyed before
                 self._context.node.destroy_subscription(subscription)
         self._subscriptions.clear()
+        self._heard.clear()
+        self.publisher = None
         if self._reading is not None:
             self._reading.cancel()
             self._reading = None
@@ -115,7 +121,15 @@ class DescriptionSource:
             return f"Error subscribing: {error.diagnostics[0].message}"
         return None
 
-    def _received(self, message: String) -> None:
+    def publishers(self) -> dict[bytes, str]:
+        """Whose descriptions came, by GIDs, without those who are gone: node, and machine where that is told."""
+        topic = self._properties.text(TOPIC).strip()
+        infos = self._context.node.get_publishers_info_by_topic(topic) if self._subscriptions else []
+        return {gid: _node_text(info) for info in infos if (gid := bytes(info.endpoint_gid)) in self._heard}
+
+    def _received(self, message: String, info: MessageInfo) -> None:
+        self.publisher = info.publisher_gid
+        self._heard.add(self.publisher)
         self._on_text(message.data)
 
     def _read_file(self, address: str) -> str | None:
@@ -132,6 +146,11 @@ class DescriptionSource:
             self._on_refusal(error.diagnostics)
             return
         self._on_text(self._context.library.remember(description))
+
+
+def _node_text(info: TopicEndpointInfo) -> str:
+    name = f"{info.node_namespace.rstrip('/')}/{info.node_name}"
+    return f"{name} on {info.host}" if info.host else name
 
 
 def link_inertia(inertial: Inertial | None) -> LinkInertia | None:

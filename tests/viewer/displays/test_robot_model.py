@@ -4,6 +4,8 @@ from pathlib import Path
 
 import pytest
 
+from linkwright.graph import DESCRIPTION_QOS
+from linkwright.messages import String
 from linkwright.viewer import RvizConfig
 from tests.viewer.scene import ARM, World, page, rows_by_id, world
 from tests.viewer.web.test_files import package, write
@@ -376,3 +378,41 @@ async def test_pages_tell_which_meshes_they_cannot_read(tmp_path):
             assert next(row for row in status["status"] if row["name"] == "base")["level"] == "ok"
             assert made.logged().count("not an STL file") == 1
             assert "stale" not in made.logged()
+
+
+def published(made: World, node: str, text: str):
+    """A node that publishes a description."""
+    publisher = made.graph.create_node(node)
+    publisher.create_publisher(String, "robot_description", DESCRIPTION_QOS).publish(String(text))
+    return publisher
+
+
+async def test_whose_description_is_shown_is_told_where_two_nodes_publish_one():
+    other = ARM.replace('name="arm"', 'name="other"')
+    async with world(config()) as made:
+        first = published(made, "first", ARM)
+        await made.settle()
+        assert made.status("RobotModel")["Topic"] == ("ok", "OK")
+        second = published(made, "second", ARM)
+        await made.settle()
+        level, text = made.status("RobotModel")["Topic"]
+        assert (level, "of /second is shown; /first" in text) == ("ok", True)
+        assert "takes the place" not in made.logged()
+        published(made, "third", other)
+        await made.settle()
+        level, text = made.status("RobotModel")["Topic"]
+        assert (level, "of /third is shown; /first, /second publish" in text) == ("warn", True)
+        assert "The description of /third takes the place of that of /second" in made.logged()
+        for node in (first, second):
+            node.destroy_node()
+
+
+async def test_a_description_of_a_node_that_was_started_again_takes_its_place_without_a_word():
+    async with world(config()) as made:
+        first = published(made, "first", ARM)
+        await made.settle()
+        first.destroy_node()
+        published(made, "first", ARM.replace('name="arm"', 'name="other"'))
+        await made.settle()
+        assert made.display("RobotModel").robot.name == "other"
+        assert "takes the place" not in made.logged()

@@ -33,6 +33,7 @@ class EndpointInfo:
         gid: its globally unique identifier, 16 bytes.
         type_hash: ``RIHS01_...``; empty where it is not known (Humble does not send it).
         local: whether it belongs to this process.
+        host: the machine that it is on; empty where it is not told.
     """
 
     kind: EndpointKind
@@ -43,6 +44,7 @@ class EndpointInfo:
     gid: bytes
     type_hash: str = ""
     local: bool = False
+    host: str = ""
 
 
 @dataclass(slots=True)

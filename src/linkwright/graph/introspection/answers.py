@@ -41,6 +41,7 @@ class TopicEndpointInfo:
         endpoint_type: what it is.
         endpoint_gid: its identity.
         qos_profile: what it offers or asks for.
+        host: the machine that it is on, which rclpy does not tell; empty for this process, and where it is not known.
     """
 
     node_name: str = ""
@@ -50,6 +51,7 @@ class TopicEndpointInfo:
     endpoint_type: TopicEndpointTypeEnum = TopicEndpointTypeEnum.INVALID
     endpoint_gid: list[int] = field(default_factory=list)
     qos_profile: QoSProfile = field(default_factory=lambda: copy(UNKNOWN_QOS))
+    host: str = field(default="", compare=False)
 
     def __str__(self) -> str:
         qos = self.qos_profile
@@ -82,7 +84,7 @@ class TopicEndpointInfo:
             if info.kind is EndpointKind.PUBLISHER
             else TopicEndpointTypeEnum.SUBSCRIPTION
         )
-        return cls(node.name, node.namespace, info.type_name, info.type_hash, kind, list(info.gid), info.qos)
+        return cls(node.name, node.namespace, info.type_name, info.type_hash, kind, list(info.gid), info.qos, info.host)
 
 
 def names_and_types(endpoints: Iterable[EndpointInfo], *kinds: EndpointKind) -> NamesAndTypes:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import Literal
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, translated
 from linkwright.urdf import Joint, Link, Robot
@@ -169,6 +170,8 @@ class RobotModelDisplay(ViewerDisplay):
         )
         self._text = ""
         self._held: str | None = None
+        self._publisher: bytes | None = None
+        self._is_contested = False
         self._description: list[StatusRow] = []
         self._file_problems: dict[str, list[str]] = {}
         self._page_problems: dict[tuple[str, str], str] = {}
@@ -270,11 +273,29 @@ class RobotModelDisplay(ViewerDisplay):
         if reading.robot is None:
             self._refused(reading.diagnostics)
             return
-        self._text = text
+        is_other, self._text = text != self._text, text
         self._description = [StatusRow("URDF", "ok", "URDF parsed OK")]
         if self.properties.text("Description Source") == "Topic":
-            self._description.insert(0, StatusRow("Topic", "ok", "OK"))
+            self._description.insert(0, self._topic_row(is_other))
         self._show_robot(reading.robot)
+
+    def _topic_row(self, is_other: bool) -> StatusRow:
+        """Whose description it is, where several nodes publish one; a warning once these were not the same."""
+        before, self._publisher = self._publisher, self._source.publisher
+        publishers = self._source.publishers()
+        owner = publishers.pop(self._publisher or b"", "")
+        if not owner or not publishers:
+            self._is_contested = False
+            return StatusRow("Topic", "ok", "OK")
+        if is_other and before is not None and before in publishers:
+            self._is_contested = True
+            self.context.node.get_logger().warning(
+                f"The description of {owner} takes the place of that of {publishers[before]}: both publish on "
+                f"'{self.properties.text('Description Topic')}'"
+            )
+        others = ", ".join(sorted(set(publishers.values())))
+        level: Literal["ok", "warn"] = "warn" if self._is_contested else "ok"
+        return StatusRow("Topic", level, f"The description of {owner} is shown; {others} publish on the topic, too")
 
     def _refused(self, diagnostics: Sequence[Diagnostic]) -> None:
         errors = [each for each in diagnostics if each.severity is Severity.ERROR]

@@ -128,8 +128,13 @@ class Discovery:
             self._forget_evidence(guid)
             return
         facts = parse_user_data(self._dds.user_data(qos))
-        name, process = self._dds.entity_name(qos), self._process_of(qos)
-        self._remote.participant_came(RemoteParticipant(guid, facts.get("enclave", "/"), name, process))
+        name, process, host = self._dds.entity_name(qos), self._process_of(qos), self._host_of(qos)
+        self._remote.participant_came(RemoteParticipant(guid, facts.get("enclave", "/"), name, process, host))
+
+    def _host_of(self, qos: int) -> str:
+        """The machine of a participant, as Fast DDS and Cyclone tell it; empty where neither does."""
+        told = (self._dds.property(qos, host).partition(":")[0] for host, _ in _PROCESS_PROPERTIES)
+        return next((host for host in told if host), "")
 
     def _process_of(self, qos: int) -> int | None:
         """The process of a participant, as Fast DDS and Cyclone tell it; None unless it runs on this machine.

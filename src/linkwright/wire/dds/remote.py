@@ -43,6 +43,7 @@ class RemoteParticipant:
         enclave: from its USER_DATA.
         entity_name: what it calls itself.
         peer_process: of one that is not ours, the id of its process, where that is one of this machine.
+        host: the machine that it runs on; empty where it does not say.
         entities: what it said in ``ros_discovery_info``; None as long as it has not.
     """
 
@@ -50,6 +51,7 @@ class RemoteParticipant:
     enclave: str = "/"
     entity_name: str = ""
     peer_process: int | None = None
+    host: str = ""
     entities: ParticipantEntities | None = None
     came_at: float = field(default_factory=time.monotonic)
     """When it was heard of first, by the steady clock."""
@@ -113,11 +115,12 @@ class RemoteEndpoint:
         """Whether it belongs to a participant of Fast DDS (RTPS vendor 1.15)."""
         return is_fast(self.guid)
 
-    def described(self, node: NodeIdentity | None) -> EndpointInfo | None:
+    def described(self, node: NodeIdentity | None, host: str = "") -> EndpointInfo | None:
         """In ROS's terms; None for what is not ROS's, and for the second half of services and clients.
 
         Args:
             node: whose it is, where that is known.
+            host: the machine that it is on.
         """
         name = self.name
         if name is None:
@@ -132,7 +135,8 @@ class RemoteEndpoint:
             return None
         if type_name is None:
             return None
-        return EndpointInfo(kind, node, name.name, type_name, self.qos, self.guid, self.facts.get("typehash", ""))
+        type_hash = self.facts.get("typehash", "")
+        return EndpointInfo(kind, node, name.name, type_name, self.qos, self.guid, type_hash, host=host)
 
 
 class DepartureWatch(Protocol):
@@ -171,6 +175,7 @@ class RemoteGraph:
             participant.entities = known.entities if known else said
             if known is not None:
                 participant.came_at, participant.peer_process = known.came_at, known.peer_process
+                participant.host = participant.host or known.host
             self._participants[participant.guid] = participant
 
     def participant_went(self, guid: bytes) -> None:
@@ -292,8 +297,12 @@ class RemoteGraph:
                 info
                 for endpoint in self._endpoints.values()
                 if endpoint.participant not in dead
-                and (info := endpoint.described(owners.get(endpoint.guid))) is not None
+                and (info := endpoint.described(owners.get(endpoint.guid), self._host_of(endpoint))) is not None
             ]
+
+    def _host_of(self, endpoint: RemoteEndpoint) -> str:
+        participant = self._participants.get(endpoint.participant)
+        return participant.host if participant else ""
 
     def node_name(self, endpoint: RemoteEndpoint) -> str:
         """The full name of the node that an endpoint belongs to; empty as long as it has not been told."""
