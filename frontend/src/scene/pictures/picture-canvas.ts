@@ -6,7 +6,14 @@ interface Waiting {
   done: (shown: boolean) => void;
 }
 
-/** The newest image of a display, on a canvas of its size. */
+/** A file that is to be unpacked. */
+interface Packed {
+  turn: number;
+  frame: ImageFrame;
+  done: (shown: boolean) => void;
+}
+
+/** The newest image of a display, on a canvas of its size. Of files that come faster than they are unpacked only the newest is. */
 export class PictureCanvas {
   readonly canvas = document.createElement("canvas");
   private readonly context: CanvasRenderingContext2D;
@@ -14,6 +21,8 @@ export class PictureCanvas {
   private newest = 0;
   private painted = 0;
   private waiting: Waiting | null = null;
+  private packed: Packed | null = null;
+  private unpacks = false;
 
   /** `soon` says when images are painted: the newest of those that came by then. */
   constructor(private readonly soon: (paint: () => void) => void = (paint) => paint()) {
@@ -39,14 +48,13 @@ export class PictureCanvas {
       this.hold(turn, { picture: frame, done });
       return;
     }
-    createImageBitmap(new Blob([frame.data as Uint8Array<ArrayBuffer>])).then(
-      (bitmap) => this.hold(turn, { picture: bitmap, done }),
-      () => done(false),
-    );
+    this.packed = { turn, frame, done };
+    if (!this.unpacks) void this.unpack();
   }
 
   clear(): void {
-    this.newest = this.taken;
+    this.newest = ++this.taken;
+    this.packed = null;
     this.drop();
     this.canvas.width = this.canvas.height = 0;
   }
@@ -54,6 +62,22 @@ export class PictureCanvas {
   /** Colour of a pixel, for tests. */
   colorAt(x: number, y: number): number[] {
     return this.isEmpty ? [] : [...this.context.getImageData(x, y, 1, 1).data];
+  }
+
+  /** One after the other: each takes the memory of all its pixels. */
+  private async unpack(): Promise<void> {
+    this.unpacks = true;
+    for (let next = this.packed; next !== null; next = this.packed) {
+      this.packed = null;
+      const { turn, frame, done } = next;
+      try {
+        const picture = await createImageBitmap(new Blob([frame.data as Uint8Array<ArrayBuffer>]));
+        this.hold(turn, { picture, done });
+      } catch {
+        done(false);
+      }
+    }
+    this.unpacks = false;
   }
 
   private hold(turn: number, waiting: Waiting): void {

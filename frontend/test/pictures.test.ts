@@ -1,0 +1,56 @@
+import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
+import type { ImageFrame } from "../src/protocol";
+import { PictureCanvas } from "../src/scene/pictures/picture-canvas";
+
+/** Unpacking that goes on until the test ends it. */
+let unpacking: ((bitmap: ImageBitmap) => void)[] = [];
+let open = 0;
+let most = 0;
+
+function bitmap(): ImageBitmap {
+  most = Math.max(most, ++open);
+  return { width: 3840, height: 2160, close: () => void open-- };
+}
+
+function file(): ImageFrame {
+  return { kind: "image_frame", width: 0, height: 0, columns: 0, rows: 0, encoding: "file", data: new Uint8Array(4), camera: null, quality: 0 };
+}
+
+async function unpacked(): Promise<void> {
+  unpacking.shift()?.(bitmap());
+  await Promise.resolve();
+  await Promise.resolve();
+}
+
+beforeEach(() => {
+  [unpacking, open, most] = [[], 0, 0];
+  const context = { drawImage: () => undefined };
+  vi.stubGlobal("document", { createElement: () => ({ width: 0, height: 0, getContext: () => context }) });
+  vi.stubGlobal("createImageBitmap", () => new Promise<ImageBitmap>((resolve) => unpacking.push(resolve)));
+});
+afterEach(() => vi.unstubAllGlobals());
+
+describe("files of images", () => {
+  it("are unpacked one at a time, and of those that come meanwhile only the newest", async () => {
+    const shown: number[] = [];
+    const picture = new PictureCanvas();
+    for (let i = 0; i < 30; i++) picture.take(file(), () => shown.push(i));
+    expect(unpacking).toHaveLength(1);
+    await unpacked();
+    expect(unpacking).toHaveLength(1);
+    await unpacked();
+    expect(unpacking).toHaveLength(0);
+    expect(shown).toEqual([0, 29]);
+    expect([open, most]).toEqual([0, 1]);
+  });
+
+  it("are not shown after they were taken away", async () => {
+    const picture = new PictureCanvas();
+    picture.take(file(), () => undefined);
+    picture.take(file(), () => undefined);
+    picture.clear();
+    await unpacked();
+    expect(unpacking).toHaveLength(0);
+    expect([picture.isEmpty, picture.count, open]).toEqual([true, 0, 0]);
+  });
+});
