@@ -33,6 +33,7 @@ import { KeySheet } from "./panels/key-sheet";
 import { ScenePanel } from "./panels/scene-panel";
 import { ShareMenu } from "./panels/share-menu";
 import { SelectionPanel } from "./panels/selection-panel";
+import { showTopic } from "./panels/show-topic";
 import { SourcePanel } from "./panels/source-panel";
 import { StatusBar } from "./panels/status-bar";
 import { TimePanel } from "./panels/time-panel";
@@ -100,7 +101,7 @@ function start(app: HTMLElement): void {
     new DiagnosticsPanel(session),
     new WorldPanel(session.modelling, session.angles, commands),
     new VoicePanel(session.voice, session.words),
-    ...livePanels(session.monitor, (id) => dock.open(id)),
+    ...livePanels(session.monitor, (id) => dock.open(id), (topic) => showTopic(session, topic)),
   ], new Layouts(browserStorage()));
   keepCurrent(dock, session);
   new FilePanels(connection, dock);

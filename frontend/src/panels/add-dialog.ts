@@ -3,6 +3,7 @@ import { displayIcon, icon } from "../icons";
 import type { DisplayClass, TopicChoice } from "../protocol";
 import { Dialog } from "../shell/dialog";
 import type { DisplayState } from "../state/displays";
+import { obviousDisplay } from "../state/obvious-display";
 import type { Session } from "../state/session";
 import { strings } from "../strings";
 
@@ -131,15 +132,18 @@ export class AddDialog {
     const matches = ({ topic, message, classes }: TopicChoice): boolean =>
       [topic, message, ...classes].some((text) => text.toLowerCase().includes(wanted));
     const listed = this.offered.topics.filter((each) => each.classes.length > 0 || this.showAll.checked);
-    return listed.filter(matches).map(({ topic, message, classes }) =>
-      h(
-        "div",
-        { class: "topic-choice", role: "group", aria: { label: topic } },
-        h("div", { class: "topic-name" }, topic, h("span", { class: "topic-type" }, message)),
-        ...classes.map((cls) => this.choice(cls, topic, shortName(cls), aboutDisplay(cls))),
-        classes.length === 0 ? h("p", { class: "hint" }, strings.displays.topicNotShown) : null,
-      ),
-    );
+    return listed.filter(matches).map((each) => {
+      const { topic, message, classes } = each;
+      const rows = classes.map((cls) => this.choice(cls, topic, shortName(cls), aboutDisplay(cls)));
+      const obvious = rows[classes.indexOf(obviousDisplay(each) ?? "")];
+      const name = h("div", { class: "topic-name" }, topic, h("span", { class: "topic-type" }, message));
+      // The name stands for the display that everybody would take.
+      for (const kind of ["click", "dblclick"] as const) {
+        name.addEventListener(kind, () => obvious?.dispatchEvent(new MouseEvent(kind)));
+      }
+      const none = classes.length === 0 ? h("p", { class: "hint" }, strings.displays.topicNotShown) : null;
+      return h("div", { class: "topic-choice", role: "group", aria: { label: topic } }, name, ...rows, none);
+    });
   }
 
   private choice(cls: string, topic: string | null, name: string, about: string): HTMLElement {

@@ -7,8 +7,8 @@ import { PlotPanel } from "./plot-panel";
 import { TeleopPanel } from "./teleop-panel";
 import { TopicsPanel } from "./topics-panel";
 
-/** The panels that show what runs; `open` brings one to the front. */
-export function livePanels(monitor: MonitorState, open: (id: PanelId) => void): Panel[] {
+/** The panels that show what runs; `open` brings one to the front, `showTopic` adds the display of a topic. */
+export function livePanels(monitor: MonitorState, open: (id: PanelId) => void, showTopic: (topic: string) => void): Panel[] {
   const { plots, topics } = monitor;
   const plot = (topic: string, path: string): void => {
     open("plot");
@@ -16,7 +16,7 @@ export function livePanels(monitor: MonitorState, open: (id: PanelId) => void): 
   };
   return [
     new PlotPanel(plots, topics),
-    new TopicsPanel(topics, plot),
+    new TopicsPanel(topics, plot, showTopic),
     new NodeGraphPanel(monitor.graph),
     new ParametersPanel(monitor.parameters),
     new LogPanel(monitor.log),

@@ -10,6 +10,8 @@ export interface TopicRowEvents {
   measured(topic: string, ticked: boolean): void;
   opened(topic: string, open: boolean): void;
   plotted(topic: string, path: string): void;
+  /** It is to be seen in the scene. */
+  shown(topic: string): void;
 }
 
 /** A topic of the monitor, and below it its last message while it is opened. */
@@ -39,7 +41,8 @@ export class TopicLine {
       rate: h("td", { class: "numeric" }),
       bandwidth: h("td", { class: "numeric" }),
     };
-    const title = h("span", { class: "topic-title" }, this.box, this.expander, name);
+    const label = button(words.show, () => events.shown(name), "topic-link", name);
+    const title = h("span", { class: "topic-title" }, this.box, this.expander, label);
     this.head = h("tr", { data: { topic: name } }, h("td", { title: name }, title), ...Object.values(this.cells));
     const inside = h("td", {}, this.received, this.tree.element);
     inside.colSpan = 6;

@@ -23,6 +23,7 @@ export class TopicsPanel implements Panel {
   constructor(
     private readonly state: TopicsState,
     private readonly plot: (topic: string, path: string) => void,
+    private readonly showInScene: (topic: string) => void,
   ) {
     const words = strings.monitor.topics;
     const filter = textField(strings.monitor.filter, (text) => {
@@ -98,6 +99,7 @@ export class TopicsPanel implements Panel {
         this.watch();
       },
       plotted: (topic, path) => this.plot(topic, path),
+      shown: (topic) => this.showInScene(topic),
     });
     this.lines.set(name, made);
     return made;

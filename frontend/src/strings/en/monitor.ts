@@ -51,6 +51,7 @@ export const monitor = {
     bandwidth: "Bandwidth",
     measure: (topic: string): string => `Measure ${topic}`,
     measureHint: "Ticked topics are measured, for which they are subscribed to",
+    show: "Show it in the scene: adds the display for its type",
     open: (topic: string): string => `Last message of ${topic}`,
     hidden: "Hidden",
     hiddenHint: "Show topics with a name that begins with an underscore",

@@ -53,6 +53,7 @@ export const monitor: Strings["monitor"] = {
     bandwidth: "带宽",
     measure: (topic) => `测量 ${topic}`,
     measureHint: "勾选的话题会被订阅并测量",
+    show: "在场景中显示：添加与其类型对应的显示项",
     open: (topic) => `${topic} 的最后一条消息`,
     hidden: "隐藏话题",
     hiddenHint: "显示名称以下划线开头的话题",

@@ -1,0 +1,22 @@
+import type { TopicChoice } from "../protocol";
+
+/**
+ * The display that a topic is for: the one that is called as its messages are, PointCloud2 for PointCloud2, Image for
+ * CompressedImage. Among those of texts, which say nothing, the one of which the topic's name speaks. Null without any.
+ */
+export function obviousDisplay({ topic, message, classes }: TopicChoice): string | null {
+  const type = shortName(message);
+  const called = classes.filter((cls) => type.includes(shortName(cls)));
+  const [closest] = called.sort((a, b) => shortName(b).length - shortName(a).length);
+  const spoken = classes.find((cls) => topic.includes(firstWord(shortName(cls))));
+  return closest ?? spoken ?? classes[0] ?? null;
+}
+
+/** `robot` of RobotModel. */
+function firstWord(name: string): string {
+  return (/^[A-Z]+[a-z]*/.exec(name)?.[0] ?? name).toLowerCase();
+}
+
+function shortName(name: string): string {
+  return name.slice(name.lastIndexOf("/") + 1);
+}
