@@ -23,8 +23,7 @@ export class ShareMenu {
     private readonly stage: Stage | null,
     private readonly tokens: Tokens,
   ) {
-    const canvas = stage?.viewport.canvas;
-    this.video = canvas && VideoRecorder.isPossible ? new VideoRecorder(canvas, (video) => this.keepVideo(video)) : null;
+    this.video = stage && VideoRecorder.isPossible ? recorderOf(stage, (video) => this.keepVideo(video)) : null;
     this.stop = button(strings.sharing.recording, () => this.video?.stop(), "tool recording", "");
     this.element = h("span", { class: "recorder", role: "status" }, this.stop);
     this.video?.changed.on(() => this.showTime());
@@ -100,4 +99,8 @@ export class ShareMenu {
     const time = new Date().toISOString().slice(0, 19).replace(/[T:]/g, "-");
     return `${name}-${time}.${ending}`;
   }
+}
+
+function recorderOf({ viewport, loop }: Stage, finished: (video: Blob) => void): VideoRecorder {
+  return new VideoRecorder(viewport.canvas, () => loop.invalidate(), finished);
 }

@@ -1,20 +1,24 @@
 import { Signal } from "../state/signal";
 
 const FRAME_RATE = 30;
+/** So often a scene that stands still is drawn, or there would be nothing to record: browsers take a canvas when it is painted. */
+const STILL_PERIOD_MS = 100;
 const BITS_PER_SECOND = 8_000_000;
 /** The first that the browser can record. */
 const TYPES = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm", "video/mp4"];
 
-/** Records what a canvas shows. */
+/** Records what a canvas shows; `redraw` has it painted anew. */
 export class VideoRecorder {
   /** It began, went on for another second, or ended. */
   readonly changed = new Signal();
   private recorder: MediaRecorder | null = null;
   private beganAt = 0;
   private ticking = 0;
+  private redrawing = 0;
 
   constructor(
     private readonly canvas: HTMLCanvasElement,
+    private readonly redraw: () => void,
     private readonly finished: (video: Blob) => void,
   ) {}
 
@@ -45,6 +49,8 @@ export class VideoRecorder {
     recorder.start(1000);
     this.recorder = recorder;
     this.beganAt = performance.now();
+    this.redraw();
+    this.redrawing = window.setInterval(this.redraw, STILL_PERIOD_MS);
     this.ticking = window.setInterval(() => this.changed.emit(), 1000);
     this.changed.emit();
   }
@@ -53,6 +59,7 @@ export class VideoRecorder {
     this.recorder?.stop();
     this.recorder = null;
     clearInterval(this.ticking);
+    clearInterval(this.redrawing);
     this.changed.emit();
   }
 }

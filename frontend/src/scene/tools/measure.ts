@@ -1,19 +1,27 @@
+import { Vector3 } from "three";
 import { strings } from "../../strings";
+import { pixelSize } from "../../state/views/camera";
 import { distanceBetween, type Vector } from "../../state/views/vector";
+import { LabelBatch } from "../objects/label-batch";
 import { ThinLines } from "../objects/thin-lines";
 import type { SceneTool, ToolContext, ToolEvent } from "./tool";
 
 const DARK_YELLOW = "#808000";
+/** The height of a line of the label, pixels of the page. */
+const LABEL_PX = 20;
 
-/** RViz's Measure: the distance between two points that are clicked; a right click begins anew. */
+/** RViz's Measure: the distance between two points that are clicked, told at the middle of the line, too; a right click begins anew. */
 export class MeasureTool implements SceneTool {
   private readonly line = new ThinLines();
+  private readonly label = new LabelBatch();
+  private readonly forget: () => void;
   private start: Vector | null = null;
   private end: Vector | null = null;
   private started = false;
 
   constructor(private readonly context: ToolContext) {
-    context.stage.viewport.scene.add(this.line.root);
+    context.stage.viewport.scene.add(this.line.root, this.label.root);
+    this.forget = context.session.view.changed.on(() => this.placeLabel());
     this.settingsChanged();
   }
 
@@ -39,11 +47,13 @@ export class MeasureTool implements SceneTool {
   }
 
   inspect(): object {
-    return { length: this.length, start: this.start, end: this.end };
+    return { length: this.length, start: this.start, end: this.end, label: this.labelText };
   }
 
   dispose(): void {
+    this.forget();
     this.line.dispose();
+    this.label.dispose();
     this.context.stage.loop.invalidate();
   }
 
@@ -65,6 +75,7 @@ export class MeasureTool implements SceneTool {
     if (!this.start) return;
     this.end = end;
     this.line.setSegments(new Float32Array([...this.start, ...end]));
+    this.placeLabel();
     this.context.stage.loop.invalidate();
   }
 
@@ -72,7 +83,26 @@ export class MeasureTool implements SceneTool {
     this.started = false;
     this.start = this.end = null;
     this.line.setSegments(new Float32Array(0));
+    this.placeLabel();
     this.context.stage.loop.invalidate();
+  }
+
+  private get labelText(): string {
+    const { length } = this;
+    return length === null || length === 0 ? "" : `${Number(length.toPrecision(4))} m`;
+  }
+
+  /** At the middle of the line, of one size however far that is. */
+  private placeLabel(): void {
+    const { labelText: text, start, end } = this;
+    this.label.begin(text.length);
+    if (text !== "" && start && end) {
+      const middle = new Vector3(...start).add(new Vector3(...end)).multiplyScalar(0.5);
+      const { session, stage } = this.context;
+      const pixel = pixelSize(session.view.camera, middle.toArray(), stage.viewport.size);
+      this.label.add(text, middle, LABEL_PX * pixel, 0, 1);
+    }
+    this.label.end();
   }
 
   private showLength(): void {

@@ -1,4 +1,4 @@
-import { add, scale, subtract, turn, unit, type Vector } from "./vector";
+import { add, dot, scale, subtract, turn, unit, type Vector } from "./vector";
 
 /** Ogre's default vertical field of view, which RViz leaves as it is. */
 export const FIELD_OF_VIEW = Math.PI / 4;
@@ -82,4 +82,11 @@ function moved(camera: Camera, place: (point: Vector) => Vector, yaw: number): C
     scale: camera.scale,
     focal: camera.focal && place(camera.focal),
   };
+}
+
+/** How large a pixel is at a point, m. */
+export function pixelSize(camera: Camera, point: Vector, { height }: ViewSize): number {
+  if (camera.scale !== null) return 1 / camera.scale;
+  const depth = Math.max(1e-3, dot(subtract(camera.position, point), camera.back));
+  return (2 * depth * Math.tan(FIELD_OF_VIEW / 2)) / height;
 }
