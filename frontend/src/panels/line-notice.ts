@@ -3,22 +3,46 @@ import type { Reduced } from "../state/slow-line";
 import type { Session } from "../state/session";
 import { strings } from "../strings";
 
-/** Over the scene while the line is too slow for all that is shown: what comes thinned, and how often. */
+/** How long it is told that the page is slow. */
+const TOLD_MS = 15_000;
+
+/**
+ * Over the scene while not all can be shown: what comes thinned and how often, and whether the line or the page is what
+ * is slow. That the page is, is told by itself once.
+ */
 export class LineNotice {
-  readonly element = h("div", { class: "line-notice", role: "status", title: strings.sharing.slowLineHint });
+  readonly element = h("div", { class: "line-notice", role: "status" });
+  private told: "not yet" | "now" | "done" = "not yet";
 
   constructor(private readonly session: Session) {
     const update = coalesced(() => this.update());
     session.slowLine.changed.on(update);
     session.displays.treeChanged.on(update);
+    session.pace.changed.on(() => {
+      if (session.pace.isSlow) this.tellSlowPage(update);
+      update();
+    });
     this.update();
   }
 
   private update(): void {
-    const { reduced } = this.session.slowLine;
-    this.element.hidden = reduced.length === 0;
+    const { slowLine, pace } = this.session;
+    const { reduced } = slowLine;
+    const words = strings.sharing;
+    this.element.hidden = reduced.length === 0 && this.told !== "now";
+    this.element.title = pace.isSlow ? words.slowPageHint : words.slowLineHint;
     const lines = reduced.map((each) => h("div", {}, h("b", {}, this.name(each)), ` ${lineText(each)}`));
-    this.element.replaceChildren(h("strong", {}, strings.sharing.slowLine), ...lines);
+    if (this.told === "now" && pace.software !== null) lines.push(h("div", {}, words.software(pace.software)));
+    this.element.replaceChildren(h("strong", {}, pace.isSlow ? words.slowPage : words.slowLine), ...lines);
+  }
+
+  private tellSlowPage(update: () => void): void {
+    if (this.told !== "not yet") return;
+    this.told = "now";
+    setTimeout(() => {
+      this.told = "done";
+      update();
+    }, TOLD_MS);
   }
 
   private name({ display }: Reduced): string {

@@ -37,6 +37,8 @@ const DETAILS: readonly Detail[] = [
 export class FrameLoop {
   /** A frame was drawn. */
   readonly drawn = new Signal();
+  /** One that was due: whether the ones before it held it up. */
+  readonly judged = new Signal<boolean>();
   /** Largest number of frames a second. */
   rate = 30;
   private requestedAt: number | null = null;
@@ -115,6 +117,7 @@ export class FrameLoop {
 
   private judge(delay: number): void {
     const late = delay > LATE_MS;
+    this.judged.emit(late);
     this.lateness = Math.max(0, this.lateness + (late ? 1 : -1));
     this.timely = late ? 0 : this.timely + 1;
     if (this.lateness >= LATE_FRAMES) this.move(1);

@@ -20,6 +20,8 @@ import { Picker } from "./picker";
 import type { Interaction } from "./picking";
 import { Viewport } from "./viewport";
 
+/** A robot whose links have no places yet is waited for no longer: some never get a transform. */
+const WAITS_FOR_PLACES_MS = 5000;
 const UNSMOOTHED: Detail = { ...FINEST, smooth: false };
 
 interface DrawnDisplay {
@@ -43,6 +45,8 @@ export class Stage {
   readonly aids = new Group();
   private interaction: Interaction = { enabled: false, hideOthers: false };
   private robotSettled = false;
+  /** When the robot was drawn with all meshes, though nothing of it has a place. */
+  private placelessSince: number | null = null;
 
   constructor(
     container: HTMLElement,
@@ -64,9 +68,10 @@ export class Stage {
     this.matchDisplays();
   }
 
-  /** True once a frame with the robot or world, its meshes and its transforms was drawn. */
+  /** True once a frame with the robot or world, its meshes and its transforms was drawn, or the last do not come. */
   get ready(): boolean {
-    return this.robotSettled;
+    const since = this.placelessSince;
+    return this.robotSettled || (since !== null && performance.now() - since > WAITS_FOR_PLACES_MS);
   }
 
   /** True while the last frame shows all that there is: none is due. */
@@ -142,6 +147,8 @@ export class Stage {
   private listen(): void {
     const { session, loop } = this;
     const { displays, frames, view, selection } = session;
+    session.pace.software = this.viewport.software;
+    loop.judged.on((late) => session.pace.frame(late));
     const invalidate = (): void => loop.invalidate();
     displays.treeChanged.on(() => this.matchDisplays());
     displays.rowsChanged.on((display) => this.propertiesChanged(display));
@@ -225,6 +232,7 @@ export class Stage {
       settled &&= drawing.settled?.() ?? true;
     }
     this.robotSettled ||= settled && [...this.robots(), ...this.worlds()].some((each) => each.isInPlace);
+    if (settled && this.robots().some(({ linkCount }) => linkCount > 0)) this.placelessSince ??= now;
     this.lookFirst(settled);
     this.viewport.light(this.worlds().find((world) => world.ownLight)?.ownLight ?? null);
     this.marks.update();

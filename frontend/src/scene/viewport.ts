@@ -77,8 +77,13 @@ export class Viewport {
 
   /** Whether a graphics card draws, and not the processor. */
   get hasGpu(): boolean {
+    return this.software === null;
+  }
+
+  /** What draws with the processor, as it calls itself; null where a graphics card draws. */
+  get software(): string | null {
     this.drawnBy ??= nameOfRenderer(this.renderer.getContext());
-    return !SOFTWARE.test(this.drawnBy);
+    return SOFTWARE.test(this.drawnBy) ? (/SwiftShader|llvmpipe|softpipe|Basic Render/i.exec(this.drawnBy)?.[0] ?? this.drawnBy) : null;
   }
 
   /** Lights the scene: by the camera (null), or by lights that stand in it, which leave the camera a faint one. */

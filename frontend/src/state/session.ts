@@ -4,6 +4,7 @@ import { AngleUnits } from "./angle-unit";
 import { ConfigurationState } from "./configuration";
 import { DisplayDataStore } from "./display-data";
 import { DescriptionState } from "./description";
+import { DrawingPace } from "./drawing-pace";
 import { DisplaysState } from "./displays";
 import { ElementFocus } from "./element-focus";
 import { FrameStore } from "./frames";
@@ -41,6 +42,7 @@ export class Session {
   readonly data: DisplayDataStore;
   readonly slowLine: SlowLine;
   readonly meshProgress = new MeshProgress();
+  readonly pace = new DrawingPace();
   readonly simulation: SimulationState;
   readonly modelling: Modelling;
   readonly robotChanged = new Signal<RobotScene>();

@@ -128,6 +128,7 @@ export const en = {
     fixedFrame: "Fixed frame",
     links: (count: number): string => plural(count, "link"),
     noRobot: "no robot",
+    slow: (fps: string): string => `${fps}, slow page`,
     frames: (count: number): string => `${count} frames drawn`,
   },
   monitor,

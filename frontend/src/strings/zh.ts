@@ -119,6 +119,7 @@ export const zh: Strings = {
     fixedFrame: "固定坐标系",
     links: (count) => `${count} 个连杆`,
     noRobot: "没有机器人",
+    slow: (fps) => `${fps}，页面较慢`,
     frames: (count) => `已绘制 ${count} 帧`,
   },
   monitor,

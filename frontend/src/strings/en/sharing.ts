@@ -10,6 +10,9 @@ interface ReducedImage {
 export const sharing = {
   slowLine: "Slow connection",
   slowLineHint: "The robot's movements go first; the rest comes in less detail until the connection is faster.",
+  slowPage: "This page draws slowly",
+  slowPageHint: "The browser does not draw as fast as the robot moves: fewer or simpler displays, a smaller window or a graphics card help.",
+  software: (name: string): string => `The browser draws without a graphics card (${name}).`,
   points: (step: number): string => `1 of ${step} points`,
   image: ({ columns, rows, width, height, quality }: ReducedImage): string =>
     `WebP ${columns} × ${rows} of ${width} × ${height}, quality ${quality}`,
