@@ -1,20 +1,29 @@
 """Recordings of topics: rosbag2's folders with MCAP or SQLite files."""
 
+from linkwright.bag.playback import FASTEST, SLOWEST, Output, Playback, Recording
 from linkwright.bag.player import Player, PlayOptions
-from linkwright.bag.reading import BagReader, BagTopic
+from linkwright.bag.publishing import PublishedRecording
+from linkwright.bag.reading import BagReader, BagTopic, is_recording
 from linkwright.bag.recorder import Recorder
 from linkwright.bag.selection import TopicSelection
 from linkwright.bag.summary import summary_text
 from linkwright.bag.writing import STORAGES, BagWriter
 
 __all__ = [
+    "FASTEST",
+    "SLOWEST",
     "STORAGES",
     "BagReader",
     "BagTopic",
     "BagWriter",
+    "Output",
     "PlayOptions",
+    "Playback",
     "Player",
+    "PublishedRecording",
     "Recorder",
+    "Recording",
     "TopicSelection",
+    "is_recording",
     "summary_text",
 ]

@@ -6,10 +6,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from linkwright.bag.qos import profile_for_playing
+from linkwright.bag.publishing import make_publishers
 from linkwright.bag.reading import BagReader
 from linkwright.bag.selection import TopicSelection
-from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import Node, Publisher, QoSProfile
 from linkwright.graph.time.timebase import Alarm
 from linkwright.messages import Time, get_message
@@ -218,7 +217,6 @@ class Player:
         options = self._options
         topics = {topic.name: topic for topic in self._bag.topics}
         self._bag.messages(list(options.topics))  # a name that is not there is told before anything is played
-        made: dict[str, Publisher[Any]] = {}
         selection = TopicSelection(
             everything=not options.pattern,
             names=options.topics,
@@ -228,18 +226,9 @@ class Player:
             hidden=True,
             every_service=not options.pattern,
         )
-        for name in options.topics or topics:
-            if not selection.takes(name, topics[name].type_name):
-                continue
-            topic = topics[name]
-            try:
-                message_class = get_message(topic.type_name)
-            except LinkwrightError as error:
-                self._logger.warning(f"Topic '{name}' is not played: {error}")
-                continue
-            qos = options.qos_overrides.get(name) or profile_for_playing(topic.offered_qos)
-            made[name] = self._node.create_publisher(message_class, name, qos)
-        return made
+        named = [topics[name] for name in options.topics or topics]
+        chosen = [each for each in named if selection.takes(each.name, each.type_name)]
+        return make_publishers(self._node, chosen, options.qos_overrides)
 
     def _start_clock(self) -> Publisher[Any] | None:
         options = self._options

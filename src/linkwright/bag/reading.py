@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from types import TracebackType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
+from linkwright.bag.moments import Moments, Recorded
 from linkwright.bag.qos import from_bag
 from linkwright.bag.unfinished import finished_copy, is_unfinished
 from linkwright.diagnostics import (
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
     from typing_extensions import Self
 
     from linkwright.graph import QoSProfile
+
+T = TypeVar("T")
 
 _SUFFIXES = {".mcap": "mcap", ".db3": "sqlite3"}
 
@@ -83,6 +86,7 @@ class BagReader:
             self._open.close()
             raise _unreadable(self.path, error) from error
         self.storage = _storage_of(target)
+        self._moments = Moments(self._reader)
         self._make_types_known()
         self.topics = [
             BagTopic(
@@ -142,7 +146,7 @@ class BagReader:
         """When the last message was received, nanoseconds since the epoch; 0 where there is none."""
         return self._reader.end_time - 1 if self._reader.message_count else 0
 
-    def messages(self, topics: Collection[str] = (), start_ns: int | None = None) -> Iterator[tuple[str, int, bytes]]:
+    def messages(self, topics: Collection[str] = (), start_ns: int | None = None) -> Iterator[Recorded]:
         """The messages in the order of their times: topic, nanoseconds since the epoch, CDR bytes.
 
         Args:
@@ -165,7 +169,33 @@ class BagReader:
         connections = [each for each in self._reader.connections if not topics or each.topic in topics]
         return self._read(self._reader.messages(connections, start=start_ns))
 
-    def _read(self, stream: Iterator[tuple[Any, int, bytes]]) -> Iterator[tuple[str, int, bytes]]:
+    def state_at(self, topics: Collection[str], at_ns: int) -> list[Recorded]:
+        """What must be known to show a moment: the last message of each topic, and transforms; see `Moments`.
+
+        Raises:
+            LinkwrightError: BAG102, the messages cannot be read.
+        """
+        return self._look(lambda: self._moments.state_at(topics, at_ns))
+
+    def time_before(self, topics: Collection[str], at_ns: int) -> int | None:
+        """When the last message before a time was received, nanoseconds since the epoch; None where there is none.
+
+        Raises:
+            LinkwrightError: BAG102, the messages cannot be read.
+        """
+        return self._look(lambda: self._moments.time_before(topics, at_ns))
+
+    def counts(self, parts: int) -> dict[str, list[int]]:
+        """How many messages each topic has in equal parts of the recording; empty for a file without an index."""
+        return self._moments.counts(parts) if self._reader.message_count else {}
+
+    def _look(self, what: Callable[[], T]) -> T:
+        try:
+            return what()
+        except Exception as error:  # the library raises whatever a damaged file brings about
+            raise _unreadable(self.path, error) from error
+
+    def _read(self, stream: Iterator[tuple[Any, int, bytes]]) -> Iterator[Recorded]:
         while True:
             try:
                 connection, stamp_ns, data = next(stream)
@@ -186,6 +216,13 @@ class BagReader:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.close()
+
+
+def is_recording(path: Path) -> bool:
+    """Whether a path is that of a recording, by its names: of its file, or of the folder with its metadata or files."""
+    if not path.is_dir():
+        return path.suffix in _SUFFIXES
+    return (path / "metadata.yaml").exists() or any(each.suffix in _SUFFIXES for each in path.iterdir())
 
 
 def _storage_target(path: Path) -> Path:

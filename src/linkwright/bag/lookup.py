@@ -1,0 +1,134 @@
+"""Single messages of an MCAP file by its indexes: the last ones before a time, without reading what lies between.
+
+The index of chunks at the end of the file tells which chunks have messages of a channel, and where the index of each of
+these is; that gives times and places within the chunk (the MCAP specification). So one chunk is unpacked for a message,
+however long the file is.
+"""
+
+from __future__ import annotations
+
+import struct
+from bisect import bisect_right
+from collections import OrderedDict
+from collections.abc import Collection, Iterator
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from rosbags.rosbag2.storage_mcap import ChunkInfo, McapReader
+
+_KEPT_BYTES = 64 << 20
+"""Of unpacked chunks, so that several messages of one chunk unpack it once."""
+
+_CHUNK_HEAD = struct.Struct("<BQQQQI")
+"""Of a chunk: kind, length, times of first and last message, unpacked size, checksum; then its compression follows."""
+_INDEX_HEAD = struct.Struct("<BQHI")
+"""Of the index of a channel's messages in a chunk: kind, length, channel, bytes of the entries."""
+_ENTRY = struct.Struct("<QQ")
+"""Time and place within the chunk."""
+_MESSAGE_HEAD = struct.Struct("<BQHIQQ")
+
+
+class McapLookup:
+    """Finds messages of an open MCAP file that has an index.
+
+    Args:
+        storage: the open file.
+    """
+
+    def __init__(self, storage: McapReader) -> None:
+        self._storage = storage
+        self._chunks: dict[int, _ChannelChunks] = {}
+        self._unpacked: OrderedDict[int, bytes] = OrderedDict()
+
+    def latest(self, channels: Collection[int], at_ns: int) -> tuple[int, bytes] | None:
+        """The last message of some channels up to a time, and its own time; None where there is none."""
+        best: tuple[int, ChunkInfo, int] | None = None
+        for channel in channels:
+            for chunk, latest_end in self._of(channel).backwards(at_ns):
+                if best is not None and latest_end <= best[0]:
+                    break
+                entries = self._entries(chunk, channel)
+                place = bisect_right(entries, (at_ns, 1 << 64)) - 1
+                if place >= 0 and (best is None or entries[place][0] > best[0]):
+                    best = entries[place][0], chunk, entries[place][1]
+        return None if best is None else (best[0], self._message(best[1], best[2]))
+
+    def between(
+        self, channels: Collection[int], start_ns: int, end_ns: int, most_chunks: int
+    ) -> list[tuple[int, bytes]]:
+        """The messages of some channels from one time to another, both included, with their times, in their order.
+
+        Args:
+            channels: their numbers.
+            start_ns: the earlier time, nanoseconds.
+            end_ns: the later time.
+            most_chunks: of more chunks only the first and the last half are read.
+        """
+        found = []
+        for channel in channels:
+            chunks = [each for each, _ in self._of(channel).backwards(end_ns) if each.message_end_time >= start_ns]
+            if len(chunks) > most_chunks:
+                chunks = [*chunks[: most_chunks // 2], *chunks[-(most_chunks // 2) :]]
+            for chunk in chunks:
+                found += [
+                    (stamp, chunk, offset)
+                    for stamp, offset in self._entries(chunk, channel)
+                    if start_ns <= stamp <= end_ns
+                ]
+        found.sort(key=lambda each: (each[0], each[1].chunk_start_offset, each[2]))
+        return [(stamp, self._message(chunk, offset)) for stamp, chunk, offset in found]
+
+    def times(self, chunk: ChunkInfo, channel: int) -> list[int]:
+        """The times of the messages of a channel in a chunk."""
+        return [stamp for stamp, _ in self._entries(chunk, channel)]
+
+    def _of(self, channel: int) -> _ChannelChunks:
+        if channel not in self._chunks:
+            with_it = [each for each in self._storage.chunks if channel in each.message_index_offsets]
+            self._chunks[channel] = _ChannelChunks(with_it)
+        return self._chunks[channel]
+
+    def _entries(self, chunk: ChunkInfo, channel: int) -> list[tuple[int, int]]:
+        """Times and places of the messages of a channel in a chunk, in the order of their times."""
+        file: Any = self._storage.bio
+        file.seek(chunk.message_index_offsets[channel])
+        _, _, _, size = _INDEX_HEAD.unpack(file.read(_INDEX_HEAD.size))
+        return sorted(_ENTRY.iter_unpack(file.read(size)))
+
+    def _message(self, chunk: ChunkInfo, offset: int) -> bytes:
+        data = self._data(chunk)
+        length = _MESSAGE_HEAD.unpack_from(data, offset)[1]
+        return data[offset + _MESSAGE_HEAD.size : offset + 9 + length]
+
+    def _data(self, chunk: ChunkInfo) -> bytes:
+        place = chunk.chunk_start_offset
+        if place in self._unpacked:
+            self._unpacked.move_to_end(place)
+            return self._unpacked[place]
+        from rosbags.rosbag2.storage_mcap import decompress
+
+        file: Any = self._storage.bio
+        file.seek(place)
+        head = _CHUNK_HEAD.unpack(file.read(_CHUNK_HEAD.size))
+        file.seek(4 + len(chunk.compression) + 8, 1)
+        data = decompress(file.read(chunk.compressed_size), chunk.compression, chunk.uncompressed_size, head[5])
+        self._unpacked[place] = data
+        while len(self._unpacked) > 1 and sum(map(len, self._unpacked.values())) > _KEPT_BYTES:
+            self._unpacked.popitem(last=False)
+        return data
+
+
+class _ChannelChunks:
+    """The chunks that have messages of a channel, in the order of their first messages."""
+
+    def __init__(self, chunks: Collection[ChunkInfo]) -> None:
+        self._chunks = sorted(chunks, key=lambda each: each.message_start_time)
+        self._starts = [each.message_start_time for each in self._chunks]
+        self._latest_ends: list[int] = []
+        for each in self._chunks:
+            self._latest_ends.append(max(each.message_end_time, self._latest_ends[-1] if self._latest_ends else 0))
+
+    def backwards(self, at_ns: int) -> Iterator[tuple[ChunkInfo, int]]:
+        """Those that begin up to a time, from the last one back; with each the latest end of it and those before it."""
+        for place in range(bisect_right(self._starts, at_ns) - 1, -1, -1):
+            yield self._chunks[place], self._latest_ends[place]

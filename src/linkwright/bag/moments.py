@@ -1,0 +1,150 @@
+"""What must be known of a recording to show a moment of it: the last message of each topic, and transforms."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator
+from functools import cached_property
+from math import ceil
+from typing import TYPE_CHECKING, Any
+
+from linkwright.bag.lookup import McapLookup
+
+if TYPE_CHECKING:
+    from rosbags.interfaces import Connection
+    from rosbags.rosbag2 import Reader
+
+TRANSFORMS, STATIC_TRANSFORMS = "/tf", "/tf_static"
+TRANSFORMS_NS = 2_000_000_000
+"""How long before a moment transforms are of use: each message has only some of the frames."""
+
+_STATIC_CHUNKS = 64
+"""Of more chunks with static transforms only the first and the last are read: some nodes repeat theirs for ever."""
+_MOST_COUNTED = 100_000
+"""Messages whose times are looked up, so that they are counted in the part of the recording in which they came."""
+
+_FIRST_WINDOW_NS = 1_000_000_000
+_WIDER = 8
+"""How much farther back each look goes than the one before, in files without an index by topic."""
+
+Recorded = tuple[str, int, bytes]
+"""A message: its topic, when it was received, nanoseconds since the epoch, and its CDR bytes."""
+
+
+class Moments:
+    """Looks into an open recording at single moments.
+
+    Args:
+        reader: of the library, open.
+    """
+
+    def __init__(self, reader: Reader) -> None:
+        self._reader = reader
+
+    def state_at(self, topics: Collection[str], at_ns: int) -> list[Recorded]:
+        """The last message of each topic up to a time, of ``/tf`` those of two seconds, of ``/tf_static`` all.
+
+        Args:
+            topics: which.
+            at_ns: the time, nanoseconds since the epoch.
+
+        Returns:
+            The messages in the order of their times, static transforms first.
+        """
+        found: list[Recorded] = []
+        if STATIC_TRANSFORMS in topics:
+            found += self._between(STATIC_TRANSFORMS, 0, at_ns)
+        moving: list[Recorded] = []
+        if TRANSFORMS in topics:
+            moving += self._between(TRANSFORMS, at_ns - TRANSFORMS_NS, at_ns)
+        moving += self._latest([each for each in topics if each not in (TRANSFORMS, STATIC_TRANSFORMS)], at_ns)
+        return found + sorted(moving, key=lambda each: each[1])
+
+    def time_before(self, topics: Collection[str], at_ns: int) -> int | None:
+        """When the last message before a time was received, nanoseconds since the epoch; None where there is none."""
+        return max((stamp for _, stamp, _ in self._latest(topics, at_ns - 1)), default=None)
+
+    def counts(self, parts: int) -> dict[str, list[int]]:
+        """How many messages each topic has in equal parts of the recording; empty for a file without an index.
+
+        Of a long recording the messages of a chunk count as if they were spread evenly over its time.
+        """
+        start, duration = self._reader.start_time, max(1, self._reader.duration)
+
+        def part(stamp: int) -> int:
+            return min(parts - 1, max(0, (stamp - start) * parts // duration))
+
+        exact = self._reader.message_count <= _MOST_COUNTED
+        found: dict[str, list[float]] = {}
+        for storage, lookup in self._lookups:
+            names = {each.id: each.topic for each in storage.connections}
+            for chunk in storage.chunks:
+                first, last = part(chunk.message_start_time), part(chunk.message_end_time)
+                for channel, count in chunk.channel_count.items():
+                    row = found.setdefault(names[channel], [0.0] * parts)
+                    if exact and last > first:
+                        for stamp in lookup.times(chunk, channel):
+                            row[part(stamp)] += 1
+                        continue
+                    for each in range(first, last + 1):
+                        row[each] += count / (last - first + 1)
+        return {name: [ceil(each) for each in row] for name, row in found.items()}
+
+    @property
+    def _indexed(self) -> list[Any]:
+        """The files with an index, if all of them have one and their messages are not packed singly; else none."""
+        storage: Any = self._reader.storage
+        storages = getattr(storage, "storages", [storage])
+        if self._reader.compression_mode == "message" or not all(getattr(each, "chunks", ()) for each in storages):
+            return []
+        return list(storages)
+
+    @cached_property
+    def _lookups(self) -> list[tuple[Any, McapLookup]]:
+        return [(each, McapLookup(each)) for each in self._indexed]
+
+    def _latest(self, topics: Collection[str], at_ns: int) -> list[Recorded]:
+        if not self._lookups:
+            return list(self._latest_without_index(topics, at_ns))
+        found = []
+        for topic in topics:
+            last = [lookup.latest(_channels(storage, topic), at_ns) for storage, lookup in self._lookups]
+            best = max((each for each in last if each is not None), key=lambda each: each[0], default=None)
+            if best is not None:
+                found.append((topic, *best))
+        return found
+
+    def _between(self, topic: str, start_ns: int, end_ns: int) -> list[Recorded]:
+        if not self._lookups:
+            connections = [each for each in self._reader.connections if each.topic == topic]
+            read = self._reader.messages(connections, max(0, start_ns), end_ns + 1) if connections else iter(())
+            return [(topic, stamp, data) for _, stamp, data in read]
+        return [
+            (topic, *each)
+            for storage, lookup in self._lookups
+            for each in lookup.between(_channels(storage, topic), start_ns, end_ns, _STATIC_CHUNKS)
+        ]
+
+    def _latest_without_index(self, topics: Collection[str], at_ns: int) -> Iterator[Recorded]:
+        """Look at longer and longer times before, until all are found."""
+        missing = set(topics)
+        end, length = at_ns + 1, _FIRST_WINDOW_NS
+        while missing and end > self._reader.start_time:
+            begin = max(end - length, self._reader.start_time)
+            connections = [each for each in self._reader.connections if each.topic in missing]
+            if not connections:
+                return
+            found = _last_of_each(self._reader.messages(connections, begin, end))
+            yield from found
+            missing.difference_update(topic for topic, _, _ in found)
+            end, length = begin, length * _WIDER
+
+
+def _last_of_each(messages: Iterable[tuple[Connection, int, bytes]]) -> list[Recorded]:
+    found: dict[str, Recorded] = {}
+    for connection, stamp, data in messages:
+        found[connection.topic] = connection.topic, stamp, data
+    return list(found.values())
+
+
+def _channels(storage: Any, topic: str) -> list[int]:
+    return [each.id for each in storage.connections if each.topic == topic]

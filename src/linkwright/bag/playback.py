@@ -1,0 +1,271 @@
+"""Shows a recording at any of its times, forward or from one time to another: play, pause, seek, step, speed, loop.
+
+The same for a recording in a file and for what came in the last minutes: messages go out as bytes, with the time at
+which they were received, and whoever listens need not know that they are not new.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Collection, Iterator
+from typing import Protocol
+
+from linkwright.bag.moments import Recorded
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph.loop.node_handle import NodeHandle
+from linkwright.graph.time.timebase import Alarm
+
+_TICK_NS = 16_000_000
+"""Real time between two looks for messages that are due."""
+
+_MOST_MESSAGES, _MOST_BYTES = 1000, 16 << 20
+"""Published in one tick; when more are due, time goes slower, so that the program answers and nothing is left out."""
+
+SLOWEST, FASTEST = 0.1, 10.0
+"""Least and greatest speed."""
+
+
+class Recording(Protocol):
+    """What can be played: messages by their times, nanoseconds since the epoch."""
+
+    @property
+    def start_ns(self) -> int:
+        """The time of the first message."""
+
+    @property
+    def end_ns(self) -> int:
+        """The time of the last one."""
+
+    def messages(self, topics: Collection[str], start_ns: int, /) -> Iterator[Recorded]:
+        """The messages of some topics from a time on, in the order of their times."""
+
+    def state_at(self, topics: Collection[str], at_ns: int, /) -> list[Recorded]:
+        """What must be known to show a moment: the last message of each topic, and transforms."""
+
+    def time_before(self, topics: Collection[str], at_ns: int, /) -> int | None:
+        """When the last message before a time was received; None where there is none."""
+
+
+class Output(Protocol):
+    """Where messages go."""
+
+    def wanted(self) -> frozenset[str]:
+        """The topics of the recording that somebody listens to."""
+
+    def tell_time(self, stamp_ns: int, /) -> None:
+        """Tell which time it is, nanoseconds since the epoch."""
+
+    def publish(self, topic: str, data: bytes, /) -> None:
+        """Publish a message."""
+
+
+class Playback:
+    """Plays a recording.
+
+    Args:
+        node: whose dispatcher it runs on.
+        recording: what is played.
+        output: where it goes.
+        failed: called with an error when the recording cannot be read on; it is paused then.
+
+    Attributes:
+        position_ns: the time that is shown; all messages up to it were published. Nanoseconds since the epoch.
+        playing: whether time goes on.
+        speed: seconds of the recording in a real one.
+        loop: whether it begins anew at the end.
+        seeks: how often another time was gone to, whether or not it could be read.
+        changed: called when one of these has changed but by the passing of time.
+        begin_anew: has whoever listens forget what it knows, because another time is shown.
+    """
+
+    def __init__(
+        self, node: NodeHandle, recording: Recording, output: Output, failed: Callable[[LinkwrightError], object]
+    ) -> None:
+        self._node = node
+        self._recording = recording
+        self._output = output
+        self._failed = failed
+        self._wanted: frozenset[str] = frozenset()
+        self._stream: Iterator[Recorded] = iter(())
+        self._next: Recorded | None = None
+        self._alarm: Alarm | None = None
+        self._ticked_ns = 0
+        self._target_ns: int | None = None
+        self.position_ns = recording.start_ns
+        self.playing = False
+        self.speed = 1.0
+        self.loop = False
+        self.seeks = 0
+        self.changed: list[Callable[[], object]] = []
+        self.begin_anew: Callable[[], object] = lambda: None
+
+    @property
+    def start_ns(self) -> int:
+        """The time of the first message, nanoseconds since the epoch."""
+        return self._recording.start_ns
+
+    @property
+    def end_ns(self) -> int:
+        """The time of the last message."""
+        return self._recording.end_ns
+
+    def play(self) -> None:
+        """Have time go on; at the end, from the beginning."""
+        if self.playing:
+            return
+        if self._aim() >= self.end_ns:
+            self.seek(self.start_ns)
+        self.playing = True
+        self._ticked_ns = self._steady_ns()
+        self._set_alarm()
+        self._tell()
+
+    def pause(self) -> None:
+        """Have time stand still."""
+        if self.playing:
+            self._stop()
+            self._tell()
+
+    def set_speed(self, speed: float) -> None:
+        """Play faster or slower, within `SLOWEST` and `FASTEST`."""
+        self.speed = min(FASTEST, max(SLOWEST, speed))
+        self._tell()
+
+    def set_loop(self, loop: bool) -> None:
+        """Begin anew at the end, or stay there."""
+        self.loop = loop
+        self._tell()
+
+    def seek(self, stamp_ns: int) -> None:
+        """Show another time: as soon as the loop is free, the newest of several only.
+
+        Time is told at once, and clocks that go back have their listeners forget what they know; so what is to be known
+        then is published a turn of the loop later.
+        """
+        pending = self._target_ns is not None
+        self._target_ns = min(self.end_ns, max(self.start_ns, stamp_ns))
+        if not pending:
+            asyncio.get_running_loop().call_soon(self._begin_landing)
+
+    def step(self, forward: bool) -> None:
+        """Pause, and show the time of the next message that somebody listens to, or of the one before."""
+        self.pause()
+        try:
+            if not forward:
+                before = self._recording.time_before(self._wanted, self._aim())
+                self.seek(self.start_ns if before is None else before)
+            elif self._target_ns is None and self._next is not None:
+                self._show_until(self._next[1])
+                self._tell()
+        except LinkwrightError as error:
+            self._fail(error)
+
+    def review(self) -> None:
+        """Look who listens: a topic that nobody listened to before begins with its last message."""
+        wanted = self._output.wanted()
+        if wanted == self._wanted or self._target_ns is not None:
+            return
+        new, self._wanted = wanted - self._wanted, wanted
+        try:
+            for topic, _, data in self._recording.state_at(new, self.position_ns) if new else ():
+                self._output.publish(topic, data)
+            self._open_stream()
+        except LinkwrightError as error:
+            self._fail(error)
+
+    def close(self) -> None:
+        """Stop for good."""
+        self._stop()
+        self.changed.clear()
+        self._stream, self._next = iter(()), None
+
+    # -----------------------------------------------------------------------------------------------------------
+
+    def _aim(self) -> int:
+        return self.position_ns if self._target_ns is None else self._target_ns
+
+    def _begin_landing(self) -> None:
+        self._output.tell_time(self._aim())
+        asyncio.get_running_loop().call_soon(self._land)
+
+    def _land(self) -> None:
+        self.position_ns, self._target_ns = self._aim(), None
+        self.seeks += 1
+        self._wanted = self._output.wanted()
+        try:
+            state = self._recording.state_at(self._wanted, self.position_ns)
+            self._open_stream()
+        except LinkwrightError as error:
+            self._fail(error)
+            return
+        self._output.tell_time(self.position_ns)
+        self.begin_anew()
+        for topic, _, data in state:
+            self._output.publish(topic, data)
+        self._ticked_ns = self._steady_ns()
+        self._tell()
+
+    def _open_stream(self) -> None:
+        """Go on after all that was published."""
+        self._stream = self._recording.messages(self._wanted, self.position_ns + 1) if self._wanted else iter(())
+        self._next = next(self._stream, None)
+
+    def _tick(self) -> None:
+        self._alarm = None
+        if not self.playing:
+            return
+        now = self._steady_ns()
+        passed, self._ticked_ns = now - self._ticked_ns, now
+        if self._target_ns is None:
+            try:
+                self._show_until(min(self.end_ns, self.position_ns + round(passed * self.speed)))
+            except LinkwrightError as error:
+                self._fail(error)
+                return
+            if self.position_ns >= self.end_ns and self.loop:
+                self.seek(self.start_ns)
+            elif self.position_ns >= self.end_ns:
+                self.pause()
+                return
+        self._set_alarm()
+
+    def _show_until(self, stamp_ns: int) -> None:
+        """Publish what was received until a time, or as much of it as goes in one turn."""
+        self._output.tell_time(stamp_ns)
+        size = 0
+        for _ in range(_MOST_MESSAGES):
+            if self._next is None or self._next[1] > stamp_ns:
+                break
+            topic, stamp, data = self._next
+            if size > _MOST_BYTES:
+                stamp_ns = stamp - 1
+                break
+            self._output.publish(topic, data)
+            size += len(data)
+            self._next = next(self._stream, None)
+        else:
+            if self._next is not None and self._next[1] <= stamp_ns:
+                stamp_ns = self._next[1] - 1
+        self.position_ns = max(self.position_ns, stamp_ns)
+
+    def _set_alarm(self) -> None:
+        assert self._node.dispatcher is not None
+        self._alarm = self._node.dispatcher.call_at(self._steady_ns() + _TICK_NS, self._tick)
+
+    def _stop(self) -> None:
+        self.playing = False
+        if self._alarm is not None:
+            self._alarm.cancel()
+            self._alarm = None
+
+    def _fail(self, error: LinkwrightError) -> None:
+        self._stop()
+        self._failed(error)
+        self._tell()
+
+    def _tell(self) -> None:
+        for each in self.changed:
+            each()
+
+    def _steady_ns(self) -> int:
+        return self._node.timebase.steady_ns()

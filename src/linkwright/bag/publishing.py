@@ -1,0 +1,72 @@
+"""The publishers of a recording's topics."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from linkwright.bag.moments import STATIC_TRANSFORMS
+from linkwright.bag.qos import profile_for_playing
+from linkwright.bag.reading import BagReader, BagTopic
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph import DurabilityPolicy, Node, Publisher, QoSProfile
+from linkwright.messages import Time, get_message
+
+CLOCK_TOPIC = "/clock"
+_CLOCK_TYPE = "rosgraph_msgs/msg/Clock"
+_LATCHED = frozenset({STATIC_TRANSFORMS, "/robot_description"})
+"""Topics that listeners expect to be kept for them, whether or not the recording says so."""
+_LATCHED_QOS = QoSProfile(100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+def make_publishers(
+    node: Node, topics: Iterable[BagTopic], overrides: Mapping[str, QoSProfile] | None = None
+) -> dict[str, Publisher[Any]]:
+    """A publisher for each topic, with the quality of service it was recorded with; the log tells of unknown types.
+
+    Args:
+        node: that publishes.
+        topics: those of a recording.
+        overrides: topic -> profile to publish with.
+    """
+    made: dict[str, Publisher[Any]] = {}
+    for topic in topics:
+        try:
+            message_class = get_message(topic.type_name)
+        except LinkwrightError as error:
+            node.get_logger().warning(f"Topic '{topic.name}' is not played: {error}")
+            continue
+        qos = (overrides or {}).get(topic.name) or profile_for_playing(topic.offered_qos)
+        made[topic.name] = node.create_publisher(message_class, topic.name, qos)
+    return made
+
+
+class PublishedRecording:
+    """Publishes a recording, and its time on ``/clock``: the output of a playback that has a graph to itself.
+
+    Args:
+        node: that publishes.
+        bag: the recording. Its own ``/clock`` is left out: time is that at which messages were received.
+    """
+
+    def __init__(self, node: Node, bag: BagReader) -> None:
+        topics = [each for each in bag.topics if each.name != CLOCK_TOPIC]
+        self._publishers = make_publishers(node, topics, dict.fromkeys(_LATCHED, _LATCHED_QOS))
+        self._clock: Publisher[Any] = node.create_publisher(_CLOCK_TYPE, CLOCK_TOPIC, 10)
+
+    @property
+    def topics(self) -> frozenset[str]:
+        """The topics that can be played."""
+        return frozenset(self._publishers)
+
+    def wanted(self) -> frozenset[str]:
+        """The topics that have subscriptions."""
+        return frozenset(name for name, each in self._publishers.items() if each.get_subscription_count())
+
+    def tell_time(self, stamp_ns: int) -> None:
+        """Publish on ``/clock``."""
+        self._clock.publish(self._clock.msg_type(clock=Time.from_nanoseconds(stamp_ns)))
+
+    def publish(self, topic: str, data: bytes) -> None:
+        """Publish a message."""
+        self._publishers[topic].publish(data)

@@ -1,0 +1,251 @@
+"""A recording that is shown at any of its times, on a clock that the test moves."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator, Iterable
+from pathlib import Path
+
+import pytest
+
+from linkwright.bag import STORAGES, BagReader, BagWriter, Playback, PublishedRecording
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph import DEFAULT_QOS, DESCRIPTION_QOS, Graph, JumpClock, LogRecord, QoSProfile
+from linkwright.messages import String, deserialize, get_message, serialize
+
+START = 1_700_000_000_000_000_000
+SECOND = 1_000_000_000
+STRING, TF = "std_msgs/msg/String", "tf2_msgs/msg/TFMessage"
+
+
+def text(data: str) -> bytes:
+    return serialize(String(data=data))
+
+
+def transform(child: str) -> bytes:
+    message = get_message(TF)()
+    one = get_message("geometry_msgs/msg/TransformStamped")()
+    one.child_frame_id = child
+    message.transforms = [one]
+    return serialize(message)
+
+
+def recorded(folder: Path, storage: str = "mcap", *, compressed: bool = False, chunk: int = 3) -> Path:
+    """Twenty seconds: ``/a`` each second, ``/b`` each fourth, ``/tf`` twice a second, ``/tf_static`` at 0 and 9."""
+    path = folder / "bag"
+    with BagWriter(path, storage, compressed=compressed) as writer:
+        for name, kind, qos in (
+            ("/a", STRING, DEFAULT_QOS),
+            ("/b", STRING, DEFAULT_QOS),
+            ("/robot_description", STRING, DESCRIPTION_QOS),
+            ("/tf", TF, DEFAULT_QOS),
+            ("/tf_static", TF, DEFAULT_QOS),
+        ):
+            writer.add_topic(name, kind, [qos])
+        writer.write("/robot_description", START, text("<robot/>"))
+        for half in range(40):
+            stamp = START + half * SECOND // 2
+            if half in (0, 18):
+                writer.write("/tf_static", stamp, transform(f"static {half}"))
+            writer.write("/tf", stamp, transform(f"moving {half}"))
+            if half % 2 == 0:
+                writer.write("/a", stamp, text(f"a {half // 2}"))
+            if half % 8 == 0:
+                writer.write("/b", stamp, text(f"b {half // 2}"))
+            if half % chunk == 0:
+                writer.flush()
+    return path
+
+
+def words(messages: Iterable[tuple[str, int, bytes]]) -> list[str]:
+    return [
+        deserialize(data, String).data
+        if topic in ("/a", "/b", "/robot_description")
+        else deserialize(data, get_message(TF)).transforms[0].child_frame_id
+        for topic, _, data in messages
+    ]
+
+
+TOPICS = ("/a", "/b", "/robot_description", "/tf", "/tf_static")
+
+
+@pytest.mark.parametrize(("storage", "compressed"), [("mcap", False), ("mcap", True), ("sqlite3", False)])
+def test_the_state_at_a_time_is_the_last_message_of_each_topic_and_the_transforms(
+    tmp_path: Path, storage: str, compressed: bool
+) -> None:
+    with BagReader(recorded(tmp_path, storage, compressed=compressed)) as bag:
+        at = START + 7 * SECOND + 1
+        assert words(bag.state_at(TOPICS, at)) == [
+            "static 0", "<robot/>", "b 4", "moving 11", "moving 12", "moving 13", "moving 14", "a 7",
+        ]  # fmt: skip
+        assert words(bag.state_at(["/tf_static", "/a"], START + 12 * SECOND)) == ["static 0", "static 18", "a 12"]
+        assert bag.state_at(["/a"], START - 1) == []
+        assert bag.time_before(["/a", "/b"], START + 5 * SECOND) == START + 4 * SECOND
+        assert bag.time_before(["/a"], START) is None
+
+
+def test_a_recording_without_an_index_has_the_same_states(tmp_path: Path) -> None:
+    (file,) = recorded(tmp_path).glob("*.mcap")
+    cut = tmp_path / "cut.mcap"
+    cut.write_bytes(file.read_bytes()[:-20])
+    with BagReader(cut) as bag:
+        assert words(bag.state_at(["/a", "/b"], START + 7 * SECOND)) == ["b 4", "a 7"]
+        assert bag.counts(4) == {}
+
+
+def test_messages_are_counted_by_the_parts_of_a_recording_without_reading_them(tmp_path: Path) -> None:
+    with BagReader(recorded(tmp_path, chunk=1)) as bag:
+        counts = bag.counts(2)
+    assert counts["/a"] == [10, 10]
+    assert counts["/robot_description"] == [1, 0]
+
+
+class Shown:
+    """A graph with a recording in it, and a node that listens."""
+
+    def __init__(self, path: Path) -> None:
+        self.log: list[LogRecord] = []
+        self.clock = JumpClock(0)
+        self.graph = Graph(clock=self.clock, on_log=self.log.append)
+        self.bag = BagReader(path)
+        player = self.graph.create_node("player")
+        self.output = PublishedRecording(player, self.bag)
+        self.failures: list[LinkwrightError] = []
+        self.playback = Playback(player.handle, self.bag, self.output, self.failures.append)
+        self.heard: list[str] = []
+        self.listener = self.graph.create_node("listener")
+        self.times: list[int] = []
+        self.listener.create_subscription("rosgraph_msgs/msg/Clock", "/clock", self._tick, QoSProfile(depth=1000))
+        self.playback.begin_anew = lambda: self.heard.append("anew")
+
+    def listen(self, topic: str) -> None:
+        self.listener.create_subscription(String, topic, lambda message: self.heard.append(message.data), 100)
+        self.playback.review()
+
+    def _tick(self, message: object) -> None:
+        stamp = message.clock  # type: ignore[attr-defined]
+        self.times.append(stamp.sec * SECOND + stamp.nanosec - START)
+
+    async def settle(self) -> None:
+        for _ in range(4):  # a seek takes a few turns of the loop
+            await asyncio.sleep(0)
+        await self.graph.settle()
+
+    async def taken(self) -> list[str]:
+        await self.settle()
+        heard, self.heard = self.heard, []
+        return heard
+
+
+@pytest.fixture
+async def shown(tmp_path: Path, request: pytest.FixtureRequest) -> AsyncIterator[Shown]:
+    made = Shown(recorded(tmp_path, getattr(request, "param", "mcap")))
+    yield made
+    made.playback.close()
+    made.bag.close()
+    await made.graph.close()
+
+
+@pytest.mark.parametrize("shown", STORAGES, indirect=True)
+async def test_it_plays_what_somebody_listens_to_with_its_time(shown: Shown) -> None:
+    shown.listen("/a")
+    assert await shown.taken() == ["a 0"]
+    shown.playback.play()
+    await shown.clock.advance(2.5)
+    assert await shown.taken() == ["a 1", "a 2"]
+    assert shown.times == sorted(shown.times)
+    assert 2.4 * SECOND < shown.times[-1] <= 2.5 * SECOND
+    shown.listen("/b")
+    assert await shown.taken() == ["b 0"], "who comes later is told what was there"
+    shown.playback.set_speed(2)
+    await shown.clock.advance(1.0)
+    assert await shown.taken() == ["a 3", "a 4", "b 4"]
+    shown.playback.pause()
+    await shown.clock.advance(5.0)
+    assert await shown.taken() == []
+
+
+async def test_a_seek_shows_the_state_of_its_time_after_listeners_began_anew(shown: Shown) -> None:
+    shown.listen("/a")
+    shown.listen("/b")
+    await shown.taken()
+    shown.playback.seek(START + 3 * SECOND)
+    shown.playback.seek(START + 10 * SECOND + 5)
+    assert await shown.taken() == ["anew", "b 8", "a 10"], "of several seeks the newest"
+    assert shown.playback.position_ns == START + 10 * SECOND + 5
+    shown.playback.seek(START + 2 * SECOND)
+    assert await shown.taken() == ["anew", "b 0", "a 2"]
+    assert shown.times[-1] == 2 * SECOND
+    shown.playback.play()
+    await shown.clock.advance(1.1)
+    assert await shown.taken() == ["a 3"]
+
+
+async def test_steps_go_from_message_to_message_of_what_somebody_listens_to(shown: Shown) -> None:
+    shown.listen("/b")
+    await shown.taken()
+    shown.playback.step(forward=True)
+    shown.playback.step(forward=True)
+    assert await shown.taken() == ["b 4", "b 8"]
+    assert shown.playback.position_ns == START + 8 * SECOND
+    shown.playback.step(forward=False)
+    assert await shown.taken() == ["anew", "b 4"]
+    shown.playback.seek(START)
+    await shown.taken()
+    shown.playback.step(forward=False)
+    assert await shown.taken() == ["anew", "b 0"]
+
+
+async def test_at_the_end_it_stays_or_begins_anew(shown: Shown) -> None:
+    shown.listen("/b")
+    shown.playback.seek(START + 19 * SECOND)
+    await shown.taken()
+    shown.playback.play()
+    await shown.clock.advance(2.0)
+    assert not shown.playback.playing
+    assert shown.playback.position_ns == shown.playback.end_ns
+    shown.playback.set_loop(True)
+    shown.playback.play()
+    await shown.clock.advance(0.1)
+    assert (await shown.taken())[:2] == ["anew", "b 0"]
+    assert shown.playback.playing
+    await shown.clock.advance(20.0)
+    assert shown.playback.position_ns < START + 2 * SECOND, "it has begun anew"
+
+
+async def test_when_more_is_due_than_can_be_published_time_goes_slower(tmp_path: Path) -> None:
+    path = tmp_path / "dense"
+    with BagWriter(path) as writer:
+        writer.add_topic("/a", STRING, [DEFAULT_QOS])
+        for number in range(5000):
+            writer.write("/a", START + number * 1000, text(str(number)))
+    shown = Shown(path)
+    shown.listen("/a")
+    await shown.taken()
+    shown.playback.play()
+    await shown.clock.advance(0.017)
+    assert shown.playback.position_ns == START + 1001 * 1000 - 1
+    await shown.clock.advance(0.1)
+    assert shown.playback.position_ns == START + 4999 * 1000
+    shown.playback.close()
+    shown.bag.close()
+    await shown.graph.close()
+
+
+async def test_a_chunk_that_is_damaged_pauses_and_tells(tmp_path: Path) -> None:
+    path = recorded(tmp_path, compressed=True)
+    (file,) = path.glob("*.mcap")
+    magic = b"\x28\xb5\x2f\xfd"  # of zstd
+    first, rest = file.read_bytes().split(magic, 1)
+    file.write_bytes(first + magic + rest.replace(magic, b"zstd"))
+    shown = Shown(path)
+    shown.listen("/a")
+    shown.failures.clear()
+    shown.playback.play()
+    shown.playback.seek(START + 12 * SECOND)
+    await shown.settle()
+    assert [each.diagnostics[0].code for each in shown.failures] == ["BAG102"]
+    assert not shown.playback.playing
+    shown.playback.close()
+    shown.bag.close()
+    await shown.graph.close()
