@@ -46,6 +46,8 @@ interface Inspection {
   readonly tools: string[];
   /** All that is selected. */
   readonly selection: SelectedItem[];
+  /** The recording that is shown: times in s since its start. */
+  readonly timeline: { name: string; position: number; length: number; playing: boolean; problem: string } | null;
   readonly time: { paused: boolean; mode: string; source: string; sources: string[] };
   /** Joint positions of the Joints panel, rad or m. */
   readonly joints: Record<string, number>;
@@ -135,6 +137,12 @@ export function publishInspection(
     },
     get selection() {
       return session.selection.items.map((item) => ({ ...item }));
+    },
+    get timeline() {
+      const { timeline, position, playing, problem } = session.timeline;
+      if (!timeline) return null;
+      const { name, start, end } = timeline;
+      return { name, position: position - start, length: end - start, playing, problem };
     },
     get time() {
       const { paused, mode, source, sources } = session.time;

@@ -12,6 +12,7 @@ import "./styles/monitor.css";
 import "./styles/plots.css";
 import "./styles/modelling.css";
 import "./styles/voice.css";
+import "./styles/timeline.css";
 import { Connection, socketUrl } from "./connection/connection";
 import { Tokens, type AddressBar } from "./connection/tokens";
 import { h } from "./dom";
@@ -37,6 +38,7 @@ import { showTopic } from "./panels/show-topic";
 import { SourcePanel } from "./panels/source-panel";
 import { StatusBar } from "./panels/status-bar";
 import { TimePanel } from "./panels/time-panel";
+import { TimelineBar } from "./panels/timeline-bar";
 import { ToolPropertiesPanel } from "./panels/tool-properties-panel";
 import { TransformationPanel } from "./panels/transformation-panel";
 import { ViewsPanel } from "./panels/views-panel";
@@ -118,7 +120,7 @@ function start(app: HTMLElement): void {
   const files = new FileCommands(session.configuration);
   app.prepend(new TitleBar(session, dock, files, theme, new ShareMenu(session, stage, tokens)).element);
   takeFileKeys(session, files);
-  app.append(new StatusBar(session, stage).element);
+  app.append(new TimelineBar(session.timeline).element, new StatusBar(session, stage).element);
   document.body.append(door.element);
   fullScreenOnF11(scene.box);
   document.addEventListener("keydown", (event) => {

@@ -60,6 +60,7 @@ export class KeySheet {
           [words.arrows, words.turn],
           [`Shift ${words.arrows}`, words.move],
           ["+ -", words.zoom],
+          [`${words.space} ← →`, strings.timeline.keys],
           [strings.simulation.dragKeys, strings.simulation.dragModel],
           [strings.simulation.pushKeys, strings.simulation.pushModel],
         ],

@@ -96,6 +96,7 @@ import type {
   SpawnModel,
 } from "./simulation";
 import type { Clock, ResetTime, SetTime, TimeReset, TimeState, WatchClock } from "./time";
+import type { Play, Playhead, SeekTime, SetPlayback, StepTime, Timeline } from "./timeline";
 import type {
   AddTool,
   ChangeSavedView,
@@ -144,6 +145,7 @@ export * from "./robot";
 export * from "./session";
 export * from "./simulation";
 export * from "./time";
+export * from "./timeline";
 export * from "./views-and-tools";
 export * from "./voice";
 export * from "./voice-words";
@@ -181,6 +183,7 @@ export type ServerMessage =
   | ParameterDump
   | ParameterNodes
   | ParameterResult
+  | Playhead
   | PointFields
   | PropertyChanged
   | RobotScene
@@ -192,6 +195,7 @@ export type ServerMessage =
   | TeleopState
   | TimeReset
   | TimeState
+  | Timeline
   | ToolPropertyChanged
   | Tools
   | TopicFields
@@ -246,6 +250,7 @@ export type PageMessage =
   | NewConfiguration
   | OpenConfiguration
   | PictureSize
+  | Play
   | PointChosen
   | PoseChosen
   | PushLink
@@ -265,15 +270,18 @@ export type PageMessage =
   | SaveView
   | SaveWorld
   | SayCommand
+  | SeekTime
   | SetJoint
   | SetJoints
   | SetModelling
   | SetParameter
+  | SetPlayback
   | SetProperty
   | SetTime
   | SetToolProperty
   | ShowPanels
   | SpawnModel
+  | StepTime
   | Talk
   | Undo
   | UndoWorld

@@ -21,6 +21,7 @@ import { SimulationState } from "./simulation";
 import { SlowLine } from "./slow-line";
 import { browserStorage } from "./storage";
 import { TimeControlState } from "./time";
+import { TimelineState } from "./timeline";
 import { ToolsState } from "./tools";
 import { ViewState } from "./view";
 import { VoiceState } from "./voice/voice";
@@ -39,6 +40,7 @@ export class Session {
   readonly view: ViewState;
   readonly tools: ToolsState;
   readonly time: TimeControlState;
+  readonly timeline: TimelineState;
   readonly data: DisplayDataStore;
   readonly slowLine: SlowLine;
   readonly meshProgress = new MeshProgress();
@@ -66,6 +68,7 @@ export class Session {
     this.view = new ViewState(this.frames, connection);
     this.tools = new ToolsState(connection);
     this.time = new TimeControlState(connection);
+    this.timeline = new TimelineState(connection);
     this.data = new DisplayDataStore(connection);
     this.slowLine = new SlowLine(this.data);
     this.simulation = new SimulationState(connection);

@@ -8,6 +8,7 @@ import { monitor } from "./en/monitor";
 import { tools } from "./en/tools";
 import { sharing } from "./en/sharing";
 import { simulation } from "./en/simulation";
+import { timeline } from "./en/timeline";
 import { voice } from "./en/voice";
 
 /** Every word of the page that does not come from the server. */
@@ -28,6 +29,7 @@ export const en = {
   sharing,
   simulation,
   meshes,
+  timeline,
   modelling,
   voice,
   details,

@@ -9,6 +9,7 @@ import { monitor } from "./zh/monitor";
 import { tools } from "./zh/tools";
 import { sharing } from "./zh/sharing";
 import { simulation } from "./zh/simulation";
+import { timeline } from "./zh/timeline";
 import { voice } from "./zh/voice";
 
 /** 简体中文 */
@@ -19,6 +20,7 @@ export const zh: Strings = {
   sharing,
   simulation,
   meshes,
+  timeline,
   modelling,
   voice,
   details,

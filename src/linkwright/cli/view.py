@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 
 from linkwright.assignments import parse_assignments
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
-    parser.add_argument("file", metavar="FILE", help="the URDF or xacro file")
+    parser.add_argument(
+        "file", metavar="FILE", help="the URDF or xacro file, or a recording: its .mcap or .db3 file or its folder"
+    )
     parser.add_argument(
         "values", metavar="NAME:=VALUE", nargs="*", default=[], help="values for the file's <xacro:arg>"
     )
@@ -42,9 +45,15 @@ def port(text: str) -> int:
 
 def run(arguments: argparse.Namespace) -> int:
     """Show the model until the user ends it."""
+    from linkwright.bag import is_recording
     from linkwright.hosting.plans import HostOptions
-    from linkwright.hosting.view import run_view
 
     values = parse_assignments(arguments.values)
     options = HostOptions(arguments.host, arguments.port, not arguments.no_open, network=arguments.join)
+    if is_recording(Path(arguments.file)) and not values:
+        from linkwright.hosting.bag_view import run_bag_view
+
+        return run_bag_view(Path(arguments.file), options, foxglove=arguments.foxglove)
+    from linkwright.hosting.view import run_view
+
     return run_view(arguments.file, values, options, foxglove=arguments.foxglove)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from linkwright.hosting.xacro_calls import Descriptions
     from linkwright.nodes import NodeOptions
     from linkwright.packages import PackageFinder
-    from linkwright.viewer import RvizConfig
+    from linkwright.viewer import RvizConfig, Viewer
 
 VIEWER = ("rviz2", "rviz2")
 """Package and executable of RViz, for which our viewer stands in."""
@@ -39,6 +39,7 @@ class HostedPlan:
         remappings: rules ``(from, to)``.
         arguments: its command line.
         viewer_config: makes the viewer's configuration; by default the command line says which.
+        viewer_started: called with the viewer when it runs.
         destinations: where its lines on stdout (1) and stderr (2) go, see `linkwright.hosting.launch_log`.
         respawns: how often it is started again when it has done its work; without end if negative.
         respawn_delay: seconds to wait before that.
@@ -56,6 +57,7 @@ class HostedPlan:
     remappings: list[tuple[str, str]] = field(default_factory=list)
     arguments: list[str] = field(default_factory=list)
     viewer_config: Callable[[], RvizConfig] | None = None
+    viewer_started: Callable[[Viewer], object] | None = None
     destinations: Mapping[int, frozenset[str]] = field(default_factory=lambda: output_destinations("screen"))
     respawns: int = 0
     respawn_delay: float = 0.0

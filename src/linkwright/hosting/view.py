@@ -21,7 +21,7 @@ from linkwright.packages import PackageFinder
 
 if TYPE_CHECKING:
     from linkwright.bag import BagWriter, Recorder
-    from linkwright.viewer import RvizConfig
+    from linkwright.viewer import RvizConfig, Viewer
 
 _PUBLISH_FREQUENCY = 60.0
 """Hz; at robot_state_publisher's own 20 a dragged slider is seen to lag."""
@@ -214,6 +214,7 @@ class ModelView:
         *,
         name: str | None = None,
         viewer_config: Callable[[], RvizConfig] | None = None,
+        viewer_started: Callable[[Viewer], object] | None = None,
         output: str = "log",
         waits: bool = True,
     ) -> None:
@@ -226,6 +227,7 @@ class ModelView:
             "/",
             parameters or {},
             viewer_config=viewer_config,
+            viewer_started=viewer_started,
             destinations=output_destinations(output),
             waits=waits,
         )

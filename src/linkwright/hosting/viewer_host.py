@@ -93,6 +93,8 @@ class ViewerHost:
         )
         await viewer.start()
         self._viewers[plan.process_name] = plan, viewer
+        if plan.viewer_started is not None:
+            plan.viewer_started(viewer)
         session.log.announce(f"Viewer: {viewer.url}")
         if session.options.open_browser:
             _open_in_browser(viewer.url)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from linkwright._version import __version__
 from linkwright.descriptions import DescriptionLibrary
-from linkwright.diagnostics import Diagnostic
+from linkwright.diagnostics import Diagnostic, LinkwrightError
 from linkwright.graph import Graph, Parameter, ParameterDescriptor
 from linkwright.nodes.options import NodeOptions, create_node
 from linkwright.packages import PackageFinder
@@ -17,6 +17,7 @@ from linkwright.viewer.context import GraphChanges, ViewerContext
 from linkwright.viewer.displays.base.display import ViewerDisplay
 from linkwright.viewer.features.joints import JointsFeature
 from linkwright.viewer.features.page_feature import PageFeature, make_features
+from linkwright.viewer.features.timeline import TimelineFeature
 from linkwright.viewer.frames.history import FrameHistory
 from linkwright.viewer.protocol.message import PageMessage, ServerMessage, encode
 from linkwright.viewer.protocol.session import PROTOCOL_VERSION, Hello
@@ -27,6 +28,7 @@ from linkwright.viewer.web.audience import Audience, Page
 from linkwright.viewer.web.outbox import Payload
 
 if TYPE_CHECKING:
+    from linkwright.bag import BagReader, Playback
     from linkwright.nodes.joint_panel import JointPanel
     from linkwright.viewer.web.server import WebServer
 
@@ -157,6 +159,18 @@ class Viewer:
     def attach_joint_panel(self, panel: JointPanel | None) -> None:
         """Show sliders for the joints of a panel; None takes them away."""
         next(each for each in self._features if isinstance(each, JointsFeature)).attach(panel)
+
+    def attach_recording(self, playback: Playback, bag: BagReader) -> None:
+        """Have pages show a recording's timeline."""
+        self._timeline.attach(playback, bag)
+
+    def playback_failed(self, error: LinkwrightError) -> None:
+        """Tell pages that the recording cannot be read on."""
+        self._timeline.failed(error)
+
+    @property
+    def _timeline(self) -> TimelineFeature:
+        return next(each for each in self._features if isinstance(each, TimelineFeature))
 
     def show_diagnostics(self, diagnostics: Sequence[Diagnostic]) -> None:
         """Show what is wrong with the description; none clears the list."""

@@ -1,0 +1,154 @@
+import { button, coalesced, h } from "../dom";
+import { icon } from "../icons";
+import { TAKES_LETTERS } from "../scene/keyboard";
+import { SPEEDS, type TimelineState } from "../state/timeline";
+import { strings } from "../strings";
+import { clockText, densities, passedText } from "./timeline-text";
+
+/** Parts of the whole that Page Up and Page Down go. */
+const PAGE = 0.1;
+
+/** Along the foot of the page while a recording is shown: play, step, speed, loop, and a line of its time to drag on. */
+export class TimelineBar {
+  readonly element: HTMLElement;
+  private readonly play: HTMLButtonElement;
+  private readonly loop: HTMLButtonElement;
+  private readonly speed = h("select", { class: "choice", title: strings.timeline.speed, aria: { label: strings.timeline.speed } });
+  private readonly time = h("output", { class: "timeline-time" });
+  private readonly marks = h("canvas", { class: "timeline-marks" });
+  private readonly head = h("div", { class: "timeline-head" });
+  private readonly track: HTMLElement;
+  private readonly problem = h("span", { class: "timeline-problem", role: "alert" });
+
+  constructor(private readonly timeline: TimelineState) {
+    const words = strings.timeline;
+    this.play = button(words.play, () => timeline.play(!timeline.playing), "tool bare", icon("play"));
+    this.loop = button(words.loop, () => timeline.setLoop(!timeline.loop), "tool bare", icon("loop"));
+    this.speed.append(...SPEEDS.map((speed) => new Option(`${speed}×`, String(speed))));
+    this.speed.addEventListener("change", () => timeline.setSpeed(Number(this.speed.value)));
+    this.track = h("div", { class: "timeline-track", role: "slider", tabIndex: 0, aria: { label: words.position } }, this.marks, this.head);
+    this.track.addEventListener("pointerdown", (event) => this.drag(event));
+    this.track.addEventListener("pointermove", (event) => {
+      if (this.track.hasPointerCapture(event.pointerId)) this.goTo(event);
+    });
+    this.track.addEventListener("keydown", (event) => this.key(event));
+    this.element = h(
+      "section",
+      { class: "timeline-bar", aria: { label: words.label } },
+      button(words.back, () => timeline.step(false), "tool bare", icon("stepBack")),
+      this.play,
+      button(words.forward, () => timeline.step(true), "tool bare", icon("step")),
+      this.track,
+      this.problem,
+      this.time,
+      this.speed,
+      this.loop,
+    );
+    timeline.changed.on(() => this.show());
+    timeline.moved.on(coalesced(() => this.move()));
+    new ResizeObserver(() => this.drawMarks()).observe(this.track);
+    this.takeKeys();
+    this.show();
+  }
+
+  private show(): void {
+    const { timeline, playing, speed, loop, problem } = this.timeline;
+    const words = strings.timeline;
+    this.element.hidden = timeline === null;
+    const label = playing ? words.pause : words.play;
+    if (this.play.title !== label) {
+      this.play.title = label;
+      this.play.setAttribute("aria-label", label);
+      this.play.replaceChildren(icon(playing ? "pause" : "play"));
+    }
+    this.loop.setAttribute("aria-pressed", String(loop));
+    this.loop.classList.toggle("on", loop);
+    this.speed.value = String(speed);
+    this.problem.textContent = problem;
+    this.problem.title = problem;
+    this.drawMarks();
+    this.move();
+  }
+
+  private move(): void {
+    const { timeline, position } = this.timeline;
+    if (!timeline) return;
+    const { start, end } = timeline;
+    const part = end > start ? (position - start) / (end - start) : 0;
+    this.head.style.left = `${(part * 100).toFixed(3)}%`;
+    const passed = passedText(position - start, end - start);
+    this.time.textContent = passed;
+    this.time.title = clockText(position);
+    this.track.setAttribute("aria-valuemin", "0");
+    this.track.setAttribute("aria-valuemax", String(end - start));
+    this.track.setAttribute("aria-valuenow", (position - start).toFixed(3));
+    this.track.setAttribute("aria-valuetext", passed);
+  }
+
+  private drag(event: PointerEvent): void {
+    if (event.button !== 0) return;
+    this.track.setPointerCapture(event.pointerId);
+    this.goTo(event);
+  }
+
+  private goTo(event: PointerEvent): void {
+    const { timeline } = this.timeline;
+    const box = this.track.getBoundingClientRect();
+    if (timeline) this.timeline.seek(timeline.start + ((event.clientX - box.left) / box.width) * (timeline.end - timeline.start));
+  }
+
+  private key(event: KeyboardEvent): void {
+    const { timeline, position } = this.timeline;
+    if (!timeline || event.ctrlKey || event.metaKey || event.altKey) return;
+    const page = PAGE * (timeline.end - timeline.start);
+    const places: Record<string, number> = {
+      Home: timeline.start,
+      End: timeline.end,
+      PageUp: position - page,
+      PageDown: position + page,
+    };
+    const place = places[event.key];
+    if (place === undefined) return;
+    this.timeline.seek(place);
+    event.preventDefault();
+  }
+
+  /** Space plays and pauses, the arrows step, wherever nothing else has a use for them. */
+  private takeKeys(): void {
+    document.addEventListener("keydown", (event) => {
+      const { target } = event;
+      if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey || !this.timeline.timeline) return;
+      if (!(target instanceof Element) || target.closest(TAKES_LETTERS)) return;
+      if (event.key === " " && !target.closest("button, input, summary, a")) this.timeline.play(!this.timeline.playing);
+      else if (event.key === "ArrowLeft" && this.isFree(target)) this.timeline.step(false);
+      else if (event.key === "ArrowRight" && this.isFree(target)) this.timeline.step(true);
+      else return;
+      event.preventDefault();
+    });
+  }
+
+  private isFree(target: Element): boolean {
+    return target === document.body || this.element.contains(target);
+  }
+
+  /** How dense messages are, a line for each topic that has any, the more the darker. */
+  private drawMarks(): void {
+    const rows = densities(this.timeline.timeline?.topics ?? []);
+    const { width, height } = this.track.getBoundingClientRect();
+    const scale = window.devicePixelRatio;
+    this.marks.width = Math.max(1, Math.round(width * scale));
+    this.marks.height = Math.max(1, Math.round(height * scale));
+    const context = this.marks.getContext("2d");
+    if (!context || rows.length === 0) return;
+    context.fillStyle = getComputedStyle(this.track).getPropertyValue("--accent");
+    const rowHeight = this.marks.height / rows.length;
+    rows.forEach((row, number) => {
+      const partWidth = this.marks.width / row.length;
+      row.forEach((dense, part) => {
+        if (dense === 0) return;
+        context.globalAlpha = dense;
+        context.fillRect(part * partWidth, number * rowHeight, partWidth, Math.max(1, rowHeight - 1));
+      });
+    });
+  }
+}

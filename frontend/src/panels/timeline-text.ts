@@ -1,0 +1,33 @@
+import type { TimelineTopic } from "../protocol";
+
+/** Most topics that have a line of their own in the timeline. */
+const MOST_ROWS = 12;
+const FAINTEST = 0.12;
+
+/** `0:07.250 / 1:30`: how much has passed, of how much. */
+export function passedText(passed: number, whole: number): string {
+  return `${minutes(passed, 2)} / ${minutes(whole, whole < 10 ? 2 : 0)}`;
+}
+
+/** Date and time of day where this page is, with milliseconds, and the seconds since the epoch. */
+export function clockText(seconds: number): string {
+  const date = new Date(seconds * 1000);
+  return `${date.toLocaleString()}.${String(date.getMilliseconds()).padStart(3, "0")} (${seconds.toFixed(3)})`;
+}
+
+/** How dense messages are in the parts of a recording, 0 to 1 in relation to each topic's densest part; those with most first. */
+export function densities(topics: readonly TimelineTopic[]): number[][] {
+  const known = topics.filter(({ counts }) => counts.length > 0).sort((a, b) => b.count - a.count);
+  return known.slice(0, MOST_ROWS).map(({ counts }) => {
+    const most = Math.max(...counts);
+    return counts.map((count) => (count === 0 ? 0 : FAINTEST + (1 - FAINTEST) * (count / most)) * 0.6);
+  });
+}
+
+function minutes(seconds: number, digits: number): string {
+  const shown = Number(Math.max(0, seconds).toFixed(digits));
+  const hours = Math.floor(shown / 3600);
+  const rest = Math.floor((shown % 3600) / 60);
+  const text = (shown % 60).toFixed(digits).padStart(digits > 0 ? digits + 3 : 2, "0");
+  return hours > 0 ? `${hours}:${String(rest).padStart(2, "0")}:${text}` : `${rest}:${text}`;
+}

@@ -1,0 +1,101 @@
+import type { Connection } from "../connection/connection";
+import type { Playhead, Timeline } from "../protocol";
+import { Signal } from "./signal";
+
+export const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 5, 10] as const;
+
+/** A recording that the server plays: its times, and where it is. */
+export class TimelineState {
+  readonly changed = new Signal();
+  readonly moved = new Signal();
+  private recording: Timeline | null = null;
+  private playhead: Playhead | null = null;
+  /** Where the user is going, s; shown until the server is there. */
+  private target: number | null = null;
+  private asked = false;
+  private wanted = 0;
+
+  constructor(private readonly connection: Connection) {
+    connection.on("hello", () => {
+      // A new connection knows nothing of what was asked for; a program without a recording tells of none.
+      this.recording = this.playhead = this.target = null;
+      this.asked = false;
+      this.changed.emit();
+    });
+    connection.on("timeline", (timeline) => {
+      this.recording = timeline;
+      this.changed.emit();
+    });
+    connection.on("playhead", (playhead) => this.take(playhead));
+  }
+
+  /** What is played; null where nothing is. */
+  get timeline(): Timeline | null {
+    return this.recording;
+  }
+
+  get playing(): boolean {
+    return this.playhead?.playing ?? false;
+  }
+
+  get speed(): number {
+    return this.playhead?.speed ?? 1;
+  }
+
+  get loop(): boolean {
+    return this.playhead?.loop ?? false;
+  }
+
+  /** Why it cannot be read on, or nothing. */
+  get problem(): string {
+    return this.playhead?.problem ?? "";
+  }
+
+  /** The time that is shown, s since the epoch. */
+  get position(): number {
+    return this.target ?? this.playhead?.position ?? this.recording?.start ?? 0;
+  }
+
+  play(playing: boolean): void {
+    this.connection.send({ type: "play", playing });
+  }
+
+  step(forward: boolean): void {
+    this.connection.send({ type: "step_time", forward });
+  }
+
+  setSpeed(speed: number): void {
+    this.connection.send({ type: "set_playback", speed, loop: this.loop });
+  }
+
+  setLoop(loop: boolean): void {
+    this.connection.send({ type: "set_playback", speed: this.speed, loop });
+  }
+
+  /** Goes to a time. While the server is on its way to one only the newest of the others is kept. */
+  seek(position: number): void {
+    if (!this.recording) return;
+    this.target = Math.min(this.recording.end, Math.max(this.recording.start, position));
+    if (!this.asked) this.ask(this.target);
+    this.moved.emit();
+  }
+
+  private ask(position: number): void {
+    this.asked = true;
+    this.wanted = position;
+    this.connection.send({ type: "seek_time", position });
+  }
+
+  private take(playhead: Playhead): void {
+    const before = this.playhead;
+    this.playhead = playhead;
+    if (this.asked && before?.seeks !== playhead.seeks) {
+      this.asked = false;
+      if (this.target !== null && this.target !== this.wanted) this.ask(this.target);
+      else this.target = null;
+    }
+    const same = before !== null && (["playing", "speed", "loop", "problem"] as const).every((key) => before[key] === playhead[key]);
+    if (same) this.moved.emit();
+    else this.changed.emit();
+  }
+}

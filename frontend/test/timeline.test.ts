@@ -1,0 +1,74 @@
+import { beforeEach, describe, expect, it, vi } from "vitest";
+import { Connection } from "../src/connection/connection";
+import { clockText, densities, passedText } from "../src/panels/timeline-text";
+import type { PageMessage, Playhead } from "../src/protocol";
+import { TimelineState } from "../src/state/timeline";
+
+function playhead(part: Partial<Playhead> = {}): Playhead & { type: "playhead" } {
+  return { type: "playhead", position: 100, playing: false, speed: 1, loop: false, seeks: 0, problem: "", ...part };
+}
+
+describe("the timeline", () => {
+  let sent: PageMessage[];
+  let connection: Connection;
+  let timeline: TimelineState;
+
+  beforeEach(() => {
+    sent = [];
+    connection = new Connection("ws://localhost/ws");
+    vi.spyOn(connection, "send").mockImplementation((message) => void sent.push(message));
+    timeline = new TimelineState(connection);
+    connection.message.emit({ type: "timeline", name: "drive", start: 100, end: 110, topics: [] });
+    connection.message.emit(playhead());
+  });
+
+  it("is where the user drags it, and asks for one time after the other, the newest only", () => {
+    for (const position of [102, 103, 104]) timeline.seek(position);
+    expect(timeline.position).toBe(104);
+    expect(sent).toEqual([{ type: "seek_time", position: 102 }]);
+    connection.message.emit(playhead({ position: 100.2, playing: true }));
+    expect(timeline.position, "told before the server was there").toBe(104);
+    connection.message.emit(playhead({ position: 102, seeks: 1 }));
+    expect(sent[1]).toEqual({ type: "seek_time", position: 104 });
+    expect(timeline.position).toBe(104);
+    connection.message.emit(playhead({ position: 104, seeks: 2 }));
+    expect(sent).toHaveLength(2);
+    connection.message.emit(playhead({ position: 104.1, seeks: 2, playing: true }));
+    expect(timeline.position).toBe(104.1);
+  });
+
+  it("stays within the recording", () => {
+    timeline.seek(200);
+    expect(sent).toEqual([{ type: "seek_time", position: 110 }]);
+  });
+
+  it("tells what has changed apart from time that passes", () => {
+    const told: string[] = [];
+    timeline.changed.on(() => told.push("changed"));
+    timeline.moved.on(() => told.push("moved"));
+    connection.message.emit(playhead({ playing: true }));
+    connection.message.emit(playhead({ playing: true, position: 100.1 }));
+    connection.message.emit(playhead({ playing: true, position: 100.2, loop: true }));
+    expect(told).toEqual(["changed", "moved", "changed"]);
+  });
+
+  it("is gone with a program that has none", () => {
+    connection.message.emit({ type: "hello", protocol: 1, version: "", title: "" });
+    expect(timeline.timeline).toBeNull();
+  });
+});
+
+describe("what the timeline says", () => {
+  it("times as minutes and seconds", () => {
+    expect(passedText(7.256, 90)).toBe("0:07.26 / 1:30");
+    expect(passedText(59.999, 3725)).toBe("1:00.00 / 1:02:05");
+    expect(passedText(1, 2.5)).toBe("0:01.00 / 0:02.50");
+    expect(clockText(1_700_000_000.25)).toContain(".250 (1700000000.250)");
+  });
+
+  it("how dense messages are, in relation to the densest part of each topic", () => {
+    const topic = (name: string, counts: number[]) => ({ name, kind: "", count: counts.reduce((a, b) => a + b, 0), counts });
+    const rows = densities([topic("/a", [1, 0]), topic("/b", [2, 4]), topic("/c", [])]);
+    expect(rows.map((row) => row.map((each) => Math.round(each * 100)))).toEqual([[34, 60], [60, 0]]);
+  });
+});

@@ -1,0 +1,129 @@
+"""The timeline of a recording: its times for pages, and what they have it do."""
+
+from __future__ import annotations
+
+import asyncio
+from math import isfinite
+from typing import ClassVar
+
+from linkwright.bag.playback import FASTEST, SLOWEST, Playback
+from linkwright.bag.reading import BagReader
+from linkwright.diagnostics import LinkwrightError
+from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
+from linkwright.viewer.protocol.message import ServerMessage
+from linkwright.viewer.protocol.time import TimeReset
+from linkwright.viewer.protocol.timeline import (
+    Play,
+    Playhead,
+    SeekTime,
+    SetPlayback,
+    StepTime,
+    Timeline,
+    TimelineTopic,
+)
+from linkwright.viewer.web.audience import Page
+
+_PERIOD = 0.1
+"""Seconds between two times that pages are told while a recording is played."""
+
+_PARTS = 200
+"""Equal parts of a recording whose messages are counted."""
+
+_SECOND = 1_000_000_000
+
+
+class TimelineFeature(PageFeature):
+    """Shows pages where a recording is, and has it do what they ask for. Without a recording it does nothing.
+
+    A recording begins to play when the first page opens.
+    """
+
+    RECEIVES: ClassVar[tuple[type, ...]] = (Play, SeekTime, StepTime, SetPlayback)
+
+    def __init__(self, viewer: FeatureHost) -> None:
+        super().__init__(viewer)
+        self._playback: Playback | None = None
+        self._timeline: Timeline | None = None
+        self._problem = ""
+        self._begun = False
+        self._timer: asyncio.TimerHandle | None = None
+        self._loop = asyncio.get_running_loop()
+
+    def attach(self, playback: Playback, bag: BagReader) -> None:
+        """Have pages see a recording; `failed` is to be called when it cannot be read."""
+        counts = bag.counts(_PARTS)
+        topics = [TimelineTopic(at.name, at.type_name, at.count, counts.get(at.name, [])) for at in bag.topics]
+        self._timeline = Timeline(bag.path.name, bag.start_ns / _SECOND, bag.end_ns / _SECOND, topics)
+        self._playback = playback
+        playback.begin_anew = self._begin_anew
+        playback.changed.append(self._changed)
+        self.context.graph_changes.listen(playback.review)
+        self.context.pages.publish(self._timeline)
+        self._changed()
+
+    def failed(self, error: LinkwrightError) -> None:
+        """The recording cannot be read on."""
+        self._problem = str(error.diagnostics[0].message)
+        for diagnostic in error.diagnostics:
+            self.context.report(diagnostic)
+
+    def opening(self) -> list[ServerMessage]:
+        """The recording, and where it is."""
+        playback = self._playback
+        if playback is None or self._timeline is None:
+            return []
+        if not self._begun:
+            self._begun = True
+            playback.review()
+            playback.play()
+        return [self._timeline, self._playhead(playback)]
+
+    def receive(self, page: Page, message: Play | SeekTime | StepTime | SetPlayback) -> None:
+        """Do what a page asks for."""
+        playback = self._playback
+        if playback is None:
+            return
+        self._problem = ""
+        match message:
+            case Play(playing):
+                playback.play() if playing else playback.pause()
+            case SeekTime(position) if isfinite(position):
+                start = playback.start_ns
+                # Relative to the start, because a float of seconds since the epoch is off by a tenth of a microsecond.
+                playback.seek(start + round((position - start / _SECOND) * _SECOND))
+            case StepTime(forward):
+                playback.step(forward)
+            case SetPlayback(speed, loop) if SLOWEST <= speed <= FASTEST:
+                playback.set_speed(speed)
+                playback.set_loop(loop)
+
+    def close(self) -> None:
+        """Play nothing more."""
+        if self._timer is not None:
+            self._timer.cancel()
+        if self._playback is not None:
+            self.context.graph_changes.ignore(self._playback.review)
+            self._playback.close()
+
+    # -----------------------------------------------------------------------------------------------------------
+
+    def _begin_anew(self) -> None:
+        """Forget what was shown, and what waits to be shown: it is of another time."""
+        for subscription in self.context.node.subscriptions:
+            subscription.discard()
+        for manager in self.managers.all():
+            manager.reset_time()
+            manager.publish(TimeReset())
+
+    def _changed(self) -> None:
+        if self._timer is not None:
+            self._timer.cancel()
+            self._timer = None
+        if self._playback is not None:
+            self.context.pages.publish(self._playhead(self._playback))
+            if self._playback.playing:
+                self._timer = self._loop.call_later(_PERIOD, self._changed)
+
+    def _playhead(self, playback: Playback) -> Playhead:
+        position = playback.position_ns / _SECOND
+        return Playhead(position, playback.playing, playback.speed, playback.loop, playback.seeks, self._problem)

@@ -1,0 +1,66 @@
+"""The timeline: which time of a recording is shown, and what pages have it do. Times are seconds since the epoch."""
+
+from __future__ import annotations
+
+from linkwright.viewer.protocol.message import PageMessage, Record, ServerMessage
+
+
+class TimelineTopic(Record):
+    """A topic of a recording, with how many messages it has.
+
+    `counts` are those in equal parts of the recording; empty where that is not known.
+    """
+
+    name: str
+    kind: str
+    count: int
+    counts: list[int]
+
+
+class Timeline(ServerMessage):
+    """The recording that is shown: its name, its times and topics."""
+
+    name: str
+    start: float
+    end: float
+    topics: list[TimelineTopic]
+
+
+class Playhead(ServerMessage):
+    """Where a recording is. While `playing`, told a few times a second.
+
+    `seeks` is how often somebody went to another time: a page whose own has been done goes on to the next.
+    `problem` says why it stands still where it cannot be read; else it is empty.
+    """
+
+    position: float
+    playing: bool
+    speed: float
+    loop: bool
+    seeks: int
+    problem: str
+
+
+class Play(PageMessage):
+    """The user has a recording go on, or stand still."""
+
+    playing: bool
+
+
+class SeekTime(PageMessage):
+    """The user goes to a time of a recording."""
+
+    position: float
+
+
+class StepTime(PageMessage):
+    """The user goes to the next message of what is shown, or to the one before."""
+
+    forward: bool
+
+
+class SetPlayback(PageMessage):
+    """The user plays a recording slower or faster, once or over and over."""
+
+    speed: float
+    loop: bool

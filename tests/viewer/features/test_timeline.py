@@ -1,0 +1,93 @@
+"""A recording in a viewer: what pages are told of it, and have it do."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from pathlib import Path
+
+import numpy as np
+
+from linkwright.bag import BagReader, BagWriter, Playback, PublishedRecording
+from linkwright.graph import DEFAULT_QOS, Parameter
+from linkwright.messages import TFMessage, TransformBatch, serialize
+from tests.skipping import skipping
+from tests.viewer.features.test_time import POINT, arrived, config, point
+from tests.viewer.scene import World, page, world
+
+START = 1_700_000_000
+SECOND = 1_000_000_000
+
+
+def recorded(folder: Path) -> Path:
+    """Ten seconds: each second a point, and a frame whose x is the seconds since the start."""
+    path = folder / "drive"
+    with BagWriter(path) as writer:
+        writer.add_topic("/p", POINT, [DEFAULT_QOS])
+        writer.add_topic("/tf", "tf2_msgs/msg/TFMessage", [DEFAULT_QOS])
+        for second in range(11):
+            stamp = (START + second) * SECOND
+            batch = TransformBatch(("base",), ("tip",), stamp, np.array([[second, 0, 0, 0, 0, 0, 1.0]]))
+            writer.write("/tf", stamp, serialize(TFMessage(batch=batch)))
+            writer.write("/p", stamp, serialize(point(float(second), START + second)))
+    return path
+
+
+@asynccontextmanager
+async def shown(folder: Path) -> AsyncIterator[World]:
+    """A viewer that shows the recording, in the recording's time."""
+    async with world(config()) as made:
+        with BagReader(recorded(folder)) as bag:
+            made.viewer.context.node.set_parameters([Parameter("use_sim_time", value=True)])
+            player = made.graph.create_node("player")
+            output = PublishedRecording(player, bag)
+            playback = Playback(player.handle, bag, output, made.viewer.playback_failed)
+            made.viewer.attach_recording(playback, bag)
+            yield made
+            playback.close()
+
+
+@skipping
+async def test_a_page_is_told_of_the_recording_which_begins_to_play(tmp_path):
+    async with shown(tmp_path) as made, page(made.viewer) as client:
+        timeline = await client.until("timeline")
+        assert (timeline["name"], timeline["start"], timeline["end"]) == ("drive", START, START + 10)
+        assert {each["name"]: sum(each["counts"]) for each in timeline["topics"]} == {"/p": 11, "/tf": 11}
+        await client.until("playhead", playing=True)
+        await arrived(client, "tip", 3)
+        await client.until("playhead", playing=False, position=START + 10)
+
+
+@skipping
+async def test_a_page_goes_to_another_time_and_all_that_is_shown_is_of_that_time(tmp_path):
+    async with shown(tmp_path) as made, page(made.viewer) as client:
+        await client.until("playhead", playing=True)
+        await client.send("play", playing=False)
+        await client.until("playhead", playing=False)
+        for second in (7, 2, 9):
+            await client.send("seek_time", position=START + second)
+            await client.until("playhead", position=START + second, playing=False)
+            await arrived(client, "tip", second)
+        await client.send("step_time", forward=False)
+        await client.until("playhead", position=START + 8)
+        await arrived(client, "tip", 8)
+
+
+@skipping
+async def test_a_page_sets_speed_and_whether_it_begins_anew(tmp_path):
+    async with shown(tmp_path) as made, page(made.viewer) as client:
+        await client.until("playhead", playing=True)
+        await client.send("set_playback", speed=5, loop=True)
+        await client.until("playhead", speed=5, loop=True)
+        await client.send("set_playback", speed=-5, loop=False)
+        await client.send("set_playback", speed=2, loop=True)
+        await client.until("playhead", speed=2, loop=True)
+        assert not any(isinstance(each, dict) and each.get("speed") == -5 for each in client.messages)
+
+
+@skipping
+async def test_a_viewer_without_a_recording_has_no_timeline():
+    async with world() as made, page(made.viewer) as client:
+        assert "timeline" not in await client.opened()
+        await client.send("play", playing=True)
+        await client.send("seek_time", position=1)
