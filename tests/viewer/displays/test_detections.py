@@ -5,11 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from linkwright.graph import SetParametersResult
 from linkwright.messages import Time, get_message
 from linkwright.viewer import RvizConfig
 from linkwright.viewer.displays.class_colors import class_color, read_class_colors
 from tests.viewer.contents import contents
 from tests.viewer.scene import world
+from tests.waiting import eventually
 
 HYPOTHESIS = get_message("vision_msgs/msg/ObjectHypothesisWithPose")
 PLUGINS = "vision_msgs_rviz_plugins"
@@ -174,3 +176,66 @@ async def test_images_are_shown_as_they_come_when_nothing_detects(monkeypatch):
         publish(w, "/topic", image(5))
         await w.settle()
         assert [each.fields["kind"] for each in contents(w.display("Detections"))] == ["image_frame"]
+
+
+# --- the threshold -----------------------------------------------------------------------------------------------
+
+
+async def threshold_told(w) -> tuple[str, str]:
+    """What the display says of its threshold, once it does."""
+    await eventually(lambda: "Threshold" in w.status("Detections"))
+    return w.status("Detections")["Threshold"]
+
+
+def detecting(w, **parameters):
+    node = w.graph.create_node("yolo_node", namespace="/yolo")
+    for name, value in parameters.items():
+        node.declare_parameter(name.replace("__", "."), value)
+    node.create_publisher("vision_msgs/msg/Detection2DArray", "/found", 10)
+    return node
+
+
+@pytest.mark.parametrize("name", ["threshold", "confidence_threshold", "detection__threshold"])
+async def test_the_threshold_is_that_of_the_node_that_detects(name):
+    async with world(config("linkwright/Detections", ", Detections Topic: {Value: /found}")) as w:
+        node = detecting(w, **{name: 0.5})
+        w.display("Detections").set_property(("Threshold",), 0.7)
+        shown = name.replace("__", ".")
+        assert await threshold_told(w) == ("ok", f"Parameter '{shown}' of /yolo/yolo_node")
+        assert node.get_parameter(shown).value == pytest.approx(0.7)
+
+
+@pytest.mark.parametrize(
+    ("parameters", "level", "words"),
+    [({}, "ok", "has no parameter 'threshold'"), ({"threshold": "much"}, "warn", "refuses 'threshold'")],
+)
+async def test_other_nodes_detections_are_filtered_in_the_page_and_that_is_told(parameters, level, words):
+    async with world(config("linkwright/Detections", ", Detections Topic: {Value: /found}")) as w:
+        detecting(w, **parameters)
+        w.display("Detections").set_property(("Threshold",), 0.7)
+        told, text = await threshold_told(w)
+        assert (told, words in text) == (level, True)
+
+
+async def test_a_threshold_that_the_node_refuses_and_one_without_a_node():
+    async with world(config("linkwright/Detections", ", Detections Topic: {Value: /found}")) as w:
+        display = w.display("Detections")
+        display.set_property(("Threshold",), 0.7)
+        assert "0 nodes publish /found" in (await threshold_told(w))[1]
+        node = detecting(w, threshold=0.5)
+        node.add_on_set_parameters_callback(lambda _: SetParametersResult(False, "never"))
+        display.set_property(("Threshold",), 0.6)
+        await eventually(lambda: "refuses 'threshold': never" in w.status("Detections")["Threshold"][1])
+        assert node.get_parameter("threshold").value == 0.5
+
+
+async def test_of_many_thresholds_the_last_one_counts():
+    async with world(config("linkwright/Detections", ", Detections Topic: {Value: /found}")) as w:
+        node = detecting(w, threshold=0.5)
+        values: list[float] = []
+        node.add_post_set_parameters_callback(lambda given: values.append(given[0].value))
+        for value in (0.1, 0.2, 0.3, 0.9):
+            w.display("Detections").set_property(("Threshold",), value)
+        assert (await threshold_told(w))[0] == "ok"
+        assert values[-1] == pytest.approx(0.9)
+        assert len(values) < 4

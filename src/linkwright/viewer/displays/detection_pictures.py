@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections import deque
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -15,10 +16,12 @@ from linkwright.viewer.displays.base.display import DisplayHost, Pose
 from linkwright.viewer.displays.base.topic_display import SideTopic
 from linkwright.viewer.displays.class_colors import class_color
 from linkwright.viewer.displays.detections import best_result
+from linkwright.viewer.displays.detector_threshold import DetectorThreshold
 from linkwright.viewer.displays.image import ImageDisplay
 from linkwright.viewer.protocol.detections import PictureBoxes
 
 DETECTIONS = "Detections Topic"
+THRESHOLD = "Threshold"
 _TYPE = "vision_msgs/msg/Detection2DArray"
 _BOXES = "boxes"
 _MOST_IMAGES = 10
@@ -40,10 +43,10 @@ class DetectionPictureDisplay(ImageDisplay):
         *ImageDisplay.SCHEMA,
         topic_spec(DETECTIONS, "/yolo/detections", _TYPE, messages=(_TYPE,)),
         PropertySpec(
-            "Threshold",
+            THRESHOLD,
             "float",
             0.0,
-            "Detections of a lower score are not shown. What the detector publishes is a parameter of its node.",
+            "Detections of a lower score are left out: by their node, if it has a parameter 'threshold', else here.",
             minimum=0.0,
             maximum=1.0,
         ),
@@ -53,6 +56,7 @@ class DetectionPictureDisplay(ImageDisplay):
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
         super().__init__(host, identity, config)
         self._side = SideTopic(host, _TYPE, self._detected)
+        self._threshold = DetectorThreshold(host.context.node, partial(self.say, THRESHOLD))
         self._images: deque[Any] = deque(maxlen=_MOST_IMAGES)
         self._detected_at = float("-inf")
 
@@ -61,10 +65,15 @@ class DetectionPictureDisplay(ImageDisplay):
         return (*super().schema(), *self.SCHEMA[len(ImageDisplay.SCHEMA) :])
 
     def changed(self, path: Path) -> None:
-        """Listen to other detections."""
+        """Listen to other detections, or have others left out."""
         super().changed(path)
-        if path[0] == DETECTIONS and self.enabled:
-            self._listen()
+        if path[0] == DETECTIONS:
+            self._threshold.close()
+            self.unsay(THRESHOLD)
+            if self.enabled:
+                self._listen()
+        elif path[0] == THRESHOLD and self.enabled:
+            self._threshold.set(self.properties.text(DETECTIONS).strip(), self.properties.number(THRESHOLD))
 
     def take_image(self, message: Any, pose: Pose | None) -> None:
         """Show an image, or keep it until it is known what is in it."""
@@ -93,6 +102,7 @@ class DetectionPictureDisplay(ImageDisplay):
     def _unsubscribe(self) -> None:
         super()._unsubscribe()
         self._side.close()
+        self._threshold.close()
 
     def _listen(self) -> None:
         topic = self.properties.text(DETECTIONS).strip()

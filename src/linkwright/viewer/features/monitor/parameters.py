@@ -14,6 +14,7 @@ from linkwright.graph.parameters.files import parameter_file_text, plain_value
 from linkwright.graph.parameters.parameter import ParameterType
 from linkwright.viewer.features.monitor.topic_tap import Paced, TopicTap
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
+from linkwright.viewer.parameter_answers import NoAnswerError, answer, offered
 from linkwright.viewer.protocol.monitor import (
     DumpParameters,
     NodeParameters,
@@ -116,15 +117,7 @@ def _value(kind: str, text: str) -> Any:
     return number
 
 
-_PATIENCE = 5.0
-"""Seconds for services to appear, and for an answer."""
-
-_LOOK_EVERY = 0.05
 _TELL_PERIOD = 0.05
-
-
-class NoAnswerError(Exception):
-    """A node did not answer in time; the text says what was asked."""
 
 
 class RemoteNode:
@@ -201,7 +194,7 @@ class RemoteNode:
 
     async def _set(self, wanted: SetParameter, answer: Callable[[ParameterResult], None]) -> None:
         try:
-            await self._ready()
+            await offered(self._client)
             response = await self._answer(self._client.set_parameters([parameter_of(wanted)]))
         except (ValueError, NoAnswerError) as error:
             answer(ParameterResult(self.name, wanted.name, False, str(error)))
@@ -221,25 +214,11 @@ class RemoteNode:
         answer(ParameterDump(self.name, file, parameter_file_text(self.name, plain), None))
 
     async def _names(self) -> list[str]:
-        await self._ready()
+        await offered(self._client)
         return sorted((await self._answer(self._client.list_parameters())).result.names)
 
-    async def _ready(self) -> None:
-        loop = asyncio.get_running_loop()
-        deadline = loop.time() + _PATIENCE
-        while not self._client.services_are_ready():
-            if loop.time() > deadline:
-                raise NoAnswerError(f"node '{self.name}' does not offer its parameters")
-            await asyncio.sleep(_LOOK_EVERY)
-
     async def _answer(self, future: Awaitable[Any]) -> Any:
-        async def wait() -> Any:
-            return await future
-
-        try:
-            return await asyncio.wait_for(wait(), _PATIENCE)
-        except asyncio.TimeoutError:
-            raise NoAnswerError(f"node '{self.name}' did not answer in {_PATIENCE:g} s") from None
+        return await answer(self._client, future)
 
 
 _EVENTS = "/parameter_events"

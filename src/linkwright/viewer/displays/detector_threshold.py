@@ -1,0 +1,80 @@
+"""The parameter by which the node that publishes detections leaves out the uncertain ones."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from contextlib import suppress
+
+from linkwright.graph import Node, Parameter
+from linkwright.graph.parameters.client import AsyncParameterClient
+from linkwright.graph.parameters.parameter import ParameterType
+from linkwright.viewer.parameter_answers import NoAnswerError, answer, offered
+from linkwright.viewer.protocol.displays import StatusLevel
+
+_NAMES = ["threshold", "confidence_threshold", "detection.threshold"]
+"""Of our detector and yolo_ros, of yolov5_ros, and of openrobotics_darknet_ros."""
+
+Told = Callable[[StatusLevel, str], None]
+"""Called with a status of the display: who leaves them out, and a warning where the node would not."""
+
+
+class DetectorThreshold:
+    """Sets the least score of detections at the node that publishes them, the latest wish only.
+
+    Args:
+        node: asks.
+        told: is called with what has come of a wish.
+    """
+
+    def __init__(self, node: Node, told: Told) -> None:
+        self._node, self._told = node, told
+        self._wish: tuple[str, float] | None = None
+        self._task: asyncio.Task[None] | None = None
+
+    def set(self, topic: str, value: float) -> None:
+        """Have the publisher of a topic leave out what has a lower score, if it has a parameter for it."""
+        self._wish = topic, value
+        if self._task is None or self._task.done():
+            self._task = asyncio.get_running_loop().create_task(self._fulfil())
+
+    def close(self) -> None:
+        """Ask no more."""
+        self._wish = None
+        if self._task is not None:
+            self._task.cancel()
+            self._task = None
+
+    async def _fulfil(self) -> None:
+        while self._wish is not None:
+            (topic, value), self._wish = self._wish, None
+            told = await self._set(topic, value)
+            if self._wish is None:
+                self._told(*told)
+
+    async def _set(self, topic: str, value: float) -> tuple[StatusLevel, str]:
+        full = self._node.resolve_topic_name(topic)
+        publishers = {
+            f"{info.node_namespace.rstrip('/')}/{info.node_name}"
+            for info in self._node.get_publishers_info_by_topic(full)
+        }
+        if len(publishers) != 1:
+            return "ok", f"Filtered here: {len(publishers)} nodes publish {full}"
+        (name,) = publishers
+        client = AsyncParameterClient(self._node, name)
+        try:
+            await offered(client)
+            names = (await answer(client, client.list_parameters())).result.names
+            known = next((each for each in _NAMES if each in names), None)
+            if known is None:
+                return "ok", f"Filtered here: {name} has no parameter 'threshold'"
+            wanted = Parameter(known, ParameterType.DOUBLE, value)
+            result = (await answer(client, client.set_parameters([wanted]))).results[0]
+        except NoAnswerError as error:
+            return "warn", f"Filtered here: {error}"
+        finally:
+            with suppress(ValueError):  # the node may have been destroyed before
+                client.destroy()
+        if not result.successful:
+            return "warn", f"Filtered here: {name} refuses '{known}': {result.reason}"
+        return "ok", f"Parameter '{known}' of {name}"

@@ -1,0 +1,48 @@
+"""Waiting for what another node says of its parameters."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Awaitable
+from typing import Any
+
+from linkwright.graph.parameters.client import AsyncParameterClient
+
+_PATIENCE = 5.0
+"""Seconds for services to appear, and for an answer."""
+
+_LOOK_EVERY = 0.05
+
+
+class NoAnswerError(Exception):
+    """A node did not answer in time; the text says what was asked."""
+
+
+async def offered(client: AsyncParameterClient) -> None:
+    """Wait until a node offers its parameters.
+
+    Raises:
+        NoAnswerError: it does not.
+    """
+    loop = asyncio.get_running_loop()
+    deadline = loop.time() + _PATIENCE
+    while not client.services_are_ready():
+        if loop.time() > deadline:
+            raise NoAnswerError(f"node '{client.remote_node_name}' does not offer its parameters")
+        await asyncio.sleep(_LOOK_EVERY)
+
+
+async def answer(client: AsyncParameterClient, future: Awaitable[Any]) -> Any:
+    """The response that a method of a client promised.
+
+    Raises:
+        NoAnswerError: none comes.
+    """
+
+    async def wait() -> Any:
+        return await future
+
+    try:
+        return await asyncio.wait_for(wait(), _PATIENCE)
+    except asyncio.TimeoutError:
+        raise NoAnswerError(f"node '{client.remote_node_name}' did not answer in {_PATIENCE:g} s") from None
