@@ -7,7 +7,7 @@ grey of more than 8 bits is shown in a range, RViz's Normalize Range.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -82,6 +82,14 @@ class Picture:
         return self if step == 1 else Picture(np.ascontiguousarray(self.pixels[::step, ::step]))
 
 
+def _reordered(pixels: Pixels, order: Sequence[int]) -> Pixels:
+    """Channels in another order; one after another takes a fifth of the time of all at once."""
+    out = np.empty((*pixels.shape[:2], len(order)), pixels.dtype)
+    for channel, source in enumerate(order):
+        out[..., channel] = pixels[..., source]
+    return out
+
+
 def has_range(encoding: str) -> bool:
     """Whether RViz looks for black and white in the values of such an image: those of more than 8 bits."""
     return encoding in _RANGED
@@ -103,7 +111,7 @@ def picture_of(message: Any, ranges: RangeFinder) -> Picture:
     if encoding in _PLAIN:
         channels, order = _PLAIN[encoding]
         pixels = _rows(message, "u1", channels)
-        return Picture(pixels if order is None else np.ascontiguousarray(pixels[..., order]))
+        return Picture(pixels if order is None else _reordered(pixels, order))
     if encoding.startswith("bayer_") and encoding[6:10] in ("rggb", "bggr", "gbrg", "grbg"):
         deep = encoding.endswith("16")
         mosaic = _rows(message, "u2" if deep else "u1")

@@ -61,10 +61,14 @@ class ColourDetector(Detector):
         hsv = cv2.cvtColor(picture, cv2.COLOR_RGB2HSV) if picture.size else picture
         for index, bounds in enumerate(self._ranges.values() if picture.size else ()):
             mask = mask_of(hsv, bounds)
-            count, _, statistics, _ = cv2.connectedComponentsWithStats(mask, connectivity=8)
+            x, y, columns, rows = cv2.boundingRect(mask)  # most colours are nowhere, or in a small part of the picture
+            if columns * rows < self._least_area:
+                continue
+            part = mask[y : y + rows, x : x + columns]
+            count, _, statistics, _ = cv2.connectedComponentsWithStats(part, connectivity=8)
             for left, top, width, height, area in statistics[1:count].tolist():
                 if area >= self._least_area:
-                    boxes.append((left, top, left + width, top + height))
+                    boxes.append((x + left, y + top, x + left + width, y + top + height))
                     scores.append(area / (width * height))
                     classes.append(index)
         return most_certain(boxes, scores, classes, self.names, limits)

@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from linkwright.vision.detectors.library import load_opencv
 
 _GREY = 114
-_LEVELS = np.arange(256, dtype=np.float32) / np.float32(255.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,5 +76,7 @@ def letterboxed(
 def tensor_of(pixels: NDArray[np.uint8], kind: type[np.floating]) -> NDArray[np.floating]:
     """Pixels, shape ``(rows, columns, 3)``, as numbers from 0 to 1, shape ``(1, 3, rows, columns)``."""
     cv2 = load_opencv()
-    planes = np.stack([cv2.LUT(plane, _LEVELS) for plane in cv2.split(pixels)])
-    return planes.astype(kind, copy=False)[np.newaxis]
+    planes = np.empty((1, 3, *pixels.shape[:2]), np.float32)
+    for plane, levels in zip(planes[0], cv2.split(pixels), strict=True):
+        np.divide(levels, np.float32(255.0), out=plane, dtype=np.float32)
+    return planes.astype(kind, copy=False)
