@@ -262,6 +262,11 @@ async def test_as_other_packages_name_things(test, start, kind, parameters, topi
         ({"model": "colours", "image_transport": "theora"}, "NODE433"),
         ({"model": "colours", "image_reliability": 9}, "NODE433"),
         ({"model": "colours", "classes": ["blu"]}, "NODE433"),
+        ({"model": "colours", "threshold": 2.0}, "GRAPH204"),
+        ({"model": "colours", "max_rate": -5.0}, "GRAPH204"),
+        ({"model": "things", "imgsz_height": -3, "imgsz_width": 320}, "GRAPH204"),
+        ({"model": "things", "imgsz_width": 320}, "VISION109"),
+        ({"model": "things", "device": "gpu"}, "VISION109"),
     ],
 )
 async def test_what_it_cannot_start_with(test, start, parameters, code):

@@ -30,7 +30,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
 
-from linkwright.diagnostics import LinkwrightError
+from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.graph import (
     Graph,
     Parameter,
@@ -51,12 +51,15 @@ from linkwright.nodes.vision.dialects import DARKNET_ROS, OURS, YOLO_ROS, YOLOV5
 from linkwright.nodes.vision.latest import LatestWorker
 from linkwright.vision.detector import Detector, Limits
 from linkwright.vision.detectors.drawing import drawn
-from linkwright.vision.detectors.options import DetectorOptions
+from linkwright.vision.detectors.options import LARGEST_SIZE, DetectorOptions
 from linkwright.vision.detectors.registry import DEFAULT_DETECTOR, make_detector
+from linkwright.vision.detectors.settings import bad_setting
 
 _DEPTH = 10
 _SECONDS_BETWEEN_COMPLAINTS = 5.0
 _SHARE = ParameterDescriptor(floating_point_range=[Range(0.0, 1.0)])
+_RATE = ParameterDescriptor(floating_point_range=[Range(0.0, 1000.0)])
+_SIDE = ParameterDescriptor(integer_range=[Range(0, LARGEST_SIZE)], read_only=True)
 _FOR_GOOD = ParameterDescriptor(read_only=True)
 _ANY = ParameterDescriptor(dynamic_typing=True)
 _SETTINGS = ("dictionary", "least_area", "part", "colour")
@@ -122,14 +125,14 @@ class DetectorNode(SingleNode):
         node.declare_parameter(dialect.model, DEFAULT_DETECTOR, _FOR_GOOD)
         node.declare_parameter(dialect.labels, "", _FOR_GOOD)
         node.declare_parameter("device", "cpu", _FOR_GOOD)
-        node.declare_parameter("imgsz_height", 0, _FOR_GOOD)
-        node.declare_parameter("imgsz_width", 0, _FOR_GOOD)
+        node.declare_parameter("imgsz_height", 0, _SIDE)
+        node.declare_parameter("imgsz_width", 0, _SIDE)
         node.declare_parameter(dialect.threshold, dialect.least_score, _SHARE)
         node.declare_parameter(dialect.iou, dialect.overlap, _SHARE)
         node.declare_parameter(dialect.most, dialect.largest_number)
         node.declare_parameter("classes", [""], _ANY)
         node.declare_parameter("enable", True)
-        node.declare_parameter("max_rate", 0.0)
+        node.declare_parameter("max_rate", 0.0, _RATE)
         node.declare_parameter("image_transport", "raw", _FOR_GOOD)
         node.declare_parameter("image_reliability", ReliabilityPolicy.BEST_EFFORT.value, _FOR_GOOD)
         if dialect.image_topic:
@@ -150,13 +153,16 @@ class DetectorNode(SingleNode):
         if colours:
             settings[_COLOURS] = colours
         size = self._value("imgsz_height"), self._value("imgsz_width")
+        if 0 in size and any(size):
+            missing = "imgsz_width" if size[0] else "imgsz_height"
+            raise bad_setting(missing, 0, phrase("an input has a height and a width: give both, or none"))
         labels = self._value(dialect.labels)
         return make_detector(
             self._value(dialect.model),
             DetectorOptions(
                 labels=Path(labels).expanduser() if labels else None,
                 device=self._value("device"),
-                size=size if min(size) > 0 else None,
+                size=size if all(size) else None,
                 settings=settings,
             ),
         )

@@ -9,9 +9,10 @@ from math import prod
 from typing import Any
 
 from linkwright.vision.detectors.class_names import names_in_metadata
+from linkwright.vision.detectors.options import LARGEST_SIZE
 
 _USUAL_STRIDE = 32
-_LARGEST_STRIDE, _LARGEST_SIDE = 256, 8192
+_LARGEST_STRIDE = 256
 """In pixels; what is said to be more counts as not said."""
 
 
@@ -46,7 +47,7 @@ class Metadata:
             names_in_metadata(entries.get("names", "")),
             entries.get("task", ""),
             stride if isinstance(stride, int) and 0 < stride <= _LARGEST_STRIDE else _USUAL_STRIDE,
-            (size[0], size[1]) if _are_numbers(size) and len(size) == 2 and max(size) <= _LARGEST_SIDE else None,
+            (size[0], size[1]) if _are_numbers(size) and len(size) == 2 and max(size) <= LARGEST_SIZE else None,
             _literal(entries.get("end2end", "")) is True
             or (isinstance(arguments, Mapping) and arguments.get("nms") is True),
             prod(points) if _are_numbers(points) else 0,

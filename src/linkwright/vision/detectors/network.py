@@ -16,14 +16,13 @@ from linkwright.vision.detectors.class_names import read_labels
 from linkwright.vision.detectors.layouts import Candidates, Form, find_layout, wrong_number
 from linkwright.vision.detectors.letterbox import letterboxed, tensor_of
 from linkwright.vision.detectors.metadata import Metadata
-from linkwright.vision.detectors.options import DetectorOptions
+from linkwright.vision.detectors.options import LARGEST_SIZE, DetectorOptions
 from linkwright.vision.detectors.sessions import load_session, reason_of
 from linkwright.vision.detectors.settings import bad_setting
 from linkwright.vision.detectors.suppression import suppressed
 
 _NUMBERS: dict[str, type[np.floating]] = {"tensor(float)": np.float32, "tensor(float16)": np.float16}
 _USUAL_SIZE = (640, 640)
-_LARGEST_SIZE = 8192
 
 
 class NetworkDetector(Detector):
@@ -42,9 +41,9 @@ class NetworkDetector(Detector):
     def __init__(self, file: Path, options: DetectorOptions) -> None:
         self._file, self._labels = file, options.labels
         labels = read_labels(options.labels) if options.labels is not None else None
-        if options.size is not None and max(options.size) > _LARGEST_SIZE:
+        if options.size is not None and max(options.size) > LARGEST_SIZE:
             raise bad_setting(
-                "imgsz", max(options.size), phrase("it is at most {largest} pixels", largest=_LARGEST_SIZE)
+                "imgsz", max(options.size), phrase("it is at most {largest} pixels", largest=LARGEST_SIZE)
             )
         self._session, self._notes = load_session(file, options.device)
         metadata = Metadata.of(self._session.get_modelmeta().custom_metadata_map)

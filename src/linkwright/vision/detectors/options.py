@@ -6,6 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
+LARGEST_SIZE = 8192
+"""Pixels of the longer side of a network's input, at most."""
+
 
 @dataclass(frozen=True, slots=True)
 class DetectorOptions:

@@ -1,0 +1,155 @@
+"""Detectors and their node: the processor's time for a picture of 640x480, and pictures a second beside the simulation.
+
+Run it with ``python -m benchmarks vision``. Times are the processor's, of all threads, so that other programs change
+them little; pictures a second are counted where they come out, at ``/yolo/detections`` of
+``my_robot_vision detect.launch.py``, and mean something only on a quiet machine. The processor's time of that whole
+launch for each of them means something everywhere: 30 a second on two processors leave 66 ms.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import signal
+import statistics
+import subprocess
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from benchmarks.measure import LINKWRIGHT, Row
+from linkwright.graph import Graph
+from linkwright.images import RangeFinder, Unpacker, picture_of
+from linkwright.messages import get_message
+from linkwright.nodes.vision.detection_messages import picture_message, vision_message
+from linkwright.vision.detector import Limits
+from linkwright.vision.detectors.drawing import drawn
+from linkwright.vision.detectors.library import load_opencv
+from linkwright.vision.detectors.options import DetectorOptions
+from linkwright.vision.detectors.registry import make_detector
+from linkwright.wire.dds import join
+
+MODELS = ("colours", "things")
+_PICTURES = 60
+_SECONDS = 20.0
+_START_SECONDS = 120.0
+_DOMAIN = "187"
+_SIZE = (480, 640)
+
+
+def rows() -> list[Row]:
+    """One picture in this process, then the launch file as a process of its own."""
+    return [*_one_picture(), *(row for model in MODELS for row in _beside_the_simulation(model))]
+
+
+def _one_picture() -> Iterator[Row]:
+    picture = _scene()
+    message = picture_message(get_message("std_msgs/msg/Header")(frame_id="camera"), picture)
+    unpacker, ranges = Unpacker(), RangeFinder()
+    for encoding in ("rgb8", "bgr8"):
+        message.encoding = encoding
+        taken = _milliseconds(lambda: picture_of(unpacker.image(message, "raw"), ranges).rgb())
+        yield Row(f"a picture of {encoding} taken from its message", taken, "ms")
+    for model in MODELS:
+        detector = make_detector(model, DetectorOptions())
+        found = detector.detect(picture, Limits())
+        yield Row(f"{model}: found in it", _milliseconds(partial(detector.detect, picture, Limits())), "ms", "33")
+        yield Row(
+            f"{model}: {len(found)} detections as a message",
+            _milliseconds(partial(vision_message, message.header, found)),
+            "ms",
+        )
+        yield Row(f"{model}: the picture with boxes", _milliseconds(partial(drawn, picture, found)), "ms")
+
+
+def _scene() -> NDArray[np.uint8]:
+    """Things of plain colours on a floor, with noise as cameras have it; the same each time."""
+    cv2 = load_opencv()
+    picture = np.full((*_SIZE, 3), 150, np.uint8)
+    picture[: _SIZE[0] // 2] = (150, 175, 205)
+    cv2.circle(picture, (200, 300), 50, (200, 20, 30), -1)
+    cv2.rectangle(picture, (400, 250), (480, 330), (220, 120, 20), -1)
+    cv2.circle(picture, (550, 300), 30, (20, 160, 40), -1)
+    noise = np.random.default_rng(1).normal(0.0, 2.0, picture.shape)
+    noisy: NDArray[np.uint8] = np.clip(picture + noise, 0, 255).astype(np.uint8)
+    return noisy
+
+
+def _milliseconds(call: Callable[[], object]) -> float:
+    """The processor's time of one call, the median of many."""
+    call()
+    times = []
+    for _ in range(_PICTURES):
+        began = time.process_time()
+        call()
+        times.append(time.process_time() - began)
+    return statistics.median(times) * 1000.0
+
+
+def _beside_the_simulation(model: str) -> Iterator[Row]:
+    with _launched(model) as process:
+        pictures, seconds, processor, share = asyncio.run(_counted(process.pid))
+    about = f"{model}, beside the simulation:"
+    yield Row(f"{about} detections a second", pictures / seconds, "/s", "30")
+    yield Row(f"{about} pictures of the camera with detections", share, "%")
+    yield Row(f"{about} the processor's time of all for each", 1000.0 * processor / pictures, "ms", "66")
+
+
+@contextmanager
+def _launched(model: str) -> Iterator[subprocess.Popen[bytes]]:
+    words = [LINKWRIGHT, "launch", "my_robot_vision", "detect.launch.py", f"model:={model}", "--no-open"]
+    process = subprocess.Popen(
+        words,
+        env={**os.environ, "ROS_DOMAIN_ID": _DOMAIN},
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
+    try:
+        yield process
+    finally:
+        process.send_signal(signal.SIGINT)
+        process.wait()
+
+
+async def _counted(pid: int) -> tuple[int, float, float, float]:
+    """Detections that come, in how many seconds, with how much of the processor, and for which share of the pictures.
+
+    How many pictures the camera made is told by their stamps, which are a period apart.
+    """
+    stamps: list[int] = []
+    os.environ["ROS_DOMAIN_ID"] = _DOMAIN
+    graph = Graph()
+    join(graph)
+    try:
+        node = graph.create_node("benchmark")
+
+        def came(message: Any) -> None:
+            stamps.append(message.header.stamp.nanoseconds)
+
+        node.create_subscription("vision_msgs/msg/Detection2DArray", "/yolo/detections", came, 10)
+        deadline = time.monotonic() + _START_SECONDS
+        while len(stamps) < 30:
+            if time.monotonic() > deadline:
+                raise RuntimeError("no detections came: start the launch file by hand and see what it says")
+            await asyncio.sleep(0.1)
+        stamps.clear()
+        before, began = _processor_seconds(pid), time.monotonic()
+        await asyncio.sleep(_SECONDS)
+        spent, seconds = _processor_seconds(pid) - before, time.monotonic() - began
+        gaps = np.diff(stamps)
+        share = 100.0 * len(gaps) * float(gaps.min()) / float(gaps.sum())
+        return len(stamps), seconds, spent, share
+    finally:
+        await graph.close()
+
+
+def _processor_seconds(pid: int) -> float:
+    """User's and system's time of a process, all threads."""
+    fields = Path(f"/proc/{pid}/stat").read_text(encoding="ascii").rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
