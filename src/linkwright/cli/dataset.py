@@ -63,10 +63,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--copies", metavar="N", type=unsigned_int, default=3, help="things of each class at least (default: 3)"
     )
     parser.add_argument(
-        "--most", metavar="N", type=positive_int, default=10, help="things put into a picture at most (default: 10)"
+        "--most", metavar="N", type=positive_int, default=8, help="things put into a picture at most (default: 8)"
     )
     parser.add_argument(
-        "--distractors", metavar="N", type=unsigned_int, default=12, help="shapes without a label (default: 12)"
+        "--distractors", metavar="N", type=unsigned_int, default=6, help="shapes without a label (default: 6)"
     )
     parser.add_argument(
         "--keep",
@@ -79,15 +79,15 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--min-size",
         metavar="PIXELS",
         type=unsigned_int,
-        default=6,
-        help="the shorter side of a box, below which there is none (default: 6)",
+        default=12,
+        help="the shorter side of a box, below which a thing is to be ignored (default: 12)",
     )
     parser.add_argument(
         "--min-visible",
         metavar="SHARE",
         type=_share,
-        default=0.2,
-        help="the visible share of a thing, below which it has no box (default: 0.2)",
+        default=0.5,
+        help="the visible share of a thing, below which it is to be ignored (default: 0.5)",
     )
     parser.add_argument(
         "--workers", metavar="N", type=positive_int, help="so many processes (default: one for each processor)"

@@ -16,6 +16,11 @@ DRUMS = """<model name="drums"><static>true</static><link name="link">
     <geometry><cylinder><radius>0.2</radius><length>0.02</length></cylinder></geometry></visual>
   <visual name="green"><pose>-2 1 0.4 0 0 0</pose>
     <geometry><cylinder><radius>0.2</radius><length>0.8</length></cylinder></geometry></visual></link></model>"""
+SIGN = """<model name="sign"><link name="link">
+  <visual name="pole"><pose>0 0 0.8 0 0 0</pose>
+    <geometry><cylinder><radius>0.1</radius><length>1.6</length></cylinder></geometry></visual>
+  <visual name="plate"><pose>-0.15 0 1.6 0 0 0</pose>
+    <geometry><box><size>0.02 0.6 0.6</size></box></geometry></visual></link></model>"""
 GROUND = """<model name="ground"><static>true</static><link name="link"><visual name="ground">
   <geometry><plane><normal>0 0 1</normal><size>50 50</size></plane></geometry></visual></link></model>"""
 WALL = """<model name="wall"><static>true</static><link name="link"><visual name="wall"><pose>0 3 0.5 0 0 0</pose>

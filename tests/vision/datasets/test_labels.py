@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.rendering.choice import make_renderer
+from linkwright.simulation.rendering.optics import Optics
 from linkwright.simulation.rendering.renderer import Wanted, axes_of
 from linkwright.vision.datasets.arranging import Shot, arrange
 from linkwright.vision.datasets.classes import things_of, usual_rules
@@ -13,7 +15,7 @@ from linkwright.vision.datasets.labels import box_of, label_picture, mask_of, ru
 from linkwright.vision.datasets.options import Options
 from linkwright.vision.datasets.stage import Stage
 from tests.simulation.worlds import loaded
-from tests.vision.datasets.places import yard
+from tests.vision.datasets.places import SIGN, world_text, yard
 
 OPTIONS = Options(width=320, height=240)
 
@@ -153,3 +155,48 @@ def test_things_do_not_reach_into_each_other(stage):
         for number, (place, _) in enumerate(places):
             for other, _ in places[:number]:
                 assert np.linalg.norm(place - other) >= 0.4 - 1e-6
+
+
+@pytest.mark.parametrize(("height", "focal", "ignored"), [(0.7, 414.0, True), (1.0, 180.0, False)])
+def test_a_sign_counts_where_its_plate_is_seen(tmp_path, height, focal, ignored):
+    path = tmp_path / "signs.world"
+    path.write_text(world_text(SIGN))
+    simulation = loaded(path)
+    stage = Stage(simulation, things_of(simulation, usual_rules([simulation])), 1, 0)
+    try:
+        stage.set_patterns(np.random.default_rng(0))
+        stage.put(stage.props[0], np.zeros(3), np.eye(3))
+        optics = Optics(320, 240, focal, focal, 160, 120, 0.03, 30.0)
+        shot = Shot(optics, (-2.0, 0.0, height, 0.0, 0.0, 0.0, 1.0), (stage.props[0],), ())
+        geoms = stage.renderer.render(shot.optics, shot.pose, Wanted.GEOMS).geoms
+        (label,) = label_picture(stage, shot, geoms, 12, 0.3)
+    finally:
+        stage.close()
+    assert label.visibility >= 0.3  # of the whole sign; without its plate it is a pole
+    assert label.ignored == ignored
+
+
+def test_shapes_without_a_label_are_far_from_balls_and_drums(stage):
+    model, kinds = stage.simulation.model, load_mujoco().mjtGeom
+    for number in range(20):
+        for geom in stage.distractors:
+            stage.shape_distractor(geom, np.random.default_rng(number))
+            half = model.geom_aabb[geom, 3:]
+            assert half.max() >= 2.4 * half.min()
+            if model.geom_type[geom] == kinds.mjGEOM_CAPSULE:
+                assert model.geom_size[geom, 1] >= 1.5 * model.geom_size[geom, 0]
+
+
+def test_few_things_are_put_behind_walls(stage):
+    """The wall of the yard is 6 m long, 3 m ahead of its middle."""
+    behind = things = 0
+    for shot in shots(stage, 40):
+        for prop in shot.shown:
+            there = stage.simulation.data.geom_xpos[prop.geoms, :2].mean(axis=0)
+            here = np.array(shot.pose[:2])
+            things += 1
+            if min(here[1], there[1]) < 2.95 and max(here[1], there[1]) > 3.05:
+                crossing = here[0] + (there[0] - here[0]) * (3.0 - here[1]) / (there[1] - here[1])
+                behind += bool(shot.structures) and abs(crossing) < 3.0
+    assert things > 50
+    assert behind < 0.2 * things

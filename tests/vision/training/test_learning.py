@@ -31,6 +31,7 @@ if HERE:
     from linkwright.vision.training.learning.export import to_onnx
     from linkwright.vision.training.learning.losses import assign, loss, overlaps
     from linkwright.vision.training.learning.network import Network, Shape, cells
+    from linkwright.vision.training.learning.optimizer import orthogonal
 
 
 @pytest.fixture(scope="module")
@@ -185,3 +186,14 @@ def test_what_was_learnt_until_ctrl_c_is_kept(shapes, tmp_path):
     assert taught.network.is_file()
     assert "2 of 4" in taught.card.read_text(encoding="utf-8")
     assert tuple(each.name for each in taught.examinations[0].figures.classes) == NAMES
+
+
+@pytest.mark.parametrize("shape", [(8, 16, 3, 3), (48, 16, 1, 1)])
+def test_steps_of_kernels_are_as_long_in_all_directions(shape):
+    torch.manual_seed(0)
+    gradient = torch.randn(shape) * torch.logspace(-3, 0, shape[0])[:, None, None, None]
+    spread = torch.linalg.svdvals(gradient.flatten(1))
+    found = torch.linalg.svdvals(orthogonal(gradient).flatten(1))
+    assert spread.max() > 10 * spread.min()
+    assert found.min() > 0.4
+    assert found.max() < 1.3

@@ -40,6 +40,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--seed", type=unsigned_int, default=0, help="of all that is drawn by lot, default 0")
     parser.add_argument("--threads", type=positive_int, default=2, help="of the processor, default 2")
+    parser.add_argument(
+        "--device",
+        choices=("auto", "cpu"),
+        default="auto",
+        help="where it learns: auto (default) takes a GPU that PyTorch sees by CUDA",
+    )
     parser.add_argument("--resume", action="store_true", help="go on from the last epoch that is in the folder")
     parser.add_argument(
         "--held-out",
@@ -70,6 +76,7 @@ def run(arguments: argparse.Namespace) -> int:
         channels=arguments.channels,
         seed=arguments.seed,
         threads=arguments.threads,
+        device=arguments.device,
         resume=arguments.resume,
         held_out=tuple(arguments.held_out),
         command=shlex.join(["linkwright", *(word for word in sys.argv[1:] if word != "--resume")]),

@@ -14,10 +14,15 @@ from linkwright.vision.datasets.options import Options
 from linkwright.vision.datasets.stage import Prop, Stage
 
 _TRIES = 20
-_NEAREST, _FARTHEST = 0.3, 8.0
+_STEPS = 40
+_NEAREST, _FARTHEST = 0.3, 12.0
 """In m: how far from the camera things are put."""
+_SMALLEST, _LARGEST = 0.045, 0.5
+"""How long things are at most in a picture, in widths of it: from 30 to 320 pixels of 640."""
 _SEEN_FROM = 30.0
 """In m: what is farther is not drawn."""
+_BEHIND = 0.15
+"""The share of things that may be put behind what stays."""
 _ROOM = 0.12
 """In m: how far a camera keeps away from everything."""
 
@@ -66,6 +71,12 @@ class _Ground:
         beyond = np.maximum(np.abs(local) - self._half, 0.0)
         return bool((np.hypot(beyond[:, 0], beyond[:, 1]) > radius).all())
 
+    def is_open(self, start: tuple[float, float], end: tuple[float, float]) -> bool:
+        """Whether nothing of what stays stands between two places."""
+        steps = np.linspace(start, end, _STEPS)[:, None] - self._middle
+        beyond = np.abs(np.einsum("gji,sgj->sgi", self._axes, steps)) - self._half
+        return not (beyond < 0.0).all(axis=2).any()
+
     def take(self, x: float, y: float, radius: float) -> None:
         """Something is there from now on."""
         self._discs.append((x, y, radius))
@@ -100,7 +111,7 @@ def arrange(stage: Stage, options: Options, generator: np.random.Generator) -> S
     for geom in stage.distractors:
         if generator.random() < 0.35:
             radius = stage.shape_distractor(geom, generator)
-            place = _free_place(stage, ground, radius, (x, y, heading), field, generator, _FARTHEST)
+            place = _free_place(stage, ground, radius, (x, y, heading), field, generator, (_NEAREST, _FARTHEST))
             if place is not None:
                 lift = generator.uniform(0.0, 1.5) if generator.random() < 0.2 else 0.0
                 turn = _any_turn(generator) if generator.random() < 0.5 else _yawed(generator.uniform(-pi, pi))
@@ -111,7 +122,7 @@ def arrange(stage: Stage, options: Options, generator: np.random.Generator) -> S
         (there_x, there_y), tall = target
         distance = max(float(np.hypot(there_x - x, there_y - y)), 0.1)
         across = 2 * atan2(options.height / 2, focal)
-        pitch = atan2(height - stage.floor - tall / 2, distance) + generator.uniform(-0.38, 0.38) * across
+        pitch = atan2(height - stage.floor - tall / 2, distance) + generator.uniform(-0.3, 0.3) * across
     roll = generator.normal(0.0, radians(12.0 if generator.random() < 0.1 else 1.5))
     pose = x, y, height, *quaternion_from_rpy((float(roll), float(np.clip(pitch, -1.0, 1.5)), heading))
     return Shot(optics, pose, tuple(shown), tuple(structures))
@@ -160,10 +171,12 @@ def _chosen(stage: Stage, options: Options, generator: np.random.Generator) -> l
     return chosen
 
 
-def _reach(prop: Prop, focal: float, options: Options) -> float:
-    """How far away a thing still is larger than the least size, in m."""
-    spans = prop.corners.max(axis=0) - prop.corners.min(axis=0)
-    return float(min(_FARTHEST, max(focal * spans.min() / (options.least_size * 1.5), 2 * _NEAREST)))
+def _reach(prop: Prop, focal: float, options: Options) -> tuple[float, float]:
+    """From how near to how far away a thing is neither too large nor too small in a picture, in m."""
+    spans = np.sort(prop.corners.max(axis=0) - prop.corners.min(axis=0))
+    nearest = max(focal * spans[2] / (_LARGEST * options.width), _NEAREST)
+    farthest = min(spans[2] / (_SMALLEST * options.width), spans[1] / (1.2 * max(options.least_size, 1))) * focal
+    return float(min(nearest, _FARTHEST / 2)), float(np.clip(farthest, 1.5 * nearest, _FARTHEST))
 
 
 def _free_place(
@@ -173,22 +186,23 @@ def _free_place(
     camera: tuple[float, float, float],
     field: float,
     generator: np.random.Generator,
-    reach: float,
+    reach: tuple[float, float],
 ) -> tuple[float, float] | None:
     """A place for something, most often where the camera looks; None where there is none."""
     x, y, heading = camera
     least, greatest = stage.area
-    nearest = _NEAREST + radius
+    nearest, hidden = reach[0] + radius, generator.random() < _BEHIND
     for _ in range(_TRIES):
         if generator.random() < 0.9:
-            bearing = heading + generator.uniform(-0.55, 0.55) * field
-            distance = exp(generator.uniform(log(nearest), log(max(reach, nearest * 1.5))))
+            bearing = heading + generator.uniform(-0.45, 0.45) * field
+            distance = exp(generator.uniform(log(nearest), log(max(reach[1], nearest * 1.5))))
             place = x + distance * cos(bearing), y + distance * sin(bearing)
         else:
             first, second = generator.uniform(least, greatest)
             place = float(first), float(second)
         inside = bool((least < place).all() and (place < greatest).all())
-        if inside and ground.is_free(*place, radius):
+        in_view = hidden or ground.is_open((x, y), place)
+        if inside and in_view and ground.is_free(*place, radius):
             ground.take(*place, radius)
             return place
     return None

@@ -54,8 +54,9 @@ def label_picture(stage: Stage, shot: Shot, geoms: Pixels, least_size: int, leas
         stage: the world, as it is in the picture.
         shot: the camera.
         geoms: the shapes that its pixels show, shape (height, width).
-        least_size: the shorter side of a box in pixels, below which a thing is ignored.
-        least_visible: the share of a thing that is visible, below which it is ignored.
+        least_size: the shorter side of a box in pixels, below which a thing is ignored; half of it for what is seen of
+            its largest shape.
+        least_visible: the share of a thing that is visible, and that of its largest shape, below which it is ignored.
     """
     numbers = np.zeros(stage.simulation.model.ngeom + 1, dtype=np.uint8)  # the last is for nothing
     for number, prop in enumerate(shot.shown, start=1):
@@ -69,11 +70,13 @@ def label_picture(stage: Stage, shot: Shot, geoms: Pixels, least_size: int, leas
         left, top, right, bottom = box
         mask = things == number
         area = int(np.count_nonzero(mask[top:bottom, left:right]))
-        whole, count = _uncovered(stage, shot, prop, box)
+        whole, count, main_count = _uncovered(stage, shot, prop, box)
         count = max(count, area)
-        small = min(right - left, bottom - top) < least_size
+        main = geoms[top:bottom, left:right] == prop.main
+        small = min(right - left, bottom - top) < least_size or _side_of(main) < least_size / 2
         beyond = whole[0] < 0 or whole[1] < 0 or whole[2] > geoms.shape[1] or whole[3] > geoms.shape[0]
-        ignored = small or area < least_visible * count
+        hidden = area < least_visible * count or int(np.count_nonzero(main)) < least_visible * main_count
+        ignored = small or hidden
         found.append(Label(prop.label, box, whole, area, area / count, beyond, ignored, runs_of(mask)))
     return found
 
@@ -86,6 +89,12 @@ def box_of(mask: Any) -> Box | None:
     top, bottom = int(rows[0]), int(rows[-1]) + 1
     columns = np.flatnonzero(mask[top:bottom].any(axis=0))
     return int(columns[0]), top, int(columns[-1]) + 1, bottom
+
+
+def _side_of(mask: Any) -> int:
+    """The shorter side of the box around what is true in a mask."""
+    box = box_of(mask)
+    return min(box[2] - box[0], box[3] - box[1]) if box else 0
 
 
 def runs_of(mask: Any) -> tuple[int, ...]:
@@ -103,8 +112,8 @@ def mask_of(counts: tuple[int, ...], height: int, width: int) -> Any:
     return np.repeat(values, counts).reshape((height, width), order="F")
 
 
-def _uncovered(stage: Stage, shot: Shot, prop: Prop, visible: Box) -> tuple[Box, int]:
-    """The box around a thing as if nothing hid it and the picture had no end, and how many pixels show it.
+def _uncovered(stage: Stage, shot: Shot, prop: Prop, visible: Box) -> tuple[Box, int, int]:
+    """The box around a thing as if nothing hid it and the picture had no end; its pixels; those of its largest shape.
 
     Of what is larger than the picture it is made smaller, and the box is right to some pixels.
     """
@@ -118,14 +127,15 @@ def _uncovered(stage: Stage, shot: Shot, prop: Prop, visible: Box) -> tuple[Box,
     mask = np.isin(geoms, prop.geoms)
     box = box_of(mask)
     if box is None:
-        return visible, 0
+        return visible, 0, 0
     whole = (
         min(floor(box[0] / scale) + left, visible[0]),
         min(floor(box[1] / scale) + top, visible[1]),
         max(ceil(box[2] / scale) + left, visible[2]),
         max(ceil(box[3] / scale) + top, visible[3]),
     )
-    return whole, round(np.count_nonzero(mask) / scale**2)
+    main = np.count_nonzero(geoms == prop.main)
+    return whole, round(np.count_nonzero(mask) / scale**2), round(main / scale**2)
 
 
 def _window(stage: Stage, shot: Shot, prop: Prop, visible: Box) -> Box:

@@ -116,9 +116,9 @@ def _tinted(generator: np.random.Generator, most: float) -> Array:
 def _recoloured(own: tuple[float, ...], way: float, generator: np.random.Generator) -> Array:
     """A colour instead of that of a thing: the same, one of the same hue, or any."""
     hue, saturation, value = colorsys.rgb_to_hsv(*own)
-    if way < 0.35:
+    if way < 0.45:
         return np.array(own)
-    if way < 0.75:
+    if way < 0.85:
         hue = (hue + generator.normal(0.0, 0.02)) % 1.0
         saturation = float(np.clip(saturation * generator.uniform(0.7, 1.2), 0.0, 1.0))
         value = float(np.clip(value * generator.uniform(0.6, 1.2) + generator.uniform(0.0, 0.05), 0.0, 1.0))

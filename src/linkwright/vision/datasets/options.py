@@ -24,8 +24,10 @@ class Options:
         distractors: how many things without a label there are.
         most: how many things are put into a picture at most.
         kept: which of `VARIED` stay as the world has them.
-        least_size: the shorter side of a box in pixels, below which a thing gets no label.
-        least_visible: the share of a thing that is visible, below which it gets no label.
+        least_size: the shorter side of a box in pixels, below which a thing is to be ignored; half of it for what is
+            seen of its largest shape.
+        least_visible: the share of a thing that is visible, and that of its largest shape, below which it is to be
+            ignored.
         form: of pictures, one of `PICTURE_FORMATS`.
     """
 
@@ -34,9 +36,9 @@ class Options:
     seed: int = 0
     splits: tuple[float, float, float] = (0.8, 0.1, 0.1)
     copies: int = 3
-    distractors: int = 12
-    most: int = 10
+    distractors: int = 6
+    most: int = 8
     kept: tuple[str, ...] = ()
-    least_size: int = 6
-    least_visible: float = 0.2
+    least_size: int = 12
+    least_visible: float = 0.5
     form: str = "jpg"

@@ -37,6 +37,7 @@ class Prop:
         name: of the thing.
         label: the place of its class, -1 for none.
         geoms: its shapes in MuJoCo's model.
+        main: the largest of them: the one whose box has the largest side.
         positions: of its shapes, from the middle of its base: shape (n, 3), in m.
         turns: their axes: shape (n, 3, 3).
         corners: the corners of boxes around its shapes, from the middle of its base: shape (n * 8, 3).
@@ -47,6 +48,7 @@ class Prop:
     name: str
     label: int
     geoms: Any
+    main: int
     positions: Array
     turns: Array
     corners: Array
@@ -146,7 +148,7 @@ class Stage:
         model, kinds = self.simulation.model, self._mujoco.mjtGeom
         thin, middle, long = np.sort(generator.uniform(0.03, 0.12, 3)) * [0.5, 1.0, 1.0]
         long = max(long * generator.uniform(2.0, 6.0), 3.0 * middle)
-        kind = model.geom_type[geom]
+        kind = int(model.geom_type[geom])
         if kind in (kinds.mjGEOM_CAPSULE, kinds.mjGEOM_CYLINDER):
             size = [thin + 0.02, long, 0.0] if generator.random() < 0.6 else [middle + 0.1, thin * 0.3, 0.0]
             if kind == kinds.mjGEOM_CAPSULE:
@@ -227,7 +229,7 @@ class Stage:
         endless = (kinds.mjGEOM_PLANE, kinds.mjGEOM_HFIELD)
         ends = [geom for geom in labelled if geom < len(self.boxes)]
         ends += [geom for geoms in self.structures.values() for geom in geoms]
-        ends = [geom for geom in ends if model.geom_type[geom] not in endless]
+        ends = [geom for geom in ends if int(model.geom_type[geom]) not in endless]
         near = np.array([[-3.0, -3.0], [3.0, 3.0]])
         if not ends:
             return near
@@ -332,7 +334,10 @@ def _facts(simulation: Simulation, thing: Thing) -> _Facts:
 def _prop(model: Any, thing: Thing, facts: _Facts) -> Prop:
     geoms = np.array([model.geom(name).id for name in thing.geoms])
     radius = float(np.linalg.norm(facts.corners[:, :2], axis=1).max())
-    return Prop(thing.name, thing.label, geoms, facts.positions, facts.turns, facts.corners, radius, facts.is_round)
+    sides = np.sort(model.geom_aabb[geoms, 3:], axis=1)
+    main = int(geoms[np.argmax(sides[:, 1] * sides[:, 2])])
+    places = facts.positions, facts.turns, facts.corners
+    return Prop(thing.name, thing.label, geoms, main, *places, radius, facts.is_round)
 
 
 def _colour(colour: Array) -> tuple[float, float, float, float]:

@@ -22,6 +22,7 @@ class Options:
         channels: of the first convolution; the others have multiples of it.
         seed: of all that is drawn by lot.
         threads: of the processor.
+        device: where it learns: ``auto``, the first GPU that PyTorch sees by CUDA, else the processor; ``cpu``.
         resume: go on from ``last.pt`` of the folder.
         held_out: folders of datasets that only judge the result, with their split ``test``, or else ``val``.
         command: what the user typed, for the card; without ``--resume``, with which the result is the same.
@@ -38,15 +39,16 @@ class Options:
     channels: int = 8
     seed: int = 0
     threads: int = 2
+    device: str = "auto"
     resume: bool = False
     held_out: tuple[Path, ...] = ()
     command: str = ""
 
     @property
     def view(self) -> tuple[int, int]:
-        """Width and height of what it learns from: parts of the pictures, two thirds of them wide and high.
+        """Width and height of what it learns from: parts of the pictures, half of them wide and high.
 
-        Features do not know how large a picture is, so small parts teach as much as whole pictures in half the time.
+        Features do not know how large a picture is, so small parts teach as much as whole pictures in less time.
         """
-        width, height = (max(32, round(side * 2 / 3 / 32) * 32) for side in (self.width, self.height))
+        width, height = (max(32, round(side / 2 / 32) * 32) for side in (self.width, self.height))
         return width, height

@@ -19,7 +19,7 @@ GREY = 114
 """Around pictures of another shape, as trainers of the YOLO family do it."""
 _FEWEST_PIXELS = 3.0  # a thing that is narrower after a change is no longer asked for
 _LEAST_SHARE = 0.3  # nor one of which less is left
-_SMALLEST, _LARGEST = 0.5, 1.3  # how large pictures become
+_SMALLEST, _LARGEST = 0.42, 1.1  # how large pictures become
 
 
 @dataclass(frozen=True, slots=True)

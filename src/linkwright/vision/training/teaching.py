@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import platform
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -78,7 +77,7 @@ def teach(options: Options, tell: Callable[[Epoch], None]) -> Taught:
     except OSError as error:
         raise _cannot_write(options.output, error) from None
     facts = _facts(options, dataset, lesson, course.epoch, course.best_epoch, course.network)
-    facts["time"] = f"{course.seconds / 60:.0f} minutes with {options.threads} threads, {platform.machine()}"
+    facts["time"] = f"{course.seconds / 60:.0f} minutes with {options.threads} threads, {course.place}"
     network = options.output / f"{options.name}.onnx"
     described = {"description": f"{options.name}, trained by linkwright vision train", "seed": str(options.seed)}
     described["dataset"] = facts["pictures' sha256"]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import pickle
+import platform
 import time
 from collections.abc import Callable, Iterator, Sequence
 from copy import deepcopy
@@ -22,13 +23,13 @@ from linkwright.vision.detectors.suppression import suppressed
 from linkwright.vision.evaluation import Evaluation, Things, balanced_score, evaluate
 from linkwright.vision.training.learning.losses import loss
 from linkwright.vision.training.learning.network import Network, Shape, cells
+from linkwright.vision.training.learning.optimizer import Optimizer
 from linkwright.vision.training.measuring import LIMITS
 from linkwright.vision.training.options import Options
 from linkwright.vision.training.pictures import Lesson, changed
 
 _WARM_UP = 100  # steps in which the rate grows to its highest
 _LEAST_RATE = 0.02  # of the highest, at the end
-_DECAY = 0.05
 _STEEPEST = 10.0  # the norm that gradients are cut to
 _SMOOTHING = 0.998  # of the copy that is judged, a step, once it has seen enough
 
@@ -79,7 +80,8 @@ class Course:
         self.options = options
         self._lesson, self._exam = lesson, exam
         self.shape = Shape(len(names), options.channels)
-        self.network = Network(self.shape).to(memory_format=torch.channels_last)
+        self._device = torch.device("cuda" if options.device == "auto" and torch.cuda.is_available() else "cpu")
+        self.network = Network(self.shape).to(self._device, memory_format=torch.channels_last)
         self.smooth = deepcopy(self.network).eval().requires_grad_(requires_grad=False)
         self.best = deepcopy(self.smooth.state_dict())
         self.best_map = -1.0
@@ -87,7 +89,7 @@ class Course:
         self.epoch = 0
         self.seconds = 0.0
         self._step = 0
-        self._optimizer = torch.optim.AdamW(_groups(self.network), lr=options.rate, betas=(0.9, 0.98))
+        self._optimizer = Optimizer(self.network, options.rate)
 
     def run(self, tell: Callable[[Epoch], None]) -> None:
         """Learn until the last epoch, with a checkpoint after each.
@@ -110,11 +112,16 @@ class Course:
             self.save(self.options.output / "last.pt")
             tell(Epoch(self.epoch, losses, judged, best))
 
+    @property
+    def place(self) -> str:
+        """Where it learns: the name of the GPU, or the kind of the processor."""
+        return torch.cuda.get_device_name(self._device) if self._device.type == "cuda" else platform.machine()
+
     def best_network(self) -> Network:
         """The network that did best on the other part, ready to be asked."""
         network = deepcopy(self.smooth)
         network.load_state_dict(self.best)
-        return network
+        return network.cpu()
 
     def _is_exam(self) -> bool:
         """Each fifth epoch, the first ones seldom, the last ones always."""
@@ -127,18 +134,16 @@ class Course:
         batches = list(self._batches(epoch))
         for chosen, seed in batches:
             pictures, things = self._batch(chosen, seed)
-            for group in self._optimizer.param_groups:
-                group["lr"] = self._rate(len(batches))
             boxes, logits = self.network(pictures)
-            middles, _ = cells(pictures.shape[3], pictures.shape[2])
+            middles, _ = cells(pictures.shape[3], pictures.shape[2], pictures.device)
             total, parts = loss(boxes, logits, middles, things)
-            self._optimizer.zero_grad(set_to_none=True)
+            self._optimizer.forget_gradients()
             total.backward()
             nn.utils.clip_grad_norm_(self.network.parameters(), _STEEPEST)
-            self._optimizer.step()
+            self._optimizer.step(self._rate(len(batches)))
             self._step += 1
             self._follow()
-            sums += parts
+            sums += parts.cpu()
         mean = sums / len(batches)
         return float(mean[0]), float(mean[1])
 
@@ -156,7 +161,8 @@ class Course:
         table: NDArray[np.float32] = np.full((len(both), most, 5), -1, np.float32)
         for row, (_, things) in zip(table, both, strict=True):
             row[: len(things)] = things
-        return _tensor(np.stack([picture for picture, _ in both])), torch.from_numpy(table)
+        pictures = np.stack([picture for picture, _ in both])
+        return _tensor(pictures, self._device), torch.from_numpy(table).to(self._device)
 
     def _rate(self, steps: int) -> float:
         """A short rise, then half a cosine down to next to nothing."""
@@ -188,11 +194,12 @@ class Course:
     def _examine(self, network: Network) -> tuple[list[Things], list[Detections]]:
         """What is in the pictures that judge, and what a network finds in them."""
         found: list[Detections] = []
+        device = next(network.parameters()).device
         for start in range(0, len(self._exam.things), self.options.batch):
-            pictures = _tensor(self._exam.pictures[start : start + self.options.batch])
+            pictures = _tensor(self._exam.pictures[start : start + self.options.batch], device)
             boxes, logits = network(pictures)
             scores = logits.sigmoid()
-            pairs = zip(boxes.numpy(), scores.numpy(), strict=True)
+            pairs = zip(boxes.cpu().numpy(), scores.cpu().numpy(), strict=True)
             found += [self._found(each, score) for each, score in pairs]
         return [_truth(things) for things in self._exam.things], found
 
@@ -231,8 +238,9 @@ class Course:
             LinkwrightError: VISION306, it is none, or that of another network.
         """
         try:
-            state: dict[str, Any] = torch.load(path, weights_only=True)
+            state: dict[str, Any] = torch.load(path, map_location=self._device, weights_only=True)
             told = state["shape"], state["names"]
+            state["optimizer"]["momenta"]  # which those of earlier versions lack
         except (OSError, RuntimeError, pickle.UnpicklingError, KeyError, EOFError, TypeError):
             message = phrase("'{path}' is no checkpoint of a training", path=display_path(path))
             hint = phrase("without --resume the training begins anew")
@@ -248,20 +256,11 @@ class Course:
         self.epoch, self._step, self.seconds = state["epoch"], state["step"], state["seconds"]
 
 
-def _tensor(pictures: NDArray[np.uint8]) -> Tensor:
+def _tensor(pictures: NDArray[np.uint8], device: torch.device) -> Tensor:
     """Pictures, shape (batch, height, width, 3), as the network takes them."""
-    return torch.from_numpy(pictures).permute(0, 3, 1, 2).float().div_(255)
+    return torch.from_numpy(pictures).to(device).permute(0, 3, 1, 2).float().div_(255)
 
 
 def _truth(things: NDArray[np.float32]) -> Things:
     kinds: NDArray[np.int32] = things[:, 0].astype(np.int32)
     return Things(things[:, 1:], np.where(kinds < 0, -2 - kinds, kinds).astype(np.int32), kinds < 0)
-
-
-def _groups(network: Network) -> list[dict[str, Any]]:
-    """Weights decay; what shifts and scales does not."""
-    every = list(network.parameters())
-    return [
-        {"params": [each for each in every if each.ndim > 1], "weight_decay": _DECAY},
-        {"params": [each for each in every if each.ndim <= 1], "weight_decay": 0.0},
-    ]

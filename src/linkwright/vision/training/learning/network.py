@@ -19,6 +19,7 @@ from torch.nn import functional
 STRIDES = (8, 16, 32)
 """Pixels of the picture a cell, one for each level of the pyramid."""
 
+_CPU = torch.device("cpu")
 _PRIOR = 0.01  # the score that all cells say at first, so that the many that are empty do not drown the others
 _FARTHEST = 4.0  # e ** this many strides is the farthest side that a cell can tell of
 
@@ -146,7 +147,7 @@ class Network(nn.Module):
         coarse = self.up_coarse(torch.cat((self.halve_middle(middle), coarse), 1))
         levels = [head(level) for head, level in zip(self.heads, (fine, middle, coarse), strict=True)]
         said = torch.cat(levels, 2).transpose(1, 2)
-        middles, strides = cells(pictures.shape[3], pictures.shape[2])
+        middles, strides = cells(pictures.shape[3], pictures.shape[2], pictures.device)
         sides = said[..., :4].clamp(max=_FARTHEST).exp() * strides
         boxes = torch.cat((middles - sides[..., :2], middles + sides[..., 2:]), 2)
         return boxes, said[..., 4:]
@@ -157,7 +158,7 @@ def _doubled(features: Tensor) -> Tensor:
 
 
 @cache
-def cells(width: int, height: int) -> tuple[Tensor, Tensor]:
+def cells(width: int, height: int, device: torch.device = _CPU) -> tuple[Tensor, Tensor]:
     """Where the cells of all levels are in a picture of this size.
 
     Returns:
@@ -169,4 +170,4 @@ def cells(width: int, height: int) -> tuple[Tensor, Tensor]:
         y, x = torch.meshgrid(torch.arange(rows), torch.arange(columns), indexing="ij")
         middles.append((torch.stack((x, y), 2).reshape(-1, 2) + 0.5) * stride)
         strides.append(torch.full((rows * columns, 1), float(stride)))
-    return torch.cat(middles), torch.cat(strides)
+    return torch.cat(middles).to(device), torch.cat(strides).to(device)

@@ -1,0 +1,97 @@
+"""What moves the weights: kernels by steps of one size in all directions, the rest by AdamW."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import torch
+from torch import Tensor, nn
+
+_DECAY = 0.05
+_KERNEL_DECAY = 0.02
+_KERNEL_RATE = 10.0  # of the rate of all else
+_MOMENTUM = 0.95
+_LEAST = 8  # channels in and out of a kernel that is moved so
+_POLYNOMIAL = 3.4445, -4.7750, 2.0315
+_ROUNDS = 5
+
+
+class Optimizer:
+    """Muon (Jordan and others 2024) for the kernels of convolutions, AdamW for the rest.
+
+    Muon makes each step of a kernel nearly orthogonal: all directions of its inputs and outputs move alike, also those
+    of which gradients are small. With few steps networks learn much more by it than by AdamW alone.
+
+    Args:
+        network: what learns.
+        rate: the highest learning rate.
+    """
+
+    def __init__(self, network: nn.Module, rate: float) -> None:
+        every = list(network.parameters())
+        self._kernels = [each for each in every if each.ndim == 4 and min(each.shape[:2]) >= _LEAST]
+        self._momenta = [torch.zeros_like(each) for each in self._kernels]
+        kernels = {id(each) for each in self._kernels}
+        others = [each for each in every if id(each) not in kernels]
+        groups = [
+            {"params": [each for each in others if each.ndim > 1], "weight_decay": _DECAY},
+            {"params": [each for each in others if each.ndim <= 1], "weight_decay": 0.0},
+        ]
+        self._network = network
+        self._adamw = torch.optim.AdamW(groups, lr=rate, betas=(0.9, 0.98))
+
+    def forget_gradients(self) -> None:
+        """Before gradients of a step are computed."""
+        self._network.zero_grad(set_to_none=True)
+
+    @torch.no_grad()
+    def step(self, rate: float) -> None:
+        """Move all weights by their gradients."""
+        for group in self._adamw.param_groups:
+            group["lr"] = rate
+        self._adamw.step()
+        for kernel, momentum in zip(self._kernels, self._momenta, strict=True):
+            if kernel.grad is None:
+                continue
+            momentum.lerp_(kernel.grad, 1 - _MOMENTUM)
+            inputs = kernel[0].numel()
+            size = rate * _KERNEL_RATE * max(1.0, len(kernel) / inputs) ** 0.5
+            kernel.mul_(1 - rate * _KERNEL_RATE * _KERNEL_DECAY)
+            kernel.add_(orthogonal(kernel.grad.lerp(momentum, _MOMENTUM)), alpha=-size)
+
+    def state_dict(self) -> dict[str, Any]:
+        """What it takes to go on."""
+        return {"adamw": self._adamw.state_dict(), "momenta": self._momenta}
+
+    def load_state_dict(self, state: Mapping[str, Any]) -> None:
+        """Go on from `state_dict`.
+
+        Raises:
+            KeyError: it is the state of another optimizer.
+        """
+        momenta = state["momenta"]
+        self._adamw.load_state_dict(state["adamw"])
+        for mine, other in zip(self._momenta, momenta, strict=True):
+            mine.copy_(other)
+
+
+def orthogonal(gradient: Tensor) -> Tensor:
+    """A kernel's nearest matrix whose singular values are all about 1, by the iteration of Newton and Schulz.
+
+    Args:
+        gradient: shape (outputs, inputs, height, width); its rows are the outputs.
+
+    Returns:
+        The same shape.
+    """
+    matrix = gradient.flatten(1)
+    upright = matrix.size(0) > matrix.size(1)
+    if upright:
+        matrix = matrix.T
+    matrix = matrix / (matrix.norm() + 1e-7)
+    first, second, third = _POLYNOMIAL
+    for _ in range(_ROUNDS):
+        square = matrix @ matrix.T
+        matrix = first * matrix + (second * square + third * square @ square) @ matrix
+    return (matrix.T if upright else matrix).reshape(gradient.shape)
