@@ -13,7 +13,7 @@ from launch.substitutions import LaunchConfiguration, PathJoinSubstitution, Pyth
 from launch_ros.actions import Node
 from launch_ros.substitutions import FindPackageShare
 
-MODEL = 'colours'  # what the detector finds things with, unless model:= says otherwise
+MODEL = 'things'  # what the detector finds things with, unless model:= says otherwise
 SWITCH = ['true', 'false']
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""mbot follows a thing that its camera sees: thing:=red, or a class that the detector knows."""
+"""mbot follows a thing that its camera sees: thing:=ball, or another class that the detector knows."""
 
 from ament_index_python.packages import get_package_share_path
 from launch import LaunchDescription
@@ -14,7 +14,7 @@ def generate_launch_description():
     vision = get_package_share_path('my_robot_vision')
 
     return LaunchDescription([
-        DeclareLaunchArgument('thing', default_value='red', description='The class of what it follows'),
+        DeclareLaunchArgument('thing', default_value='ball', description='The class of what it follows'),
         IncludeLaunchDescription(PythonLaunchDescriptionSource(str(vision / 'launch' / 'detect.launch.py'))),
         Node(
             package='my_robot_vision',

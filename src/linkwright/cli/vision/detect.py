@@ -26,7 +26,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     parser.add_argument("images", metavar="IMAGE", nargs="+", help="PNG and JPEG files")
     parser.add_argument(
-        "-m", "--model", metavar="FILE|NAME", help="an ONNX file, or a detector: colours, aruco, apriltag, qr, line"
+        "-m",
+        "--model",
+        metavar="FILE|NAME",
+        help="an ONNX file, or a detector: things (default), colours, aruco, apriltag, qr, line",
     )
     parser.add_argument("--labels", metavar="FILE", type=Path, help="names of the network's classes, one in each line")
     parser.add_argument("--threshold", metavar="SCORE", type=share, default=0.5, help="the least score, default 0.5")

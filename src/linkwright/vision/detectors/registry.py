@@ -16,7 +16,7 @@ from linkwright.vision.detectors.efficientdet import EfficientDetDetector
 from linkwright.vision.detectors.network import NetworkDetector
 from linkwright.vision.detectors.options import DetectorOptions
 
-DEFAULT_DETECTOR = "colours"
+DEFAULT_DETECTOR = "things"
 """What is used when nothing is said."""
 
 _GROUP = "linkwright.detectors"
