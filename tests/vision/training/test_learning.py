@@ -56,7 +56,7 @@ def weights(course: Course) -> np.ndarray:
 
 
 def test_a_network_overfits_eight_pictures(shapes, tmp_path):
-    course = course_of(options(shapes, tmp_path, epochs=150, rate=4e-3))
+    course = course_of(options(shapes, tmp_path, epochs=300, rate=1.5e-3))
     epochs = []
     course.run(epochs.append)
     first, last = np.mean([each.losses for each in epochs[:5]], 0), np.mean([each.losses for each in epochs[-5:]], 0)
