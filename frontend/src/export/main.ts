@@ -35,8 +35,8 @@ function start(app: HTMLElement, recorded: HTMLElement): void {
   connection.open();
 
   const container = h("div", { class: "canvas-box", role: "region", aria: { label: strings.scene.label } });
-  const corner = h("div", { class: "corner" }, new SelectionCard(session).element);
-  const overlay = h("div", { class: "overlay" }, corner, new OrientationSign(session).element);
+  const stack = h("div", { class: "stack" }, new SelectionCard(session).element);
+  const overlay = h("div", { class: "overlay" }, stack, new OrientationSign(session).element);
   const scene = h("main", { class: "scene-box" }, container, overlay);
   app.append(scene);
   const stage = makeStage(container, session, new RecordedFiles(recording.files));

@@ -25,6 +25,8 @@ export class ScenePanel implements Panel {
   readonly container = h("div", { class: "canvas-box", role: "region", aria: { label: strings.scene.label } });
   /** The scene and what lies over it: what full screen shows. */
   readonly box: HTMLElement;
+  /** What lies over the scene at its right, one below the other: they share the height that there is. */
+  private readonly stack = h("div", { class: "stack" });
   private readonly waiting = h("div", { class: "waiting" }, h("span", { class: "pulse" }), strings.scene.waiting);
 
   constructor(session: Session, commands: WorldCommands, fit: () => void, showDiagnostics: () => void, showKeys: () => void) {
@@ -34,11 +36,15 @@ export class ScenePanel implements Panel {
     const card = new SelectionCard(session);
     const inspect = new InspectMenu(session);
     const sign = new OrientationSign(session);
+    const simulation = new SimulationBar(session.simulation, session.modelling, commands);
+    const notices = h("div", { class: "notices" }, simulation.element, notice.element, banner.element);
+    const told = [new LineNotice(session), new MeshNotice(session.meshProgress), new VoiceNotice(session.voice)];
+    this.stack.append(inspect.element, card.element, ...told.map((each) => each.element));
     this.box = h(
       "div",
       { class: "scene-box" },
       this.container,
-      h("div", { class: "overlay" }, h("div", { class: "notices" }, new SimulationBar(session.simulation, session.modelling, commands).element, notice.element, banner.element), this.waiting, h("div", { class: "corner" }, new LineNotice(session).element, new MeshNotice(session.meshProgress).element, new VoiceNotice(session.voice).element, card.element), inspect.element, sign.element),
+      h("div", { class: "overlay" }, notices, this.stack, this.waiting, sign.element),
     );
     showSceneMenus(this.box, session.sceneMenu);
     this.element = h("div", { class: "scene-panel" }, toolbar.element, this.box);
@@ -50,4 +56,11 @@ export class ScenePanel implements Panel {
     session.displays.treeChanged.on(update);
     session.displays.enabledChanged.on(update);
   }
+
+  /** Pixels at the right of the scene that cards lie over. */
+  readonly covered = (): number => {
+    const cards = [...this.stack.querySelectorAll<HTMLElement>(".inspect-card, .selection-card:not(.folded)")];
+    const isOpen = cards.some((each) => each.offsetHeight > 0);
+    return isOpen ? this.box.getBoundingClientRect().right - this.stack.getBoundingClientRect().left : 0;
+  };
 }

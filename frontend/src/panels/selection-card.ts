@@ -9,6 +9,8 @@ import { placeText, shortPath } from "./place";
 export class SelectionCard {
   readonly element = h("div", { class: "selection-card", role: "status" });
 
+  private folded = false;
+
   constructor(private readonly session: Session) {
     session.selection.changed.on(() => this.update());
     session.provenanceAnswered.on((provenance) => this.show(provenance));
@@ -23,12 +25,25 @@ export class SelectionCard {
     const words = strings.selection;
     const clear = button(words.clear, () => this.session.selection.select(null), "tool bare", icon("close"));
     this.element.replaceChildren(
-      h("header", {}, icon("cube"), h("strong", { title: words.title }, link.name), h("span", { class: "spacer" }), clear),
+      h("header", {}, icon("cube"), h("strong", { title: words.title }, link.name), h("span", { class: "spacer" }), this.folder(), clear),
       ...details(link),
       place(link, (file, line) => this.session.description.placeAsked.emit({ file, line })),
       ...trail(link),
     );
     if (link.place) this.session.connection.send({ type: "ask_provenance", display: selected.display, link: link.name });
+  }
+
+  /** The button that leaves only the link's name of the card, or shows all again. */
+  private folder(): HTMLButtonElement {
+    const words = strings.selection;
+    const fold: HTMLButtonElement = button(words.fold, () => show(!this.folded), "tool bare fold", icon("chevron"));
+    const show = (folded: boolean): void => {
+      this.folded = folded;
+      this.element.classList.toggle("folded", folded);
+      fold.setAttribute("aria-expanded", String(!folded));
+    };
+    show(this.folded);
+    return fold;
   }
 
   /** Calls and values take the server a moment; they come in the place of the bare trail. */

@@ -1,6 +1,7 @@
 import { Box3, Group, type Camera, type Object3D } from "three";
 import type { DisplayState } from "../state/displays";
 import type { Session } from "../state/session";
+import type { ViewSize } from "../state/views/camera";
 import type { Span } from "../state/views/fit";
 import type { PanelHost } from "./displays/display-panel";
 import type { Drawing, DrawnScene } from "./displays/drawing";
@@ -22,6 +23,8 @@ import { Viewport } from "./viewport";
 
 /** A robot whose links have no places yet is waited for no longer: some never get a transform. */
 const WAITS_FOR_PLACES_MS = 5000;
+/** The share of the canvas's width that may be left out when the camera looks at all of something. */
+const MOST_COVERED = 0.6;
 const UNSMOOTHED: Detail = { ...FINEST, smooth: false };
 
 interface DrawnDisplay {
@@ -47,6 +50,8 @@ export class Stage {
   private robotSettled = false;
   /** When the robot was drawn with all meshes, though nothing of it has a place. */
   private placelessSince: number | null = null;
+  /** How many pixels at the right of the canvas something lies over. */
+  covered: () => number = () => 0;
 
   constructor(
     container: HTMLElement,
@@ -123,13 +128,21 @@ export class Stage {
   /** Looks at all of what is selected, or of what is drawn when nothing is, from the side that the camera is at. */
   fit(): void {
     const box = this.picker.boundsOfSelection() ?? this.boundsOfAll();
-    if (box) this.session.view.fit(box, this.viewport.size);
+    if (box) this.session.view.fit(box, this.freeSize());
   }
 
   /** Looks at all of the robots, from the side that the camera is at. */
   fitRobots(): void {
     const box = this.boundsOfRobots();
-    if (box) this.session.view.fit(box, this.viewport.size);
+    if (box) this.session.view.fit(box, this.freeSize());
+  }
+
+  /** The size of the part of the canvas that nothing lies over; from now on its middle is where the camera looks. */
+  private freeSize(): ViewSize {
+    const { width, height } = this.viewport.size;
+    const covered = Math.min(this.covered(), width * MOST_COVERED);
+    this.viewport.aside = covered / 2;
+    return { width: width - covered, height };
   }
 
   /** Tells the drawings whether their things can be moved now. */
@@ -254,7 +267,7 @@ export class Stage {
       const seen = robots.flatMap((robot) => robot.seen || []).join(";");
       if (seen === "" || !view.awaitsFit(seen)) return;
       const box = this.boundsOfRobots();
-      if (box) view.fitFirst(box, this.viewport.size, seen);
+      if (box) view.fitFirst(box, this.freeSize(), seen);
     }
     this.viewport.aim(view);
   }

@@ -43,6 +43,8 @@ export class Viewport {
   readonly renderer: WebGLRenderer;
   private readonly smoothing = new Smoothing();
   private part = 1;
+  /** How far left of the middle of the canvas is what the camera looks at, pixels. */
+  aside = 0;
   private readonly ambient = new AmbientLight(0xffffff, AMBIENT * Math.PI);
   private readonly around = new SkyAndFog(this.scene);
   private ownBackground = "#303030";
@@ -106,6 +108,7 @@ export class Viewport {
     const seen = view.camera;
     this.inUse = seen.scale === null ? this.perspective : this.orthographic;
     this.project(seen, number(view.values, "Near Clip Distance", 0.01));
+    this.shift();
     this.inUse.matrix
       .makeBasis(new Vector3(...seen.right), new Vector3(...seen.up), new Vector3(...seen.back))
       .setPosition(...seen.position);
@@ -159,6 +162,12 @@ export class Viewport {
     const clip = { near: Math.max(near, distance / DEEPEST), far: Math.max(FAR_CLIP, distance * 10) };
     Object.assign(perspective, { aspect: width / height, ...clip });
     perspective.updateProjectionMatrix();
+  }
+
+  private shift(): void {
+    const { width, height } = this.size;
+    if (this.aside !== 0) this.inUse.setViewOffset(width, height, this.aside, 0, width, height);
+    else if (this.inUse.view?.enabled === true) this.inUse.clearViewOffset();
   }
 
   private fit(): void {

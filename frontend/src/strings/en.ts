@@ -98,6 +98,7 @@ export const en = {
     noPlace: "No source position is known.",
     copy: "Copy the place",
     copied: "Copied",
+    fold: "Show or hide what is known of the link",
     clear: "Clear the selection (Esc)",
   },
   scene: {

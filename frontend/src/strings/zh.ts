@@ -89,6 +89,7 @@ export const zh: Strings = {
     noPlace: "源文件位置未知。",
     copy: "复制位置",
     copied: "已复制",
+    fold: "展开或收起连杆的信息",
     clear: "取消选择（Esc）",
   },
   scene: {

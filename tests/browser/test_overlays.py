@@ -1,0 +1,90 @@
+"""What lies over the scene: everything open at once, in windows of three sizes, and nothing over anything else."""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import pytest
+
+from tests.browser.arm import write_arm
+from tests.browser.conftest import becomes, state, until
+
+pytestmark = pytest.mark.browser
+
+OVERLAYS = (
+    ".notice",
+    ".banner",
+    ".inspect > button",
+    ".inspect-card",
+    ".selection-card",
+    ".line-notice:not([data-notice])",
+    "[data-notice=meshes]",
+    ".voice-notice",
+)
+SIZES = ((1280, 800), (1024, 768), (800, 600))
+
+# What is scrolled out of the column's sight is not seen.
+BOXES = """(selectors) => Object.fromEntries([...selectors, ".orientation", ".scene-box"].map((selector) => {
+  const element = document.querySelector(selector);
+  const { left, top, right, bottom } = element.getBoundingClientRect();
+  const column = element.closest(".stack")?.getBoundingClientRect() ?? { top: -Infinity, bottom: Infinity };
+  return [selector, [left, Math.max(top, column.top), right, Math.min(bottom, column.bottom)]];
+}))"""
+
+# What a lost server, a slow line and a voice say; the page shows each of them alone more easily than together.
+TELL = """() => {
+  for (const element of document.querySelectorAll(".notice, .line-notice, .voice-notice")) {
+    element.hidden = false;
+    element.textContent = "Something is to be told about the connection, in two lines or more of this narrow column";
+  }
+}"""
+
+
+def overlapping(boxes: dict[str, list[float]]) -> list[str]:
+    """The pairs of boxes that have more than an edge in common, and those that are not within the scene."""
+    left, top, right, bottom = boxes.pop(".scene-box")
+    found = [
+        f"{one} over {other}"
+        for (one, a), (other, b) in combinations(boxes.items(), 2)
+        if min(a[2], b[2]) - max(a[0], b[0]) > 0.5 and min(a[3], b[3]) - max(a[1], b[1]) > 0.5
+    ]
+    return found + [
+        f"{name} outside"
+        for name, box in boxes.items()
+        if box[0] < left - 0.5 or box[1] < top - 0.5 or box[2] > right + 0.5 or box[3] > bottom + 0.5
+    ]
+
+
+def test_nothing_that_lies_over_the_scene_lies_over_something_else(start, open_page, tmp_path):
+    file = write_arm(tmp_path)
+    page = open_page(start("view", str(file)))
+    page.locator(".inspect > button").click()
+    page.locator('[data-inspect="centers"] input').click()
+    page.get_by_role("treeitem").filter(has_text="Links").last.locator(".row-name").dblclick()
+    page.get_by_role("treeitem").filter(has_text="fore").first.locator(".row-name").click()
+    page.locator(".selection-card").wait_for()
+    whole = page.evaluate("() => document.querySelector('.selection-card').offsetHeight")
+    page.locator(".selection-card .fold").click()
+    assert page.evaluate("() => document.querySelector('.selection-card').offsetHeight") < whole
+    page.locator(".selection-card .fold").click()
+    file.write_text(file.read_text().replace("</robot>", "<link/></robot>"))
+    page.locator(".banner").wait_for()
+    for width, height in SIZES:
+        page.set_viewport_size({"width": width, "height": height})
+        page.evaluate(TELL)
+        becomes(lambda: overlapping(page.evaluate(BOXES, list(OVERLAYS))), [])
+
+
+def test_fit_shows_all_of_the_robot_again(start, open_page, tmp_path):
+    page = open_page(start("view", str(write_arm(tmp_path))))
+    until(page, "lw.settled")
+    before = state(page, "view.values")
+    page.get_by_role("button", name="Zero", exact=True).click()
+    until(page, f"lw.view.values.Distance !== {before['Distance']}")
+    page.get_by_role("button", name="Fit", exact=True).click()
+    until(page, "Math.abs(lw.view.values['Focal Point/Z'] - " + str(before["Focal Point/Z"]) + ") < 1e-6")
+    assert state(page, "view.values.Distance") < 10
+    page.keyboard.press("z")
+    until(page, "lw.view.values.Distance === 10")
+    page.keyboard.press("Shift+F")
+    until(page, "lw.view.values.Distance < 10")
