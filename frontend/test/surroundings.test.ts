@@ -29,4 +29,15 @@ describe("sky and fog", () => {
     new SkyAndFog(scene).set({ ...NONE, daylight: 1 }, true);
     expect(scene.background).toBeInstanceOf(Color);
   });
+
+  it("are a backdrop in a studio, of its colour at the zenith and brighter at the horizon", () => {
+    const scene = new Scene();
+    const around = new SkyAndFog(scene);
+    around.set({ ...NONE, backdrop: "#303030" }, false);
+    const { data } = (scene.background as DataTexture).image as { data: Uint8Array };
+    const [horizon = 0, zenith = 0] = [data[data.length / 2], data[data.length - 4]];
+    expect(horizon).toBeGreaterThan(zenith + 20);
+    around.set({ ...NONE, backdrop: "#303030" }, true);
+    expect(scene.background).toBeNull();
+  });
 });

@@ -19,6 +19,8 @@ import { MeshLibrary } from "./meshes/mesh-library";
 import { Outline } from "./outline";
 import { Picker } from "./picker";
 import type { Interaction } from "./picking";
+import { StudioLight } from "./studio-light";
+import type { OwnLight } from "./surroundings";
 import { Viewport } from "./viewport";
 
 /** A robot whose links have no places yet is waited for no longer: some never get a transform. */
@@ -47,6 +49,9 @@ export class Stage {
   /** What only this view shows: handles, and the point that it turns about. */
   readonly aids = new Group();
   private interaction: Interaction = { enabled: false, hideOthers: false };
+  private readonly studio = new StudioLight();
+  /** What stands in the studio, and how high its ground is, m. */
+  private staged = { what: "", height: 0 };
   private robotSettled = false;
   /** When the robot was drawn with all meshes, though nothing of it has a place. */
   private placelessSince: number | null = null;
@@ -68,7 +73,7 @@ export class Stage {
     this.flash = new Flash(this.viewport, session, (display, link) => this.objectsOf(display, link), invalidate);
     this.marks = new InspectLayer(session, (display) => this.boundsOf(display), invalidate);
     this.aids.add(this.focalShape.root);
-    this.viewport.scene.add(this.aids, this.marks.root);
+    this.viewport.scene.add(this.aids, this.marks.root, this.studio.root);
     this.listen();
     this.matchDisplays();
   }
@@ -236,6 +241,8 @@ export class Stage {
     this.viewport.share = detail.share;
     this.viewport.aim(view);
     this.focalShape.place(view);
+    const inStudio = this.isInStudio;
+    for (const robot of this.robots()) robot.isLit = inStudio;
     let settled = true;
     const now = performance.now();
     for (const { display, drawing, pacing } of this.drawings.values()) {
@@ -247,13 +254,30 @@ export class Stage {
     this.robotSettled ||= settled && [...this.robots(), ...this.worlds()].some((each) => each.isInPlace);
     if (settled && this.robots().some(({ linkCount }) => linkCount > 0)) this.placelessSince ??= now;
     this.lookFirst(settled);
-    this.viewport.light(this.worlds().find((world) => world.ownLight)?.ownLight ?? null);
+    this.viewport.light(this.worlds().find((world) => world.ownLight)?.ownLight ?? this.lightOfStudio(inStudio));
     this.marks.update();
     this.outline.set(this.selectedObjects());
     this.viewport.render(detail.smooth);
     this.outline.render();
     this.flash.render();
     this.drawElsewhere();
+  }
+
+  /** Whether a studio lights robots; a world is lit as its display says. */
+  private get isInStudio(): boolean {
+    const light = this.session.displays.globalOptions.text("Camera", "Light");
+    return this.worlds().length === 0 && (light === "Studio" || (light === "Automatic" && this.viewport.hasGpu));
+  }
+
+  private lightOfStudio(isOn: boolean): OwnLight | null {
+    this.studio.root.visible = isOn;
+    if (!isOn) return null;
+    const robots = this.robots();
+    const what = robots.map((robot) => robot.seen).join(";");
+    if (what !== this.staged.what) this.staged = { what, height: this.boundsOfRobots()?.min[2] ?? 0 };
+    this.studio.shineOn(robots.reduce((sum, robot) => sum.union(robot.roughBounds()), new Box3()), this.staged.height);
+    const backdrop = this.session.displays.globalOptions.text("#303030", "Background Color");
+    return { shadows: true, background: null, daylight: null, fog: null, backdrop };
   }
 
   /** Puts the camera that nobody has put anywhere before the robot, as far as that is there, or into a world that is all there. */

@@ -7,24 +7,30 @@ export interface Surroundings {
   /** How bright the sky is, from 0 to 1; null for none. */
   readonly daylight: number | null;
   readonly fog: FogScene | null;
+  /** A colour that is brighter towards the horizon, in place of a sky. */
+  readonly backdrop?: string | null;
 }
 
-/** How a world lights the scene by itself: whether with shadows, and what is around it. */
+/** How a world or a studio lights the scene by itself: whether with shadows, and what is around it. */
 export interface OwnLight extends Surroundings {
   readonly shadows: boolean;
 }
 
 type Rgb = readonly [number, number, number];
+/** The colours at the nadir, at the horizon and at the zenith. */
+type Sky = readonly [below: Rgb, middle: Rgb, above: Rgb];
 
 /** From the nadir to the zenith. */
 const HEIGHT = 64;
-const DAY: readonly Rgb[] = [[0.42, 0.44, 0.45], [0.8, 0.86, 0.92], [0.31, 0.52, 0.82]];
-const NIGHT: readonly Rgb[] = [[0.05, 0.05, 0.06], [0.1, 0.11, 0.17], [0.02, 0.03, 0.08]];
+/** How much brighter a backdrop is at its horizon. */
+const HORIZON = 0.18;
+const DAY: Sky = [[0.42, 0.44, 0.45], [0.8, 0.86, 0.92], [0.31, 0.52, 0.82]];
+const NIGHT: Sky = [[0.05, 0.05, 0.06], [0.1, 0.11, 0.17], [0.02, 0.03, 0.08]];
 
 /** Gives a scene its surroundings; what stays the same is made once. */
 export class SkyAndFog {
   private sky: DataTexture | null = null;
-  private made: number | null = null;
+  private made: number | string | null = null;
   private fogged = "";
 
   constructor(private readonly scene: Scene) {
@@ -33,13 +39,15 @@ export class SkyAndFog {
   }
 
   /** `flat`: the camera sees in parallel, and of a sky the same everywhere. */
-  set({ daylight, fog }: Surroundings, flat: boolean): void {
-    if (daylight !== this.made) {
+  set({ daylight, fog, backdrop = null }: Surroundings, flat: boolean): void {
+    const wanted = daylight ?? backdrop;
+    if (wanted !== this.made) {
       this.sky?.dispose();
-      this.sky = daylight === null ? null : skyOf(daylight);
-      this.made = daylight;
+      this.sky = wanted === null ? null : pictureOf(typeof wanted === "number" ? skyAt(wanted) : skyOf(wanted));
+      this.made = wanted;
     }
-    this.scene.background = flat && daylight !== null ? horizon(daylight) : this.sky;
+    if (!flat) this.scene.background = this.sky;
+    else this.scene.background = daylight === null ? null : new Color(...skyAt(daylight)[1]);
     const key = JSON.stringify(fog);
     if (key === this.fogged) return;
     this.fogged = key;
@@ -53,11 +61,19 @@ function fogOf({ color: [r = 1, g = 1, b = 1], start, end, density }: FogScene):
 }
 
 /** The colour of a sky: at -1 below, 0 at the horizon, 1 above. */
-function colorAt(height: number, daylight: number): Rgb {
-  const mixed = DAY.map((day, i) => mix(NIGHT[i] ?? day, day, daylight));
-  const [below, middle, above] = mixed;
-  const [end, share] = height < 0 ? [below, Math.min(1, -8 * height)] : [above, Math.sqrt(height)];
-  return mix(middle ?? [0, 0, 0], end ?? [0, 0, 0], share);
+function colorAt(height: number, [below, middle, above]: Sky): Rgb {
+  return height < 0 ? mix(middle, below, Math.min(1, -8 * height)) : mix(middle, above, Math.sqrt(height));
+}
+
+function skyAt(daylight: number): Sky {
+  return [mix(NIGHT[0], DAY[0], daylight), mix(NIGHT[1], DAY[1], daylight), mix(NIGHT[2], DAY[2], daylight)];
+}
+
+/** A backdrop of a colour. */
+function skyOf(color: string): Sky {
+  const { r, g, b } = new Color(color);
+  const own: Rgb = [r, g, b];
+  return [own, mix(own, [1, 1, 1], HORIZON), own];
 }
 
 function mix(a: Rgb, b: Rgb, share: number): Rgb {
@@ -65,14 +81,10 @@ function mix(a: Rgb, b: Rgb, share: number): Rgb {
   return [at(0), at(1), at(2)];
 }
 
-function horizon(daylight: number): Color {
-  return new Color(...colorAt(0, daylight));
-}
-
-function skyOf(daylight: number): DataTexture {
+function pictureOf(sky: Sky): DataTexture {
   const pixels = new Uint8Array(4 * HEIGHT);
   for (let row = 0; row < HEIGHT; row++) {
-    const rgb = colorAt(Math.sin(((row + 0.5) / HEIGHT - 0.5) * Math.PI), daylight);
+    const rgb = colorAt(Math.sin(((row + 0.5) / HEIGHT - 0.5) * Math.PI), sky);
     pixels.set([...rgb.map((each) => Math.round(255 * each)), 255], 4 * row);
   }
   const texture = new DataTexture(pixels, 1, HEIGHT);

@@ -4,10 +4,8 @@ import {
   Color,
   DirectionalLight,
   Group,
-  HemisphereLight,
   Light,
   Matrix4,
-  Mesh,
   PointLight,
   SpotLight,
   Vector3,
@@ -15,19 +13,11 @@ import {
 } from "three";
 import type { LightScene, WorldScene } from "../protocol";
 import type { PropertyRows } from "../state/properties";
+import { aimSun, castShadows, FULL, shade, STUDIO_DIRECTION, STUDIO_KEY, studioSky } from "./studio-light";
 
 /** What lights the scene: the camera, a studio, or the lights of the world. */
 export type Lighting = "Camera" | "Studio" | "World";
 
-/** A surface that faces a light of this strength has exactly its own colour. */
-const FULL = Math.PI;
-const STUDIO_KEY = 0.62;
-const STUDIO_SKY = 0.42;
-const STUDIO_GROUND = 0.16;
-/** Where the light of the studio comes from. */
-const STUDIO_FROM = new Vector3(-0.45, -0.6, 1).normalize();
-/** Pixels of a shadow map along its side. */
-const SHADOW_PIXELS = 2048;
 /** Shadows are drawn this far around the middle of what is drawn at most, m. */
 const LARGEST_RADIUS = 25;
 /** Metres between a lamp and what it lights, as a rule. */
@@ -98,9 +88,7 @@ export class WorldLights {
 
   /** Lets surfaces cast and receive shadows, or no more. */
   shade(root: Object3D): void {
-    root.traverse((object) => {
-      if (object instanceof Mesh) object.castShadow = object.receiveShadow = this.shadowed;
-    });
+    shade(root, this.shadowed);
   }
 
   /** What is lit, for tests. */
@@ -122,15 +110,12 @@ export class WorldLights {
   }
 
   private buildStudio(): void {
-    const sky = new HemisphereLight(0xffffff, 0xffffff, STUDIO_SKY * FULL);
-    sky.groundColor.setScalar(STUDIO_GROUND / STUDIO_SKY);
-    sky.position.set(0, 0, 1);
-    this.root.add(sky);
+    this.root.add(studioSky());
     const said: LightScene = {
       kind: "directional",
       link: null,
       position: [0, 0, 0],
-      direction: STUDIO_FROM.clone().negate().toArray(),
+      direction: STUDIO_DIRECTION.toArray(),
       color: [STUDIO_KEY, STUDIO_KEY, STUDIO_KEY],
       shadows: true,
       range: 0,
@@ -152,11 +137,7 @@ export class WorldLights {
     light.intensity = FULL * strength(said);
     const shadows = this.placed.filter((each) => each.light.castShadow).length;
     if (this.shadowed && said.shadows && shadows < MOST_SHADOWS && !(light instanceof PointLight)) {
-      light.castShadow = true;
-      light.shadow.mapSize.set(SHADOW_PIXELS, SHADOW_PIXELS);
-      light.shadow.bias = -0.0005;
-      light.shadow.normalBias = 0.02;
-      light.shadow.radius = 3;
+      castShadows(light);
     }
     this.root.add(light);
     if (!(light instanceof PointLight)) this.root.add(light.target);
@@ -171,13 +152,8 @@ export class WorldLights {
       light.target.position.set(0, 0, 0);
       return;
     }
-    const middle = box.getCenter(new Vector3());
     const radius = Math.min(box.getSize(new Vector3()).length() / 2, LARGEST_RADIUS);
-    light.target.position.copy(middle);
-    light.position.copy(middle).addScaledVector(direction, -2 * radius);
-    const { camera } = light.shadow;
-    Object.assign(camera, { left: -radius, right: radius, top: radius, bottom: -radius, near: 0.1, far: 4 * radius });
-    camera.updateProjectionMatrix();
+    aimSun(light, direction, box.getCenter(new Vector3()), radius);
   }
 }
 

@@ -85,6 +85,12 @@ def test_the_frames_of_a_model_are_off_where_they_would_cover_it():
     assert [display.checked for display in RvizConfig.parse(config.text()).displays] == [True, True, False]
 
 
+def test_a_model_is_lit_by_a_studio_and_a_file_by_the_camera_as_in_rviz():
+    assert RvizConfig.parse(RvizConfig.for_model("base_link").text()).options.text("Light") == "Automatic"
+    assert RvizConfig.default().options.text("Light") == "Camera"
+    assert "Light" not in RvizConfig.default().text()
+
+
 def test_a_model_is_shown_whole_until_somebody_says_where_the_camera_is():
     config = RvizConfig.for_model("base_link")
     assert config.shows_whole_robot

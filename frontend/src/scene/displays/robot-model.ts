@@ -2,6 +2,7 @@ import { Box3, Group, Matrix4, Vector3, type Object3D, type Raycaster } from "th
 import type { RobotScene } from "../../protocol";
 import { framePose } from "../pose";
 import { RobotDrawing } from "../robot/robot-drawing";
+import { shade } from "../studio-light";
 import type { Described, Hit, SelectionBox } from "../picking";
 import type { Drawing, DrawingContext } from "./drawing";
 
@@ -14,6 +15,7 @@ export class RobotModelDrawing implements Drawing {
   private shown: RobotDrawing | null = null;
   private next: RobotDrawing | null = null;
   private robotsShown = 0;
+  private lit = false;
   private styleIsOld = true;
   private contrast: boolean;
   private readonly forget: readonly (() => void)[];
@@ -52,12 +54,25 @@ export class RobotModelDrawing implements Drawing {
     return this.shown?.bounds() ?? new Box3();
   }
 
+  roughBounds(): Box3 {
+    return this.shown?.roughBounds() ?? new Box3();
+  }
+
+  /** Whether lamps in the scene shine on it, with shadows, and not the light at the camera. */
+  set isLit(lit: boolean) {
+    this.styleIsOld ||= lit !== this.lit;
+    this.lit = lit;
+  }
+
   propertiesChanged(): void {
     this.styleIsOld = true;
   }
 
   update(): void {
-    if (this.styleIsOld) this.shown?.style(this.context.display.rows, this.contrast);
+    if (this.styleIsOld && this.shown) {
+      this.shown.style(this.context.display.rows, this.contrast, this.lit);
+      shade(this.shown.root, this.lit);
+    }
     this.styleIsOld = false;
     const { frames } = this.context.session;
     this.shown?.place((link, matrix) => framePose(frames, frames.row(link.frame), matrix));

@@ -75,6 +75,14 @@ export class RobotDrawing {
     return box;
   }
 
+  /** A box that has all that is seen in it, and maybe more; it takes no look at single points. */
+  roughBounds(): Box3 {
+    const box = new Box3();
+    this.root.updateWorldMatrix(true, true);
+    for (const link of this.links.values()) for (const mesh of link.visibleMeshes) box.expandByObject(mesh);
+    return box;
+  }
+
   /** The boxes around what is seen of each link, in the fixed frame, m; empty ones where nothing is. */
   boundsOfLinks(): Map<string, Box3> {
     this.root.updateWorldMatrix(true, true);

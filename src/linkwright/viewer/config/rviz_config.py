@@ -39,6 +39,14 @@ GLOBAL_OPTIONS = (
         minimum=1,
         maximum=120,
     ),
+    PropertySpec(
+        "Light",
+        "enum",
+        "Camera",
+        "What lights the scene: the camera, as in RViz, or a studio, with shadows on the ground. Automatic: the studio "
+        "where a graphics card draws, else the camera. A simulated world is lit as its display says.",
+        options=("Automatic", "Camera", "Studio"),
+    ),
 )
 
 _MANAGER = "Visualization Manager"
@@ -311,6 +319,7 @@ class RvizConfig:
             display.checked = frames or name != "TF"
             config.insert(display)
         config.options.set(("Fixed Frame",), fixed_frame)
+        config.options.set(("Light",), "Automatic")
         view = config.views.current
         view.values |= {"Distance": _MODEL_DISTANCE, "Pitch": _MODEL_PITCH}
         if size is not None:

@@ -1,0 +1,91 @@
+import {
+  DirectionalLight,
+  Group,
+  HemisphereLight,
+  Mesh,
+  PlaneGeometry,
+  ShadowMaterial,
+  Vector3,
+  type Box3,
+  type Object3D,
+  type SpotLight,
+} from "three";
+
+/** A surface that faces a light of this strength has exactly its own colour. */
+export const FULL = Math.PI;
+/** Strength of the lamp of the studio, and the direction in which it shines on worlds. */
+export const STUDIO_KEY = 0.62;
+export const STUDIO_DIRECTION = new Vector3(0.45, 0.6, -1).normalize();
+/** Robots look along x, and are looked at first from between x and y: the lamp is before them, at that side. */
+const ROBOT_DIRECTION = new Vector3(-0.8, -0.15, -1).normalize();
+const STUDIO_SKY = 0.42;
+const STUDIO_GROUND = 0.16;
+/** Pixels of a shadow map along its side. */
+const SHADOW_PIXELS = 2048;
+/** How dark a shadow on the ground is. */
+const SHADOW = 0.35;
+/** How wide the ground is that shadows fall on, in sizes of what stands on it. */
+const GROUND_WIDTH = 6;
+
+/** The light that comes from all sides, more from above. */
+export function studioSky(): HemisphereLight {
+  const sky = new HemisphereLight(0xffffff, 0xffffff, STUDIO_SKY * FULL);
+  sky.groundColor.setScalar(STUDIO_GROUND / STUDIO_SKY);
+  sky.position.set(0, 0, 1);
+  return sky;
+}
+
+/** Lets a light cast shadows with soft edges. */
+export function castShadows(light: DirectionalLight | SpotLight): void {
+  light.castShadow = true;
+  light.shadow.mapSize.set(SHADOW_PIXELS, SHADOW_PIXELS);
+  light.shadow.bias = -0.0005;
+  light.shadow.normalBias = 0.02;
+  light.shadow.radius = 3;
+}
+
+/** Puts a sun just outside of a ball, so that the shadows in it are as fine as they can be. */
+export function aimSun(light: DirectionalLight, direction: Vector3, middle: Vector3, radius: number): void {
+  light.target.position.copy(middle);
+  light.position.copy(middle).addScaledVector(direction, -2 * radius);
+  const { camera } = light.shadow;
+  Object.assign(camera, { left: -radius, right: radius, top: radius, bottom: -radius, near: radius / 10, far: 4 * radius });
+  camera.updateProjectionMatrix();
+}
+
+/** Lets surfaces cast and receive shadows, or no more. */
+export function shade(root: Object3D, shadowed: boolean): void {
+  root.traverse((object) => {
+    if (object instanceof Mesh) object.castShadow = object.receiveShadow = shadowed;
+  });
+}
+
+/** A lamp from the side, light from the sky, and a ground that is seen only where shadows fall on it. */
+export class StudioLight {
+  readonly root = new Group();
+  private readonly key = new DirectionalLight(0xffffff, STUDIO_KEY * FULL);
+  private readonly ground = new Mesh(
+    new PlaneGeometry(),
+    new ShadowMaterial({ opacity: SHADOW, depthWrite: false, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 }),
+  );
+
+  constructor() {
+    castShadows(this.key);
+    this.ground.receiveShadow = true;
+    this.root.add(studioSky(), this.key, this.key.target, this.ground);
+    this.root.visible = false;
+  }
+
+  /** Shines on what is in a box, in the fixed frame, that stands on a ground at this height, m. */
+  shineOn(box: Box3, height: number): void {
+    this.ground.visible = !box.isEmpty();
+    if (box.isEmpty()) return;
+    const middle = box.getCenter(new Vector3());
+    const radius = box.getSize(new Vector3()).length() / 2;
+    // As far as the shadow of the highest point falls.
+    aimSun(this.key, ROBOT_DIRECTION, middle, 1.5 * radius);
+    this.key.shadow.normalBias = radius / 100;
+    this.ground.position.set(middle.x, middle.y, height);
+    this.ground.scale.setScalar(GROUND_WIDTH * radius);
+  }
+}

@@ -1,0 +1,34 @@
+import { Box3, DirectionalLight, Mesh, Vector3 } from "three";
+import { describe, expect, it } from "vitest";
+import { StudioLight } from "../src/scene/studio-light";
+
+describe("the studio", () => {
+  function parts(studio: StudioLight): { lamp: DirectionalLight; ground: Mesh } {
+    const lamp = studio.root.children.find((each) => each instanceof DirectionalLight);
+    const ground = studio.root.children.find((each): each is Mesh => each instanceof Mesh);
+    if (!lamp || !ground) throw new Error("no lamp, or no ground");
+    return { lamp, ground };
+  }
+
+  it("has its ground below what stands in it, and shadows as large as that", () => {
+    for (const size of [0.01, 1, 100]) {
+      const studio = new StudioLight();
+      const { lamp, ground } = parts(studio);
+      studio.shineOn(new Box3(new Vector3(0, 0, 0), new Vector3(size, size, size)), -size);
+      expect(ground.position.z).toBe(-size);
+      expect(ground.visible).toBe(true);
+      const { near, far, right } = lamp.shadow.camera;
+      const distance = lamp.position.distanceTo(lamp.target.position);
+      expect(near).toBeLessThan(distance - right);
+      expect(far).toBeGreaterThan(distance + right);
+      expect(right).toBeGreaterThan(Math.sqrt(3) * size / 2);
+      expect(right).toBeLessThan(2 * size);
+    }
+  });
+
+  it("has no ground while nothing stands in it", () => {
+    const studio = new StudioLight();
+    studio.shineOn(new Box3(), 0);
+    expect(parts(studio).ground.visible).toBe(false);
+  });
+});
