@@ -42,6 +42,10 @@ export class RobotModelDrawing implements Drawing {
   }
 
   /** Links that have a place. */
+  get linkCount(): number {
+    return this.shown?.linkCount ?? 0;
+  }
+
   /** Tells apart which parts of which robot are seen; empty while there is none, or nothing tells where it is. */
   get seen(): string {
     const { posed, loading } = this.shown?.progress ?? { posed: 0, loading: 0 };

@@ -61,6 +61,10 @@ export class RobotDrawing {
     return (seen.length > 0 ? seen : links).some((link) => link.pose !== null);
   }
 
+  get linkCount(): number {
+    return this.links.size;
+  }
+
   /** How many of its links have a place, and how many of its meshes and textures are still to come. */
   get progress(): { posed: number; loading: number } {
     return { posed: [...this.links.values()].filter((link) => link.pose !== null).length, loading: this.loading };
