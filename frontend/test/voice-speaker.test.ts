@@ -1,0 +1,101 @@
+import { afterEach, beforeEach, expect, it, vi } from "vitest";
+import type { TextStorage } from "../src/state/storage";
+import { Speaker } from "../src/state/voice/speaker";
+
+/** Voices of a browser, which keeps what they are to say. */
+class Voices extends EventTarget {
+  readonly spoken: [text: string, lang: string, voice: string][] = [];
+  hushed = 0;
+  speaking = false;
+  private listed: SpeechSynthesisVoice[] = [];
+
+  getVoices(): SpeechSynthesisVoice[] {
+    return this.listed;
+  }
+
+  speak({ text, lang, voice }: SpeechSynthesisUtterance): void {
+    this.spoken.push([text, lang, voice?.name ?? ""]);
+  }
+
+  cancel(): void {
+    this.hushed += 1;
+  }
+
+  /** Voices come some time after the page. */
+  come(...voices: [name: string, lang: string][]): void {
+    this.listed = voices.map(([name, lang]) => ({ name, lang, voiceURI: name, default: false, localService: true }));
+    this.dispatchEvent(new Event("voiceschanged"));
+  }
+}
+
+let voices: Voices;
+let kept: Map<string, string>;
+let storage: TextStorage;
+
+beforeEach(() => {
+  voices = new Voices();
+  kept = new Map();
+  storage = { getItem: (key) => kept.get(key) ?? null, setItem: (key, value) => void kept.set(key, value) };
+  vi.stubGlobal("speechSynthesis", voices);
+  vi.stubGlobal(
+    "SpeechSynthesisUtterance",
+    class {
+      lang = "";
+      voice: SpeechSynthesisVoice | null = null;
+      constructor(readonly text: string) {}
+    },
+  );
+  vi.stubGlobal("navigator", { languages: ["en-GB", "de"] });
+});
+
+afterEach(() => {
+  vi.unstubAllGlobals();
+});
+
+it("says nothing until it is asked to, and stops when it is not any more", () => {
+  const speaker = new Speaker(storage);
+  speaker.speak("on my way");
+  expect(voices.spoken).toEqual([]);
+  speaker.configure({ on: true });
+  speaker.speak("on my way");
+  speaker.speak("");
+  expect(voices.spoken).toEqual([["on my way", "", ""]]);
+  speaker.configure({ on: false });
+  expect(voices.hushed).toBe(1);
+});
+
+it("leaves the voice to the browser, but tells it that a text is Chinese", () => {
+  const speaker = new Speaker(storage);
+  speaker.configure({ on: true });
+  speaker.speak("我这就去");
+  expect(voices.spoken).toEqual([["我这就去", "zh-CN", ""]]);
+});
+
+it("lists the user's languages first, tells when voices come, and speaks with the chosen one, also next time", () => {
+  const speaker = new Speaker(storage);
+  let told = 0;
+  speaker.changed.on(() => (told += 1));
+  voices.come(["Ting", "zh-CN"], ["Hans", "de-DE"], ["Anna", "en-US"]);
+  expect(told).toBe(1);
+  expect(speaker.voices.map(({ name }) => name)).toEqual(["Anna", "Hans", "Ting"]);
+  speaker.configure({ on: true, voice: "Hans" });
+  new Speaker(storage).speak("ich komme");
+  expect(voices.spoken).toEqual([["ich komme", "de-DE", "Hans"]]);
+});
+
+it("takes a voice that is gone, or settings that are none, for no choice", () => {
+  kept.set("linkwright.speaker.1", "{");
+  const speaker = new Speaker(storage);
+  expect(speaker.settings).toEqual({ on: false, voice: "" });
+  speaker.configure({ on: true, voice: "nobody" });
+  speaker.speak("here");
+  expect(voices.spoken).toEqual([["here", "", ""]]);
+});
+
+it("is silent where a browser cannot speak", () => {
+  vi.stubGlobal("speechSynthesis", undefined);
+  const speaker = new Speaker(storage);
+  speaker.configure({ on: true });
+  speaker.speak("nobody hears it");
+  expect([speaker.voices, speaker.speaking]).toEqual([[], false]);
+});
