@@ -252,7 +252,7 @@ export class Stage {
       settled &&= drawing.settled?.() ?? true;
     }
     this.robotSettled ||= settled && [...this.robots(), ...this.worlds()].some((each) => each.isInPlace);
-    if (settled && this.robots().some(({ linkCount }) => linkCount > 0)) this.placelessSince ??= now;
+    if (settled && this.session.robot !== null) this.placelessSince ??= now;
     this.lookFirst(settled);
     this.viewport.light(this.worlds().find((world) => world.ownLight)?.ownLight ?? this.lightOfStudio(inStudio));
     this.marks.update();
