@@ -24,7 +24,7 @@ export default defineConfig({
   },
   test: {
     include: ["test/**/*.test.ts"],
-    // Its colours are tested; other styles are nothing to tests.
-    css: { include: [/theme\.css/] },
+    // Colours and edges are tested; other styles are nothing to tests.
+    css: { include: [/theme\.css/, /controls\.css/] },
   },
 });

@@ -1,4 +1,5 @@
 import { describe, expect, it } from "vitest";
+import controls from "../src/styles/controls.css?raw";
 import css from "../src/styles/theme.css?raw";
 
 type Rgb = readonly [number, number, number];
@@ -78,7 +79,18 @@ describe.each([
     }
   });
 
-  it("focus and the edges of fields can be seen (3)", () => {
-    for (const background of BACKGROUNDS) expect(contrast(at("--accent"), at(background))).toBeGreaterThanOrEqual(3);
+  it.each(["--accent", "--edge"])("%s, focus and edges of fields, boxes and sliders, can be seen (3)", (line) => {
+    for (const background of BACKGROUNDS) expect(contrast(at(line), at(background)), background).toBeGreaterThanOrEqual(3);
+  });
+
+  it.each(["--thumb", "--thumb-hover"])("%s of a slider can be seen beside its panel (3)", (thumb) => {
+    for (const background of BACKGROUNDS) expect(contrast(at(thumb), at(background)), background).toBeGreaterThanOrEqual(3);
+  });
+
+  it("fields, boxes and sliders have these edges", () => {
+    for (const rule of [".field,\n.choice", ".check", ".slider::-moz-range-thumb", ".slider::-webkit-slider-thumb"]) {
+      const start = controls.indexOf(`\n${rule} {`);
+      expect(controls.slice(start, controls.indexOf("\n}", start)), rule).toMatch(/1px (solid )?var\(--edge\)/);
+    }
   });
 });
