@@ -13,6 +13,8 @@ import { holdWhileVisible } from "./visibility";
 const SVG = "http://www.w3.org/2000/svg";
 const FONT = "12px Inter, 'Segoe UI', 'Noto Sans', sans-serif";
 const LINE_PX = 13;
+/** Of the smallest texts, the origins. */
+const TEXT_PX = 11;
 const FLASH_MS = 1600;
 
 /** The structure of the robot, as urdf_to_graphviz draws it. */
@@ -30,7 +32,7 @@ export class DiagramPanel implements Panel {
   private origins = true;
   private model: DescriptionModel | undefined;
   private diagram: Diagram | null = null;
-  private isFitted = false;
+  private isPlaced = false;
 
   constructor(private readonly session: Session) {
     const words = strings.description.diagram;
@@ -81,13 +83,13 @@ export class DiagramPanel implements Panel {
     this.canvas.hidden = model === undefined;
     if (!model) return;
     if (model !== this.model) {
-      this.isFitted &&= this.model?.display === model.display && this.model.links.size === model.links.size;
+      this.isPlaced &&= this.model?.display === model.display && this.model.links.size === model.links.size;
       this.model = model;
       this.draw(model);
     }
-    if (this.isFitted || this.canvas.clientWidth === 0) return;
-    this.isFitted = true;
-    this.fit();
+    if (this.isPlaced || this.canvas.clientWidth === 0) return;
+    this.isPlaced = true;
+    this.place();
     this.focused();
   }
 
@@ -143,12 +145,21 @@ export class DiagramPanel implements Panel {
     if (this.diagram && this.canvas.clientWidth > 0) this.panZoom.show(this.diagram.width, this.diagram.height);
   }
 
+  /** What is selected, or else the root, is in sight and can be read. */
+  private place(): void {
+    const { diagram } = this;
+    if (!diagram || this.canvas.clientWidth === 0) return;
+    const { current } = this.session.focus;
+    const node = (current && diagram.nodes.find(({ element }) => same(element, current))) ?? diagram.nodes.find(({ above }) => !above);
+    this.panZoom.open(diagram.width, diagram.height, TEXT_PX, [node?.x ?? 0, node?.y ?? 0]);
+  }
+
   private toggleOrigins(pressed: HTMLElement): void {
     this.origins = !this.origins;
     pressed.classList.toggle("on", this.origins);
     pressed.setAttribute("aria-pressed", String(this.origins));
     if (this.model) this.draw(this.model);
-    this.fit();
+    this.place();
     this.focused();
   }
 

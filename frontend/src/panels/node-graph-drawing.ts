@@ -6,6 +6,8 @@ import { PanZoom } from "./pan-zoom";
 const SVG = "http://www.w3.org/2000/svg";
 const BOX_HEIGHT = 28;
 const PADDING = 24;
+const TEXT_PX = 12;
+
 /** The graph as SVG: dragged, zoomed with the wheel, with one vertex chosen by a click or by keyboard. */
 export class NodeGraphDrawing {
   readonly element = h("div", { class: "graph-drawing", tabIndex: 0, role: "group" });
@@ -14,8 +16,10 @@ export class NodeGraphDrawing {
   private graph: DrawnGraph = { vertices: [], edges: [] };
   private size: readonly [number, number] = [1, 1];
   private readonly pan: PanZoom;
-  /** Whether all of it is shown, and is to be when the graph or the panel changes. */
-  private fitted = true;
+  /** What is shown, also when the graph or the panel changes: what can be read, all of it, or what the user moved to. */
+  private shows: "legible" | "all" | "chosen" = "legible";
+  private boxes: ReadonlyMap<string, PlacedBox> = new Map();
+  private marked: string | null = null;
 
   constructor(
     label: string,
@@ -31,26 +35,28 @@ export class NodeGraphDrawing {
       if (event.key === "Escape") chosen(null);
     });
     new ResizeObserver(() => {
-      if (this.fitted) this.fit();
+      this.place();
     }).observe(this.element);
   }
 
-  /** Draws a graph; the view stays, unless it shows all. */
+  /** Draws a graph; the view stays where the user moved it. */
   show(graph: DrawnGraph): void {
     this.graph = graph;
     if (this.measure) this.measure.font = `12px ${getComputedStyle(document.body).fontFamily}`;
     const boxes = graph.vertices.map((vertex) => ({ id: vertex.id, width: this.widthOf(vertex), height: BOX_HEIGHT }));
     const layout = layered(boxes, graph.edges);
     this.size = [layout.width, layout.height];
+    this.boxes = layout.boxes;
     const vertices = new Map(graph.vertices.map((vertex) => [vertex.id, vertex]));
     const edges = layout.routes.map((route) => drawRoute(route, this.topicsOf(route)));
     const shapes = [...layout.boxes.values()].map((box) => this.drawBox(box, vertices.get(box.id)));
     this.scene.replaceChildren(...edges, ...shapes);
-    if (this.fitted) this.fit();
+    this.place();
   }
 
   /** Marks a vertex, what it is connected with, and the edges between; null marks nothing. */
   mark(id: string | null): void {
+    this.marked = id;
     const { edges } = this.graph;
     const near = new Set(edges.flatMap(({ from, to }) => (from === id ? [to] : to === id ? [from] : [])));
     this.element.classList.toggle("marked", id !== null);
@@ -69,7 +75,23 @@ export class NodeGraphDrawing {
   fit(): void {
     if (this.element.clientWidth === 0) return;
     this.pan.show(...this.size);
-    this.fitted = true;
+    this.shows = "all";
+  }
+
+  private place(): void {
+    if (this.shows === "all") this.fit();
+    if (this.shows !== "legible" || this.element.clientWidth === 0) return;
+    const box = this.boxes.get(this.marked ?? "") ?? this.busiest();
+    this.pan.open(...this.size, TEXT_PX, [box?.x ?? 0, box?.y ?? 0]);
+    this.shows = "legible";
+  }
+
+  /** The vertex with the most edges. */
+  private busiest(): PlacedBox | undefined {
+    const degrees = new Map<string, number>();
+    for (const id of this.graph.edges.flatMap(({ from, to }) => [from, to])) degrees.set(id, (degrees.get(id) ?? 0) + 1);
+    const [first] = [...degrees].sort(([, a], [, b]) => b - a);
+    return this.boxes.get(first?.[0] ?? "");
   }
 
   private drawBox(box: PlacedBox, vertex: GraphVertex | undefined): SVGElement {
@@ -111,7 +133,7 @@ export class NodeGraphDrawing {
   }
 
   private moved(x: number, y: number, scale: number): void {
-    this.fitted = false;
+    this.shows = "chosen";
     this.scene.setAttribute("transform", `translate(${x} ${y}) scale(${scale})`);
   }
 }

@@ -1,3 +1,5 @@
+import { legibleView } from "./legible-view";
+
 const SMALLEST = 0.05;
 const LARGEST = 4;
 const WHEEL_NOTCH = 480;
@@ -50,6 +52,13 @@ export class PanZoom {
     const fits = Math.min((clientWidth - 2 * margin) / width, (clientHeight - 2 * margin) / height);
     const scale = Math.min(1, Math.max(SMALLEST, fits));
     this.set((clientWidth - width * scale) / 2, Math.max(margin, (clientHeight - height * scale) / 2), scale);
+  }
+
+  /** Shows a picture of this size so that its texts can be read; `point` is in the middle where it is too large for that. */
+  open(width: number, height: number, text: number, point: readonly [number, number]): void {
+    const { clientWidth, clientHeight } = this.element;
+    const { x, y, scale } = legibleView([width, height], [clientWidth, clientHeight], text, point);
+    this.set(x, y, scale);
   }
 
   /** Moves a point of the picture into sight: to the middle, if it is outside. */

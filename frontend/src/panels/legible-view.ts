@@ -1,0 +1,28 @@
+/** Where a picture is in its window: the place of its corner, px, and what it is scaled by. */
+export interface PictureView {
+  readonly x: number;
+  readonly y: number;
+  readonly scale: number;
+}
+
+type Size = readonly [width: number, height: number];
+
+/** Texts are at least as large on the screen, px. */
+const LEAST_TEXT = 10;
+
+/**
+ * All of a picture where its texts can be read then; otherwise the part around a point, as large as they need it.
+ *
+ * @param text size of the picture's smallest text, px.
+ * @param point of the picture, px: comes to the middle, as far as the picture goes.
+ */
+export function legibleView(picture: Size, window: Size, text: number, point: readonly [number, number], margin = 16): PictureView {
+  const fits = Math.min((window[0] - 2 * margin) / picture[0], (window[1] - 2 * margin) / picture[1]);
+  const scale = Math.min(1, Math.max(LEAST_TEXT / text, fits));
+  const place = (axis: 0 | 1): number => {
+    const [size, room] = [picture[axis] * scale, window[axis]];
+    if (size <= room - 2 * margin) return (room - size) / 2;
+    return Math.min(margin, Math.max(room - margin - size, room / 2 - point[axis] * scale));
+  };
+  return { x: place(0), y: place(1), scale };
+}
