@@ -31,6 +31,7 @@ import { LinksPanel } from "./panels/links-panel";
 import { WorldCommands } from "./panels/modelling/world-commands";
 import { WorldPanel } from "./panels/modelling/world-panel";
 import { KeySheet } from "./panels/key-sheet";
+import { noWebgl } from "./panels/no-webgl";
 import { ScenePanel } from "./panels/scene-panel";
 import { ShareMenu } from "./panels/share-menu";
 import { SelectionPanel } from "./panels/selection-panel";
@@ -61,7 +62,7 @@ import { ThemeState } from "./shell/theme";
 import { TitleBar } from "./shell/title-bar";
 import { Session } from "./state/session";
 import { browserStorage } from "./state/storage";
-import { language, strings } from "./strings";
+import { language } from "./strings";
 
 function start(app: HTMLElement): void {
   document.documentElement.lang = language === "zh" ? "zh-CN" : "en";
@@ -93,7 +94,7 @@ function start(app: HTMLElement): void {
     new ViewsPanel(session),
     new ToolPropertiesPanel(session),
     new SelectionPanel(session, (item) => stage?.picker.describe(item) ?? null),
-    new TimePanel(session.time),
+    new TimePanel(session.time, () => dock.close("time")),
     new TransformationPanel(),
     new JointsPanel(session),
     new LinksPanel(session),
@@ -222,8 +223,8 @@ function makeStage(container: HTMLElement, session: Session, panels: PanelHost):
   try {
     return new Stage(container, session, panels);
   } catch (error) {
-    console.error(error);
-    container.append(h("p", { class: "no-webgl" }, strings.scene.noWebgl));
+    console.warn(error);
+    container.append(noWebgl());
     return null;
   }
 }

@@ -154,24 +154,34 @@ describe("what the user does", () => {
 describe("the arrangements that the browser keeps", () => {
   const texts = new Map<string, string>();
   const layouts = new Layouts({ getItem: (key) => texts.get(key) ?? null, setItem: (key, text) => void texts.set(key, text) });
-  const layout = (file: string): Layout => ({ file, arrangement: { panels: {} } as Layout["arrangement"] });
+  const layout = (file: string, narrow = false): Layout => ({ file, narrow, arrangement: { panels: {} } as Layout["arrangement"] });
 
   beforeEach(() => texts.clear());
 
   it("are of the last files, the newest first", () => {
-    expect([layouts.latest, layouts.find("/0.rviz")]).toEqual([null, null]);
+    expect([layouts.latest(false), layouts.find("/0.rviz", false)]).toEqual([null, null]);
     for (let i = 0; i < 20; i++) layouts.keep(layout(`/${i}.rviz`));
-    expect(layouts.latest?.file).toBe("/19.rviz");
-    expect(layouts.find("/8.rviz")?.file).toBe("/8.rviz");
-    expect(layouts.find("/7.rviz")).toBeNull();
+    expect(layouts.latest(false)?.file).toBe("/19.rviz");
+    expect(layouts.find("/8.rviz", false)?.file).toBe("/8.rviz");
+    expect(layouts.find("/7.rviz", false)).toBeNull();
     layouts.keep(layout("/8.rviz"));
-    expect(layouts.latest?.file).toBe("/8.rviz");
+    expect(layouts.latest(false)?.file).toBe("/8.rviz");
+  });
+
+  it("are others in narrow windows", () => {
+    layouts.keep(layout("/a.rviz", true));
+    layouts.keep(layout("/b.rviz"));
+    expect(layouts.latest(true)?.file).toBe("/a.rviz");
+    expect(layouts.find("/a.rviz", false)).toBeNull();
+    layouts.keep(layout("/a.rviz"));
+    expect(layouts.find("/a.rviz", true)?.narrow).toBe(true);
+    expect(layouts.find("/a.rviz", false)?.narrow).toBe(false);
   });
 
   it("are none where something else is kept", () => {
-    for (const text of ["{", "7", '{"file": 1}', "[null, 3, {}]"]) {
-      texts.set("linkwright.layouts.1", text);
-      expect(layouts.latest).toBeNull();
+    for (const text of ["{", "7", '{"file": 1}', '[{"file": "/a.rviz", "arrangement": {}}]', "[null, 3, {}]"]) {
+      texts.set("linkwright.layouts.2", text);
+      expect(layouts.latest(false)).toBeNull();
     }
   });
 });

@@ -56,7 +56,7 @@ def test_an_element_is_selected_in_the_scene_and_marked_in_both_texts(page, arm)
     assert marks(page, "origin") == [SEGMENT_JOINT]
 
     # A line of a macro stands for the elements of all calls, one click after another.
-    line = page.locator('.source-pane >> nth=1 >> .source-line[data-line="20"]')
+    line = page.locator('.source-pane >> nth=0 >> .source-line[data-line="20"]')
     line.click()
     until(page, "lw.description.focus.name === 'fore_joint' && lw.selected.link === 'fore'")
     line.click()

@@ -37,7 +37,7 @@ def settled(page, *names: str) -> None:
 
 
 def close(page, name: str) -> None:
-    page.locator(".panel-tab", has_text=name).get_by_role("button").click()
+    page.locator(".panel-tab", has_text=name).locator(".tab-close").click()
 
 
 def choose(page, name: str) -> None:

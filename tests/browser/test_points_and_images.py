@@ -208,7 +208,7 @@ def test_an_image_has_a_panel_of_its_own(live, open_page):
     # The shape is kept: above and below the image it is black.
     becomes(looks, (True, [RED, BLUE, (0, 0, 0)]))
 
-    page.locator(".panel-tab", has_text="Image").get_by_role("button").click()
+    page.locator(".panel-tab", has_text="Image").locator(".tab-close").click()
     until(page, "lw.displays[0].enabled === false")
     page.locator(".picture-panel").wait_for(state="detached")
     viewer.run(lambda: viewer.viewer.manager.tree.check(viewer.viewer.displays[0], True))

@@ -50,18 +50,26 @@ def box(page: Page, selector: str) -> dict[str, float]:
     return found
 
 
-def test_on_a_phone_the_scene_is_above_everything_else(sized):
-    page = sized(500, 800)
-    becomes(lambda: box(page, ".canvas-box")["width"], 500)
+def place(page: Page, name: str) -> dict[str, float]:
+    """The group that has a panel's tab."""
+    found = page.locator(".dv-groupview", has=page.locator(".panel-tab", has_text=name)).first.bounding_box()
+    assert found is not None, name
+    return found
+
+
+@pytest.mark.parametrize(("width", "height"), [(500, 800), (900, 700)])
+def test_up_to_a_tablet_the_scene_is_above_everything_else(sized, width, height):
+    page = sized(width, height)
+    becomes(lambda: box(page, ".canvas-box")["width"], width)
     canvas = box(page, ".canvas-box")
     assert canvas["height"] > 300
     page.locator(".dv-tab", has_text="Displays").first.dispatch_event("pointerdown")
     page.wait_for_selector(".displays-panel")
-    becomes(lambda: box(page, ".displays-panel")["width"], 500)
+    becomes(lambda: box(page, ".displays-panel")["width"], width)
     assert box(page, ".displays-panel")["y"] > canvas["y"] + canvas["height"]
 
 
-@pytest.mark.parametrize(("width", "height"), [(900, 600), (1280, 800)])
+@pytest.mark.parametrize(("width", "height"), [(1024, 600), (1280, 800)])
 def test_every_panel_that_is_open_has_room(sized, width, height):
     page = sized(width, height)
     page.wait_for_function("() => document.querySelector('.time-panel').offsetHeight < 45")
@@ -76,6 +84,55 @@ def test_every_panel_that_is_open_has_room(sized, width, height):
         }
 
     becomes(has_room, dict.fromkeys(("scene", "tree", "time", "reset"), True))
+
+
+def test_a_window_that_becomes_narrow_and_wide_again_has_the_panels_that_it_had(sized):
+    page = sized(1280, 800)
+    page.get_by_role("button", name="Panels", exact=True).click()
+    page.get_by_role("menuitemcheckbox", name="Topics", exact=True).click()
+    becomes(lambda: place(page, "Topics")["y"] > box(page, ".canvas-box")["y"] + 100, True)
+    page.set_viewport_size({"width": 800, "height": 600})
+    becomes(lambda: box(page, ".canvas-box")["width"], 800)
+    becomes(lambda: place(page, "Topics") == place(page, "Displays"), True)
+    page.set_viewport_size({"width": 1280, "height": 800})
+    becomes(lambda: place(page, "Topics")["x"] > place(page, "Displays")["x"], True)
+
+
+def test_panels_that_are_read_in_lines_share_one_place(sized):
+    page = sized(1280, 800)
+    for name in ("Source", "Topics", "Diagram", "Log"):
+        page.get_by_role("button", name="Panels", exact=True).click()
+        page.get_by_role("menuitemcheckbox", name=name, exact=True).click()
+    becomes(lambda: [place(page, name) for name in ("Topics", "Diagram", "Log")], [place(page, "Source")] * 3)
+    assert page.locator(".dv-tab[aria-selected=true]", has_text="Log").count() == 1
+
+
+def test_tabs_are_for_the_keyboard_too(sized):
+    page = sized(1280, 800)
+    tabs = page.locator("[role=tablist]", has=page.locator(".dv-tab", has_text="Views")).get_by_role("tab")
+    assert tabs.evaluate_all("all => all.map(each => each.tabIndex)").count(0) == 1
+    focused = "() => document.activeElement.getAttribute('aria-label')"
+    page.locator(".dv-tab", has_text="Views").focus()
+    page.keyboard.press("ArrowRight")
+    assert page.evaluate(focused) == "Tool Properties"
+    ring = "() => getComputedStyle(document.activeElement).outlineStyle"
+    assert page.evaluate(ring) == "solid"
+    page.keyboard.press("Enter")
+    page.locator(".dv-tab[aria-selected=true]", has_text="Tool Properties").wait_for()
+    page.keyboard.press("End")
+    assert page.evaluate(focused) == "Selection"
+    page.keyboard.press("Home")
+    assert page.evaluate(focused) == "Views"
+    page.keyboard.press("Delete")
+    page.locator(".dv-tab", has_text="Views").wait_for(state="detached")
+    assert page.evaluate(focused) == "Tool Properties"
+    # The scene must stay.
+    page.locator(".dv-tab", has_text="3D View").focus()
+    page.keyboard.press("Delete")
+    page.locator(".canvas-box canvas").focus()
+    yaw = state(page, "view.yaw")
+    page.keyboard.press("ArrowLeft")
+    until(page, f"lw.view.yaw !== {yaw}")
 
 
 def test_several_displays_are_selected_duplicated_removed_and_brought_back(sized):
@@ -140,5 +197,6 @@ def test_the_three_tabs_beside_views_are_whole_in_chinese(sized):
 
 def test_the_label_of_the_type_of_view_stays_on_one_line_in_chinese(sized):
     page = sized(800, 600, "zh-CN")
+    page.locator(".dv-tab", has_text="视角").click()
     label = page.locator(".view-type > .toolbar-label")
     becomes(lambda: label.evaluate("each => each.offsetHeight < 2 * parseFloat(getComputedStyle(each).fontSize)"), True)

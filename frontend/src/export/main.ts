@@ -10,6 +10,7 @@ import { OrientationSign } from "../panels/orientation-sign";
 import { SelectionCard } from "../panels/selection-card";
 import { Controls } from "../scene/controls";
 import { Keyboard } from "../scene/keyboard";
+import { noWebgl } from "../panels/no-webgl";
 import { Stage } from "../scene/stage";
 import { Toolbox } from "../scene/tools/toolbox";
 import { ThemeState } from "../shell/theme";
@@ -62,8 +63,8 @@ function makeStage(container: HTMLElement, session: Session, files: RecordedFile
   try {
     return new Stage(container, session, NO_PANELS, files);
   } catch (error) {
-    console.error(error);
-    container.append(h("p", { class: "no-webgl" }, strings.scene.noWebgl));
+    console.warn(error);
+    container.append(noWebgl());
     return null;
   }
 }

@@ -7,7 +7,6 @@ interface Home {
   beside: readonly (readonly [PanelId, Direction])[];
   width?: number;
   height?: number;
-  minimumHeight?: number;
   inactive?: boolean;
 }
 
@@ -18,22 +17,14 @@ const RIGHT: Home["beside"] = [
   ["scene", "right"],
 ];
 
-/** The live panels share a place below the scene. */
-const LIVE_HOME: Home = {
-  beside: [
-    ["plot", "within"],
-    ["topics", "within"],
-    ["graph", "within"],
-    ["parameters", "within"],
-    ["log", "within"],
-    ["source", "within"],
-    ["scene", "below"],
-  ],
-  height: 300,
-};
+/** What is wide and read line by line shares one place below the scene. */
+const BOTTOM: readonly PanelId[] = ["source", "diagram", "joint-table", "plot", "topics", "graph", "parameters", "log"];
+const BELOW: Home = { beside: [...BOTTOM.map((id) => [id, "within"] as const), ["scene", "below"]], height: 300 };
+/** The part of the dock's height that a panel asks for at most. */
+const MOST_HEIGHT = 0.4;
 
-/** Pixels: a tab and one line. */
-export const TIME_HEIGHT = 66;
+/** Pixels: one line, without a tab. */
+export const TIME_HEIGHT = 32;
 
 /** RViz's places: Displays left, the scene in the middle, everything else right. */
 const HOMES: Readonly<Record<PanelId, Home>> = {
@@ -64,7 +55,7 @@ const HOMES: Readonly<Record<PanelId, Home>> = {
     height: 290,
     inactive: true,
   },
-  time: { beside: [["scene", "below"]], height: TIME_HEIGHT, minimumHeight: 60 },
+  time: { beside: [["scene", "below"]], height: TIME_HEIGHT },
   transformation: {
     beside: [
       ["views", "within"],
@@ -74,14 +65,14 @@ const HOMES: Readonly<Record<PanelId, Home>> = {
   },
   links: { beside: [["displays", "within"], ["scene", "left"]], width: 320, inactive: true },
   world: { beside: [["displays", "within"], ["links", "within"], ["scene", "left"]], width: 320 },
-  source: { beside: [["diagram", "within"], ["joint-table", "within"], ["scene", "below"]], height: 300 },
-  diagram: { beside: [["source", "within"], ["joint-table", "within"], ["scene", "below"]], height: 300 },
-  "joint-table": { beside: [["source", "within"], ["diagram", "within"], ["scene", "below"]], height: 300 },
-  plot: LIVE_HOME,
-  topics: LIVE_HOME,
-  graph: LIVE_HOME,
-  parameters: LIVE_HOME,
-  log: LIVE_HOME,
+  source: BELOW,
+  diagram: BELOW,
+  "joint-table": BELOW,
+  plot: BELOW,
+  topics: BELOW,
+  graph: BELOW,
+  parameters: BELOW,
+  log: BELOW,
   voice: {
     beside: [
       ["teleop", "within"],
@@ -113,14 +104,14 @@ const HOMES: Readonly<Record<PanelId, Home>> = {
   },
 };
 
-/** Narrower than this, in pixels, there is no room for panels beside the scene. */
-const NARROW = 720;
+/** Up to this width, in pixels, there is no room for panels beside the scene. */
+const NARROW = 900;
 /** As wide as this panels have the widths that they would like; below it somewhat less. */
 const ROOMY = 1280;
 const LEAST_SHARE = 0.7;
 
 export function isNarrow(api: DockviewApi): boolean {
-  return api.width < NARROW;
+  return api.width <= NARROW;
 }
 
 /** On a phone: the scene, and below it one group with everything else. */
@@ -131,18 +122,25 @@ function narrowHome(api: DockviewApi, id: PanelId): Home {
   return { beside, height: Math.round(api.height * 0.45), inactive: id !== "displays" };
 }
 
+function wideHome(api: DockviewApi, id: PanelId): Home {
+  const home = HOMES[id];
+  return home.height === undefined ? home : { ...home, height: Math.min(home.height, Math.round(api.height * MOST_HEIGHT)) };
+}
+
+/** The order in which panels that are open come to their usual places. */
+export const USUAL: readonly PanelId[] = ["scene", "time", "displays", "links", "world", "views", "tool-properties", "selection", "diagnostics", "joints", "teleop", "voice", "transformation", ...BOTTOM];
+
 /** Adds panels at their usual places. */
 export function addPanels(api: DockviewApi, ids: readonly PanelId[]): void {
   const share = Math.max(LEAST_SHARE, Math.min(1, api.width / ROOMY));
   for (const id of ids) {
-    const home = isNarrow(api) ? narrowHome(api, id) : HOMES[id];
-    const { beside, height, minimumHeight, inactive } = home;
+    const home = isNarrow(api) ? narrowHome(api, id) : wideHome(api, id);
+    const { beside, height, inactive } = home;
     const width = home.width === undefined ? undefined : Math.round(home.width * share);
     const found = beside.find(([other]) => api.getPanel(other) !== undefined);
     const options: AddPanelOptions = { id, component: id, tabComponent: id, title: strings.panels[id] };
     if (width !== undefined) options.initialWidth = width;
     if (height !== undefined) options.initialHeight = height;
-    if (minimumHeight !== undefined) options.minimumHeight = minimumHeight;
     // Alone in its group a panel must be active, or the group stays empty.
     if (inactive !== undefined && found?.[1] === "within") options.inactive = inactive;
     const position = found && { referencePanel: found[0], direction: found[1] };

@@ -3,6 +3,7 @@ import type { PropertyValue, StatusLevel, StatusRow } from "../protocol";
 import type { DisplayState } from "../state/displays";
 import type { Session } from "../state/session";
 import { DRAWINGS } from "../scene/displays/registry";
+import { shortName } from "../state/views/catalog";
 import { strings } from "../strings";
 import { propertyItem } from "../tree/property-item";
 import type { TreeItem } from "../tree/tree-item";
@@ -56,7 +57,7 @@ function displayItem(
     muted: !drawn || !display.enabled,
     ...(drawn && display.enabled ? { level: worstWithin(session, display) } : {}),
     ...(drawn ? {} : { badge: strings.tree.notDrawn }),
-    expanded: display.isGroup || (display.cls.endsWith("/RobotModel") && display.enabled),
+    expanded: display.isGroup || (display.enabled && isOnlyContent(session, display)),
     children: () => [...status, ...displayRows(display, session, set).map(offered), ...within()],
     set: (value) => set(display.enabledId, value),
   };
@@ -95,6 +96,15 @@ export function describe(display: DisplayState, drawn = isDrawn(display)): strin
   const about = (strings.displays.about as Readonly<Record<string, string | undefined>>)[name];
   const rest = drawn ? (about ?? strings.tree.enabledHelp) : strings.tree.notDrawnHelp;
   return `${display.cls}. ${rest}`;
+}
+
+/** Displays that take no messages of their own: they do not need to be seen in the list. */
+const SCENERY = ["Grid", "Axes", "TF", "Group"];
+
+/** A RobotModel that is all there is to look at starts open; otherwise its links would push the others out of sight. */
+function isOnlyContent(session: Session, display: DisplayState): boolean {
+  if (!display.cls.endsWith("/RobotModel")) return false;
+  return session.displays.displays.every((each) => each === display || SCENERY.includes(shortName(each.cls)));
 }
 
 /** A group shows the worst of what is in it. */

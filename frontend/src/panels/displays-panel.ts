@@ -23,13 +23,14 @@ export class DisplaysPanel implements Panel {
   private readonly commands: DisplayCommands;
   private readonly filter = h("input", { class: "field" });
   private readonly nothing = h("p", { class: "empty" }, strings.displays.nothingFound);
-  private readonly help = h("div", { class: "help" }, h("p", { class: "hint" }, strings.tree.helpHint));
+  /** Comes with the first row that is selected. */
+  private readonly help = h("div", { class: "help", aria: { live: "polite" } });
   private readonly needsDisplay: HTMLButtonElement[] = [];
 
   constructor(private readonly session: Session) {
     this.tree = new TreeView(strings.panels.displays, () => this.items(), () => session.frames.names);
     this.commands = new DisplayCommands(session, () => this.selected, () => this.selectedAll);
-    this.nothing.hidden = true;
+    this.nothing.hidden = this.help.hidden = true;
     this.element = h("div", { class: "panel displays-panel" }, this.toolbar(), this.filterBar(), this.nothing, this.tree.element, this.help);
     this.listen();
     this.takeKeysAndMouse();
@@ -163,6 +164,7 @@ export class DisplaysPanel implements Panel {
   }
 
   private explain(name: string, description: string): void {
+    this.help.hidden = description === "";
     this.help.replaceChildren(h("strong", {}, name), h("p", {}, description));
   }
 

@@ -3,12 +3,14 @@ import type { PanelName } from "../protocol";
 import { Signal } from "../state/signal";
 import { strings } from "../strings";
 import { ColumnWidths } from "./column-widths";
-import { addPanels, TIME_HEIGHT } from "./default-layout";
+import { addPanels, isNarrow, USUAL } from "./default-layout";
 import { DisplayPanels } from "./display-panels";
 import { FILE_PANELS } from "./file-panels";
 import type { Layout, Layouts } from "./layouts";
 import type { Panel, PanelId } from "./panel";
 import { PanelTab } from "./panel-tab";
+import { takeTabKeys } from "./tab-keys";
+import { TimeStrip } from "./time-strip";
 
 /** The dockable panels; their arrangement is remembered by the browser, for each file. */
 export class Dock {
@@ -24,7 +26,10 @@ export class Dock {
   readonly displayPanels = new DisplayPanels(() => this.api);
   private readonly api: DockviewApi;
   private readonly widths: ColumnWidths;
+  private readonly strip: TimeStrip;
   private readonly panels: ReadonlyMap<string, Panel>;
+  private readonly tabs = new Map<string, PanelTab>();
+  private narrow: boolean;
 
   constructor(
     parent: HTMLElement,
@@ -34,24 +39,33 @@ export class Dock {
     this.panels = new Map(panels.map((panel) => [panel.id, panel]));
     this.api = createDockview(parent, {
       createComponent: ({ name }) => this.displayPanels.content(name) ?? this.content(name),
-      createTabComponent: ({ id }) => this.displayPanels.tab(id) ?? new PanelTab(this.panels.get(id)?.icon ?? "panels", id !== "scene"),
+      createTabComponent: ({ id }) => this.tab(id),
       theme: { name: "linkwright", className: "dockview-theme-linkwright" },
       disableFloatingGroups: true,
       noPanelsOverlay: "emptyGroup",
     });
     this.widths = new ColumnWidths(this.api);
+    this.strip = new TimeStrip(this.api);
+    takeTabKeys(parent, (id) => this.tabs.get(id));
     // Panels get their sizes when they are added; the dock's own observer would tell its size only later.
     this.api.layout(parent.clientWidth, parent.clientHeight);
+    this.narrow = isNarrow(this.api);
     // Most often the file is the one of the last time: then nothing moves when that is known.
-    const { latest } = layouts;
+    const latest = layouts.latest(this.narrow);
     if (latest && this.restore(latest)) this.file = latest.file;
     else this.reset();
+    this.strip.follow();
     this.widths.take();
     this.api.onDidLayoutChange(() => {
+      this.strip.follow();
       this.widths.follow();
       this.remember();
       this.changed.emit();
     });
+    new ResizeObserver(() => {
+      this.api.layout(parent.clientWidth, parent.clientHeight);
+      if (parent.clientWidth > 0 && isNarrow(this.api) !== this.narrow) this.changeForm();
+    }).observe(parent);
   }
 
   /** The panels that can be opened and closed. */
@@ -82,23 +96,20 @@ export class Dock {
   /** The arrangement of the first visit. */
   reset(): void {
     const joints = this.api.getPanel("joints") !== undefined;
-    this.api.clear();
-    addPanels(this.api, ["scene", "time", "displays", "links", "views", "tool-properties", "selection", "diagnostics", ...(joints ? (["joints"] as const) : [])]);
-    this.keepTimeLow();
-    this.displayPanels.restore();
-    this.widths.take();
+    this.build(["scene", "time", "displays", "links", "views", "tool-properties", "selection", "diagnostics", ...(joints ? (["joints"] as const) : [])]);
     if (this.listed) this.showOnly(this.listed);
     this.rearranged.emit();
   }
 
   /** Shows the arrangement that the browser keeps for a file; false when it keeps none. */
   arrange(file: string): boolean {
-    const layout = this.layouts.find(file);
+    const layout = this.layouts.find(file, this.narrow);
     if (!layout) return false;
     if (!this.restore(layout)) {
       this.reset();
       return false;
     }
+    this.strip.follow();
     this.displayPanels.restore();
     this.widths.take();
     this.rearranged.emit();
@@ -121,15 +132,29 @@ export class Dock {
   }
 
   private add(id: PanelId): void {
-    if (this.isOpen(id)) return;
-    addPanels(this.api, [id]);
-    if (id === "time") this.keepTimeLow();
+    if (!this.isOpen(id)) addPanels(this.api, [id]);
   }
 
-  /** Added panels take their share of the whole, whatever height they ask for. */
-  private keepTimeLow(): void {
-    const group = this.api.getPanel("time")?.group;
-    if (group?.panels.length === 1) group.api.setSize({ height: TIME_HEIGHT });
+  private build(ids: readonly PanelId[]): void {
+    this.api.clear();
+    addPanels(this.api, this.narrow ? [...ids.filter((id) => id !== "time"), ...ids.filter((id) => id === "time")] : ids);
+    this.strip.follow();
+    this.displayPanels.restore();
+    this.widths.take();
+  }
+
+  /** The window became narrow or wide: the same panels, as they were in such a window or where they belong. */
+  private changeForm(): void {
+    this.narrow = isNarrow(this.api);
+    if (this.file !== null && this.arrange(this.file)) return;
+    this.build(USUAL.filter((id) => this.isOpen(id)));
+    this.rearranged.emit();
+  }
+
+  private tab(id: string): PanelTab {
+    const tab = this.displayPanels.tab(id) ?? new PanelTab(this.panels.get(id)?.icon ?? "panels", id !== "scene");
+    this.tabs.set(id, tab);
+    return tab;
   }
 
   private content(name: string): IContentRenderer {
@@ -151,7 +176,7 @@ export class Dock {
   }
 
   private remember(): void {
-    if (this.file !== null) this.layouts.keep({ file: this.file, arrangement: this.api.toJSON() });
+    if (this.file !== null) this.layouts.keep({ file: this.file, narrow: this.narrow, arrangement: this.api.toJSON() });
   }
 }
 

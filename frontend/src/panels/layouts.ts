@@ -1,32 +1,33 @@
 import type { SerializedDockview } from "dockview";
 import type { TextStorage } from "../state/storage";
 
-/** An arrangement of panels, and the file that it is kept for. */
+/** An arrangement of panels, the file that it is kept for, and whether it is that of a narrow window. */
 export interface Layout {
   file: string;
+  narrow: boolean;
   arrangement: SerializedDockview;
 }
 
-const KEY = "linkwright.layouts.1";
-/** Of more files the browser forgets the one that was seen longest ago. */
+const KEY = "linkwright.layouts.2";
+/** Of more the browser forgets the one that was seen longest ago. */
 const MOST = 12;
 
-/** The arrangements of panels that the browser keeps, one for each file. */
+/** The arrangements of panels that the browser keeps, for each file one of wide and one of narrow windows. */
 export class Layouts {
   constructor(private readonly storage: TextStorage) {}
 
-  /** That of the file that was seen last. */
-  get latest(): Layout | null {
-    return this.read()[0] ?? null;
+  /** That of the file that was seen last in such a window. */
+  latest(narrow: boolean): Layout | null {
+    return this.read().find((each) => each.narrow === narrow) ?? null;
   }
 
-  find(file: string): Layout | null {
-    return this.read().find((each) => each.file === file) ?? null;
+  find(file: string, narrow: boolean): Layout | null {
+    return this.read().find((each) => each.file === file && each.narrow === narrow) ?? null;
   }
 
   keep(layout: Layout): void {
     // Read anew each time: another tab may have another file.
-    const others = this.read().filter(({ file }) => file !== layout.file);
+    const others = this.read().filter(({ file, narrow }) => file !== layout.file || narrow !== layout.narrow);
     this.storage.setItem(KEY, JSON.stringify([layout, ...others].slice(0, MOST)));
   }
 
@@ -41,6 +42,6 @@ export class Layouts {
 }
 
 function isLayout(kept: unknown): kept is Layout {
-  const { file, arrangement } = (kept ?? {}) as Partial<Layout>;
-  return typeof file === "string" && typeof arrangement === "object";
+  const { file, narrow, arrangement } = (kept ?? {}) as Partial<Layout>;
+  return typeof file === "string" && typeof narrow === "boolean" && typeof arrangement === "object";
 }

@@ -1,9 +1,9 @@
 import type { ITabRenderer, TabPartInitParameters } from "dockview";
-import { button, h } from "../dom";
+import { h } from "../dom";
 import { icon, type IconName } from "../icons";
 import { strings } from "../strings";
 
-/** A panel's tab: icon, title and, unless the panel must stay, a close button. */
+/** A panel's tab: icon, title and, unless the panel must stay, a cross that closes it. */
 export class PanelTab implements ITabRenderer {
   readonly element = h("div", { class: "panel-tab" });
   private readonly title = h("span", { class: "tab-title" });
@@ -14,14 +14,24 @@ export class PanelTab implements ITabRenderer {
     private readonly onClose: (() => void) | null = null,
   ) {}
 
+  /** Closes the panel, unless it must stay; false then. */
+  close: () => boolean = () => false;
+
   init({ title, api }: TabPartInitParameters): void {
     this.title.textContent = title;
     api.onDidTitleChange((event) => (this.title.textContent = event.title));
     this.element.append(icon(this.iconName), this.title);
     if (!this.closable) return;
-    const close = button(strings.close, () => (this.onClose ? this.onClose() : api.close()), "tab-close", icon("close"));
-    // Pressing the button must not start to drag the tab.
-    close.addEventListener("pointerdown", (event) => event.stopPropagation());
-    this.element.append(close);
+    this.close = () => {
+      if (this.onClose) this.onClose();
+      else api.close();
+      return true;
+    };
+    // Within a tab nothing else can take the focus: keyboards close with Delete.
+    const cross = h("span", { class: "tab-close", title: strings.closeTab, aria: { hidden: "true" } }, icon("close"));
+    // Pressing it must not start to drag the tab.
+    cross.addEventListener("pointerdown", (event) => event.stopPropagation());
+    cross.addEventListener("click", () => this.close());
+    this.element.append(cross);
   }
 }

@@ -18,7 +18,7 @@ interface Spot {
   readonly look: Highlight["look"];
 }
 
-/** The expanded description beside the files that it was made from; the selected link or joint is marked in both. */
+/** The files that the description is written in, and beside them what they expand to; the selected link or joint is marked in both. */
 export class SourcePanel implements Panel {
   readonly id = "source";
   readonly icon = "code";
@@ -30,7 +30,7 @@ export class SourcePanel implements Panel {
   private readonly notice = h("p", { class: "empty" });
   private readonly empty = h("p", { class: "empty" }, strings.description.waiting);
   private readonly panes: HTMLElement;
-  /** The file in the right pane. */
+  /** The file that is shown. */
   private file = "";
   private spot: Spot | null = null;
   private model: DescriptionModel | undefined;
@@ -47,7 +47,6 @@ export class SourcePanel implements Panel {
     this.panes = h(
       "div",
       { class: "source-panes" },
-      h("section", { class: "source-pane" }, heading(words.expanded, words.expandedHint), this.expanded.element),
       h(
         "section",
         { class: "source-pane" },
@@ -56,6 +55,7 @@ export class SourcePanel implements Panel {
         this.notice,
         this.origin.element,
       ),
+      h("section", { class: "source-pane" }, heading(words.expanded, words.expandedHint), this.expanded.element),
     );
     this.element = h("div", { class: "panel source-panel" }, this.empty, this.panes);
     const { description, focus } = session;

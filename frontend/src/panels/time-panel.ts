@@ -22,7 +22,11 @@ export class TimePanel implements Panel {
 
   private timer = 0;
 
-  constructor(private readonly time: TimeControlState) {
+  /** @param close for the strip without a tab that this is below the scene. */
+  constructor(
+    private readonly time: TimeControlState,
+    close: () => void,
+  ) {
     const words = strings.time;
     this.pause = button(words.pauseHint, () => time.set({ paused: !time.paused }), "tool", icon("pause"), words.pause);
     this.mode.append(...MODES.map((mode) => new Option(words.modes[mode], mode)));
@@ -39,6 +43,7 @@ export class TimePanel implements Panel {
       ...this.figures.map(({ name, output }) => labelled(words[name], output, name)),
       h("span", { class: "spacer" }),
       button(words.resetHint, () => time.reset(), "tool", icon("reset"), words.reset),
+      button(strings.close, close, "tool bare strip-close", icon("close")),
     );
     time.changed.on(() => this.update());
     this.update();

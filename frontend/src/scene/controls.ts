@@ -1,4 +1,5 @@
 import type { ViewState } from "../state/view";
+import { strings } from "../strings";
 import type { Stage } from "./stage";
 import type { PointerButton, ToolEvent } from "./tools/tool";
 
@@ -25,6 +26,9 @@ export class Controls {
   ) {
     const { canvas } = stage.viewport;
     canvas.tabIndex = 0;
+    // Screen readers leave its keys to it, and say which ones it has.
+    canvas.setAttribute("role", "application");
+    canvas.setAttribute("aria-label", strings.scene.keys);
     canvas.addEventListener("pointerdown", (event) => this.pressed(event));
     canvas.addEventListener("pointermove", (event) => this.moved(event));
     canvas.addEventListener("pointerup", (event) => this.released(event, true));

@@ -42,7 +42,6 @@ export const en = {
     notDrawn: "not drawn",
     notDrawnHelp: "Linkwright keeps this display in the file but does not draw it.",
     enabledHelp: "Switches this display on and off.",
-    helpHint: "Select a row to read what it means.",
     pickColor: "Pick a colour",
     frames: "Known frames",
     noNames: "None is known.",
@@ -104,7 +103,9 @@ export const en = {
   scene: {
     label: "3D view",
     waiting: "Waiting for a robot description",
+    keys: "3D view. Arrow keys turn it, with Shift they move it, plus and minus zoom, F looks at what is selected, question mark lists all keys.",
     noWebgl: "This browser gives no WebGL 2, which the 3D view needs.",
+    noWebglHelp: "Turn on its hardware acceleration, or open the page in another browser. The other panels work without it.",
   },
   connection: {
     connecting: "Connecting",
@@ -136,6 +137,7 @@ export const en = {
   },
   monitor,
   close: "Close",
+  closeTab: "Close (Delete)",
   suggestions: "Suggestions",
   pictures: {
     none: "No image",

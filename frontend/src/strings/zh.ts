@@ -33,7 +33,6 @@ export const zh: Strings = {
     notDrawn: "未绘制",
     notDrawnHelp: "Linkwright 会在文件中保留此显示项，但不绘制它。",
     enabledHelp: "打开或关闭此显示项。",
-    helpHint: "选中一行即可查看它的含义。",
     pickColor: "选择颜色",
     frames: "已知坐标系",
     noNames: "没有已知的名称。",
@@ -95,7 +94,9 @@ export const zh: Strings = {
   scene: {
     label: "三维视图",
     waiting: "正在等待机器人描述",
+    keys: "三维视图。方向键旋转，Shift 加方向键平移，加号和减号缩放，F 看向所选对象，问号列出所有按键。",
     noWebgl: "三维视图需要 WebGL 2，而此浏览器不提供。",
+    noWebglHelp: "请打开浏览器的硬件加速，或换用其他浏览器打开本页。其他面板不需要它，可以照常使用。",
   },
   connection: {
     connecting: "正在连接",
@@ -127,6 +128,7 @@ export const zh: Strings = {
   },
   monitor,
   close: "关闭",
+  closeTab: "关闭（Delete）",
   suggestions: "建议",
   pictures: {
     none: "没有图像",
