@@ -47,6 +47,20 @@ def test_a_robot_drives_straight_on():
     assert abs(y) < 1e-4
 
 
+@pytest.mark.parametrize(
+    ("shape", "radius"),
+    [
+        ("<sphere><radius>0.3</radius></sphere>", 0.3),
+        ("<cylinder><radius>0.2</radius><length>0.1</length></cylinder>", 0.2),
+        ("<box><size>1 1 1</size></box>", None),
+    ],
+)
+def test_what_is_round_has_a_radius_as_a_wheel(shape, radius):
+    collision = f"<collision name='c'><geometry>{shape}</geometry></collision>"
+    simulation = simulated(f"<model name='a'><link name='link'>{collision}</link></model>")
+    assert simulation.wheel_radius("a::link") == radius
+
+
 def test_the_same_twice():
     def run() -> tuple[float, ...]:
         simulation = simulated(GROUND, mbot(), box("box", "0.5 0.05 0.2 0 0 0", "0.2 0.2 0.2"))

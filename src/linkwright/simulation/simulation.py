@@ -374,9 +374,10 @@ class Simulation:
         for geom in range(body.geomadr[0], body.geomadr[0] + body.geomnum[0]):
             if model.geom_group[geom] != COLLISION_GROUP:
                 continue
-            if model.geom_type[geom] == kinds.mjGEOM_ELLIPSOID:
+            kind = int(model.geom_type[geom])  # numpy's own integers are never found among MuJoCo's kinds
+            if kind == kinds.mjGEOM_ELLIPSOID:
                 radii.append(float(np.median(model.geom_size[geom])))
-            elif model.geom_type[geom] in (kinds.mjGEOM_SPHERE, kinds.mjGEOM_CYLINDER):
+            elif kind in (kinds.mjGEOM_SPHERE, kinds.mjGEOM_CYLINDER):
                 radii.append(float(model.geom_size[geom, 0]))
         return max(radii, default=None)
 
