@@ -81,7 +81,7 @@ def test_fit_shows_all_of_the_robot_again(start, open_page, tmp_path):
     before = state(page, "view.values")
     page.get_by_role("button", name="Zero", exact=True).click()
     until(page, f"lw.view.values.Distance !== {before['Distance']}")
-    page.get_by_role("button", name="Fit", exact=True).click()
+    page.get_by_role("toolbar", name="Tools", exact=True).get_by_role("button", name="Fit", exact=True).click()
     until(page, "Math.abs(lw.view.values['Focal Point/Z'] - " + str(before["Focal Point/Z"]) + ") < 1e-6")
     assert state(page, "view.values.Distance") < 10
     page.keyboard.press("z")
