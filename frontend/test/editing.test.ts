@@ -1,8 +1,10 @@
-import { describe, expect, it } from "vitest";
+import { describe, expect, it, vi } from "vitest";
 import { placeText, shortPath } from "../src/panels/place";
 import { materialFiles } from "../src/scene/meshes/obj";
 import { formatColor, parseColor } from "../src/tree/colors";
 import { clamp, formatNumber, parseNumber, stepFor } from "../src/tree/numbers";
+
+vi.mock("../src/strings", async () => ({ strings: (await import("../src/strings/en")).en }));
 
 describe("numbers in rows", () => {
   it("show six significant digits", () => {

@@ -9,7 +9,7 @@ let most = 0;
 
 function bitmap(): ImageBitmap {
   most = Math.max(most, ++open);
-  return { width: 3840, height: 2160, close: () => void open-- };
+  return { width: 3840, height: 2160, close: () => (open -= 1) };
 }
 
 function file(): ImageFrame {
