@@ -85,6 +85,9 @@ def test_diagram_and_table_show_all_links_and_joints_and_select_them(page):
     open_panel(page, "Diagram")
     until(page, "lw.panels.diagram.links === 5 && lw.panels.diagram.joints === 4")
     assert "xyz: 0 0 0.4" in page.locator('.node[data-joint="fore_joint"]').text_content()
+    assert state(page, "panels.diagram.scale") >= 10 / 11  # texts of 11 pixels have 10 on the screen
+    page.locator(".diagram").focus()
+    page.keyboard.press("0")  # all of it
     page.locator('.node[data-joint="slide_joint"] .name').click()
     until(page, "lw.description.focus.name === 'slide_joint'")
     page.locator('.node[data-link="base"] .name').click()
