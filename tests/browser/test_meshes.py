@@ -64,7 +64,7 @@ BROKEN = {
     "cut.dae": (b"<?xml version='1.0'?>\n<COLLADA>\n<library_geometries>", "not valid XML, line 3"),
     "other.dae": (b"<robot name='r'/>", "its root is <robot>"),
     "points.obj": (b"v 0 0 0\nv 1 0 0\n", "has no faces"),
-    "cut.glb": (b"glTF" + struct.pack("<II", 2, 1_000) + b"\0" * 12, "says 1 000 bytes and holds 24"),
+    "torn.glb": (b"glTF" + struct.pack("<II", 2, 1_000) + b"\0" * 12, "says 1 000 bytes and holds 24"),
     "zip.glb": (b"PK\x03\x04 and so on", "does not begin with 'glTF'"),
 }
 """Files with what is to be said of them."""
@@ -88,7 +88,7 @@ def test_what_is_wrong_with_a_mesh_is_said_in_words_at_its_link_alone(start, ope
 def test_a_mesh_that_comes_slowly_is_told_until_it_is_there(start, open_page, robot):
     page = open_page(start("view", robot()))
     held = []
-    page.route("**/box.stl*", held.append)
+    page.route("**/box.stl*", lambda route: held.append(route))
     page.reload()
     notice = page.locator("[data-notice='meshes']")
     notice.wait_for()
