@@ -68,6 +68,7 @@ export class WorldHandling {
   private move(hold: Hold, event: ToolEvent): void {
     const to = this.stage.picker.rayAt(event.x, event.y).ray.intersectPlane(hold.plane, new Vector3());
     if (!to) return;
+    if (!hold.pushes) to.z = hold.start.z; // the height stays exactly, which the intersection does not
     hold.offset = to.sub(hold.start);
     const now = performance.now();
     if (now - hold.lastMs < PERIOD_MS) return;
