@@ -129,7 +129,7 @@ def test_the_button_talks_and_lets_go_when_the_page_is_left(talking: tuple[Robot
     wait_until(lambda: robot.held == [True, False], SECONDS)
     page.keyboard.up("Space")
     page.get_by_label("Open listening").check()
-    until(page, "lw.panels.voice.mode === 'open' && lw.panels.voice.peak > 0.2")
+    until(page, "lw.panels.voice.mode === 'open' && lw.panels.voice.peak > 0.02")  # browsers suppress steady tones
     before = robot.seconds
     wait_until(lambda: robot.seconds > before + 0.3, SECONDS)
     assert robot.held == [True, False]
