@@ -88,7 +88,11 @@ def test_what_is_wrong_with_a_mesh_is_said_in_words_at_its_link_alone(start, ope
 def test_a_mesh_that_comes_slowly_is_told_until_it_is_there(start, open_page, robot):
     page = open_page(start("view", robot()))
     held = []
-    page.route("**/box.stl*", lambda route: held.append(route))
+
+    def hold(route) -> None:
+        held.append(route)
+
+    page.route("**/box.stl*", hold)
     page.reload()
     notice = page.locator("[data-notice='meshes']")
     notice.wait_for()

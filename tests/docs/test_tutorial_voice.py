@@ -101,7 +101,7 @@ async def test_the_readers_own_commands_move_mbot(tmp_path: Path) -> None:
 
 
 def test_the_file_on_the_page_about_voice_is_right() -> None:
-    (block,) = [each for each in blocks(DOCS / "voice.md") if each.title]
+    (block,) = [each for each in blocks(DOCS / "voice.md") if each.title == "my_commands.yaml"]
     found = parse_commands(SourceText(block.title, block.text))
     assert found.understand("please go forward seven metres") is None
     for said in (
