@@ -67,5 +67,5 @@ def test_a_wrong_file_of_classes_is_told_with_its_place(tmp_path, text, line):
 
 
 def test_a_file_of_classes_that_is_not_there_is_told(tmp_path):
-    with pytest.raises(LinkwrightError, match="cannot be read"):
+    with pytest.raises(LinkwrightError, match="does not exist"):
         read_classes(tmp_path / "none.yaml")
