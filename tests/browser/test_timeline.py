@@ -1,0 +1,164 @@
+"""The timeline of a recording, used in a real browser: images, plots and frames are of the time that it shows."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from playwright.sync_api import Page
+
+from linkwright.bag import BagWriter
+from linkwright.graph import DEFAULT_QOS
+from linkwright.messages import TFMessage, TransformBatch, get_message, serialize
+from tests.browser.conftest import becomes, state, until
+from tests.images.test_images import image
+
+pytestmark = pytest.mark.browser
+
+START = 1_700_000_000
+SECOND = 1_000_000_000
+FLOAT = get_message("std_msgs/msg/Float64")
+
+LENGTH = 30
+"""Seconds. In each are ten messages of a topic; number, frame and image all tell which second it is."""
+
+
+def recorded(folder: Path) -> Path:
+    """A recording in one MCAP file."""
+    with BagWriter(folder / "drive") as writer:
+        writer.add_topic("/second", "std_msgs/msg/Float64", [DEFAULT_QOS])
+        writer.add_topic("/tf", "tf2_msgs/msg/TFMessage", [DEFAULT_QOS])
+        writer.add_topic("/camera", "sensor_msgs/msg/Image", [DEFAULT_QOS])
+        for tenth in range(10 * LENGTH + 1):
+            second, stamp = tenth // 10, START * SECOND + tenth * SECOND // 10
+            batch = TransformBatch(("base",), ("tip",), stamp, np.array([[second, 0, 0, 0, 0, 0, 1.0]]))
+            writer.write("/tf", stamp, serialize(TFMessage(batch=batch)))
+            writer.write("/second", stamp, serialize(FLOAT(data=float(second))))
+            picture = image("rgb8", 4, 4, bytes(color(second)) * 16)
+            picture.header.frame_id = "tip"
+            writer.write("/camera", stamp, serialize(picture))
+            if tenth % 10 == 9:
+                writer.flush()
+    (file,) = (folder / "drive").glob("*.mcap")
+    return file
+
+
+def color(second: int) -> tuple[int, int, int]:
+    return 8 * second, 0, 255 - 8 * second
+
+
+@pytest.fixture
+def page(start, open_page, tmp_path: Path) -> Page:
+    """A page that shows the recording, which stands still; the robot is none, so nothing is waited for but frames."""
+    shown = open_page(start("view", str(recorded(tmp_path))), wait=False)
+    until(shown, "lw.timeline && lw.frames.tip && lw.displays.some(({ drawn }) => drawn?.width === 4)")
+    if state(shown, "timeline")["playing"]:
+        shown.get_by_role("button", name="Pause (Space)").click()
+    until(shown, "!lw.timeline.playing")
+    return shown
+
+
+def position(page: Page) -> float:
+    return float(state(page, "timeline")["position"])
+
+
+def track(page: Page) -> dict[str, float]:
+    box = page.get_by_role("slider", name="Time in the recording").bounding_box()
+    assert box is not None
+    return dict(box)
+
+
+def seek(page: Page, seconds: float) -> None:
+    """Click on a time of the timeline."""
+    box = track(page)
+    page.mouse.click(box["x"] + box["width"] * seconds / LENGTH, box["y"] + box["height"] / 2)
+    until(page, f"Math.abs(lw.timeline.position - {seconds}) < {LENGTH / box['width'] + 0.01}")
+
+
+def shows(page: Page, second: int) -> None:
+    """Wait until frame and image are those of a second."""
+    until(page, f"Math.abs(lw.frames.tip?.position[0] - {second}) < 1e-6")
+    corner = "window.linkwright.displays.find(({ drawn }) => drawn?.width === 4).drawn.corner"
+    becomes(lambda: page.evaluate(corner), [*color(second), 255])
+
+
+def test_a_seek_shows_frames_and_images_of_its_time(page: Page):
+    assert state(page, "timeline")["length"] == LENGTH
+    for seconds in (20.55, 4.55, 12.55):
+        seek(page, seconds)
+        shows(page, int(seconds))
+    assert not state(page, "timeline")["playing"]
+
+
+def test_what_is_dragged_to_is_shown_while_the_pointer_is_down(page: Page):
+    box = track(page)
+    middle = box["y"] + box["height"] / 2
+    page.mouse.move(box["x"] + 0.1 * box["width"], middle)
+    page.mouse.down()
+    for part in (0.3, 0.6, 0.851):
+        page.mouse.move(box["x"] + part * box["width"], middle, steps=5)
+    shows(page, 25)
+    page.mouse.move(box["x"] - 100, middle)
+    shows(page, 0)
+    assert position(page) == 0
+    page.mouse.up()
+
+
+def test_steps_go_from_message_to_message(page: Page):
+    seek(page, 9.95)
+    shows(page, 9)
+    # At each time there are three messages; a step shows all of them.
+    page.get_by_role("button", name="To the next message (→)").click()
+    until(page, "Math.abs(lw.timeline.position - 10) < 1e-5")
+    shows(page, 10)
+    page.keyboard.press("ArrowLeft")
+    until(page, "Math.abs(lw.timeline.position - 9.9) < 1e-5")
+    shows(page, 9)
+    page.get_by_role("button", name="To the message before (←)").click()
+    until(page, "Math.abs(lw.timeline.position - 9.8) < 1e-5")
+
+
+def test_space_plays_and_pauses_at_the_speed_that_is_chosen(page: Page):
+    page.get_by_role("combobox", name="Speed").select_option("10")
+    seek(page, 2.05)
+    page.locator("body").focus()
+    page.keyboard.press("Space")
+    until(page, "lw.timeline.playing && lw.timeline.position > 6")
+    page.keyboard.press("Space")
+    until(page, "!lw.timeline.playing")
+    stood = position(page)
+    shows(page, int(stood))
+    page.get_by_role("combobox", name="Speed").select_option("0.1")
+    page.get_by_role("button", name="Play (Space)").click()
+    until(page, f"lw.timeline.position > {stood}")
+    page.get_by_role("button", name="Pause (Space)").click()
+    until(page, "!lw.timeline.playing")
+
+
+def test_at_the_end_it_stays_or_begins_anew(page: Page):
+    page.get_by_role("combobox", name="Speed").select_option("10")
+    seek(page, LENGTH - 3)
+    page.get_by_role("button", name="Play (Space)").click()
+    until(page, f"!lw.timeline.playing && lw.timeline.position === {LENGTH}")
+    shows(page, LENGTH)
+    page.get_by_role("button", name="Begin anew at the end").click()
+    seek(page, LENGTH - 3)
+    page.get_by_role("button", name="Play (Space)").click()
+    until(page, "lw.timeline.playing && lw.timeline.position < 20")
+
+
+def test_plots_are_of_the_time_that_is_shown(page: Page):
+    seek(page, 5.05)
+    page.get_by_role("button", name="Panels").click()
+    page.get_by_role("menuitemcheckbox", name="Plots", exact=True).click()
+    page.get_by_role("button", name="Add a series").first.click()
+    page.get_by_role("combobox", name="Topic and field").fill("/second.data")
+    page.keyboard.press("Enter")
+    last = "lw.panels.monitor.plots[0].series[0].last"
+    until(page, f"{last} === 5")
+    page.locator(".timeline-track").focus()
+    page.keyboard.press("Home")
+    until(page, f"{last} === 0")
+    page.get_by_role("button", name="Play (Space)").click()
+    until(page, f"{last} >= 1")
