@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from linkwright.assignments import parse_assignments
+from linkwright.cli.model_arguments import add_values
 from linkwright.cli.output import write_output
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, has_errors, phrase, print_diagnostics
 
@@ -21,9 +22,7 @@ _FORMATS = ("sdf", "mjcf")
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     parser.add_argument("file", metavar="FILE", help="the URDF, xacro or SDF file")
-    parser.add_argument(
-        "values", metavar="NAME:=VALUE", nargs="*", default=[], help="values for the file's <xacro:arg>"
-    )
+    add_values(parser, values_help="values for the file's <xacro:arg>")
     parser.add_argument(
         "-o", "--output", metavar="OUT", help="the file to write; without it the text goes to standard output"
     )

@@ -6,14 +6,9 @@ import argparse
 import json
 import sys
 from contextlib import ExitStack
-from pathlib import Path
-from typing import TYPE_CHECKING
 
-from linkwright.assignments import parse_assignments
+from linkwright.cli.model_arguments import add_against, add_values, asked_pair
 from linkwright.diagnostics import LinkwrightError, print_diagnostics
-
-if TYPE_CHECKING:
-    from linkwright.descriptions.pairs import Pair
 
 SAME, DIFFERENT, TROUBLE = 0, 1, 2
 """Exit statuses, those of ``diff``."""
@@ -22,26 +17,15 @@ SAME, DIFFERENT, TROUBLE = 0, 1, 2
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     parser.add_argument("file", metavar="OLD", help="the URDF or xacro file; with --against, the new one")
-    parser.add_argument(
-        "words",
+    add_values(
+        parser,
+        values_help="the file to compare it with, and NAME:=VALUE for the <xacro:arg> of both files",
+        name="words",
         metavar="NEW",
-        nargs="*",
-        default=[],
-        help="the file to compare it with, and NAME:=VALUE for the <xacro:arg> of both files",
     )
     add_against(parser)
     parser.add_argument(
         "--format", choices=("text", "json"), default="text", help="form of the result (default: %(default)s)"
-    )
-
-
-def add_against(parser: argparse.ArgumentParser) -> None:
-    """The option about the other description, which `view` and `export` have too."""
-    parser.add_argument(
-        "--against",
-        metavar="COMMIT",
-        help="compare the file with what it was in a commit of its git repository, such as HEAD, with all that it "
-        "includes and its meshes",
     )
 
 
@@ -65,27 +49,3 @@ def run(arguments: argparse.Namespace) -> int:
         else:
             sys.stdout.write(as_text(comparison, pair.label))
     return DIFFERENT if comparison.differences else SAME
-
-
-def asked_pair(arguments: argparse.Namespace, stack: ExitStack) -> Pair | None:
-    """The two descriptions that a command line asks for; None where it does not name two, or more.
-
-    Args:
-        arguments: `file`, `words` and `against`.
-        stack: is told what is to be closed.
-
-    Raises:
-        LinkwrightError: see `linkwright.descriptions.revisions.Revision`.
-    """
-    from linkwright.descriptions.pairs import against, pair_of
-
-    files = [word for word in arguments.words if ":=" not in word]
-    values = parse_assignments([word for word in arguments.words if ":=" in word])
-    if len(files) != (0 if arguments.against else 1):
-        return None
-    first = Path(arguments.file)
-    if arguments.against:
-        pair = against(first, arguments.against, values)
-        stack.callback(pair.close)
-        return pair
-    return pair_of(first, Path(files[0]), values)

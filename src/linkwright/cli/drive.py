@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from linkwright.assignments import parse_assignments
 from linkwright.cli.endings import say
+from linkwright.cli.model_arguments import add_model
 from linkwright.cli.simulation_options import add_simulation_options, recording
 from linkwright.cli.view import add_viewer_options
 from linkwright.diagnostics import (
@@ -33,10 +34,7 @@ _KINDS = ("differential", "skid", "ackermann", "mecanum", "joints")
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
-    parser.add_argument("file", metavar="FILE", help="the URDF or xacro file")
-    parser.add_argument(
-        "values", metavar="NAME:=VALUE", nargs="*", default=[], help="values for the file's <xacro:arg>"
-    )
+    add_model(parser)
     parser.add_argument(
         "--world", metavar="WORLD", default="empty", help="the world: a file or a name (default: a plane)"
     )

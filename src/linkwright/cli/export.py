@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from linkwright.assignments import parse_assignments
+from linkwright.cli.model_arguments import add_model
 from linkwright.cli.output import write_output
 from linkwright.diagnostics import (
     Diagnostic,
@@ -30,10 +31,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="the file to write: OUT.html has the robot with sliders for its joints and needs no server and no "
         "network; OUT.glb is glTF 2.0 with a node for each link",
     )
-    parser.add_argument("file", metavar="FILE", help="the URDF or xacro file")
-    parser.add_argument(
-        "values", metavar="NAME:=VALUE", nargs="*", default=[], help="values for the file's <xacro:arg>"
-    )
+    add_model(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:

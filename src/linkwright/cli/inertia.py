@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from linkwright.assignments import parse_assignments
 from linkwright.cli.endings import say
+from linkwright.cli.model_arguments import add_model
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, has_errors, phrase, print_diagnostics
 from linkwright.diagnostics.translation import localized
 
@@ -23,10 +24,7 @@ _LARGEST = 1e15
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
-    parser.add_argument("file", metavar="FILE", help="the URDF or xacro file")
-    parser.add_argument(
-        "values", metavar="NAME:=VALUE", nargs="*", default=[], help="values for the file's <xacro:arg>"
-    )
+    add_model(parser)
     parser.add_argument(
         "--density",
         metavar="KG_PER_M3",

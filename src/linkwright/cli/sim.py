@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from linkwright.assignments import parse_assignments
+from linkwright.cli.model_arguments import add_values
 from linkwright.cli.simulation_options import (
     add_place_options,
     add_simulation_options,
@@ -21,9 +22,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     parser.add_argument("world", metavar="WORLD", help="a file in SDF, or the name of a world; empty is a plane")
     parser.add_argument("robot", metavar="ROBOT", nargs="?", help="a URDF, xacro or SDF file of what is put into it")
-    parser.add_argument(
-        "values", metavar="NAME:=VALUE", nargs="*", default=[], help="values for the robot's <xacro:arg>"
-    )
+    add_values(parser, values_help="values for the robot's <xacro:arg>")
     add_place_options(parser)
     add_simulation_options(parser)
     parser.add_argument("--step", metavar="S", type=positive, default=0.0, help="the time step (default: the world's)")

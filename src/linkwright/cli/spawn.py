@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from linkwright.assignments import parse_assignments
 from linkwright.cli.calls import NoAnswerError, call
+from linkwright.cli.model_arguments import add_values
 from linkwright.cli.session import add_session_arguments, run_in_graph
 from linkwright.cli.simulation_options import add_place_options, load_model
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
@@ -19,9 +20,7 @@ if TYPE_CHECKING:
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     parser.add_argument("file", metavar="FILE", help="a URDF, xacro or SDF file of what is put into the world")
-    parser.add_argument(
-        "values", metavar="NAME:=VALUE", nargs="*", default=[], help="values for the file's <xacro:arg>"
-    )
+    add_values(parser, values_help="values for the file's <xacro:arg>")
     parser.add_argument(
         "-name", "--name", metavar="NAME", default="", help="what it is called in the world (default: as the file says)"
     )

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from linkwright.assignments import parse_assignments
 from linkwright.cli.endings import FINDINGS, FINE, say
+from linkwright.cli.model_arguments import add_values
 from linkwright.cli.numbers import positive_int
 from linkwright.cli.progress import ProgressLine
 from linkwright.diagnostics import Diagnostic, LinkwrightError, counted, display_path, phrase
@@ -26,12 +27,10 @@ if TYPE_CHECKING:
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     parser.add_argument("file", metavar="FILE", help="a Python file with a function below @scenario(...)")
-    parser.add_argument(
-        "values",
+    add_values(
+        parser,
+        values_help="other values of a parameter than the file says, with commas between them",
         metavar="NAME:=VALUES",
-        nargs="*",
-        default=[],
-        help="other values of a parameter than the file says, with commas between them",
     )
     parser.add_argument(
         "--seeds", metavar="N", type=positive_int, help="so many seeds, from 0 on, whatever the file says"

@@ -7,6 +7,7 @@ import sys
 from typing import TYPE_CHECKING
 
 from linkwright.assignments import parse_assignments
+from linkwright.cli.model_arguments import add_values
 from linkwright.cli.output import write_output
 from linkwright.diagnostics import Diagnostic, Severity, phrase, print_diagnostics
 
@@ -21,12 +22,9 @@ _USAGE = 2
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     parser.add_argument("file", metavar="FILE", help="the xacro file, or - for standard input")
-    parser.add_argument(
-        "values",
-        metavar="NAME:=VALUE",
-        nargs="*",
-        default=[],  # else argparse says that it misses them too
-        help="values for the file's <xacro:arg>; an empty value, as in prefix:=, leaves the default in force",
+    add_values(
+        parser,
+        values_help="values for the file's <xacro:arg>; an empty value, as in prefix:=, leaves the default in force",
     )
     parser.add_argument("-o", metavar="OUT", dest="output", help="write to this file instead of standard output")
     parser.add_argument(

@@ -6,7 +6,7 @@ import filecmp
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Literal
+from typing import Literal, TypeVar
 
 from linkwright.descriptions.comparison.facts import (
     Block,
@@ -28,6 +28,7 @@ Kind = Literal["added", "removed", "renamed", "changed"]
 Subject = Literal["robot", "link", "joint", "extension"]
 _Pair = tuple[Element | None, Element | None]
 """Where something is written in the old and in the new description."""
+_Thing = TypeVar("_Thing", Link, Joint)
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,31 +152,14 @@ class _Comparer:
 
     def _links(self) -> Iterator[Difference]:
         old, new = self.old.robot.links, self.new.robot.links
-        names = {after: before for before, after in self.matches.links.items()}
-        for name, link in new.items():
-            if name not in names:
-                yield Difference("link", name, "added", new_place=_place(link.element))
-                continue
-            before = old[names[name]]
-            yield from _renamed("link", before, link)
-            yield from self._in_link(before, link)
-        for name, link in old.items():
-            if name not in self.matches.links:
-                yield Difference("link", name, "removed", old_place=_place(link.element))
+        yield from _named("link", old, new, self.matches.links, self._in_link)
 
     def _joints(self) -> Iterator[Difference]:
+        def inside(old: Joint, new: Joint) -> Iterator[Difference]:
+            yield from (each for each in self._in_joint(old, new) if not self._follows_a_name(each))
+
         old, new = self.old.robot.joints, self.new.robot.joints
-        names = {after: before for before, after in self.matches.joints.items()}
-        for name, joint in new.items():
-            if name not in names:
-                yield Difference("joint", name, "added", new_place=_place(joint.element))
-                continue
-            before = old[names[name]]
-            yield from _renamed("joint", before, joint)
-            yield from (each for each in self._in_joint(before, joint) if not self._follows_a_name(each))
-        for name, joint in old.items():
-            if name not in self.matches.joints:
-                yield Difference("joint", name, "removed", old_place=_place(joint.element))
+        yield from _named("joint", old, new, self.matches.joints, inside)
 
     def _follows_a_name(self, difference: Difference) -> bool:
         """Whether a reference says another name only because what it means was renamed."""
@@ -310,10 +294,27 @@ def _flat(element: Element) -> str:
     return " ".join(words)
 
 
-def _renamed(subject: Subject, old: Link | Joint, new: Link | Joint) -> Iterator[Difference]:
-    if old.name != new.name:
-        places = _place(old.element, "name"), _place(new.element, "name")
-        yield Difference(subject, new.name, "renamed", "name", old.name, new.name, "", *places)
+def _named(
+    subject: Subject,
+    old: Mapping[str, _Thing],
+    new: Mapping[str, _Thing],
+    matched: Mapping[str, str],
+    inside: Callable[[_Thing, _Thing], Iterator[Difference]],
+) -> Iterator[Difference]:
+    """Links or joints that came, that are called or described otherwise, and that are gone."""
+    names = {after: before for before, after in matched.items()}
+    for name, thing in new.items():
+        if name not in names:
+            yield Difference(subject, name, "added", new_place=_place(thing.element))
+            continue
+        before = old[names[name]]
+        if before.name != name:
+            places = _place(before.element, "name"), _place(thing.element, "name")
+            yield Difference(subject, name, "renamed", "name", before.name, name, "", *places)
+        yield from inside(before, thing)
+    for name, thing in old.items():
+        if name not in matched:
+            yield Difference(subject, name, "removed", old_place=_place(thing.element))
 
 
 def _changed(

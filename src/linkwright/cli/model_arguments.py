@@ -1,0 +1,61 @@
+"""The arguments of commands that take a description: its file, values for it, and what it is compared with."""
+
+from __future__ import annotations
+
+import argparse
+from contextlib import ExitStack
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from linkwright.assignments import parse_assignments
+
+if TYPE_CHECKING:
+    from linkwright.descriptions.pairs import Pair
+
+
+def add_model(parser: argparse.ArgumentParser) -> None:
+    """The file of a robot's description, `file`, and `values` for its arguments."""
+    parser.add_argument("file", metavar="FILE", help="the URDF or xacro file")
+    add_values(parser, values_help="values for the file's <xacro:arg>")
+
+
+def add_values(
+    parser: argparse.ArgumentParser, *, values_help: str, name: str = "values", metavar: str = "NAME:=VALUE"
+) -> None:
+    """Words of the form ``name:=value``, as many as there are; others may be among them where the help says so."""
+    nothing: list[str] = []  # without a default argparse says that it misses them too
+    parser.add_argument(name, metavar=metavar, nargs="*", default=nothing, help=values_help)
+
+
+def add_against(parser: argparse.ArgumentParser) -> None:
+    """The commit that a description is compared with."""
+    parser.add_argument(
+        "--against",
+        metavar="COMMIT",
+        help="compare the file with what it was in a commit of its git repository, such as HEAD, with all that it "
+        "includes and its meshes",
+    )
+
+
+def asked_pair(arguments: argparse.Namespace, stack: ExitStack) -> Pair | None:
+    """The two descriptions that a command line asks for; None where it does not name two, or more.
+
+    Args:
+        arguments: `file`, `words` and `against`.
+        stack: is told what is to be closed.
+
+    Raises:
+        LinkwrightError: see `linkwright.descriptions.revisions.Revision`.
+    """
+    from linkwright.descriptions.pairs import against, pair_of
+
+    files = [word for word in arguments.words if ":=" not in word]
+    values = parse_assignments([word for word in arguments.words if ":=" in word])
+    if len(files) != (0 if arguments.against else 1):
+        return None
+    first = Path(arguments.file)
+    if arguments.against:
+        pair = against(first, arguments.against, values)
+        stack.callback(pair.close)
+        return pair
+    return pair_of(first, Path(files[0]), values)
