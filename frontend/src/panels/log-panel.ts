@@ -28,6 +28,7 @@ export class LogPanel implements Panel {
   constructor(private readonly state: LogState) {
     const words = strings.monitor.log;
     this.list = new VirtualList<LogLine>(ROW_PX, (line) => this.row(line), () => this.showFollowing());
+    this.list.element.setAttribute("role", "region");
     this.list.element.setAttribute("aria-label", words.list);
     this.list.element.addEventListener("keydown", (event) => this.keyed(event));
     this.pause = button(words.pauseHint, () => state.setPaused(!state.paused), "tool", strings.monitor.pause);

@@ -33,7 +33,10 @@ export class PlotPicker {
   ) {
     const words = strings.monitor.plot;
     this.input.placeholder = words.choose;
-    this.input.setAttribute("aria-label", words.choose);
+    for (const each of [this.input, this.list]) each.setAttribute("aria-label", words.choose);
+    this.list.id = "picker-list";
+    this.input.setAttribute("aria-controls", this.list.id);
+    this.input.setAttribute("aria-expanded", "true");
     this.input.spellcheck = false;
     this.input.addEventListener("input", () => this.typed());
     this.input.addEventListener("keydown", (event) => this.keyed(event));
@@ -109,7 +112,7 @@ export class PlotPicker {
     });
     const waits = this.asked !== null && this.fields === null;
     const nothing = this.fields?.error ?? (waits ? words.waiting : this.asked === null ? words.noTopics : words.noFields);
-    this.list.replaceChildren(...(rows.length > 0 ? rows : [h("li", { class: "note" }, nothing)]));
+    this.list.replaceChildren(...(rows.length > 0 ? rows : [h("li", { class: "note", role: "option", aria: { disabled: "true" } }, nothing)]));
     this.input.setAttribute("aria-activedescendant", rows.length > 0 ? `picker-${this.active}` : "");
     rows[this.active]?.scrollIntoView({ block: "nearest" });
   }

@@ -86,7 +86,9 @@ export class FileDialog {
       ...folder.files.map((name) => this.entry(name, false)),
     ];
     this.list.replaceChildren(...entries);
-    if (entries.length === 0) this.list.append(h("li", { class: "empty" }, strings.shell.emptyFolder));
+    if (entries.length === 0) {
+      this.list.append(h("li", { class: "empty", role: "option", aria: { disabled: "true" } }, strings.shell.emptyFolder));
+    }
     const [first] = entries;
     if (first) first.tabIndex = 0;
   }
@@ -111,7 +113,7 @@ export class FileDialog {
   }
 
   private keyed(event: KeyboardEvent): void {
-    const entries = [...this.list.querySelectorAll<HTMLLIElement>("[role=option]")];
+    const entries = [...this.list.querySelectorAll<HTMLLIElement>("[role=option]:not(.empty)")];
     const index = entries.indexOf(document.activeElement as HTMLLIElement);
     if (event.key === "ArrowDown") entries[Math.min(index + 1, entries.length - 1)]?.focus();
     else if (event.key === "ArrowUp") entries[Math.max(index - 1, 0)]?.focus();

@@ -1,0 +1,180 @@
+"""Everything that the page can show is without a finding of axe-core, in dark and in light colours."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser, Page
+
+from linkwright.messages import get_message
+from tests.browser.arm import write_arm
+from tests.browser.axe import violations
+from tests.browser.conftest import SECONDS, until
+from tests.browser.live import LiveViewer, configuration
+from tests.browser.test_modelling import modelled
+
+pytestmark = pytest.mark.browser
+
+TWIST = get_message("geometry_msgs/msg/Twist")
+JOINTS = get_message("sensor_msgs/msg/JointState")
+DISPLAYS = """
+- {Class: rviz_default_plugins/Grid, Name: Grid, Enabled: true}
+- {Class: rviz_default_plugins/Image, Name: Front, Enabled: true, Topic: {Value: /front}}
+- {Class: my_plugins/Radar, Name: Radar, Enabled: true}
+"""
+OVERLAYS = ".overlay"
+
+
+def opened(page: Page, name: str) -> str:
+    """Opens a panel, or brings it to the front, and gives the selector of the group that it is in."""
+    tab = page.locator(".dv-tab", has_text=name)
+    if tab.count() == 0:
+        page.get_by_role("button", name="Panels", exact=True).click()
+        page.get_by_role("menuitemcheckbox", name=name, exact=True).click()
+    tab.first.dispatch_event("pointerdown")
+    page.locator(".dv-tab[aria-selected=true]", has_text=name).first.wait_for(state="attached")
+    return f".dv-groupview:has([data-tab-panel-id='{tab.first.get_attribute('data-tab-panel-id')}'])"
+
+
+def found_in_panels(page: Page, *names: str) -> list[str]:
+    return [f"{name}: {each}" for name in names for each in violations(page, opened(page, name))]
+
+
+def found_in_menu(page: Page) -> list[str]:
+    """What is found in the menu that was opened, which goes then."""
+    page.get_by_role("menu").wait_for()
+    found = violations(page, ".menu")
+    page.keyboard.press("Escape")
+    return found
+
+
+def found_in_dialog(page: Page, keys: str) -> list[str]:
+    """What is found in the dialog that keys open."""
+    page.keyboard.press(keys)
+    page.locator("dialog[open]").wait_for()
+    found = violations(page, "dialog")
+    page.keyboard.press("Escape")
+    page.locator("dialog[open]").wait_for(state="detached")
+    return found
+
+
+def test_the_page_of_a_robot_and_the_panels_of_its_description(start, open_page, tmp_path: Path):
+    file = write_arm(tmp_path)
+    page = open_page(start("view", str(file)))
+    page.locator(".inspect > button").click()
+    for box in page.locator(".inspect-card [type=checkbox]").all():
+        box.click()
+    page.get_by_role("treeitem").filter(has_text="Links").last.locator(".row-name").dblclick()
+    page.get_by_role("treeitem").filter(has_text="fore").first.locator(".row-name").click()
+    page.locator(".selection-card .provenance").wait_for()
+    assert violations(page) == []
+    for name in ("File", "Panels", "Share", "Colours"):
+        page.get_by_role("button", name=name, exact=True).click()
+        assert found_in_menu(page) == []
+    for keys in ("?", "Control+o", "Control+Shift+s"):
+        assert found_in_dialog(page, keys) == []
+    own = ("Joints", "Links", "Diagram", "Source", "Joint Table")
+    assert found_in_panels(page, "Views", "Tool Properties", "Selection", "Transformation", *own) == []
+    file.write_text(file.read_text().replace("</robot>", "<link/></robot>"))
+    page.locator(".banner").wait_for()
+    assert violations(page, OVERLAYS) == []
+    assert found_in_panels(page, "Diagnostics") == []
+
+
+def test_displays_their_menu_and_their_dialogs(live: Callable[..., LiveViewer], open_page):
+    page = open_page(live(configuration(DISPLAYS)), wait=False)
+    until(page, "lw.displays.length === 3")
+    row = page.locator("[data-key='display-1'] .row-title")
+    row.click()
+    for keys in ("Alt+a", "F2"):
+        assert found_in_dialog(page, keys) == []
+    row.dblclick()
+    assert violations(page) == []
+    row.click(button="right")
+    assert found_in_menu(page) == []
+
+
+def test_the_live_panels(live: Callable[..., LiveViewer], open_page):
+    viewer = live(configuration(DISPLAYS))
+
+    def join() -> None:
+        arm = viewer.node.graph.create_node("arm")
+        arm.declare_parameter("speed", 1.5)
+        arm.declare_parameter("names", ["left", "right"])
+        arm.create_subscription(TWIST, "/cmd_vel", lambda _: None, 10)
+        arm.get_logger().warning("the arm is warm")
+        arm.get_logger().error("the arm is hot")
+
+    viewer.run(join)
+    page = open_page(viewer, wait=False)
+    opened(page, "Plots")
+    page.get_by_role("button", name="Add a series").first.click()
+    assert found_in_panels(page, "Plots") == []
+    for text in ("/joint_states.position[0]", "/joint_states.wrong"):
+        page.get_by_role("combobox", name="Topic and field").fill(text)
+        page.keyboard.press("Enter")
+        viewer.publish("/joint_states", JOINTS(name=["shoulder"], position=[0.25]))
+        page.get_by_role("button", name="Add a series").first.click()
+    page.get_by_text("has no field").wait_for()
+    assert found_in_panels(page, "Plots") == []
+    opened(page, "Topics")
+    page.get_by_role("button", name="Last message of /joint_states").click()
+    viewer.publish("/joint_states", JOINTS(name=["shoulder"], position=[0.25]))
+    page.locator(".topic-message:visible").get_by_text("position").wait_for()
+    assert found_in_panels(page, "Topics") == []
+    opened(page, "Node graph")
+    page.locator(".vertex[data-id='node:/arm']").click()
+    assert found_in_panels(page, "Node graph") == []
+    opened(page, "Parameters")
+    page.get_by_role("option", name="/arm").click()
+    page.get_by_role("textbox", name="speed").fill("fast")
+    page.keyboard.press("Enter")
+    assert found_in_panels(page, "Parameters") == []
+    opened(page, "Log")
+    page.locator(".virtual-list").get_by_text("the arm is hot").click()
+    assert found_in_panels(page, "Log") == []
+    opened(page, "Voice")
+    page.locator(".word-box summary").click()
+    viewer.publish("/voice/response", get_message("std_msgs/msg/String")(data="Turning left."))
+    page.locator(".voice-said.response").wait_for()
+    assert found_in_panels(page, "Voice", "Teleop") == []
+
+
+def test_a_world_while_it_is_modelled(start, open_page, tmp_path: Path):
+    page, _ = modelled(start, open_page, tmp_path)
+    page.get_by_role("option", name="crate").click()
+    page.locator("[data-key='pose/0'] input").wait_for()
+    assert violations(page) == []
+    page.get_by_role("button", name="End modelling").click()
+    page.get_by_role("button", name="Add a model").click()
+    page.locator("dialog[open]").wait_for()
+    assert violations(page, "dialog") == []
+
+
+def test_the_door_and_a_page_without_webgl(live: Callable[..., LiveViewer], browser: Browser):
+    viewer = live(configuration(DISPLAYS))
+    with browser.new_context(locale="en-US") as context:
+        context.set_default_timeout(1000 * SECONDS)
+        context.add_init_script("HTMLCanvasElement.prototype.getContext = () => null")
+        page = context.new_page()
+        page.goto(viewer.url.partition("?")[0])
+        page.locator(".door:visible").wait_for()
+        assert violations(page) == []
+        page.goto(viewer.url)
+        page.locator(".no-webgl").wait_for()
+        assert violations(page) == []
+
+
+def test_an_exported_page(browser: Browser, tmp_path: Path):
+    out = tmp_path / "arm.html"
+    subprocess.run([sys.executable, "-m", "linkwright", "export", str(out), str(write_arm(tmp_path))], check=True)
+    with browser.new_context(locale="en-US", bypass_csp=True) as context:
+        context.set_default_timeout(1000 * SECONDS)
+        page = context.new_page()
+        page.goto(out.as_uri())
+        page.get_by_role("slider").first.wait_for()
+        assert violations(page) == []
