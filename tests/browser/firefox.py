@@ -1,0 +1,168 @@
+"""Firefox as it is installed, driven by WebDriver BiDi, which it speaks itself (https://w3c.github.io/webdriver-bidi/).
+
+Playwright drives only a Firefox of its own, and geckodriver is not in Debian; why neither is taken, decision 0065 says.
+Without a display Firefox draws no WebGL: on Linux that takes an X server, which Xvfb is.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import base64
+import contextlib
+import io
+import json
+import os
+import re
+import shutil
+import subprocess
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import aiohttp
+from PIL import Image
+
+from tests.waiting import SECONDS, wait_until
+
+_PREFERENCES = {
+    "app.update.enabled": False,
+    "browser.shell.checkDefaultBrowser": False,
+    "browser.startup.page": 0,
+    "datareporting.policy.dataSubmissionEnabled": False,
+    "intl.accept_languages": "en-US",
+    "webgl.force-enabled": True,  # drawn by llvmpipe, which Firefox holds for no graphics card
+}
+
+
+def find() -> str | None:
+    """Firefox's program: LINKWRIGHT_FIREFOX, or one on the PATH."""
+    names = ("firefox-esr", "firefox")
+    return os.environ.get("LINKWRIGHT_FIREFOX") or next(filter(None, map(shutil.which, names)), None)
+
+
+def can_show_windows() -> bool:
+    """Whether there is a display, or a program that stands in for one."""
+    return "DISPLAY" in os.environ or shutil.which("Xvfb") is not None
+
+
+@contextlib.contextmanager
+def launched(folder: Path, *, headless: bool = False) -> Iterator[Firefox]:
+    """A Firefox with a profile of its own in a folder; headless, it has no WebGL."""
+    with contextlib.ExitStack() as stack:
+        environment = dict(os.environ)
+        if not headless and "DISPLAY" not in environment:
+            environment["DISPLAY"] = stack.enter_context(_display(folder / "xvfb.log"))
+        text = "".join(f"user_pref({json.dumps(name)}, {json.dumps(value)});\n" for name, value in _PREFERENCES.items())
+        (folder / "user.js").write_text(text, encoding="utf-8")
+        command = [find() or "firefox", "--no-remote", "--profile", str(folder), "--remote-debugging-port=0"]
+        said = _running([*command, *(["--headless"] if headless else [])], environment, folder / "firefox.log")
+        address = stack.enter_context(said)(r"WebDriver BiDi listening on (\S+)\n")
+        yield stack.enter_context(contextlib.closing(Firefox(address)))
+
+
+@contextlib.contextmanager
+def _display(log: Path) -> Iterator[str]:
+    """The name of a display of Xvfb, which chooses a free number and says it."""
+    command = ["Xvfb", "-displayfd", "2", "-screen", "0", "1400x1000x24", "-nolisten", "tcp"]
+    with _running(command, dict(os.environ), log) as said:
+        yield ":" + said(r"^(\d+)\n")
+
+
+@contextlib.contextmanager
+def _running(command: list[str], environment: dict[str, str], log: Path) -> Iterator[Callable[[str], str]]:
+    """Runs a program, and gives a function that waits until it says something."""
+
+    def said(pattern: str) -> str:
+        def found() -> re.Match[str] | None:
+            return re.search(pattern, log.read_text(), re.MULTILINE)
+
+        wait_until(found, what=log.read_text)
+        match = found()
+        assert match is not None
+        return match[1]
+
+    with log.open("w") as output, subprocess.Popen(command, env=environment, stdout=output, stderr=output) as process:
+        try:
+            yield said
+        finally:
+            process.terminate()
+            process.wait(timeout=SECONDS)
+
+
+class Firefox:
+    """One tab of a running Firefox.
+
+    Attributes:
+        errors: what was written to the page's console as an error.
+    """
+
+    def __init__(self, address: str) -> None:
+        self.errors: list[str] = []
+        self._number = 0
+        self._loop = asyncio.new_event_loop()
+        self._socket = self._loop.run_until_complete(self._connect(address))
+        self.call("session.new", capabilities={})
+        self._tab = self.call("browsingContext.getTree")["contexts"][0]["context"]
+        self.call("session.subscribe", events=["log.entryAdded"])
+        self.resize(1280, 800)
+
+    async def _connect(self, address: str) -> aiohttp.ClientWebSocketResponse:
+        self._session = aiohttp.ClientSession()
+        return await self._session.ws_connect(f"{address}/session", max_msg_size=0)
+
+    def call(self, method: str, **parameters: Any) -> dict[str, Any]:
+        """Send a command and give its result; errors of the page that come meanwhile are kept."""
+        return self._loop.run_until_complete(asyncio.wait_for(self._call(method, parameters), SECONDS))
+
+    async def _call(self, method: str, parameters: dict[str, Any]) -> dict[str, Any]:
+        self._number += 1
+        await self._socket.send_json({"id": self._number, "method": method, "params": parameters})
+        while True:
+            message = await self._socket.receive_json()
+            if message.get("method") == "log.entryAdded" and message["params"]["level"] == "error":
+                self.errors.append(message["params"]["text"])
+            if message.get("id") == self._number:
+                assert message["type"] == "success", message
+                return message["result"]
+
+    def resize(self, width: int, height: int) -> None:
+        self.call("browsingContext.setViewport", context=self._tab, viewport={"width": width, "height": height})
+
+    def goto(self, url: str) -> None:
+        self.call("browsingContext.navigate", context=self._tab, url=url, wait="complete")
+
+    def evaluate(self, expression: str) -> Any:
+        """The value of a JavaScript expression, by way of JSON."""
+        told = self.call(
+            "script.evaluate",
+            expression=f"JSON.stringify({expression})",
+            target={"context": self._tab},
+            awaitPromise=False,
+        )
+        assert told["type"] == "success", told
+        return json.loads(told["result"].get("value", "null"))
+
+    def until(self, condition: str) -> None:
+        """Wait until a JavaScript condition over ``lw`` (window.linkwright) holds."""
+        expression = f"((lw) => Boolean(lw && ({condition})))(window.linkwright)"
+        wait_until(lambda: self.evaluate(expression), what=f"{condition}; {self.errors}")
+
+    def press(self, *keys: str) -> None:
+        """Press keys one after another, as WebDriver names them: a letter, or a code such as ``\\ue014`` (right)."""
+        actions = [{"type": kind, "value": key} for key in keys for kind in ("keyDown", "keyUp")]
+        source = {"type": "key", "id": "keyboard", "actions": actions}
+        self.call("input.performActions", context=self._tab, actions=[source])
+
+    def picture(self, selector: str) -> Image.Image:
+        """What is on the screen where the first element of a selector is."""
+        box = self.evaluate(f"document.querySelector({json.dumps(selector)}).getBoundingClientRect()")
+        clip = {"type": "box", **{name: box[name] for name in ("x", "y", "width", "height")}}
+        taken = self.call("browsingContext.captureScreenshot", context=self._tab, clip=clip)
+        return Image.open(io.BytesIO(base64.b64decode(taken["data"]))).convert("RGB")
+
+    def close(self) -> None:
+        """Close the browser."""
+        self.call("browser.close")
+        self._loop.run_until_complete(self._socket.close())
+        self._loop.run_until_complete(self._session.close())
+        self._loop.close()

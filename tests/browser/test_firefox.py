@@ -1,0 +1,99 @@
+"""A first look at the page in Firefox: it draws, takes keys, and says what is missing where it has no WebGL."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack
+from pathlib import Path
+
+import pytest
+
+from tests.browser import firefox
+from tests.browser.arm import write_arm
+from tests.browser.firefox import Firefox
+from tests.waiting import wait_until
+
+pytestmark = pytest.mark.browser
+
+RIGHT, ENTER = "\ue014", "\ue007"
+CRATE = """\
+<robot name="crate">
+  <link name="base">
+    <visual><geometry><box size="1 1 1"/></geometry><material name="red"><color rgba="1 0 0 1"/></material></visual>
+  </link>
+  <link name="lid"/>
+  <joint name="hinge" type="revolute">
+    <parent link="base"/><child link="lid"/><axis xyz="0 1 0"/><limit lower="-1" upper="1" velocity="1" effort="1"/>
+  </joint>
+</robot>
+"""
+
+
+@pytest.fixture
+def launch(tmp_path: Path) -> Iterator[Callable[..., Firefox]]:
+    """A function that starts Firefox; where it cannot, the test is left out, and in CI it fails."""
+    with ExitStack() as stack:
+
+        def run(*, headless: bool) -> Firefox:
+            missing = "no Firefox" if firefox.find() is None else None
+            if not missing and not headless and not firefox.can_show_windows():
+                missing = "neither a display nor Xvfb, without which Firefox has no WebGL"
+            if missing and "CI" in os.environ:
+                pytest.fail(f"{missing}, which .ci/run installs")
+            if missing:
+                pytest.skip(missing)
+            profile = tmp_path / "profile"
+            profile.mkdir()
+            return stack.enter_context(firefox.launched(profile, headless=headless))
+
+        yield run
+
+
+def test_the_robot_is_drawn_and_moved(start, launch, tmp_path):
+    (tmp_path / "crate.urdf").write_text(CRATE)
+    program = start("view", str(tmp_path / "crate.urdf"))
+    browser = launch(headless=False)
+    browser.goto(program.url)
+    browser.until("lw.ready")
+
+    def share_of_red() -> float:
+        picture = browser.picture(".canvas-box canvas")
+        reds = sum(count for count, (r, g, b) in picture.getcolors(1 << 24) if r > 80 and r > 3 * max(g, b))
+        return reds / (picture.width * picture.height)
+
+    wait_until(lambda: share_of_red() > 0.05, what=share_of_red)
+    # Tabs are walked by keys.
+    browser.evaluate("document.querySelector('[data-tab-panel-id=displays]').focus()")
+    browser.press(RIGHT, ENTER)
+    browser.until("document.querySelector('[data-tab-panel-id=links][aria-selected=true]')")
+    # Sliders too, whose thumbs are seen.
+    browser.evaluate("document.querySelector('[data-joint=hinge] .slider').focus()")
+    before = browser.evaluate("window.linkwright.frames.lid.orientation")
+    browser.press(RIGHT, RIGHT)
+    browser.until(f"JSON.stringify(lw.frames.lid.orientation) !== JSON.stringify({before})")
+    thumb = browser.evaluate("getComputedStyle(document.documentElement).getPropertyValue('--thumb')").strip()
+    color = tuple(bytes.fromhex(thumb[1:]))
+    colors = {each: count for count, each in browser.picture("[data-joint=hinge] .slider").getcolors(1 << 24)}
+    assert colors.get(color, 0) > 40, (thumb, colors)
+    assert browser.errors == []
+
+
+def test_without_webgl_the_page_says_so_and_its_panels_work(start, launch, tmp_path):
+    program = start("view", str(write_arm(tmp_path)))
+    browser = launch(headless=True)
+    browser.goto(program.url)
+    browser.until("document.querySelector('.no-webgl')?.checkVisibility()")
+    said = browser.evaluate("document.querySelector('.no-webgl').innerText")
+    assert said.startswith("This browser gives no WebGL 2, which the 3D view needs.\n")
+    assert "The other panels work without it." in said
+    box, scene = (
+        browser.evaluate(f"document.querySelector('{each}').getBoundingClientRect()")
+        for each in (".no-webgl > strong", ".scene-box")
+    )
+    assert scene["left"] < box["left"] < box["right"] < scene["right"]
+    browser.until("document.querySelectorAll('.joint').length === 4")
+    browser.evaluate("document.querySelector('[data-joint=upper_joint] .slider').focus()")
+    browser.press(RIGHT)
+    browser.until("lw.frames.fore?.position[0] > 0.01")
+    assert all("WebGL" in each for each in browser.errors), browser.errors
