@@ -8,14 +8,12 @@ tells which process of this machine it is, nobody waits for the lease: the proce
 
 from __future__ import annotations
 
-import sys
 import time
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
-from linkwright.graph.faults import ExternalShutdownException
 from linkwright.graph.names.identity import NodeIdentity
 
 if TYPE_CHECKING:
@@ -44,13 +42,6 @@ class _Gone:
     endpoint: RemoteEndpoint
     node: NodeIdentity
     due: float | None = None
-
-
-def ends_by_error() -> bool:
-    """Whether this program has ended with an exception that nobody caught; Ctrl-C is none of these."""
-    error = getattr(sys, "last_value", None)
-    is_interactive = hasattr(sys, "ps1")
-    return isinstance(error, Exception) and not isinstance(error, ExternalShutdownException) and not is_interactive
 
 
 class Departures:

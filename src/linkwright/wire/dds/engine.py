@@ -8,14 +8,14 @@ from __future__ import annotations
 
 import time
 import traceback
-from collections import deque
 from collections.abc import Callable
 from typing import Any
 
 from linkwright.graph.log.logger import Logger
 from linkwright.graph.names.identity import NodeIdentity
+from linkwright.wire.background import Work, ends_by_error
 from linkwright.wire.dds.cyclone import CycloneError
-from linkwright.wire.dds.departures import Departures, ends_by_error
+from linkwright.wire.dds.departures import Departures
 from linkwright.wire.dds.discovery import Discovery
 from linkwright.wire.dds.discovery_info import NodeEntities
 from linkwright.wire.dds.domain import Domain
@@ -62,7 +62,7 @@ class Engine:
         settings: Settings,
         remote: RemoteGraph,
         departures: Departures,
-        work: deque[Callable[[Engine], None]],
+        work: Work,
         logger: Logger,
     ) -> None:
         self._remote = remote

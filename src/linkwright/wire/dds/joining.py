@@ -9,8 +9,9 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import LinkwrightError, Phrase, phrase
+from linkwright.wire.background import log_join_failure
 from linkwright.wire.dds.settings import read_settings
-from linkwright.wire.dds.transport import DdsTransport, log_join_failure
+from linkwright.wire.dds.transport import DdsTransport
 
 if TYPE_CHECKING:
     from linkwright.graph.computation_graph import Graph

@@ -1,0 +1,341 @@
+"""What transports share: an engine mirrors the graph of this process, and is made in the background."""
+
+from __future__ import annotations
+
+import atexit
+import os
+import sys
+import threading
+import time
+import weakref
+from abc import ABC, abstractmethod
+from collections import deque
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, Protocol
+
+from linkwright.diagnostics import LinkwrightError, render
+from linkwright.graph.endpoints.info import EndpointInfo
+from linkwright.graph.faults import ExternalShutdownException
+from linkwright.graph.log.logger import Logger
+from linkwright.graph.names.identity import NodeIdentity
+
+if TYPE_CHECKING:
+    from linkwright.graph.endpoints.client import Client
+    from linkwright.graph.endpoints.publisher import Publisher
+    from linkwright.graph.endpoints.service import Service
+    from linkwright.graph.endpoints.subscription import Subscription
+
+_JOINED_WITHIN = 10.0
+"""Seconds after which the thread that joins is given up: an import that Ctrl-C ended may keep its lock for ever."""
+
+_LOOK_AGAIN = 0.01
+_CLOSED_WITHIN = 0.05
+"""Seconds after which who waits sees that the domain was left."""
+
+
+class Engine(Protocol):
+    """Makes, feeds and deletes what mirrors the endpoints of this process, in threads of its own."""
+
+    def start(self) -> None:
+        """Begin."""
+
+    def wake(self) -> None:
+        """Look at the work soon; from any thread."""
+
+    def close(self) -> None:
+        """End, once what was sent reliably is on its way or a second has passed."""
+
+    def abandon(self) -> None:
+        """Send nothing more, and end without what needs the network: this process was forked off."""
+
+    def add_node(self, node: NodeIdentity) -> None:
+        """Announce a node."""
+
+    def remove_node(self, node: NodeIdentity) -> None:
+        """Withdraw a node."""
+
+    def open_publisher(self, publisher: Any) -> None:
+        """Mirror a publisher."""
+
+    def close_publisher(self, publisher: Any) -> None:
+        """Stop mirroring a publisher."""
+
+    def open_subscription(self, subscription: Any) -> None:
+        """Mirror a subscription."""
+
+    def open_service(self, service: Any) -> None:
+        """Mirror a service."""
+
+    def open_client(self, client: Any) -> None:
+        """Mirror a client."""
+
+    def close_endpoint(self, endpoint: Any) -> None:
+        """Stop mirroring a subscription, a service or a client."""
+
+
+Work = deque[Callable[[Engine], None]]
+"""What there is to do, called with the engine in the order of asking."""
+
+
+class Outside(Protocol):
+    """What discovery found; written by one thread, read by any."""
+
+    changed_at: float
+    """When something changed last, by the steady clock."""
+
+    def nodes(self) -> list[NodeIdentity]:
+        """The nodes of other processes."""
+
+    def endpoints(self) -> list[EndpointInfo]:
+        """The endpoints of other processes."""
+
+    def watch(self, changed: Callable[[], None]) -> None:
+        """Have something called after changes."""
+
+
+class Departed(Protocol):
+    """Judges how publishers outside went."""
+
+    def watch(self, lost: Callable[[EndpointInfo], None]) -> None:
+        """Have something called with each publisher that is lost."""
+
+
+class BackgroundTransport(ABC):
+    """The graph of this process on the wire (`linkwright.graph.endpoints.transport.Transport`).
+
+    Threads of its own do the work, so that nothing here blocks but what says so; none of them runs a user's callback. A
+    process that is forked off has no part in it: there, nothing goes out and nothing comes in.
+
+    Args:
+        domain_id: the ROS domain.
+        outside: the tables of what is outside.
+        departures: judges how publishers outside went.
+        logger: for what there is to tell.
+        only_looks: whether it only finds out what there is outside: nobody outside hears of the graph's nodes and
+            endpoints, which saves making them there.
+    """
+
+    def __init__(
+        self, domain_id: int, outside: Outside, departures: Departed, logger: Logger, *, only_looks: bool = False
+    ) -> None:
+        self.domain_id = domain_id
+        self._outside = outside
+        self._departed = departures
+        self._only_looks = only_looks
+        self._logger = logger
+        self._engine: Engine | None = None
+        self._work: Work = deque()
+        self._decided = threading.Event()
+        self._closed = False
+        self._joining = threading.Lock()
+        self._has_left = False
+        self._joined_at = 0.0
+        self.problem: LinkwrightError | None = None
+        """Why the domain could not be joined; None when it could, or was not tried yet."""
+        self._starter = threading.Thread(target=self._join, name="linkwright-join", daemon=True)
+        _open_transports.add(self)
+        self._starter.start()
+
+    @abstractmethod
+    def _make_engine(self) -> Engine:
+        """Join the domain, in a thread of its own.
+
+        Raises:
+            LinkwrightError: the domain cannot be joined.
+        """
+
+    @abstractmethod
+    def _has_settled(self, quiet: float) -> bool:
+        """Whether discovery counts as complete, seconds after the last news or after joining."""
+
+    # --- for whoever joined ------------------------------------------------------------------------------------------
+
+    def wait_until_ready(self, timeout: float | None = None) -> bool:
+        """Block until the domain is joined and all that was asked for so far is made.
+
+        Args:
+            timeout: seconds at most; None for any time.
+
+        Returns:
+            Whether it is so; False at once when the domain cannot be joined, or was left.
+        """
+        deadline = None if timeout is None else time.monotonic() + timeout
+        if not self._decided.wait(timeout) or self._engine is None:
+            return False
+        done = threading.Event()
+        self._do(lambda _: done.set())
+        while not self._closed and (deadline is None or time.monotonic() < deadline):
+            if done.wait(_CLOSED_WITHIN if deadline is None else min(_CLOSED_WITHIN, deadline - time.monotonic())):
+                break
+        return done.is_set()
+
+    def wait_for_discovery(self, timeout: float = 5.0) -> bool:
+        """Block until discovery has settled: all that is there has announced itself, and nothing is new.
+
+        Args:
+            timeout: seconds at most.
+
+        Returns:
+            Whether discovery has settled.
+        """
+        deadline = time.monotonic() + timeout
+        if not self.wait_until_ready(timeout):
+            return False
+        while time.monotonic() < deadline and not self._closed:
+            if self._has_settled(time.monotonic() - max(self._outside.changed_at, self._joined_at)):
+                return True
+            time.sleep(_LOOK_AGAIN)
+        return False
+
+    # --- for the graph -----------------------------------------------------------------------------------------------
+
+    def open_node(self, node: NodeIdentity) -> None:
+        """Announce a node."""
+        self._mirror(lambda engine: engine.add_node(node))
+
+    def close_node(self, node: NodeIdentity) -> None:
+        """Withdraw a node."""
+        self._mirror(lambda engine: engine.remove_node(node))
+
+    def open_publisher(self, publisher: Publisher[Any]) -> None:
+        """Mirror a publisher."""
+        if self._engine is not None and not self._only_looks:
+            publisher.hold_for_outside(self.wait_until_ready)
+        self._mirror(lambda engine: engine.open_publisher(publisher))
+
+    def close_publisher(self, publisher: Publisher[Any]) -> None:
+        """Stop mirroring a publisher once what it sent reliably is acknowledged, or no reader is there to do so."""
+        self._mirror(lambda engine: engine.close_publisher(publisher))
+
+    def open_subscription(self, subscription: Subscription[Any]) -> None:
+        """Mirror a subscription."""
+        self._mirror(lambda engine: engine.open_subscription(subscription))
+
+    def close_subscription(self, subscription: Subscription[Any]) -> None:
+        """Stop mirroring a subscription."""
+        self._mirror(lambda engine: engine.close_endpoint(subscription))
+
+    def open_service(self, service: Service[Any, Any]) -> None:
+        """Mirror a service."""
+        self._mirror(lambda engine: engine.open_service(service))
+
+    def close_service(self, service: Service[Any, Any]) -> None:
+        """Stop mirroring a service."""
+        self._mirror(lambda engine: engine.close_endpoint(service))
+
+    def open_client(self, client: Client[Any, Any]) -> None:
+        """Mirror a client."""
+        self._mirror(lambda engine: engine.open_client(client))
+
+    def close_client(self, client: Client[Any, Any]) -> None:
+        """Stop mirroring a client."""
+        self._mirror(lambda engine: engine.close_endpoint(client))
+
+    def remote_nodes(self) -> Sequence[NodeIdentity]:
+        """The nodes of other processes, as far as discovery has come."""
+        return self._outside.nodes()
+
+    def remote_endpoints(self) -> Sequence[EndpointInfo]:
+        """The endpoints of other processes, as far as discovery has come."""
+        return self._outside.endpoints()
+
+    def watch(self, changed: Callable[[], None]) -> None:
+        """Have something called, from any thread, whenever nodes or endpoints outside come or go."""
+        self._outside.watch(changed)
+
+    def watch_lost(self, lost: Callable[[EndpointInfo], None]) -> None:
+        """Have something called, from any thread, with each publisher outside that is gone without having left."""
+        self._departed.watch(lost)
+        self._do(lambda _: None)  # processes are looked at from now on
+
+    def close(self) -> None:
+        """Leave the domain once what was sent reliably is acknowledged, or a second has passed."""
+        if self._closed:
+            return
+        self._closed = True
+        _open_transports.discard(self)
+        if self._starter.ident is not None:  # Ctrl-C may have come before it was started
+            self._starter.join(_JOINED_WITHIN)
+        with self._joining:
+            self._has_left = True
+            engine, self._engine = self._engine, None
+        if engine is not None:
+            engine.close()
+        self._work.clear()
+
+    # --- inside ------------------------------------------------------------------------------------------------------
+
+    def abandon(self) -> None:
+        """In a process that was forked off: take no part."""
+        self._closed = True
+        if self._engine is not None:
+            self._engine.abandon()
+            self._engine = None
+
+    def _mirror(self, work: Callable[[Engine], None]) -> None:
+        """Have something done about what this process has."""
+        if not self._only_looks:
+            self._do(work)
+
+    def _do(self, work: Callable[[Engine], None]) -> None:
+        """Have something done in the thread that makes and deletes, in the order of asking."""
+        if self._closed or self.problem is not None:
+            return
+        self._work.append(work)
+        engine = self._engine
+        if engine is not None:
+            engine.wake()
+
+    def _join(self) -> None:
+        try:
+            engine = self._make_engine()
+            with self._joining:
+                if not self._has_left:
+                    self._engine = engine
+                    self._joined_at = time.monotonic()
+                    engine.start()
+                    engine.wake()
+            if self._has_left:  # `close` has given this thread up
+                engine.close()
+        except LinkwrightError as error:
+            self.problem = error
+            self._work.clear()
+            log_join_failure(self._logger, error)
+        except RuntimeError:
+            # From Python 3.12 on no thread can be started any more once the main one has ended.
+            if threading.main_thread().is_alive():
+                raise
+        finally:
+            self._decided.set()
+
+
+_open_transports: weakref.WeakSet[BackgroundTransport] = weakref.WeakSet()
+
+
+def _close_all() -> None:
+    for transport in tuple(_open_transports):
+        transport.close()
+
+
+def _abandon_all() -> None:
+    for transport in tuple(_open_transports):
+        transport.abandon()
+    _open_transports.clear()
+
+
+atexit.register(_close_all)
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_abandon_all)
+
+
+def log_join_failure(logger: Logger, error: LinkwrightError) -> None:
+    """Log why a domain is not joined."""
+    findings = "\n".join(render(each) for each in error.diagnostics)
+    logger.error(f"{findings}\nThis process goes on by itself: nobody outside sees its nodes.")
+
+
+def ends_by_error() -> bool:
+    """Whether this program has ended with an exception that nobody caught; Ctrl-C is none of these."""
+    error = getattr(sys, "last_value", None)
+    is_interactive = hasattr(sys, "ps1")
+    return isinstance(error, Exception) and not isinstance(error, ExternalShutdownException) and not is_interactive
