@@ -11,7 +11,7 @@ from linkwright.graph import Graph
 from linkwright.graph.executors import SingleThreadedExecutor
 from linkwright.graph.qos.profile import HistoryPolicy, QoSProfile
 from linkwright.messages import get_message, get_service
-from linkwright.wire.dds import join
+from linkwright.wire.joining import join
 from tests.wire.programs import serve
 
 Int32 = get_message("std_msgs/msg/Int32")

@@ -10,7 +10,8 @@ import pytest
 from linkwright.graph import Graph, LogRecord
 from linkwright.messages import String
 from linkwright.wire.dds import available, join, why_not
-from linkwright.wire.dds.settings import MAX_DOMAIN_ID, most_participants
+from linkwright.wire.dds.settings import most_participants
+from linkwright.wire.domain_id import MAX_DOMAIN_ID
 
 
 @pytest.fixture

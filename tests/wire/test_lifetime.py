@@ -57,7 +57,8 @@ def test_closing_twice_and_before_being_ready_is_fine(processes):
 
 
 def test_a_domain_that_is_joined_after_joining_was_given_up_is_left_again(processes, monkeypatch):
-    from linkwright.wire.dds import engine, join, open_domains, transport
+    from linkwright.wire import background
+    from linkwright.wire.dds import engine, join, open_domains
 
     may_join, engines = threading.Event(), []
 
@@ -68,7 +69,7 @@ def test_a_domain_that_is_joined_after_joining_was_given_up_is_left_again(proces
             engines.append(self)
 
     monkeypatch.setattr(engine, "Engine", Late)
-    monkeypatch.setattr(transport, "_JOINED_WITHIN", 0.0)
+    monkeypatch.setattr(background, "_JOINED_WITHIN", 0.0)
     us = processes("ours", join_now=False)
     joining = join(us.graph)
     joining.close()

@@ -8,13 +8,12 @@ from linkwright.wire.dds.names import (
     Role,
     RosName,
     dds_topic,
-    dds_type,
     endpoint_id,
     parse_user_data,
     ros_name,
     ros_service_type,
-    ros_type,
 )
+from linkwright.wire.type_names import dds_type, ros_type
 
 words = st.from_regex(r"[a-z_][a-z0-9_]{0,8}", fullmatch=True)
 names = st.lists(words, min_size=1, max_size=3).map(lambda parts: "/" + "/".join(parts))

@@ -218,20 +218,20 @@ async def join_others(graph: Graph, spin_time: float | None, *, only_looks: bool
     """Connect the graph with what runs in other processes and wait until that is discovered.
 
     Raises:
-        LinkwrightError: CLI401, there is no DDS; DDS101, ROS_DOMAIN_ID is no domain.
+        LinkwrightError: CLI401, there is neither DDS nor Zenoh; DDS101, ROS_DOMAIN_ID is no domain; DDS111, a
+            setting of Zenoh is not well formed.
     """
-    from linkwright.wire import dds
-    from linkwright.wire.dds.settings import read_settings
+    from linkwright.wire.joining import available, check_settings, join, why_not
 
-    if dds.available():
-        read_settings()  # raises what joining would only log
-    transport = dds.join(graph, only_looks=only_looks) if dds.available() else None
+    if available():
+        check_settings()  # raises what joining would only log
+    transport = join(graph, only_looks=only_looks) if available() else None
     if transport is None:
         raise LinkwrightError(
             Diagnostic(
                 "CLI401",
-                phrase("the nodes of other processes cannot be reached without DDS"),
-                notes=(Note(dds.why_not()),),
+                phrase("the nodes of other processes cannot be reached without DDS or Zenoh"),
+                notes=(Note(why_not()),),
                 hint=phrase("unset LINKWRIGHT_DDS") if os.environ.get("LINKWRIGHT_DDS") else None,
             )
         )

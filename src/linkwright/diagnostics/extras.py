@@ -19,6 +19,7 @@ EXTRAS = {
     "train": "torch",
     "vision": "onnxruntime",
     "voice": "vosk",
+    "zenoh": "zenoh",
 }
 """Name of the extra -> the module that is missing without it."""
 

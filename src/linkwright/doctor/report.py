@@ -16,7 +16,7 @@ from linkwright.graph.qos.compatibility import QoSCompatibility, qos_check_compa
 Section = tuple[str, Sequence[tuple[str, str]]]
 """A title, and names with values."""
 
-_PACKAGES = ("linkwright", "cyclonedds", "rosbags", "numpy", "PyYAML", "colcon-core")
+_PACKAGES = ("linkwright", "cyclonedds", "eclipse-zenoh", "rosbags", "numpy", "PyYAML", "colcon-core")
 _MARKS = ("ROS", "RMW", "RCUTILS", "CYCLONEDDS", "LINKWRIGHT", "AMENT", "COLCON")
 _EVERYWHERE = frozenset({"/parameter_events", "/rosout"})
 _PADDING = 4
@@ -102,9 +102,13 @@ def _platform() -> list[tuple[str, str]]:
 
 
 def _middleware() -> str:
-    from linkwright.wire import dds
+    from linkwright.wire.joining import ZENOH, available, middleware, why_not
 
-    return "Eclipse Cyclone DDS (as rmw_cyclonedds_cpp)" if dds.available() else f"none: {dds.why_not()}"
+    if not available():
+        return f"none: {why_not()}"
+    return (
+        "Eclipse Zenoh (as rmw_zenoh_cpp)" if middleware() == ZENOH else "Eclipse Cyclone DDS (as rmw_cyclonedds_cpp)"
+    )
 
 
 def _environment(variables: Mapping[str, str]) -> list[tuple[str, str]]:

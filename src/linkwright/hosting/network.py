@@ -62,7 +62,7 @@ class Network:
         graph = self._graph
         if graph is None or graph.closed:
             return
-        from linkwright.wire.dds import available, join, why_not
+        from linkwright.wire.joining import available, join, why_not
 
         if available():
             transport = join(graph)

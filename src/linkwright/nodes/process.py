@@ -89,7 +89,7 @@ def _terminal() -> int | None:
 
 
 def _join_network(graph: object) -> None:
-    from linkwright.wire.dds import join
+    from linkwright.wire.joining import join
 
     join(graph)  # type: ignore[arg-type]
 

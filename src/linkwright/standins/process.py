@@ -10,7 +10,7 @@ from pathlib import Path
 
 _STARTUP = Path(__file__).parent / "startup"
 
-_NEEDED = ("linkwright", "numpy", "PIL", "yaml", "rosbags", "cyclonedds")
+_NEEDED = ("linkwright", "numpy", "PIL", "yaml", "rosbags", "cyclonedds", "zenoh", "xxhash")
 """What the stand-ins import, for programs that run in an environment of their own."""
 
 

@@ -11,15 +11,16 @@ import weakref
 from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
-from linkwright.diagnostics import LinkwrightError, render
+from linkwright.diagnostics import LinkwrightError, Phrase, render
 from linkwright.graph.endpoints.info import EndpointInfo
 from linkwright.graph.faults import ExternalShutdownException
 from linkwright.graph.log.logger import Logger
 from linkwright.graph.names.identity import NodeIdentity
 
 if TYPE_CHECKING:
+    from linkwright.graph.computation_graph import Graph
     from linkwright.graph.endpoints.client import Client
     from linkwright.graph.endpoints.publisher import Publisher
     from linkwright.graph.endpoints.service import Service
@@ -339,3 +340,31 @@ def ends_by_error() -> bool:
     error = getattr(sys, "last_value", None)
     is_interactive = hasattr(sys, "ps1")
     return isinstance(error, Exception) and not isinstance(error, ExternalShutdownException) and not is_interactive
+
+
+AnyTransport = TypeVar("AnyTransport", bound=BackgroundTransport)
+
+
+def join_with(
+    graph: Graph, make: Callable[[], AnyTransport], logger: Logger, reason: Phrase, *, told: bool
+) -> AnyTransport | None:
+    """Attach a transport to a graph; where there is none, the graph goes on without the network.
+
+    Args:
+        graph: the graph.
+        make: makes the transport.
+        logger: where problems are logged.
+        reason: why there is no transport; empty where there is one.
+        told: whether the reason is logged.
+    """
+    if reason:
+        if told:
+            logger.warning(f"This process speaks to no other one: {reason}. Everything inside of it works.")
+        return None
+    try:
+        transport = make()
+    except LinkwrightError as error:
+        log_join_failure(logger, error)
+        return None
+    graph.attach(transport)
+    return transport

@@ -51,7 +51,7 @@ if TYPE_CHECKING:
 _CONTAINERS = "rclcpp_components"
 """The package whose executables run other nodes besides, which files given to them may be for."""
 
-_OF_A_PROCESS = re.compile(r"(ROS|RCUTILS|RMW|CYCLONEDDS|LINKWRIGHT)_")
+_OF_A_PROCESS = re.compile(r"(ROS|RCUTILS|RMW|CYCLONEDDS|ZENOH|LINKWRIGHT)_")
 """Environment variables that change what a node does, so that one that has its own cannot run in the launcher."""
 
 

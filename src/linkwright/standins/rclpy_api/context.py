@@ -25,7 +25,7 @@ from linkwright.standins.rclpy_api.signals import shut_down_on_signal
 if TYPE_CHECKING:
     from typing_extensions import Self
 
-    from linkwright.wire import dds
+    from linkwright.wire.background import BackgroundTransport
 
 _LONGEST_JOINING_S = 3.0
 _open: weakref.WeakSet[Context] = weakref.WeakSet()
@@ -47,7 +47,7 @@ class Context:
         self._domain_id: int | None = None
         self._graph = graph
         self._logging: Logging | None = None
-        self._joining: dds.DdsTransport | None = None
+        self._joining: BackgroundTransport | None = None
         self.ros_arguments = RosArguments()
 
     @property
@@ -195,10 +195,10 @@ class Context:
                 callback()
 
     def _new_graph(self) -> Graph:
-        from linkwright.wire import dds
+        from linkwright.wire.joining import join
 
         graph = Graph(threads=True, on_log=logging.write, levels=logging.LEVELS)
-        self._joining = dds.join(graph, domain_id=self._domain_id)
+        self._joining = join(graph, domain_id=self._domain_id)
         return graph
 
 

@@ -8,7 +8,6 @@ from collections.abc import Sequence
 from linkwright.graph.command_line import ros_arguments
 
 _NANOSECONDS_PER_SECOND = 1_000_000_000
-_MIDDLEWARE = "rmw_cyclonedds_cpp"
 
 
 def remove_ros_args(args: Sequence[str] | None = None) -> list[str]:
@@ -29,9 +28,11 @@ def timeout_sec_to_nsec(timeout_sec: float | None) -> int:
 
 def get_rmw_implementation_identifier() -> str:
     """The name of the middleware that ours is compatible with."""
-    return _MIDDLEWARE
+    from linkwright.wire.joining import middleware
+
+    return middleware()
 
 
 def get_available_rmw_implementations() -> set[str]:
     """The names of the available middlewares."""
-    return {_MIDDLEWARE}
+    return {get_rmw_implementation_identifier()}

@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-import os
 import platform
 from collections.abc import Mapping
 from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
-from linkwright.diagnostics import LinkwrightError, Phrase, phrase
-from linkwright.wire.background import log_join_failure
+from linkwright.diagnostics import Phrase, phrase
+from linkwright.wire.background import join_with
 from linkwright.wire.dds.settings import read_settings
 from linkwright.wire.dds.transport import DdsTransport
+from linkwright.wire.switch import is_switched_off, switched_off
 
 if TYPE_CHECKING:
     from linkwright.graph.computation_graph import Graph
-
-
-SWITCH = "LINKWRIGHT_DDS"
 
 
 def why_not(environment: Mapping[str, str] | None = None) -> Phrase:
@@ -26,9 +23,8 @@ def why_not(environment: Mapping[str, str] | None = None) -> Phrase:
     Args:
         environment: the environment variables; those of the process when left out.
     """
-    variables = os.environ if environment is None else environment
-    if variables.get(SWITCH, "1") == "0":
-        return phrase("the environment variable {switch} is 0", switch=SWITCH)
+    if is_switched_off(environment):
+        return switched_off()
     if find_spec("cyclonedds") is None:
         return phrase(
             "the package 'cyclonedds' is not installed: run pip install 'linkwright[dds]' (there are wheels of it for"
@@ -66,18 +62,11 @@ def join(
         The transport; None where DDS is not installed, switched off, or wrongly set.
     """
     logger = graph.get_logger("dds")
-    reason = why_not(environment)
-    if reason:
-        if SWITCH not in reason:
-            logger.warning(f"This process speaks to no other one: {reason}. Everything inside of it works.")
-        return None
-    try:
+
+    def make() -> DdsTransport:
         settings = read_settings(environment, domain_id=domain_id)
-    except LinkwrightError as error:
-        log_join_failure(logger, error)
-        return None
-    for warning in settings.warnings:
-        logger.warning(warning)
-    transport = DdsTransport(settings, logger, only_looks=only_looks)
-    graph.attach(transport)
-    return transport
+        for warning in settings.warnings:
+            logger.warning(warning)
+        return DdsTransport(settings, logger, only_looks=only_looks)
+
+    return join_with(graph, make, logger, why_not(environment), told=not is_switched_off(environment))

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 from enum import Enum
+
+from linkwright.wire.type_names import ros_type
 
 DISCOVERY_TOPIC = "ros_discovery_info"
 """Where each participant says which nodes it has."""
@@ -20,7 +21,6 @@ class Role(Enum):
 
 _SUFFIXES = {Role.TOPIC: "", Role.REQUEST: "Request", Role.REPLY: "Reply"}
 _ROLES = {role.value: role for role in Role}
-_TYPE = re.compile(r"(?P<package>\w+)::(?P<kind>msg|srv|action)::dds_::(?P<name>\w+)_")
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,18 +57,6 @@ def ros_name(topic: str) -> RosName | None:
     if not rest.endswith(suffix) or len(rest) == len(suffix):
         return None
     return RosName(role, "/" + rest[: len(rest) - len(suffix)])
-
-
-def dds_type(type_name: str) -> str:
-    """The DDS name of a ROS type: ``std_msgs/msg/Header`` becomes ``std_msgs::msg::dds_::Header_``."""
-    package, kind, name = type_name.split("/")
-    return f"{package}::{kind}::dds_::{name}_"
-
-
-def ros_type(type_name: str) -> str | None:
-    """The ROS name of a message type on the wire; None when it is not written in ROS's way."""
-    match = _TYPE.fullmatch(type_name)
-    return f"{match['package']}/{match['kind']}/{match['name']}" if match else None
 
 
 def ros_service_type(type_name: str) -> str | None:

@@ -20,9 +20,9 @@ from linkwright.wire.dds.names import (
     RosName,
     ros_name,
     ros_service_type,
-    ros_type,
 )
 from linkwright.wire.dds.participant import NAME, process_namespace
+from linkwright.wire.type_names import ros_type
 
 _FAST_DDS = b"\x01\x0f"
 """How the GUIDs of its entities begin."""

@@ -14,12 +14,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, phrase
+from linkwright.diagnostics import did_you_mean
 from linkwright.messages import is_before_iron
 from linkwright.wire.dds.discovery_info import GID_SIZE, OLD_GID_SIZE
-
-MAX_DOMAIN_ID = 232
-"""Beyond it the ports of RTPS (7400 + 250 a domain) do not exist."""
+from linkwright.wire.domain_id import read_domain_id
 
 _PARTICIPANTS = 99
 """How many processes on one machine find each other without multicast, where the domain has ports for them."""
@@ -94,7 +92,7 @@ def read_settings(environment: Mapping[str, str] | None = None, *, domain_id: in
     if peers and reach in (Range.OFF, Range.SYSTEM_DEFAULT):
         warnings.append(f"{len(peers)} static peers were specified, but discovery is {reach.value}: they are ignored")
     user = variables.get("CYCLONEDDS_URI", "")
-    domain_id = _domain(variables, domain_id)
+    domain_id = read_domain_id(variables, domain_id)
     own = tuple(_fragments(reach, peers, most_participants(domain_id)))
     return Settings(
         domain_id=domain_id,
@@ -104,24 +102,6 @@ def read_settings(environment: Mapping[str, str] | None = None, *, domain_id: in
         warnings=tuple(warnings),
         user_configuration=user,
         own_configurations=own,
-    )
-
-
-def _domain(variables: Mapping[str, str], domain_id: int | None) -> int:
-    text = variables.get("ROS_DOMAIN_ID", "") if domain_id is None else str(domain_id)
-    if not text.strip():
-        return 0
-    if text.strip().isdecimal() and int(text) <= MAX_DOMAIN_ID:
-        return int(text)
-    raise LinkwrightError(
-        Diagnostic(
-            code="DDS101",
-            message=phrase("'{text}' is not a DDS domain", text=text),
-            hint=phrase(
-                "ROS_DOMAIN_ID is a number from 0 to {highest}; up to 101 is safe on every system",
-                highest=MAX_DOMAIN_ID,
-            ),
-        )
     )
 
 

@@ -15,7 +15,7 @@ from typing import Any
 
 from linkwright.messages import definition_of, get_message
 from linkwright.messages.definition import Container, FieldType, Structure
-from linkwright.wire.dds.names import dds_type
+from linkwright.wire.type_names import dds_type
 
 HEADER_MEMBERS = ("client_guid", "sequence_number")
 """What rmw_cyclonedds_cpp puts before requests and replies: an unsigned and a signed integer of 64 bits."""

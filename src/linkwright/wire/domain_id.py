@@ -1,0 +1,37 @@
+"""ROS_DOMAIN_ID: which domain a process is in."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+
+MAX_DOMAIN_ID = 232
+"""Beyond it the ports of RTPS (7400 + 250 a domain) do not exist."""
+
+
+def read_domain_id(variables: Mapping[str, str], domain_id: int | None = None) -> int:
+    """The domain of an environment.
+
+    Args:
+        variables: the environment variables.
+        domain_id: takes the place of ROS_DOMAIN_ID.
+
+    Raises:
+        LinkwrightError: DDS101, it is none.
+    """
+    text = variables.get("ROS_DOMAIN_ID", "") if domain_id is None else str(domain_id)
+    if not text.strip():
+        return 0
+    if text.strip().isdecimal() and int(text) <= MAX_DOMAIN_ID:
+        return int(text)
+    raise LinkwrightError(
+        Diagnostic(
+            code="DDS101",
+            message=phrase("'{text}' is not a DDS domain", text=text),
+            hint=phrase(
+                "ROS_DOMAIN_ID is a number from 0 to {highest}; up to 101 is safe on every system",
+                highest=MAX_DOMAIN_ID,
+            ),
+        )
+    )

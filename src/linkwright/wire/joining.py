@@ -1,0 +1,105 @@
+"""Which transport a process has: DDS or Zenoh.
+
+``RMW_IMPLEMENTATION=rmw_zenoh_cpp`` asks for Zenoh, as it does in ROS 2, and any other value for DDS. Where it is not
+set, DDS is taken, and Zenoh where DDS is not installed and Zenoh is.
+"""
+
+from __future__ import annotations
+
+import os
+import platform
+from collections.abc import Mapping
+from importlib.util import find_spec
+from typing import TYPE_CHECKING
+
+from linkwright.diagnostics import Phrase, phrase
+from linkwright.wire import dds, zenoh
+from linkwright.wire.zenoh.joining import is_installed as zenoh_is_installed
+
+if TYPE_CHECKING:
+    from linkwright.graph.computation_graph import Graph
+    from linkwright.wire.background import BackgroundTransport
+
+VARIABLE = "RMW_IMPLEMENTATION"
+ZENOH = "rmw_zenoh_cpp"
+CYCLONE = "rmw_cyclonedds_cpp"
+
+
+def middleware(environment: Mapping[str, str] | None = None) -> str:
+    """The name of the middleware that this process is compatible with: `ZENOH` or `CYCLONE`.
+
+    Args:
+        environment: the environment variables; those of the process when left out.
+    """
+    variables = os.environ if environment is None else environment
+    asked = variables.get(VARIABLE, "").strip()
+    if asked:
+        return ZENOH if asked == ZENOH else CYCLONE
+    return ZENOH if find_spec("cyclonedds") is None and zenoh_is_installed() else CYCLONE
+
+
+def why_not(environment: Mapping[str, str] | None = None) -> Phrase:
+    """Why this process speaks to no other one; empty when it does.
+
+    Args:
+        environment: the environment variables; those of the process when left out.
+    """
+    variables = os.environ if environment is None else environment
+    if middleware(variables) == ZENOH:
+        return zenoh.why_not(variables)
+    reason = dds.why_not(variables)
+    if reason and find_spec("cyclonedds") is None and not variables.get(VARIABLE, "").strip():
+        return phrase(
+            "neither DDS nor Zenoh is installed: run pip install 'linkwright[zenoh]', or 'linkwright[dds]' for the DDS"
+            " of ROS 2's default (there are wheels of it for Linux x86_64, Windows and macOS arm64; this is {system}"
+            " {machine} with Python {version})",
+            system=platform.system(),
+            machine=platform.machine(),
+            version=platform.python_version(),
+        )
+    return reason
+
+
+def available(environment: Mapping[str, str] | None = None) -> bool:
+    """Whether other processes can be reached."""
+    return not why_not(environment)
+
+
+def check_settings(environment: Mapping[str, str] | None = None) -> None:
+    """Read the settings that joining would read.
+
+    Raises:
+        LinkwrightError: DDS101, ROS_DOMAIN_ID is no domain; DDS111, a setting of Zenoh is not well formed.
+    """
+    if middleware(environment) == ZENOH:
+        from linkwright.wire.zenoh.settings import read_settings as read_zenoh_settings
+
+        read_zenoh_settings(environment)
+    else:
+        from linkwright.wire.dds.settings import read_settings
+
+        read_settings(environment)
+
+
+def join(
+    graph: Graph,
+    *,
+    domain_id: int | None = None,
+    environment: Mapping[str, str] | None = None,
+    only_looks: bool = False,
+) -> BackgroundTransport | None:
+    """Have a graph seen by other processes, and see theirs. It happens in the background; nothing waits for it.
+
+    Problems are logged, and the graph goes on without the network.
+
+    Args:
+        graph: the graph; the transport attaches itself to it.
+        domain_id: takes the place of ROS_DOMAIN_ID.
+        environment: the environment variables; those of the process when left out.
+        only_looks: whether the graph sees other processes and is not seen by them.
+
+    Returns:
+        The transport; None where there is none, it is switched off, or wrongly set.
+    """
+    chosen = zenoh.join if middleware(environment) == ZENOH else dds.join
+    return chosen(graph, domain_id=domain_id, environment=environment, only_looks=only_looks)

@@ -1,0 +1,42 @@
+"""What goes with each message, request and reply: 33 bytes, as rmw_zenoh_cpp has zenoh-ext write them.
+
+They are a sequence number, the time of sending, and the gid of the sender. A receiving rmw_zenoh_cpp ends its process
+when they are malformed, so each sample has them.
+"""
+
+from __future__ import annotations
+
+from struct import Struct
+from typing import NamedTuple
+
+GID_SIZE = 16
+
+_LAYOUT = Struct("<qqB16s")
+"""Little-endian, without padding; a sequence begins with its length, in LEB128."""
+
+
+class Attachment(NamedTuple):
+    """What goes with a sample.
+
+    Attributes:
+        number: the sequence number, from 1 on; a reply has that of its request.
+        sent_ns: when it was sent, nanoseconds since the epoch.
+        gid: of the publisher, or of the client, 16 bytes.
+    """
+
+    number: int
+    sent_ns: int
+    gid: bytes
+
+
+def write(number: int, sent_ns: int, gid: bytes) -> bytes:
+    """The bytes of an attachment."""
+    return _LAYOUT.pack(number, sent_ns, GID_SIZE, gid)
+
+
+def read(data: bytes | None) -> Attachment | None:
+    """An attachment; None when there is none, or it is malformed."""
+    if data is None or len(data) != _LAYOUT.size:
+        return None
+    number, sent_ns, size, gid = _LAYOUT.unpack(data)
+    return Attachment(number, sent_ns, gid) if size == GID_SIZE else None

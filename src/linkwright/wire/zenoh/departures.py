@@ -1,0 +1,107 @@
+"""Publishers that are lost, told from those that left.
+
+A token goes when its owner withdraws it, and when its session ends, however that ends. Linkwright's sessions say that
+they leave before they do. Others withdraw the endpoints of a node before the node itself; at the end of a session that
+was killed all its tokens go at once, in no order. So an endpoint is lost whose node went before it.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
+from linkwright.wire.zenoh.tokens import Token
+
+if TYPE_CHECKING:
+    from linkwright.wire.zenoh.remote import RemoteGraph
+
+GRACE = 0.4
+"""Seconds after a publisher is gone within which the rest of its session is heard of."""
+
+
+@dataclass(slots=True)
+class _Gone:
+    """A publisher that is gone.
+
+    Attributes:
+        key: of its token.
+        token: its token.
+        due: when it is judged, by the steady clock.
+    """
+
+    key: str
+    token: Token
+    due: float
+
+
+class Departures:
+    """Judges how publishers went; everything but `watch` happens in the thread of discovery.
+
+    Args:
+        remote: what there is outside.
+        now: the steady clock, in seconds.
+    """
+
+    def __init__(self, remote: RemoteGraph, now: Callable[[], float] = time.monotonic) -> None:
+        self._remote = remote
+        self._now = now
+        self._watchers: list[Callable[[EndpointInfo], None]] = []
+        self._gone: list[_Gone] = []
+        self._ours: set[str] = set()
+        self._left: set[str] = set()
+        self._unordered: set[tuple[str, str]] = set()
+        self._nodes_gone: dict[tuple[str, str], float] = {}
+
+    def watch(self, lost: Callable[[EndpointInfo], None]) -> None:
+        """Have something called, in the thread of discovery, with each publisher that is lost."""
+        self._watchers.append(lost)
+
+    def is_ours(self, session: str) -> None:
+        """Take note of a session of Linkwright's, which says when it leaves."""
+        self._ours.add(session)
+
+    def leaves(self, session: str) -> None:
+        """Take note of a session that leaves."""
+        self._left.add(session)
+
+    def went(self, key: str, token: Token) -> None:
+        """Take note of a token that is gone."""
+        if token.kind is None:
+            self._nodes_gone[token.node_key] = self._now()
+            return
+        if token.node_key in self._nodes_gone:
+            self._unordered.add(token.node_key)
+        if self._watchers and token.kind is EndpointKind.PUBLISHER:
+            self._gone.append(_Gone(key, token, self._now() + GRACE))
+
+    def review(self) -> float | None:
+        """Tell of those that are lost by now; seconds after which to call this again, or None."""
+        now = self._now()
+        due = [each for each in self._gone if each.due <= now]
+        self._gone = [each for each in self._gone if each.due > now]
+        for each in due:
+            info = each.token.described() if self._is_lost(each) else None
+            if info is not None:
+                for lost in self._watchers:
+                    lost(info)
+        if not self._gone:
+            self._forget(now)
+        return max(self._gone[0].due - now, 0.0) if self._gone else None
+
+    def _is_lost(self, gone: _Gone) -> bool:
+        token = gone.token
+        if self._remote.is_there(gone.key) or token.node_key not in self._nodes_gone:
+            return False
+        if token.session in self._ours:
+            return token.session not in self._left
+        return token.node_key in self._unordered or self._remote.has_endpoints(token.node_key)
+
+    def _forget(self, now: float) -> None:
+        """Forget nodes that are gone for long enough."""
+        for node_key, since in tuple(self._nodes_gone.items()):
+            if now - since > GRACE:
+                del self._nodes_gone[node_key]
+                self._unordered.discard(node_key)

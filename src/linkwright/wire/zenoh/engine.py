@@ -1,0 +1,332 @@
+"""Makes and withdraws what mirrors the endpoints of this process in a Zenoh session.
+
+One thread does it, in the order of asking, and keeps the tables of what is outside. What comes in is handed on by the
+threads of Zenoh, as bytes.
+"""
+
+from __future__ import annotations
+
+import itertools
+import threading
+import time
+import traceback
+from collections import deque
+from collections.abc import Callable
+from typing import Any
+
+import zenoh
+from zenoh.handlers import Callback
+
+from linkwright.graph.endpoints.info import EndpointKind
+from linkwright.graph.log.logger import Logger
+from linkwright.graph.names.identity import NodeIdentity
+from linkwright.messages import InterfaceNotFoundError, type_hash
+from linkwright.wire.background import Engine as AnyEngine
+from linkwright.wire.background import Work, ends_by_error
+from linkwright.wire.type_names import dds_type
+from linkwright.wire.zenoh import qos_text, tokens
+from linkwright.wire.zenoh.departures import Departures
+from linkwright.wire.zenoh.remote import RemoteGraph
+from linkwright.wire.zenoh.services import IncomingService, OutsideServer
+from linkwright.wire.zenoh.session import open_session
+from linkwright.wire.zenoh.settings import Settings
+from linkwright.wire.zenoh.tokens import Token
+
+_CLOSING_TIME = 1.0
+"""Seconds that the thread's last work may take."""
+
+_WORK_SPAN = 0.02
+"""Seconds after which work on the own endpoints makes room for news from outside."""
+
+_OURS = "@linkwright"
+"""Sessions of Linkwright's have a token ``@linkwright/<domain>/<session>/here``, and ``left`` before they leave."""
+
+
+class Engine:
+    """One session with its publishers, subscriptions, services and clients.
+
+    Args:
+        settings: the domain and how to join it.
+        remote: the tables to fill.
+        departures: judges how publishers outside went.
+        work: what there is to do, called with the engine; others append to it and `wake`.
+        logger: for what there is to tell.
+
+    Raises:
+        LinkwrightError: the session cannot be opened.
+    """
+
+    def __init__(
+        self, settings: Settings, remote: RemoteGraph, departures: Departures, work: Work, logger: Logger
+    ) -> None:
+        self._settings = settings
+        self._remote = remote
+        self._departures = departures
+        self._work = work
+        self._logger = logger
+        self._session = open_session(settings)
+        self._session_id = str(self._session.zid())
+        self._ids = itertools.count()
+        self._nodes: dict[NodeIdentity, list[tuple[str, Any]]] = {}
+        self._mirrored: dict[Any, Any] = {}
+        self._tokens: dict[Any, Any] = {}
+        self._own_gids: set[bytes] = set()
+        self._news: deque[tuple[bool, str]] = deque()
+        self._wake = threading.Event()
+        self._ended = threading.Event()
+        self._is_stale = False
+        self._thread = threading.Thread(target=self._run, name="linkwright-zenoh", daemon=True)
+        self._here: Any = None
+        self._watching: tuple[Any, ...] = ()
+
+    def start(self) -> None:
+        """Begin."""
+        liveliness, domain = self._session.liveliness(), self._settings.domain_id
+        handler: Any = Callback(self._hear, indirect=False)
+        self._here = liveliness.declare_token(self._own_token("here"))
+        self._watching = tuple(
+            liveliness.declare_subscriber(f"{root}/{domain}/**", handler, history=True) for root in (_OURS, tokens.ROOT)
+        )
+        self._thread.start()
+
+    def wake(self) -> None:
+        """Look at the work soon; from any thread."""
+        self._wake.set()
+
+    def close(self) -> None:
+        """End. Others are told that our nodes leave, unless the process ends because of an error."""
+        self._ended.set()
+        self._wake.set()
+        if self._thread.ident is not None and self._thread is not threading.current_thread():
+            self._thread.join(_CLOSING_TIME)
+        while self._work:
+            self._do(self._work.popleft())
+        for mirrored in self._mirrored.values():
+            if hasattr(mirrored, "abandon"):
+                mirrored.abandon()
+        if not ends_by_error():
+            self._say_farewell()
+        for mirrored in self._mirrored.values():
+            mirrored.close()
+        for subscriber in self._watching:
+            subscriber.undeclare()
+        self._session.close()
+
+    def abandon(self) -> None:
+        """Send nothing more, and keep all that is Zenoh's for ever: in a forked process its end would wait for ever."""
+        import ctypes
+
+        self._ended.set()
+        for mirrored in self._mirrored.values():
+            if hasattr(mirrored, "abandon"):
+                mirrored.abandon()
+        ctypes.pythonapi.Py_IncRef(ctypes.py_object(self))
+
+    # --- work, in the thread -----------------------------------------------------------------------------------------
+
+    def add_node(self, node: NodeIdentity) -> None:
+        """Announce a node."""
+        number = str(next(self._ids))
+        token = Token(self._settings.domain_id, self._session_id, number, number, node)
+        self._nodes.setdefault(node, []).append((number, self._session.liveliness().declare_token(token.key)))
+
+    def remove_node(self, node: NodeIdentity) -> None:
+        """Withdraw a node."""
+        announced = self._nodes.get(node)
+        if announced:
+            _, token = announced.pop()
+            token.undeclare()
+            if not announced:
+                del self._nodes[node]
+
+    def open_publisher(self, publisher: Any) -> None:
+        """Mirror a publisher."""
+        from linkwright.wire.zenoh.topics import OutgoingTopic
+
+        try:
+            token = self._token_of(publisher, EndpointKind.PUBLISHER)
+            outgoing = OutgoingTopic(publisher, token, self._session, self._matches_changed)
+        except BaseException:
+            publisher.set_outside(None)
+            raise
+        self._own_gids.add(token.gid)
+        self._announce(publisher, outgoing)
+
+    def close_publisher(self, publisher: Any) -> None:
+        """Stop mirroring a publisher."""
+        self.close_endpoint(publisher)
+
+    def open_subscription(self, subscription: Any) -> None:
+        """Mirror a subscription."""
+        from linkwright.wire.zenoh.topics import IncomingTopic
+
+        token = self._token_of(subscription, EndpointKind.SUBSCRIPTION)
+        key = token.data_key
+        if token.type_hash == tokens.NO_HASH and self._settings.hashes:  # of a type that is not known here
+            key = tokens.data_key(token.domain_id, token.name, token.type_name, "*")
+        self._announce(subscription, IncomingTopic(subscription, token, self._session, key, self._own_gids))
+
+    def open_service(self, service: Any) -> None:
+        """Mirror a service."""
+        token = self._token_of(service, EndpointKind.SERVICE)
+        self._announce(service, IncomingService(service, token, self._session))
+
+    def open_client(self, client: Any) -> None:
+        """Mirror a client."""
+        token = self._token_of(client, EndpointKind.CLIENT)
+        self._announce(client, OutsideServer(client, token, self._session, self._matches_changed))
+
+    def close_endpoint(self, endpoint: Any) -> None:
+        """Stop mirroring an endpoint; its token goes first, so that nobody counts on it any more."""
+        token = self._tokens.pop(endpoint, None)
+        if token is not None:
+            token.undeclare()
+        mirrored = self._mirrored.pop(endpoint, None)
+        if mirrored is not None:
+            mirrored.close()
+            self._own_gids.discard(mirrored.token.gid)
+
+    def _announce(self, endpoint: Any, mirrored: Any) -> None:
+        """Have an endpoint known that can be reached by now."""
+        self._mirrored[endpoint] = mirrored
+        self._tokens[endpoint] = self._session.liveliness().declare_token(mirrored.token.key)
+        self._review(mirrored)
+
+    def _token_of(self, endpoint: Any, kind: EndpointKind) -> Token:
+        announced = self._nodes.get(endpoint.node.identity)
+        if not announced:
+            self.add_node(endpoint.node.identity)
+            announced = self._nodes[endpoint.node.identity]
+        node_id = announced[-1][0]
+        return Token(
+            self._settings.domain_id,
+            self._session_id,
+            node_id,
+            str(next(self._ids)),
+            endpoint.node.identity,
+            kind,
+            endpoint.name,
+            dds_type(endpoint.type_name),
+            self._hash_of(endpoint, kind),
+            qos_text.write(endpoint.qos_profile),
+        )
+
+    def _hash_of(self, endpoint: Any, kind: EndpointKind) -> str:
+        if not self._settings.hashes:
+            return tokens.NO_HASH
+        try:
+            return type_hash(endpoint.type_name)
+        except InterfaceNotFoundError:
+            if kind is EndpointKind.SUBSCRIPTION and endpoint.raw:  # the bytes alone are wanted
+                return tokens.NO_HASH
+            raise
+
+    # --- news, from threads of Zenoh ---------------------------------------------------------------------------------
+
+    def _hear(self, sample: zenoh.Sample) -> None:
+        self._news.append((sample.kind == zenoh.SampleKind.PUT, str(sample.key_expr)))
+        self._wake.set()
+
+    def _matches_changed(self) -> None:
+        self._is_stale = True
+        self._wake.set()
+
+    # --- the thread --------------------------------------------------------------------------------------------------
+
+    def _run(self) -> None:
+        self._look_for_router()
+        while not self._ended.is_set():
+            self._wake.clear()
+            self._work_for(_WORK_SPAN)
+            self._take_news()
+            again = 0.0 if self._work else self._departures.review()
+            self._wake.wait(again)
+
+    def _work_for(self, seconds: float) -> None:
+        until = time.monotonic() + seconds
+        while self._work and time.monotonic() < until:
+            self._do(self._work.popleft())
+
+    def _do(self, work: Callable[[AnyEngine], None]) -> None:
+        try:
+            work(self)
+        except Exception as error:  # noqa: BLE001 - the rest of the graph is to be made all the same
+            self._report(error)
+
+    def _report(self, error: Exception) -> None:
+        """Log that something is not mirrored: why Zenoh refuses it, or the traceback of an error of ours."""
+        lines = [str(error)] if isinstance(error, zenoh.ZError) else traceback.format_exception(error)
+        self._logger.error("A part of the graph is not seen outside of this process: " + "".join(lines).rstrip())
+
+    def _take_news(self) -> None:
+        changed = False
+        while self._news:
+            came, key = self._news.popleft()
+            changed = self._note(came=came, key=key) or changed
+        if changed or self._is_stale:
+            self._is_stale = False
+            for mirrored in tuple(self._mirrored.values()):
+                self._review(mirrored)
+        if changed:
+            self._remote.announce()
+
+    def _note(self, *, came: bool, key: str) -> bool:
+        """Take note of a token; whether that changes what is outside."""
+        if key.startswith(_OURS):
+            _, _, session, what = key.split("/")
+            if came and what == "left":
+                self._departures.leaves(session)
+            elif came:
+                self._departures.is_ours(session)
+            return False
+        token = tokens.read(key)
+        if token is None or token.session == self._session_id:
+            return False
+        if came:
+            return self._remote.came(key, token)
+        if self._remote.went(key) is None:
+            return False
+        self._departures.went(key, token)
+        return True
+
+    def _review(self, mirrored: Any) -> None:
+        kind = _OPPOSITE.get(mirrored.token.kind)
+        if kind is not None:
+            mirrored.review(self._remote.count(kind, mirrored.token.data_key))
+
+    def _look_for_router(self) -> None:
+        """Wait for a router, where ZENOH_ROUTER_CHECK_ATTEMPTS asks for that; then go on without one."""
+        attempts = self._settings.attempts
+        for attempt in itertools.count():
+            if self._ended.is_set() or (attempts is not None and attempt >= attempts):
+                break
+            if self._session.info.routers_zid():
+                return
+            self._ended.wait(1.0)
+        if attempts and not self._ended.is_set() and not self._session.info.routers_zid():
+            self._logger.warning(
+                "There is no Zenoh router: nodes of rmw_zenoh_cpp are not found. Start one with "
+                "'linkwright run rmw_zenoh_cpp rmw_zenohd', or 'ros2 run rmw_zenoh_cpp rmw_zenohd'"
+            )
+
+    def _say_farewell(self) -> None:
+        """Withdraw endpoints, then nodes, having said that this session leaves."""
+        left = self._session.liveliness().declare_token(self._own_token("left"))
+        for token in self._tokens.values():
+            token.undeclare()
+        for announced in self._nodes.values():
+            for _, token in announced:
+                token.undeclare()
+        self._here.undeclare()
+        left.undeclare()
+
+    def _own_token(self, what: str) -> str:
+        return f"{_OURS}/{self._settings.domain_id}/{self._session_id}/{what}"
+
+
+_OPPOSITE = {
+    EndpointKind.PUBLISHER: EndpointKind.SUBSCRIPTION,
+    EndpointKind.SUBSCRIPTION: EndpointKind.PUBLISHER,
+    EndpointKind.CLIENT: EndpointKind.SERVICE,
+}
+"""What each kind of endpoint counts outside."""

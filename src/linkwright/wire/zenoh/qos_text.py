@@ -1,0 +1,79 @@
+"""Quality of service as one chunk of a liveliness token.
+
+``<reliability>:<durability>:<history>,<depth>:<deadline>:<lifespan>:<liveliness>,<lease>`` with times as seconds and
+nanoseconds; what is rmw_zenoh_cpp's default is left empty.
+"""
+
+from __future__ import annotations
+
+from linkwright.graph.qos.compatibility import limit_ns, resolved
+from linkwright.graph.qos.profile import (
+    DurabilityPolicy,
+    HistoryPolicy,
+    LivelinessPolicy,
+    QoSProfile,
+    ReliabilityPolicy,
+)
+from linkwright.graph.time.values import INFINITE, Duration
+
+_DEFAULT_DEPTH = 42
+_SECOND = 1_000_000_000
+
+
+def write(profile: QoSProfile) -> str:
+    """The chunk of a profile."""
+    qos = resolved(profile)
+    # A depth that is left to the middleware is the default.
+    keeps_all = qos.history is HistoryPolicy.KEEP_ALL
+    depth = _DEFAULT_DEPTH if profile.depth == 0 else profile.depth
+    reliability = "" if qos.reliability is ReliabilityPolicy.RELIABLE else str(int(qos.reliability))
+    durability = "" if qos.durability is DurabilityPolicy.VOLATILE else str(int(qos.durability))
+    history = str(int(qos.history)) if keeps_all else ""
+    liveliness = "" if qos.liveliness is LivelinessPolicy.AUTOMATIC else str(int(qos.liveliness))
+    return ":".join(
+        (
+            reliability,
+            durability,
+            f"{history},{'' if depth == _DEFAULT_DEPTH else depth}",
+            _write_time(qos.deadline),
+            _write_time(qos.lifespan),
+            f"{liveliness},{_write_time(qos.liveliness_lease_duration)}",
+        )
+    )
+
+
+def read(text: str) -> QoSProfile:
+    """The profile of a chunk.
+
+    Raises:
+        ValueError: it is none.
+    """
+    reliability, durability, history, deadline, lifespan, liveliness = text.split(":")
+    kind, depth = history.split(",")
+    lives, lease_s, lease_ns = liveliness.split(",")
+    keeps = HistoryPolicy(int(kind or HistoryPolicy.KEEP_LAST))
+    return QoSProfile(
+        depth=0 if keeps is HistoryPolicy.KEEP_ALL else max(int(depth or _DEFAULT_DEPTH), 1),
+        history=keeps,
+        reliability=ReliabilityPolicy(int(reliability or ReliabilityPolicy.RELIABLE)),
+        durability=DurabilityPolicy(int(durability or DurabilityPolicy.VOLATILE)),
+        deadline=_read_time(*deadline.split(",")),
+        lifespan=_read_time(*lifespan.split(",")),
+        liveliness=LivelinessPolicy(int(lives or LivelinessPolicy.AUTOMATIC)),
+        liveliness_lease_duration=_read_time(lease_s, lease_ns),
+    )
+
+
+def _write_time(duration: Duration) -> str:
+    nanoseconds = limit_ns(duration)
+    if nanoseconds is None:
+        return ","
+    seconds, rest = divmod(nanoseconds, _SECOND)
+    return f"{seconds},{rest}"
+
+
+def _read_time(seconds: str, nanoseconds: str) -> Duration:
+    if not seconds and not nanoseconds:
+        return INFINITE
+    total = int(seconds or 0) * _SECOND + int(nanoseconds or 0)
+    return INFINITE if total <= 0 or total >= INFINITE.nanoseconds else Duration(nanoseconds=total)

@@ -1,0 +1,80 @@
+"""The nodes and endpoints of other sessions, by their liveliness tokens."""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+from collections.abc import Callable
+from threading import Lock
+
+from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
+from linkwright.graph.names.identity import NodeIdentity
+from linkwright.wire.zenoh.tokens import Token
+
+
+class RemoteGraph:
+    """What discovery found; written by one thread, read by any."""
+
+    def __init__(self) -> None:
+        self._lock = Lock()
+        self._tokens: dict[str, Token] = {}
+        self._counts: Counter[tuple[EndpointKind, str]] = Counter()
+        self._watchers: list[Callable[[], None]] = []
+        self.changed_at = time.monotonic()
+        """When something changed last, by the steady clock."""
+
+    # --- from discovery ----------------------------------------------------------------------------------------------
+
+    def came(self, key: str, token: Token) -> bool:
+        """Record a token by its key expression, to which newer distributions may have added; whether it is new."""
+        with self._lock:
+            if key in self._tokens:
+                return False
+            self._tokens[key] = token
+            if token.kind is not None:
+                self._counts[token.kind, token.data_key] += 1
+        return True
+
+    def went(self, key: str) -> Token | None:
+        """Remove a token; None when it was not known."""
+        with self._lock:
+            token = self._tokens.pop(key, None)
+            if token is not None and token.kind is not None:
+                self._counts[token.kind, token.data_key] -= 1
+        return token
+
+    def announce(self) -> None:
+        """Notify the watchers that something has changed."""
+        self.changed_at = time.monotonic()
+        for watcher in tuple(self._watchers):
+            watcher()
+
+    def watch(self, changed: Callable[[], None]) -> None:
+        """Have something called, in the thread of discovery, after changes."""
+        self._watchers.append(changed)
+
+    # --- asked by the transport --------------------------------------------------------------------------------------
+
+    def count(self, kind: EndpointKind, data_key: str) -> int:
+        """How many endpoints of a kind there are at a key."""
+        return self._counts[kind, data_key]
+
+    def has_endpoints(self, node_key: tuple[str, str]) -> bool:
+        """Whether there are endpoints of a node, by `Token.node_key`."""
+        with self._lock:
+            return any(each.kind is not None and each.node_key == node_key for each in self._tokens.values())
+
+    def is_there(self, key: str) -> bool:
+        """Whether there is a token."""
+        return key in self._tokens
+
+    def nodes(self) -> list[NodeIdentity]:
+        """The nodes of other sessions."""
+        with self._lock:
+            return [each.node for each in self._tokens.values() if each.kind is None]
+
+    def endpoints(self) -> list[EndpointInfo]:
+        """The endpoints of other sessions."""
+        with self._lock:
+            tokens = list(self._tokens.values())
+        return [info for each in tokens if (info := each.described()) is not None]

@@ -1,0 +1,200 @@
+"""Services and clients over Zenoh: a queryable for each service, a querier for each client."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from functools import partial
+from threading import Lock
+from typing import TYPE_CHECKING, Any
+from weakref import WeakSet
+
+import zenoh
+from zenoh.handlers import Callback
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph.endpoints.service_introspection import RequestId
+from linkwright.messages import deserialize, serialize
+from linkwright.wire.zenoh import attachment
+from linkwright.wire.zenoh.tokens import Token
+
+if TYPE_CHECKING:
+    from linkwright.graph.endpoints.client import Client
+    from linkwright.graph.endpoints.service import Service
+
+_WAITS = 600.0
+"""Seconds for which a request waits for its reply."""
+
+_RESULT = "/_action/get_result"
+_WAITS_FOR_RESULT = 30 * 24 * 3600.0
+"""The same for the result of an action, which may take any time."""
+
+
+class OutsideServer:
+    """The servers of other processes, as a client of this one calls them (`graph.endpoints.client.OutsideService`).
+
+    Args:
+        client: the client.
+        token: its token.
+        session: the session.
+        changed: called, from any thread, when a server came or went.
+    """
+
+    def __init__(
+        self, client: Client[Any, Any], token: Token, session: zenoh.Session, changed: Callable[[], None]
+    ) -> None:
+        self._client = client
+        self.token = token
+        self._answers: dict[int, Callable[[Any], None]] = {}
+        self._is_ready = False
+        self._told = False
+        client.gid = token.gid
+        self._querier: Any = session.declare_querier(
+            token.data_key,
+            target=zenoh.QueryTarget.ALL_COMPLETE,
+            consolidation=zenoh.ConsolidationMode.NONE,
+            timeout=_WAITS_FOR_RESULT if client.name.endswith(_RESULT) else _WAITS,
+            allowed_destination=zenoh.Locality.REMOTE,
+        )
+        listener: Any = Callback(lambda _: changed(), indirect=False)
+        self._listener = self._querier.declare_matching_listener(listener)
+
+    def send(self, request: Any, answer: Callable[[Any], None], number: int) -> Callable[[], None]:
+        """Send a request; returns a function that gives it up."""
+        self._answers[number] = answer
+        handler: Any = Callback(partial(self._receive, number), partial(self._end, number), indirect=False)
+        about = attachment.write(number, time.time_ns(), self.token.gid)
+        self._querier.get(handler, payload=serialize(request), attachment=about)
+        return partial(self._forget, number)
+
+    def review(self, count: int) -> None:
+        """Find out whether a server is there that can be reached.
+
+        Args:
+            count: how many servers outside are known.
+        """
+        is_ready = count > 0 and self._querier.matching_status.matching
+        if is_ready != self._is_ready:
+            self._is_ready = is_ready
+            self._client.set_outside(self if is_ready else None)
+
+    def close(self) -> None:
+        """Leave; requests without a reply stay so."""
+        self._client.set_outside(None)
+        self._answers.clear()
+        self._listener.undeclare()
+        self._querier.undeclare()
+
+    def abandon(self) -> None:
+        """Send no more requests, without calling Zenoh."""
+        self._client.outside = None
+
+    def _receive(self, number: int, reply: zenoh.Reply) -> None:
+        """Hand the first reply on, in a thread of Zenoh."""
+        sample = reply.ok
+        if sample is None:
+            return
+        answer = self._answers.pop(number, None)
+        if answer is not None:
+            response = _read(sample.payload.to_bytes(), self._client.srv_type.Response, self._client)
+            if response is not None:
+                answer(response)
+
+    def _end(self, number: int) -> None:
+        """Say once that a request has come to its end without a reply: its future stays open, as rclpy's does."""
+        if self._answers.pop(number, None) is not None and not self._told and not self._client.destroyed:
+            self._told = True
+            self._client.node.logger.warning(
+                f"A request to service '{self._client.name}' was not answered: its server has left, failed, or took "
+                "too long"
+            )
+
+    def _forget(self, number: int) -> None:
+        self._answers.pop(number, None)
+
+
+class IncomingService:
+    """A service of this process, as clients of other processes call it.
+
+    Args:
+        service: the service.
+        token: its token.
+        session: the session.
+    """
+
+    def __init__(self, service: Service[Any, Any], token: Token, session: zenoh.Session) -> None:
+        self._service = service
+        self.token = token
+        service.gid = token.gid
+        handler: Any = Callback(self._receive, indirect=False)
+        self._queryable = session.declare_queryable(
+            token.data_key, handler, complete=True, allowed_origin=zenoh.Locality.REMOTE
+        )
+        self._open: WeakSet[_Question] = WeakSet()
+        """What waits for its reply. What nobody will answer any more, because the queue was full or the callback has
+        failed, is not held: its client learns of it."""
+        self._lock = Lock()
+
+    def close(self) -> None:
+        """Answer other processes no more; who still waits learns that there will be no reply."""
+        self._queryable.undeclare()
+        with self._lock:
+            questions = list(self._open)
+            self._open.clear()
+        for each in questions:
+            each.drop()
+
+    def _receive(self, query: zenoh.Query) -> None:
+        """Have a request answered, in a thread of Zenoh."""
+        about = attachment.read(None if query.attachment is None else query.attachment.to_bytes())
+        body = None if query.payload is None else query.payload.to_bytes()
+        if about is None or body is None:
+            query.drop()
+            return
+        request = _read(body, self._service.srv_type.Request, self._service)
+        if request is None:
+            query.drop()
+            return
+        question = _Question(query, about)
+        with self._lock:
+            self._open.add(question)
+        self._service.receive(request, partial(self._reply, question), RequestId(about.gid, about.number))
+
+    def _reply(self, question: _Question, response: Any) -> None:
+        with self._lock:
+            if question not in self._open:  # it was dropped, or answered before
+                return
+            self._open.discard(question)
+        question.answer(response, self.token.data_key)
+
+
+class _Question:
+    """A request that waits for its reply.
+
+    Args:
+        query: Zenoh's; the client waits until it is dropped.
+        about: what came with it.
+    """
+
+    def __init__(self, query: zenoh.Query, about: attachment.Attachment) -> None:
+        self._query = query
+        self._about = about
+
+    def answer(self, response: Any, key: str) -> None:
+        """Send the response."""
+        enclosed = attachment.write(self._about.number, time.time_ns(), self._about.gid)
+        self._query.reply(key, serialize(response), attachment=enclosed)
+        self._query.drop()
+
+    def drop(self) -> None:
+        """Tell the client that there will be no reply."""
+        self._query.drop()
+
+
+def _read(body: bytes, message_class: Any, endpoint: Any) -> Any:
+    """A request or response; None when it cannot be read, which is logged."""
+    try:
+        return deserialize(body, message_class)
+    except LinkwrightError as error:
+        endpoint.node.logger.warning(f"Dropped a malformed message of service '{endpoint.name}': {error}")
+        return None

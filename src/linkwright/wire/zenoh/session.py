@@ -1,0 +1,66 @@
+"""Opens a Zenoh session with the settings of the environment."""
+
+from __future__ import annotations
+
+import zenoh
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
+from linkwright.wire.zenoh.settings import OVERRIDES, Settings
+
+
+def open_session(settings: Settings) -> zenoh.Session:
+    """A session.
+
+    Raises:
+        LinkwrightError: DDS111, the configuration is refused; DDS112, the session cannot be opened with it.
+    """
+    config = _configuration(settings)
+    try:
+        return zenoh.open(config)
+    except zenoh.ZError as error:
+        raise LinkwrightError(
+            Diagnostic(
+                "DDS112",
+                phrase("a session of Zenoh cannot be opened: {reason}", reason=foreign(_reason(error))),
+                hint=phrase("an address to listen at may be in use by another program, or not be one of this machine"),
+            )
+        ) from error
+
+
+def _configuration(settings: Settings) -> zenoh.Config:
+    if settings.file:
+        try:
+            config = zenoh.Config.from_file(settings.file)
+        except zenoh.ZError as error:
+            raise LinkwrightError(
+                Diagnostic(
+                    "DDS111",
+                    phrase("Zenoh refuses the configuration file '{path}'", path=settings.file),
+                    hint=phrase("Zenoh says: {reason}", reason=foreign(_reason(error))),
+                )
+            ) from error
+    else:
+        config = zenoh.Config()
+        for key, value in settings.own:
+            config.insert_json5(key, value)
+    for key, value in settings.overrides:
+        _override(config, key, value)
+    return config
+
+
+def _override(config: zenoh.Config, key: str, value: str) -> None:
+    try:
+        config.insert_json5(key, value)
+    except zenoh.ZError as error:
+        raise LinkwrightError(
+            Diagnostic(
+                "DDS111",
+                phrase("Zenoh refuses '{key}={value}' of {variable}", key=key, value=value, variable=OVERRIDES),
+                hint=phrase("Zenoh says: {reason}", reason=foreign(_reason(error))),
+            )
+        ) from error
+
+
+def _reason(error: Exception) -> str:
+    """What went wrong, without the places in Zenoh's source."""
+    return str(error).split(" at ", 1)[0].strip().rstrip(".")

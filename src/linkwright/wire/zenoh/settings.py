@@ -1,0 +1,161 @@
+"""The settings of Zenoh from the environment: the domain, the session's configuration, the wait for a router.
+
+The variables are those of rmw_zenoh_cpp. Left to itself a session is configured as there, and besides finds those of
+Linkwright on this machine where no router runs (`docs/decisions/0066-zenoh.md`).
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+from linkwright.wire.domain_id import read_domain_id
+
+ROUTER_PORT = 7447
+"""Where a router listens, and sessions look for one."""
+
+SESSION_FILE = "ZENOH_SESSION_CONFIG_URI"
+ROUTER_FILE = "ZENOH_ROUTER_CONFIG_URI"
+OVERRIDES = "ZENOH_CONFIG_OVERRIDE"
+ATTEMPTS = "ZENOH_ROUTER_CHECK_ATTEMPTS"
+
+_WITHOUT_HASHES = "humble"
+_QUERY_TIMEOUT_MS = 600_000
+_LEASE_MS = 60_000
+_LOOPBACK = {"linux": "lo", "darwin": "lo0"}
+
+Entries = tuple[tuple[str, str], ...]
+"""Keys of a configuration, and their values in JSON5."""
+
+_SHARED: Entries = (
+    ("timestamping/enabled", "true"),
+    ("queries_default_timeout", str(_QUERY_TIMEOUT_MS)),
+    ("transport/link/tx/lease", str(_LEASE_MS)),
+    ("transport/link/tx/keep_alive", "2"),
+    ("transport/shared_memory/enabled", "false"),
+)
+_ROUTER: Entries = (
+    ("mode", '"router"'),
+    ("scouting/multicast/enabled", "false"),
+    *_SHARED,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """What a session is opened with.
+
+    Attributes:
+        domain_id: the ROS domain.
+        file: of the configuration, in place of our own; empty for none.
+        own: our own configuration.
+        overrides: what is set last, on top of either.
+        attempts: how many times to look for a router, a second apart, before going on; None for as long as it takes.
+        hashes: whether types have a hash on the wire; in Humble they have none.
+    """
+
+    domain_id: int
+    file: str = ""
+    own: Entries = ()
+    overrides: Entries = ()
+    attempts: int | None = 0
+    hashes: bool = True
+
+
+def read_settings(environment: Mapping[str, str] | None = None, *, domain_id: int | None = None) -> Settings:
+    """The settings of an environment.
+
+    Args:
+        environment: the variables; those of the process when left out.
+        domain_id: takes the place of ROS_DOMAIN_ID.
+
+    Raises:
+        LinkwrightError: DDS101, the domain is not one; DDS111, a variable is not well formed.
+    """
+    variables = os.environ if environment is None else environment
+    domain_id = read_domain_id(variables, domain_id)
+    return Settings(
+        domain_id=domain_id,
+        file=_path(variables.get(SESSION_FILE, "")),
+        own=_session(domain_id),
+        overrides=_overrides(variables),
+        attempts=_attempts(variables),
+        hashes=variables.get("ROS_DISTRO", "").lower() != _WITHOUT_HASHES,
+    )
+
+
+def read_router_settings(environment: Mapping[str, str] | None = None) -> Settings:
+    """The settings of a router.
+
+    Raises:
+        LinkwrightError: DDS111, a variable is not well formed.
+    """
+    variables = os.environ if environment is None else environment
+    return Settings(0, _path(variables.get(ROUTER_FILE, "")), _ROUTER, _overrides(variables))
+
+
+def _session(domain_id: int) -> Entries:
+    """A peer of this machine.
+
+    It announces itself by multicast that never leaves the machine, at an address of its domain.
+    """
+    loopback = _LOOPBACK.get(sys.platform, "auto")
+    return (
+        ("mode", '"peer"'),
+        ("connect/endpoints", f'["tcp/localhost:{ROUTER_PORT}"]'),
+        ("connect/timeout_ms", "{router: -1, peer: -1, client: 0}"),
+        ("connect/exit_on_failure", "{router: false, peer: false, client: true}"),
+        ("listen/endpoints", '["tcp/localhost:0"]'),
+        ("open/return_conditions/connect_scouted", "false"),
+        ("scouting/multicast/enabled", "true"),
+        ("scouting/multicast/interface", f'"{loopback}"'),
+        ("scouting/multicast/address", f'"239.255.74.{domain_id}:{ROUTER_PORT - 1}"'),
+        ("scouting/multicast/ttl", "0"),
+        ("scouting/gossip/enabled", "true"),
+        *_SHARED,
+    )
+
+
+def _path(address: str) -> str:
+    return address.removeprefix("file://")
+
+
+def _overrides(variables: Mapping[str, str]) -> Entries:
+    entries = []
+    for item in variables.get(OVERRIDES, "").split(";"):
+        if not item.strip():
+            continue
+        key, equals, value = item.partition("=")
+        if not equals or not key.strip():
+            raise LinkwrightError(
+                Diagnostic(
+                    "DDS111",
+                    phrase("'{item}' in {variable} is not a setting of Zenoh", item=item, variable=OVERRIDES),
+                    hint=phrase('write it as key=value;key=value, such as mode="client"'),
+                )
+            )
+        entries.append((key.strip(), value.strip()))
+    return tuple(entries)
+
+
+def _attempts(variables: Mapping[str, str]) -> int | None:
+    """How often to look for a router: not at all unless it is asked for (unlike rmw_zenoh_cpp)."""
+    text = variables.get(ATTEMPTS, "").strip()
+    if not text:
+        return 0
+    try:
+        number = int(text)
+    except ValueError:
+        raise LinkwrightError(
+            Diagnostic(
+                "DDS111",
+                phrase("'{text}' in {variable} is not a number", text=text, variable=ATTEMPTS),
+                hint=phrase("write how many times to look for a router; 0 for as long as it takes, -1 for not at all"),
+            )
+        ) from None
+    if number == 0:
+        return None
+    return max(number, 0)

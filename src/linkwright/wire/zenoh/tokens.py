@@ -1,0 +1,140 @@
+"""Keys of data, and the liveliness tokens by which nodes and endpoints are known, as rmw_zenoh_cpp writes them.
+
+What goes over a topic or service has the key ``<domain>/<name>/<type>/<hash>``. A token is
+``@ros2_lv/<domain>/<session>/<node's id>/<id>/<kind>/<enclave>/<namespace>/<node>``, for an endpoint followed by
+``<name>/<type>/<hash>/<QoS>``; a slash inside of one of its chunks becomes ``%``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
+from linkwright.graph.names.identity import NodeIdentity
+from linkwright.graph.qos.profile import QoSProfile
+from linkwright.wire.type_names import ros_type
+from linkwright.wire.zenoh import qos_text
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+ROOT = "@ros2_lv"
+NO_HASH = "TypeHashNotSupported"
+"""What Humble has in the place of a hash."""
+
+KINDS = {
+    "MP": EndpointKind.PUBLISHER,
+    "MS": EndpointKind.SUBSCRIPTION,
+    "SS": EndpointKind.SERVICE,
+    "SC": EndpointKind.CLIENT,
+}
+_MARKS = {kind: mark for mark, kind in KINDS.items()}
+_NODE = "NN"
+_NODE_CHUNKS = 9
+_ENDPOINT_CHUNKS = 13
+_SLASH = "%"
+
+
+@dataclass(frozen=True)
+class Token:
+    """The token of a node or of an endpoint.
+
+    Attributes:
+        domain_id: the ROS domain.
+        session: the id of its Zenoh session.
+        node_id: of its node in the session.
+        entity_id: of itself; a node's own id.
+        node: its node.
+        kind: of the endpoint; None for a node.
+        name: the absolute ROS name of the topic or service.
+        type_name: as on the wire, ``std_msgs::msg::dds_::String_``.
+        type_hash: ``RIHS01_...``, or `NO_HASH`.
+        qos: as on the wire, see `qos_text`.
+    """
+
+    domain_id: int
+    session: str
+    node_id: str
+    entity_id: str
+    node: NodeIdentity
+    kind: EndpointKind | None = None
+    name: str = ""
+    type_name: str = ""
+    type_hash: str = ""
+    qos: str = ""
+
+    @cached_property
+    def key(self) -> str:
+        """The token's key expression."""
+        where: Iterable[str] = (ROOT, str(self.domain_id), self.session, self.node_id, self.entity_id)
+        mark = _NODE if self.kind is None else _MARKS[self.kind]
+        whose = (_chunk(self.node.enclave), _chunk(self.node.namespace), self.node.name)
+        if self.kind is None:
+            return "/".join((*where, mark, *whose))
+        about = (_chunk(self.name), _chunk(self.type_name), _chunk(self.type_hash), self.qos)
+        return "/".join((*where, mark, *whose, *about))
+
+    @cached_property
+    def data_key(self) -> str:
+        """The key of what goes over the endpoint's topic or service."""
+        return data_key(self.domain_id, self.name, self.type_name, self.type_hash)
+
+    @cached_property
+    def gid(self) -> bytes:
+        """The endpoint's gid: the 128-bit XXH3 of the token, its least significant byte first."""
+        from xxhash import xxh3_128_digest
+
+        return bytes(reversed(xxh3_128_digest(self.key.encode())))
+
+    @property
+    def node_key(self) -> tuple[str, str]:
+        """What is the same for a node and its endpoints."""
+        return self.session, self.node_id
+
+    def described(self) -> EndpointInfo | None:
+        """In ROS's terms; None for nodes, and for what is not ROS's."""
+        type_name = ros_type(self.type_name)
+        if self.kind is None or type_name is None:
+            return None
+        type_hash = "" if self.type_hash == NO_HASH else self.type_hash
+        return EndpointInfo(self.kind, self.node, self.name, type_name, self._profile, self.gid, type_hash)
+
+    @cached_property
+    def _profile(self) -> QoSProfile:
+        return qos_text.read(self.qos)
+
+
+def data_key(domain_id: int, name: str, type_name: str, type_hash: str) -> str:
+    """The key of what goes over a topic or service."""
+    return f"{domain_id}/{name.strip('/')}/{type_name}/{type_hash}"
+
+
+def read(key: str) -> Token | None:
+    """The token of a key expression; None when it is not written in ROS's way."""
+    chunks = key.split("/")
+    if len(chunks) < _NODE_CHUNKS or chunks[0] != ROOT or not chunks[1].isdecimal():
+        return None
+    _, domain, session, node_id, entity_id, mark, enclave, namespace, name = chunks[:_NODE_CHUNKS]
+    node = NodeIdentity(name, _name(namespace), _name(enclave))
+    if mark == _NODE:
+        return Token(int(domain), session, node_id, entity_id, node)
+    if mark not in KINDS or len(chunks) < _ENDPOINT_CHUNKS:
+        return None
+    topic, type_name, type_hash, qos = chunks[_NODE_CHUNKS:_ENDPOINT_CHUNKS]  # newer distributions may add chunks
+    try:
+        qos_text.read(qos)
+    except ValueError:
+        return None
+    return Token(
+        int(domain), session, node_id, entity_id, node, KINDS[mark], _name(topic), _name(type_name), type_hash, qos
+    )
+
+
+def _chunk(text: str) -> str:
+    return text.replace("/", _SLASH) or _SLASH
+
+
+def _name(chunk: str) -> str:
+    return chunk.replace(_SLASH, "/")

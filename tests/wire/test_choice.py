@@ -1,0 +1,80 @@
+"""Which transport a process has."""
+
+from __future__ import annotations
+
+import importlib.util
+
+import pytest
+
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph import Graph
+from linkwright.wire.dds import DdsTransport
+from linkwright.wire.joining import CYCLONE, ZENOH, available, check_settings, join, middleware, why_not
+from linkwright.wire.zenoh import ZenohTransport
+
+PLACES = ("linkwright.wire.joining", "linkwright.wire.dds.joining", "linkwright.wire.zenoh.joining")
+ASKED = {"RMW_IMPLEMENTATION": ZENOH}
+
+
+@pytest.fixture
+def installed(monkeypatch):
+    """Has only some packages be installed."""
+
+    def only(*names: str) -> None:
+        def find_spec(name: str) -> object:
+            return importlib.util.find_spec("linkwright") if name in names else None
+
+        for place in PLACES:
+            monkeypatch.setattr(f"{place}.find_spec", find_spec)
+
+    return only
+
+
+@pytest.mark.parametrize(
+    ("packages", "variables", "chosen", "is_there"),
+    [
+        (["cyclonedds", "zenoh", "xxhash"], {}, CYCLONE, True),
+        (["cyclonedds", "zenoh", "xxhash"], ASKED, ZENOH, True),
+        (["zenoh", "xxhash"], {}, ZENOH, True),
+        (["zenoh", "xxhash"], {"RMW_IMPLEMENTATION": "rmw_fastrtps_cpp"}, CYCLONE, False),
+        (["cyclonedds"], ASKED, ZENOH, False),
+        (["zenoh"], ASKED, ZENOH, False),
+        ([], {}, CYCLONE, False),
+        (["cyclonedds", "zenoh", "xxhash"], {**ASKED, "LINKWRIGHT_DDS": "0"}, ZENOH, False),
+    ],
+)
+def test_the_variable_of_ros_chooses_and_then_what_is_installed(installed, packages, variables, chosen, is_there):
+    installed(*packages)
+    assert middleware(variables) == chosen
+    assert available(variables) is is_there
+
+
+def test_what_is_missing_is_named(installed):
+    installed()
+    assert "neither DDS nor Zenoh is installed: run pip install 'linkwright[zenoh]'" in why_not({})
+    assert "the package 'eclipse-zenoh' is not installed" in why_not(ASKED)
+    assert "the package 'cyclonedds' is not installed" in why_not({"RMW_IMPLEMENTATION": CYCLONE})
+
+
+def test_settings_are_those_of_the_transport_that_is_chosen():
+    wrong = {"ZENOH_CONFIG_OVERRIDE": "mode"}
+    check_settings(wrong)
+    with pytest.raises(LinkwrightError, match="is not a setting of Zenoh"):
+        check_settings({**ASKED, **wrong})
+    for variables in ({}, ASKED):
+        with pytest.raises(LinkwrightError, match="is not a DDS domain"):
+            check_settings({**variables, "ROS_DOMAIN_ID": "233"})
+
+
+@pytest.mark.parametrize(("variables", "kind"), [({}, DdsTransport), (ASKED, ZenohTransport)])
+def test_a_graph_joins_over_what_is_chosen(variables, kind, domain):
+    if not available(variables):
+        pytest.skip("it is not installed here")
+    graph = Graph(threads=True)
+    try:
+        transport = join(graph, environment={**variables, "ROS_DOMAIN_ID": str(domain)})
+        assert isinstance(transport, kind)
+        assert transport.domain_id == domain
+        assert transport.wait_until_ready(60)
+    finally:
+        graph.close_now()

@@ -1,0 +1,97 @@
+from __future__ import annotations
+
+import threading
+
+from linkwright.messages import get_service, type_hash
+from linkwright.wire.zenoh import attachment
+from linkwright.wire.zenoh.session import open_session
+from linkwright.wire.zenoh.settings import read_settings
+from tests.wire.test_services import (  # noqa: F401 - the same over Zenoh
+    flip,
+    test_a_client_is_ready_while_the_server_is_there,
+    test_an_action_elsewhere_is_carried_out,
+    test_answers_go_to_who_asked,
+    test_messages_without_members_travel,
+    test_parameters_of_a_node_elsewhere_are_read_and_set,
+    test_requests_made_before_the_server_is_there_are_answered,
+)
+
+AddTwoInts = get_service("example_interfaces/srv/AddTwoInts")
+SetBool = get_service("std_srvs/srv/SetBool")
+CALLS = 1000
+AT_ONCE = 3
+"""Of each client; together fewer than the queue of a service holds."""
+
+
+def test_a_thousand_calls_of_three_clients_are_all_answered_and_none_goes_to_another(processes):
+    server, clients = processes("server"), [processes(f"client_{number}") for number in range(3)]
+
+    def add(request, response):
+        response.sum = request.a + request.b
+        return response
+
+    server.node.create_service(AddTwoInts, "add", add)
+    stop = threading.Event()
+
+    def serve():
+        while not stop.is_set():
+            server.executor.spin_once(timeout_sec=0.02)
+
+    thread = threading.Thread(target=serve)
+    thread.start()
+    callers = [process.node.create_client(AddTwoInts, "add") for process in clients]
+    assert all(caller.wait_for_service(60) for caller in callers)
+    wrong = []
+
+    def call(process, caller, offset):
+        for first in range(0, CALLS, AT_ONCE):
+            numbers = range(first, min(first + AT_ONCE, CALLS))
+            futures = [caller.call_async(AddTwoInts.Request(a=offset, b=number)) for number in numbers]
+            process.spin_until(lambda futures=futures: all(future.done() for future in futures))
+            sums = [future.result().sum for future in futures]
+            if sums != [offset + number for number in numbers]:
+                wrong.append((offset, sums))
+
+    threads = [
+        threading.Thread(target=call, args=(process, caller, 10_000 * number))
+        for number, (process, caller) in enumerate(zip(clients, callers, strict=True), 1)
+    ]
+    try:
+        for each in threads:
+            each.start()
+        for each in threads:
+            each.join(300)
+            assert not each.is_alive()
+    finally:
+        stop.set()
+        thread.join()
+    assert wrong == []
+
+
+def test_a_request_that_comes_to_nothing_is_told_once(processes):
+    a, b = processes("a"), processes("b")
+    service = b.node.create_service(SetBool, "flip", flip)
+    client = a.node.create_client(SetBool, "flip")
+    assert client.wait_for_service(60)
+    future = client.call_async(SetBool.Request())
+    b.node.destroy_service(service)
+    a.spin_until(a.warnings)
+    (text,) = a.warnings()
+    assert "A request to service '/flip' was not answered" in text
+    assert not future.done()
+    assert not client.service_is_ready()
+
+
+def test_a_request_that_does_not_say_whose_it_is_is_refused(processes):
+    us = processes("ours")
+    asked = []
+    us.node.create_service(SetBool, "flip", lambda request, response: asked.append(request) or response)
+    with open_session(read_settings()) as session:
+        key = f"{read_settings().domain_id}/flip/std_srvs::srv::dds_::SetBool_/{type_hash(SetBool)}"
+        asking = session.declare_querier(key)
+        us.spin_until(lambda: asking.matching_status.matching)
+        body = b"\0\1\0\0\1"
+        assert list(asking.get(payload=body)) == []
+        assert list(asking.get(payload=body, attachment=b"nonsense")) == []
+        assert list(asking.get(attachment=attachment.write(1, 2, bytes(16)))) == []
+        assert not asked

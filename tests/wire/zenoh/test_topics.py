@@ -1,0 +1,219 @@
+from __future__ import annotations
+
+import time
+
+import zenoh
+
+from linkwright.graph.endpoints.info import EndpointInfo
+from linkwright.graph.qos.profile import (
+    DurabilityPolicy,
+    HistoryPolicy,
+    LivelinessPolicy,
+    QoSProfile,
+    ReliabilityPolicy,
+)
+from linkwright.graph.time.values import Duration
+from linkwright.messages import String, serialize, type_hash
+from linkwright.wire.zenoh.session import open_session
+from linkwright.wire.zenoh.settings import read_settings
+from tests.wire.test_topics import (  # noqa: F401 - the same over Zenoh
+    test_nothing_is_serialised_while_nobody_outside_listens,
+    test_what_is_published_as_soon_as_there_is_a_publisher_goes_to_who_is_known,
+)
+
+LASTING = QoSProfile(3, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+EVERYTHING = QoSProfile(history=HistoryPolicy.KEEP_ALL)
+
+
+def test_a_message_goes_from_process_to_process_once(processes):
+    a, b = processes("a"), processes("b")
+    got: list[str] = []
+    for process in (a, b):
+        process.node.create_subscription(String, "chatter", lambda message: got.append(message.data), 10)
+    publisher = a.node.create_publisher(String, "chatter", 10)
+    b.spin_until(lambda: publisher.get_subscription_count() == 2)
+    publisher.publish(String(data="hej"))
+    b.spin_until(lambda: len(got) == 1)
+    a.spin_until(lambda: len(got) == 2)
+    publisher.publish(String(data="end"))
+    b.spin_until(lambda: got.count("end") == 1)
+    a.spin_until(lambda: got.count("end") == 2)
+    assert got == ["hej", "hej", "end", "end"]
+
+
+def test_late_comers_get_what_was_published_before_the_session_was_open(processes):
+    a = processes("a", join_now=False)
+    publisher = a.node.create_publisher(String, "described", LASTING)
+    for word in ("one", "two", "three", "four"):
+        publisher.publish(String(data=word))
+    a.join()
+    publisher.publish(String(data="five"))
+    b = processes("b")
+    got: list[str] = []
+    b.node.create_subscription(String, "described", lambda message: got.append(message.data), LASTING)
+    b.spin_until(lambda: len(got) == 3)
+    assert got == ["three", "four", "five"]
+    publisher.publish(String(data="six"))
+    b.spin_until(lambda: len(got) == 4)
+    assert got[3:] == ["six"]
+
+
+def test_a_latched_message_of_the_same_process_comes_once(processes):
+    a, b = processes("a"), processes("b")
+    publisher = a.node.create_publisher(String, "described", LASTING)
+    publisher.publish(String(data="one"))
+    got: list[str] = []
+    for process in (a, b):
+        process.node.create_subscription(String, "described", lambda message: got.append(message.data), LASTING)
+    a.spin_until(lambda: len(got) == 1)
+    b.spin_until(lambda: len(got) == 2)
+    publisher.publish(String(data="two"))
+    a.spin_until(lambda: got.count("two") == 1)
+    b.spin_until(lambda: got.count("two") == 2)
+    assert got == ["one", "one", "two", "two"]
+
+
+def test_what_a_process_that_keeps_everything_said_last_is_heard_after_it_left(processes):
+    a, b = processes("a"), processes("b")
+    got: list[str] = []
+    b.node.create_subscription(String, "chatter", lambda message: got.append(message.data), EVERYTHING)
+    publisher = a.node.create_publisher(String, "chatter", EVERYTHING)
+    a.spin_until(lambda: publisher.get_subscription_count() == 1)
+    for number in range(2000):
+        publisher.publish(String(data=str(number)))
+    a.close()
+    b.spin_until(lambda: len(got) == 2000)
+    assert got == [str(number) for number in range(2000)]
+
+
+def test_callbacks_learn_where_a_message_comes_from(processes):
+    a, b = processes("a"), processes("b")
+    infos = []
+    b.node.create_subscription(String, "chatter", lambda _message, info: infos.append(info), 10)
+    publisher = a.node.create_publisher(String, "chatter", 10)
+    a.spin_until(lambda: publisher.get_subscription_count() == 1)
+    b.spin_until(lambda: b.node.count_publishers("chatter") == 1)
+    before = time.time_ns()
+    publisher.publish(String())
+    b.spin_until(lambda: infos)
+    (info,) = infos
+    assert info.from_outside
+    assert info.publisher_gid == publisher.gid
+    assert info.publication_sequence_number == 1
+    assert before <= info.source_timestamp <= info.received_timestamp <= time.time_ns()
+    (seen,) = b.node.get_publishers_info_by_topic("/chatter")
+    assert bytes(seen.endpoint_gid[:16]) == publisher.gid
+
+
+def test_the_quality_of_service_of_others_is_known_and_keeps_nobody_apart(processes):
+    a, b = processes("a"), processes("b")
+    offered = QoSProfile(
+        7,
+        reliability=ReliabilityPolicy.BEST_EFFORT,
+        deadline=Duration(seconds=1),
+        lifespan=Duration(seconds=3),
+        liveliness=LivelinessPolicy.MANUAL_BY_TOPIC,
+        liveliness_lease_duration=Duration(seconds=2),
+    )
+    got: list[str] = []
+    publisher = a.node.create_publisher(String, "chatter", offered)
+    b.node.create_subscription(String, "chatter", lambda message: got.append(message.data), 10)
+    a.spin_until(lambda: publisher.get_subscription_count() == 1)
+    b.spin_until(lambda: b.node.count_publishers("chatter"))
+    (seen,) = b.node.get_publishers_info_by_topic("/chatter")
+    assert seen.qos_profile == offered
+    publisher.publish(String(data="hej"))
+    b.spin_until(lambda: got == ["hej"])
+    assert not [text for text in (*a.warnings(), *b.warnings()) if "incompatible" in text]
+
+
+def test_nodes_and_topics_of_others_come_and_go(processes):
+    a, b = processes("a"), processes("b")
+    b.node.create_publisher(String, "/far/chatter", 10)
+    a.spin_until(lambda: "b" in a.node.get_node_names())
+    a.spin_until(lambda: ("/far/chatter", ["std_msgs/msg/String"]) in a.node.get_topic_names_and_types())
+    (seen,) = a.node.get_publishers_info_by_topic("/far/chatter")
+    assert seen.node_name == "b"
+    b.close()
+    a.spin_until(lambda: "b" not in a.node.get_node_names())
+    assert a.node.count_publishers("/far/chatter") == 0
+
+
+def test_domains_keep_apart(processes, monkeypatch, domain):
+    a = processes("a")
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(domain + 100))
+    b = processes("b")
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(domain))
+    c = processes("c")
+    a.spin_until(lambda: "c" in a.node.get_node_names())
+    assert "b" not in a.node.get_node_names()
+    assert b.node.get_node_names() == ["b"]
+    assert c.transport.wait_for_discovery(60)
+
+
+def test_humble_has_no_hashes(processes, monkeypatch):
+    monkeypatch.setenv("ROS_DISTRO", "humble")
+    a, b = processes("a"), processes("b")
+    got: list[str] = []
+    b.node.create_subscription(String, "chatter", lambda message: got.append(message.data), 10)
+    publisher = a.node.create_publisher(String, "chatter", 10)
+    a.spin_until(lambda: publisher.get_subscription_count() == 1)
+    publisher.publish(String(data="hej"))
+    b.spin_until(lambda: got)
+    with open_session(read_settings()) as session:
+        key = f"{read_settings().domain_id}/chatter/std_msgs::msg::dds_::String_/TypeHashNotSupported"
+        probe = session.declare_publisher(key)
+        b.spin_until(lambda: probe.matching_status.matching)
+
+
+def test_a_sample_that_does_not_say_whose_it_is_is_dropped_and_told_once(processes):
+    us = processes("ours")
+    got: list[str] = []
+    us.node.create_subscription(String, "chatter", lambda message: got.append(message.data), 10)
+    with open_session(read_settings()) as session:
+        key = f"{read_settings().domain_id}/chatter/std_msgs::msg::dds_::String_/{type_hash(String)}"
+        stranger = session.declare_publisher(key, congestion_control=zenoh.CongestionControl.BLOCK)
+        us.spin_until(lambda: stranger.matching_status.matching)
+        for _ in range(3):
+            stranger.put(serialize(String(data="who am I")))
+        us.spin_until(us.warnings)
+    assert not got
+    (text,) = us.warnings()
+    assert "does not say who sent it" in text
+
+
+def test_bytes_of_a_type_that_is_not_known_here_are_passed_on(processes):
+    us = processes("ours")
+    got: list[bytes] = []
+    us.node.create_subscription("strange_msgs/msg/Odd", "odd", got.append, 10, raw=True)
+    with open_session(read_settings()) as session:
+        from linkwright.wire.zenoh import attachment
+
+        stranger = session.declare_publisher(f"{read_settings().domain_id}/odd/strange_msgs::msg::dds_::Odd_/RIHS01_00")
+        us.spin_until(lambda: stranger.matching_status.matching)
+        stranger.put(b"\0\1\0\0abcd", attachment=attachment.write(1, 2, bytes(16)))
+        us.spin_until(lambda: got)
+    assert got == [b"\0\1\0\0abcd"]
+
+
+def test_a_publisher_that_left_is_not_lost_and_one_that_was_killed_is(processes, programs):
+    us = processes("ours")
+    lost: list[EndpointInfo] = []
+    us.node.create_subscription(String, "/other", lambda _: None, 10).watch_lost(lost.append)
+    them, marker = processes("theirs"), programs("our_program", "marker")
+    publisher = them.node.create_publisher(String, "/other", 10)
+    them.node.create_publisher(String, "/other", 10)
+    us.spin_until(lambda: us.node.count_publishers("/other") == 2)
+    publisher.destroy()
+    us.spin_until(lambda: us.node.count_publishers("/other") == 1)
+    them.close()
+    us.spin_until(lambda: us.node.count_publishers("/other") == 0)
+    us.node.create_subscription("rcl_interfaces/msg/Log", "/rosout", lambda _: None, 10).watch_lost(lost.append)
+    us.spin_until(lambda: "marker" in us.node.get_node_names())
+    us.spin_until(lambda: us.node.count_publishers("/rosout") == 2)
+    marker.kill()
+    us.spin_until(lambda: lost)  # after those that left, if these were told, too
+    assert {each.node.name for each in lost} == {"marker"}, lost
+    again = programs("our_program", "marker")
+    us.spin_until(lambda: us.node.get_node_names().count("marker") == 1)
+    assert again.ask("nodes") == ["marker", "ours"]
