@@ -67,6 +67,8 @@ interface Inspection {
   readonly inspected: object | null;
   readonly selected: { link: string; file: string | null; line: number | null; column: number | null } | null;
   readonly framesDrawn: number;
+  /** How far from the left edge of the canvas robots reach, pixels. */
+  readonly robotsReach: number;
   /** Time of the newest transforms, seconds. */
   readonly stamp: number;
 }
@@ -181,6 +183,9 @@ export function publishInspection(
     },
     get framesDrawn() {
       return stage?.loop.framesDrawn ?? 0;
+    },
+    get robotsReach() {
+      return stage?.robotsReach ?? 0;
     },
   };
   Object.defineProperty(window, "linkwright", { value: Object.freeze(inspection), enumerable: true });

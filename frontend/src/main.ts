@@ -115,7 +115,7 @@ function start(app: HTMLElement): void {
   });
 
   const stage = makeStage(scene.container, session, dock.displayPanels);
-  if (stage) stage.covered = scene.covered;
+  if (stage) scene.column.lieOver(stage);
   commands.takeKeys();
   const toolbox = stage && takeTools(stage, session, (event) => (modeller ? modeller.pointer(event) : event));
   if (stage) whenModelling(stage, session, (made) => (modeller = made));

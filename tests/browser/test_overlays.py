@@ -63,16 +63,55 @@ def test_nothing_that_lies_over_the_scene_lies_over_something_else(start, open_p
     page.get_by_role("treeitem").filter(has_text="Links").last.locator(".row-name").dblclick()
     page.get_by_role("treeitem").filter(has_text="fore").first.locator(".row-name").click()
     page.locator(".selection-card").wait_for()
-    whole = page.evaluate("() => document.querySelector('.selection-card').offsetHeight")
-    page.locator(".selection-card .fold").click()
-    assert page.evaluate("() => document.querySelector('.selection-card').offsetHeight") < whole
-    page.locator(".selection-card .fold").click()
+    unfold(page)
     file.write_text(file.read_text().replace("</robot>", "<link/></robot>"))
     page.locator(".banner").wait_for()
     for width, height in SIZES:
         page.set_viewport_size({"width": width, "height": height})
         page.evaluate(TELL)
         becomes(lambda: overlapping(page.evaluate(BOXES, list(OVERLAYS))), [])
+
+
+def unfold(page) -> None:
+    if page.locator(".selection-card .fold").get_attribute("aria-expanded") == "false":
+        page.locator(".selection-card .fold").click()
+
+
+WIDE = '<robot name="wide"><link name="base"><visual><geometry><box size="2 2 1"/></geometry></visual></link></robot>'
+
+
+@pytest.mark.parametrize(("width", "height"), SIZES)
+def test_the_card_does_not_lie_over_the_robot(start, open_page, tmp_path, width, height):
+    """One that would is folded, and unfolded by hand it has the robot go aside, until it is gone."""
+    (tmp_path / "wide.urdf").write_text(WIDE)
+    page = open_page(start("view", str(tmp_path / "wide.urdf")))
+    page.set_viewport_size({"width": width, "height": height})
+    fit = page.get_by_role("toolbar", name="Tools", exact=True).get_by_role("button", name="Fit", exact=True)
+    fit.click()
+    until(page, "lw.settled")
+    before = state(page, "robotsReach")
+    canvas = page.locator(".canvas-box canvas")
+    middle = canvas.bounding_box()
+    canvas.click(position={"x": middle["width"] / 2, "y": middle["height"] / 2})
+    card, fold = page.locator(".selection-card"), page.locator(".selection-card .fold")
+    card.wait_for()
+
+    def covers() -> bool:
+        box = card.bounding_box()
+        return state(page, "robotsReach") > box["x"] - canvas.bounding_box()["x"]
+
+    reaches = before > middle["width"] - 10 - min(256, 0.55 * (middle["width"] - 20))
+    assert fold.get_attribute("aria-expanded") == ("false" if reaches else "true")
+    if reaches:
+        assert card.bounding_box()["height"] < 45
+        fold.click()
+        becomes(lambda: state(page, "robotsReach") < before, True)
+        fit.click()  # where going aside is not enough
+    becomes(covers, False)
+    page.keyboard.press("Escape")
+    card.wait_for(state="hidden")
+    page.keyboard.press("Shift+F")
+    becomes(lambda: state(page, "robotsReach"), pytest.approx(before, abs=1))
 
 
 def test_fit_shows_all_of_the_robot_again(start, open_page, tmp_path):

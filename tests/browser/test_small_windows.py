@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from itertools import pairwise
 from typing import Any
 
 import pytest
@@ -35,7 +36,7 @@ def sized(browser: Browser, live: Callable[..., LiveViewer]) -> Iterator[Callabl
         page = context.new_page()
         page.goto(viewer.url)
         until(page, "lw.displays.length === 5")
-        page.wait_for_selector(".display-panel-host")
+        page.locator(".dv-tab", has_text="Back").wait_for(state="attached")
         until(page, "lw.settled")
         return page
 
@@ -67,6 +68,23 @@ def test_up_to_a_tablet_the_scene_is_above_everything_else(sized, width, height)
     page.wait_for_selector(".displays-panel")
     becomes(lambda: box(page, ".displays-panel")["width"], width)
     assert box(page, ".displays-panel")["y"] > canvas["y"] + canvas["height"]
+
+
+def test_pictures_do_not_come_before_the_displays_where_all_panels_share_a_place(sized):
+    page = sized(800, 600)
+    assert page.locator(".dv-tab[aria-selected=true]", has_text="Displays").count() == 1
+    page.locator(".dv-tab", has_text="Front").dispatch_event("pointerdown")
+    page.locator(".dv-tab[aria-selected=true]", has_text="Front").wait_for()
+
+
+def test_a_phone_has_all_of_the_title_bar(sized):
+    page = sized(390, 844)
+    edges = page.locator(".title-bar button:visible").evaluate_all(
+        "all => all.map(each => each.getBoundingClientRect()).map(({ left, right }) => [left, right])"
+    )
+    assert len(edges) == 9
+    assert all(left >= 0 and right <= 390 for left, right in edges), edges
+    assert all(before[1] <= after[0] + 0.5 for before, after in pairwise(edges)), edges
 
 
 @pytest.mark.parametrize(("width", "height"), [(1024, 600), (1280, 800)])
@@ -193,6 +211,12 @@ def test_the_three_tabs_beside_views_are_whole_in_chinese(sized):
         return tabs.count(), inside, group.locator(".dv-tabs-overflow-dropdown-default").count()
 
     becomes(fit, (3, True, 0))
+
+
+def test_the_three_tabs_beside_views_are_whole_in_english(sized):
+    page = sized(1280, 800)
+    group = page.locator(".dv-tabs-and-actions-container", has=page.locator(".dv-tab", has_text="Views"))
+    becomes(lambda: (group.locator(".dv-tab").count(), group.locator("[class*=overflow-dropdown]").count()), (3, 0))
 
 
 def test_the_label_of_the_type_of_view_stays_on_one_line_in_chinese(sized):

@@ -10,6 +10,7 @@ import { OrientationSign } from "../panels/orientation-sign";
 import { SelectionCard } from "../panels/selection-card";
 import { Controls } from "../scene/controls";
 import { Keyboard } from "../scene/keyboard";
+import { CardColumn } from "../panels/card-column";
 import { noWebgl } from "../panels/no-webgl";
 import { Stage } from "../scene/stage";
 import { Toolbox } from "../scene/tools/toolbox";
@@ -36,11 +37,13 @@ function start(app: HTMLElement, recorded: HTMLElement): void {
   connection.open();
 
   const container = h("div", { class: "canvas-box", role: "region", aria: { label: strings.scene.label } });
-  const stack = h("div", { class: "stack" }, new SelectionCard(session).element);
-  const overlay = h("div", { class: "overlay" }, stack, new OrientationSign(session).element);
+  const column = new CardColumn();
+  column.element.append(new SelectionCard(session, column).element);
+  const overlay = h("div", { class: "overlay" }, column.element, new OrientationSign(session).element);
   const scene = h("main", { class: "scene-box" }, container, overlay);
   app.append(scene);
   const stage = makeStage(container, session, new RecordedFiles(recording.files));
+  if (stage) column.lieOver(stage);
   const actions = {
     lookFrom: (side: Parameters<typeof lookFrom>[0]): void => {
       if (stage) lookFrom(side, session, stage);

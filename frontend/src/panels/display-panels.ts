@@ -79,6 +79,8 @@ export class DisplayPanels implements PanelHost {
     const beside = crowded ? last.id : ["displays", "scene"].find((id) => this.api().getPanel(id) !== undefined);
     const direction = crowded || isNarrow(this.api()) ? "within" : "below";
     const position = beside === undefined ? undefined : { referencePanel: beside, direction } as const;
+    // Where one group has everything, a picture that comes does not hide what the user works with.
+    if (isNarrow(this.api()) && beside !== undefined) options.inactive = true;
     const before = others.map(({ group }) => ({ group, height: group.height }));
     const { group } = this.api().addPanel(position ? { ...options, floating: false, position } : options);
     if (direction === "within") return;

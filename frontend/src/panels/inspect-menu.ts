@@ -21,7 +21,11 @@ export class InspectMenu {
   private readonly scale = h("input", { class: "slider" });
   private readonly open: HTMLButtonElement;
 
-  constructor(private readonly session: Session) {
+  /** @param resized called when it needs another part of the scene than before. */
+  constructor(
+    private readonly session: Session,
+    private readonly resized: () => void,
+  ) {
     const words = strings.description.inspect;
     this.open = button(words.hint, () => this.toggle(this.card.hidden !== false), "tool", icon("inspect"), words.button);
     this.card.append(...CHOICES.map((choice) => this.choice(choice)), this.depthRow(), this.scaleRow(), this.facts);
@@ -45,6 +49,7 @@ export class InspectMenu {
   private toggle(open: boolean): void {
     this.card.hidden = !open;
     this.open.setAttribute("aria-expanded", String(open));
+    this.resized();
   }
 
   private choice(what: keyof Inspected): HTMLElement {

@@ -1,6 +1,7 @@
 import { h } from "../dom";
 import type { Session } from "../state/session";
 import { strings } from "../strings";
+import { CardColumn } from "./card-column";
 import { ConnectionNotice } from "./connection-notice";
 import { DiagnosticsBanner } from "./diagnostics-banner";
 import { InspectMenu } from "./inspect-menu";
@@ -25,26 +26,25 @@ export class ScenePanel implements Panel {
   readonly container = h("div", { class: "canvas-box", role: "region", aria: { label: strings.scene.label } });
   /** The scene and what lies over it: what full screen shows. */
   readonly box: HTMLElement;
-  /** What lies over the scene at its right, one below the other: they share the height that there is. */
-  private readonly stack = h("div", { class: "stack" });
+  readonly column = new CardColumn();
   private readonly waiting = h("div", { class: "waiting" }, h("span", { class: "pulse" }), strings.scene.waiting);
 
   constructor(session: Session, commands: WorldCommands, fit: () => void, showDiagnostics: () => void, showKeys: () => void) {
     const toolbar = new Toolbar(session.tools, fit, showKeys, talkButton(session.voice, "scene-tool small talk"));
     const banner = new DiagnosticsBanner(session, showDiagnostics);
     const notice = new ConnectionNotice(session.connection);
-    const card = new SelectionCard(session);
-    const inspect = new InspectMenu(session);
+    const card = new SelectionCard(session, this.column);
+    const inspect = new InspectMenu(session, this.column.changed);
     const sign = new OrientationSign(session);
     const simulation = new SimulationBar(session.simulation, session.modelling, commands);
     const notices = h("div", { class: "notices" }, simulation.element, notice.element, banner.element);
     const told = [new LineNotice(session), new MeshNotice(session.meshProgress), new VoiceNotice(session.voice)];
-    this.stack.append(inspect.element, card.element, ...told.map((each) => each.element));
+    this.column.element.append(inspect.element, card.element, ...told.map((each) => each.element));
     this.box = h(
       "div",
       { class: "scene-box" },
       this.container,
-      h("div", { class: "overlay" }, notices, this.stack, this.waiting, sign.element),
+      h("div", { class: "overlay" }, notices, this.column.element, this.waiting, sign.element),
     );
     showSceneMenus(this.box, session.sceneMenu);
     this.element = h("div", { class: "scene-panel" }, toolbar.element, this.box);
@@ -56,11 +56,4 @@ export class ScenePanel implements Panel {
     session.displays.treeChanged.on(update);
     session.displays.enabledChanged.on(update);
   }
-
-  /** Pixels at the right of the scene that cards lie over. */
-  readonly covered = (): number => {
-    const cards = [...this.stack.querySelectorAll<HTMLElement>(".inspect-card, .selection-card:not(.folded)")];
-    const isOpen = cards.some((each) => each.offsetHeight > 0);
-    return isOpen ? this.box.getBoundingClientRect().right - this.stack.getBoundingClientRect().left : 0;
-  };
 }

@@ -2,6 +2,7 @@ import { button, h } from "../dom";
 import { icon } from "../icons";
 import type { LinkScene, LinkProvenance } from "../protocol";
 import type { Session } from "../state/session";
+import type { CardColumn } from "./card-column";
 import { strings } from "../strings";
 import { placeText, shortPath } from "./place";
 
@@ -11,7 +12,11 @@ export class SelectionCard {
 
   private folded = false;
 
-  constructor(private readonly session: Session) {
+  /** @param column it is for; where it would lie over a robot, only its head is shown until the user unfolds it. */
+  constructor(
+    private readonly session: Session,
+    private readonly column: CardColumn,
+  ) {
     session.selection.changed.on(() => this.update());
     session.provenanceAnswered.on((provenance) => this.show(provenance));
     this.update();
@@ -19,8 +24,13 @@ export class SelectionCard {
 
   private update(): void {
     const { selected } = this.session.selection;
+    const wasHidden = this.element.hidden;
     this.element.hidden = !selected;
-    if (!selected) return;
+    if (!selected) {
+      if (!wasHidden && !this.folded) this.column.changed();
+      return;
+    }
+    if (wasHidden) this.folded = this.column.isOverRobots;
     const { link } = selected;
     const words = strings.selection;
     const clear = button(words.clear, () => this.session.selection.select(null), "tool bare", icon("close"));
@@ -36,7 +46,11 @@ export class SelectionCard {
   /** The button that leaves only the link's name of the card, or shows all again. */
   private folder(): HTMLButtonElement {
     const words = strings.selection;
-    const fold: HTMLButtonElement = button(words.fold, () => show(!this.folded), "tool bare fold", icon("chevron"));
+    const turn = (): void => {
+      show(!this.folded);
+      this.column.changed();
+    };
+    const fold: HTMLButtonElement = button(words.fold, turn, "tool bare fold", icon("chevron"));
     const show = (folded: boolean): void => {
       this.folded = folded;
       this.element.classList.toggle("folded", folded);

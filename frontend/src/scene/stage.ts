@@ -19,6 +19,7 @@ import { MeshLibrary } from "./meshes/mesh-library";
 import { Outline } from "./outline";
 import { Picker } from "./picker";
 import type { Interaction } from "./picking";
+import { reachOf } from "./screen-reach";
 import { StudioLight } from "./studio-light";
 import type { OwnLight } from "./surroundings";
 import { Viewport } from "./viewport";
@@ -140,6 +141,20 @@ export class Stage {
   fitRobots(): void {
     const box = this.boundsOfRobots();
     if (box) this.session.view.fit(box, this.freeSize());
+  }
+
+  /** What the camera looks at goes to the middle of what nothing lies over. */
+  makeRoom(): void {
+    const before = this.viewport.aside;
+    this.freeSize();
+    if (this.viewport.aside !== before) this.loop.invalidate();
+  }
+
+  /** How far from the left edge of the canvas robots reach, pixels: 0 without one. */
+  get robotsReach(): number {
+    const box = this.boundsOfRobots();
+    this.viewport.aim(this.session.view);
+    return box ? reachOf(box, this.viewport.camera, this.viewport.size.width) : 0;
   }
 
   /** The size of the part of the canvas that nothing lies over; from now on its middle is where the camera looks. */
