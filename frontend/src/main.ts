@@ -13,10 +13,12 @@ import "./styles/plots.css";
 import "./styles/modelling.css";
 import "./styles/voice.css";
 import "./styles/timeline.css";
+import "./styles/comparison.css";
 import { Connection, socketUrl } from "./connection/connection";
 import { Tokens, type AddressBar } from "./connection/tokens";
 import { h } from "./dom";
 import { publishInspection } from "./inspection";
+import { ComparisonPanel } from "./panels/comparison-panel";
 import { DiagnosticsPanel } from "./panels/diagnostics-panel";
 import { DiagramPanel } from "./panels/diagram-panel";
 import { DisplaysPanel } from "./panels/displays-panel";
@@ -103,15 +105,16 @@ function start(app: HTMLElement): void {
     new JointTablePanel(session),
     new DiagnosticsPanel(session),
     new WorldPanel(session.modelling, session.angles, commands),
+    new ComparisonPanel(session, () => stage?.fit()),
     new VoicePanel(session.voice, session.words),
     ...livePanels(session.monitor, (id) => dock.open(id), (topic) => showTopic(session, topic)),
   ], new Layouts(browserStorage()));
   keepCurrent(dock, session);
   new FilePanels(connection, dock);
 
-  session.description.placeAsked.on(({ file, line }) => {
+  session.description.placeAsked.on(({ file, line, display }) => {
     dock.open("source");
-    source.reveal(file, line);
+    source.reveal(file, line, { display });
   });
 
   const stage = makeStage(scene.container, session, dock.displayPanels);
@@ -157,15 +160,21 @@ function keepCurrent(dock: Dock, session: Session): void {
     if (!session.modelling.active) dock.close("world");
     else if (!dock.isOpen("world")) dock.open("world");
   };
+  const keepComparison = (): void => {
+    if (session.comparison.compared === null) dock.close("comparison");
+    else if (!dock.isOpen("comparison")) dock.open("comparison");
+  };
   const keepDisplays = (): void => dock.displayPanels.keep(session.displays.displays.map(({ id }) => id));
   const countFindings = (): void => dock.setCount("diagnostics", session.diagnostics.length);
   session.joints.controlsChanged.on(keepJoints);
   session.modelling.changed.on(keepWorld);
+  session.comparison.changed.on(keepComparison);
   session.displays.treeChanged.on(keepDisplays);
   session.diagnosticsChanged.on(countFindings);
   dock.rearranged.on(() => {
     keepJoints();
     keepWorld();
+    keepComparison();
     keepDisplays();
     countFindings();
   });

@@ -64,6 +64,7 @@ const HOMES: Readonly<Record<PanelId, Home>> = {
     width: 290,
   },
   links: { beside: [["displays", "within"], ["scene", "left"]], width: 320, inactive: true },
+  comparison: { beside: [["displays", "within"], ["links", "within"], ["scene", "left"]], width: 320 },
   world: { beside: [["displays", "within"], ["links", "within"], ["scene", "left"]], width: 320 },
   source: BELOW,
   diagram: BELOW,
@@ -128,7 +129,7 @@ function wideHome(api: DockviewApi, id: PanelId): Home {
 }
 
 /** The order in which panels that are open come to their usual places. */
-export const USUAL: readonly PanelId[] = ["scene", "time", "displays", "links", "world", "views", "tool-properties", "selection", "diagnostics", "joints", "teleop", "voice", "transformation", ...BOTTOM];
+export const USUAL: readonly PanelId[] = ["scene", "time", "displays", "links", "world", "comparison", "views", "tool-properties", "selection", "diagnostics", "joints", "teleop", "voice", "transformation", ...BOTTOM];
 
 /** Adds panels at their usual places. */
 export function addPanels(api: DockviewApi, ids: readonly PanelId[]): void {

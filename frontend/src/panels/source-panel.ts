@@ -16,6 +16,8 @@ interface Spot {
   readonly file: string;
   readonly line: number;
   readonly look: Highlight["look"];
+  /** The display whose description the file belongs to, where that is another one than the panels are about. */
+  readonly display: string | undefined;
 }
 
 /** The files that the description is written in, and beside them what they expand to; the selected link or joint is marked in both. */
@@ -80,8 +82,8 @@ export class SourcePanel implements Panel {
   }
 
   /** Shows a line of a file, such as a diagnostic's. */
-  reveal(file: string, line: number, look: Highlight["look"] = "problem"): void {
-    this.spot = { file, line, look };
+  reveal(file: string, line: number, { look = "problem", display }: Partial<Pick<Spot, "look" | "display">> = {}): void {
+    this.spot = { file, line, look: display === undefined ? look : "focus", display };
     this.file = file;
     this.wanted.origin = line;
     this.update();
@@ -127,7 +129,7 @@ export class SourcePanel implements Panel {
     const { expanded, origin } = this.places();
     const words = strings.description.source;
     if (this.model) this.fill(this.expanded, this.session.description.text(display, EXPANDED), marks(expanded), "expanded");
-    const text = this.file === "" ? null : this.session.description.text(display, this.file);
+    const text = this.file === "" ? null : this.session.description.text(this.spot?.file === this.file ? (this.spot.display ?? display) : display, this.file);
     const marked = origin?.file === this.file ? marks(origin) : [];
     if (this.spot?.file === this.file) marked.push({ from: this.spot.line, to: this.spot.line, look: this.spot.look });
     this.notice.hidden = typeof text === "string";
@@ -184,7 +186,7 @@ export class SourcePanel implements Panel {
     const { origin, calls } = this.places();
     const steps = calls.map(({ macro, file, line, column }) => {
       const text = words.call(macro, placeText(shortPath(file, 1), line, null));
-      return button(placeText(file, line, column), () => this.reveal(file, line, "focus"), "trail-step", text);
+      return button(placeText(file, line, column), () => this.reveal(file, line, { look: "focus" }), "trail-step", text);
     });
     const back = origin && this.spot
       ? button(words.origin, () => this.focused(), "tool bare", icon("reset"))

@@ -24,7 +24,7 @@ export class DescriptionState {
   /** A text has come. */
   readonly textArrived = new Signal();
   /** The user wants to see a place: a diagnostic's, a link's. */
-  readonly placeAsked = new Signal<{ file: string; line: number }>();
+  readonly placeAsked = new Signal<{ file: string; line: number; display?: string }>();
   /** Texts that were read may be others now. */
   readonly textsOutdated = new Signal();
   private readonly revisions = new Map<string, number>();

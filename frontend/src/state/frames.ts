@@ -64,6 +64,15 @@ export class FrameStore {
     return row >= 0 && !Number.isNaN(this.poses[row * 7] ?? NaN);
   }
 
+  /** How far apart two frames are: the largest difference of their coordinates, m, and parts of quaternions. */
+  apart(one: string, other: string): number {
+    const [a, b] = [this.row(one), this.row(other)];
+    if (!this.has(a) || !this.has(b)) return Infinity;
+    let most = 0;
+    for (let i = 0; i < 7; i++) most = Math.max(most, Math.abs((this.poses[a * 7 + i] ?? 0) - (this.poses[b * 7 + i] ?? 0)));
+    return most;
+  }
+
   /** Every frame that has a pose. */
   snapshot(): Record<string, FramePose> {
     const result: Record<string, FramePose> = {};

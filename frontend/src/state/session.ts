@@ -1,6 +1,7 @@
 import type { Connection } from "../connection/connection";
 import type { DiagnosticItem, Hello, LinkProvenance, PropertyValue, RobotScene } from "../protocol";
 import { AngleUnits } from "./angle-unit";
+import { ComparisonState } from "./comparison";
 import { ConfigurationState } from "./configuration";
 import { DisplayDataStore } from "./display-data";
 import { DescriptionState } from "./description";
@@ -41,6 +42,7 @@ export class Session {
   readonly tools: ToolsState;
   readonly time: TimeControlState;
   readonly timeline: TimelineState;
+  readonly comparison: ComparisonState;
   readonly data: DisplayDataStore;
   readonly slowLine: SlowLine;
   readonly meshProgress = new MeshProgress();
@@ -69,6 +71,7 @@ export class Session {
     this.tools = new ToolsState(connection);
     this.time = new TimeControlState(connection);
     this.timeline = new TimelineState(connection);
+    this.comparison = new ComparisonState(connection);
     this.data = new DisplayDataStore(connection);
     this.slowLine = new SlowLine(this.data);
     this.simulation = new SimulationState(connection);

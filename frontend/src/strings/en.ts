@@ -1,3 +1,4 @@
+import { comparison } from "./en/comparison";
 import { details } from "./en/details";
 import { displays } from "./en/displays";
 import { shell } from "./en/shell";
@@ -23,6 +24,7 @@ export const en = {
     joints: "Joints",
     diagnostics: "Diagnostics",
     world: modelling.panel,
+    comparison: comparison.panel,
     voice: voice.panel,
   },
   shell,
@@ -30,6 +32,7 @@ export const en = {
   simulation,
   meshes,
   timeline,
+  comparison,
   modelling,
   voice,
   details,

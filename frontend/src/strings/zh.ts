@@ -1,3 +1,4 @@
+import { comparison } from "./zh/comparison";
 import { details } from "./zh/details";
 import { displays } from "./zh/displays";
 import { shell } from "./zh/shell";
@@ -15,12 +16,13 @@ import { voice } from "./zh/voice";
 /** 简体中文 */
 export const zh: Strings = {
   panels: { ...description.panels,
-    ...tools.panels, ...monitor.panels, displays: "显示", scene: "三维视图", views: "视角", joints: "关节", diagnostics: "诊断", world: modelling.panel, voice: voice.panel },
+    ...tools.panels, ...monitor.panels, displays: "显示", scene: "三维视图", views: "视角", joints: "关节", diagnostics: "诊断", world: modelling.panel, comparison: comparison.panel, voice: voice.panel },
   shell,
   sharing,
   simulation,
   meshes,
   timeline,
+  comparison,
   modelling,
   voice,
   details,

@@ -37,6 +37,11 @@ def add_against(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def names_file(word: str) -> bool:
+    """Whether a word is a file and not ``name:=value``, nor what looks like that and is no file, ``name=value``."""
+    return ":=" not in word and ("=" not in word or Path(word).exists())
+
+
 def asked_pair(arguments: argparse.Namespace, stack: ExitStack) -> Pair | None:
     """The two descriptions that a command line asks for; None where it does not name two, or more.
 
@@ -49,8 +54,8 @@ def asked_pair(arguments: argparse.Namespace, stack: ExitStack) -> Pair | None:
     """
     from linkwright.descriptions.pairs import against, pair_of
 
-    files = [word for word in arguments.words if ":=" not in word]
-    values = parse_assignments([word for word in arguments.words if ":=" in word])
+    files = [word for word in arguments.words if names_file(word)]
+    values = parse_assignments([word for word in arguments.words if not names_file(word)])
     if len(files) != (0 if arguments.against else 1):
         return None
     first = Path(arguments.file)

@@ -1,11 +1,18 @@
-"""``linkwright view``: show one model in the browser, with sliders for its joints."""
+"""``linkwright view``: show one model in the browser, with sliders for its joints, or two and how they differ."""
 
 from __future__ import annotations
 
 import argparse
+import sys
+from contextlib import ExitStack
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from linkwright.assignments import parse_assignments
+from linkwright.cli.model_arguments import add_against, add_values, asked_pair, names_file
+
+if TYPE_CHECKING:
+    from linkwright.hosting.plans import HostOptions
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -13,9 +20,13 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "file", metavar="FILE", help="the URDF or xacro file, or a recording: its .mcap or .db3 file or its folder"
     )
-    parser.add_argument(
-        "values", metavar="NAME:=VALUE", nargs="*", default=[], help="values for the file's <xacro:arg>"
+    add_values(
+        parser,
+        values_help="a second file, the new one of two that are compared, and NAME:=VALUE for <xacro:arg>",
+        name="words",
+        metavar="NEW",
     )
+    add_against(parser)
     parser.add_argument(
         "--join", action="store_true", help="join the ROS 2 network (ROS_DOMAIN_ID), where other programs see the nodes"
     )
@@ -44,16 +55,30 @@ def port(text: str) -> int:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Show the model until the user ends it."""
+    """Show the model, or what two differ in, until the user ends it."""
     from linkwright.bag import is_recording
     from linkwright.hosting.plans import HostOptions
 
-    values = parse_assignments(arguments.values)
     options = HostOptions(arguments.host, arguments.port, not arguments.no_open, network=arguments.join)
-    if is_recording(Path(arguments.file)) and not values:
+    is_bag = is_recording(Path(arguments.file))
+    if not is_bag and (arguments.against or any(map(names_file, arguments.words))):
+        return _run_compared(arguments, options)
+    values = parse_assignments(arguments.words)
+    if is_bag and not values:
         from linkwright.hosting.bag_view import run_bag_view
 
         return run_bag_view(Path(arguments.file), options, foxglove=arguments.foxglove)
     from linkwright.hosting.view import run_view
 
     return run_view(arguments.file, values, options, foxglove=arguments.foxglove)
+
+
+def _run_compared(arguments: argparse.Namespace, options: HostOptions) -> int:
+    from linkwright.hosting.compared import run_compared_view
+
+    with ExitStack() as stack:
+        pair = asked_pair(arguments, stack)
+        if pair is None:
+            print("linkwright view: give one file, two to compare, or one and --against COMMIT", file=sys.stderr)
+            return 2
+        return run_compared_view(pair, options, foxglove=arguments.foxglove)

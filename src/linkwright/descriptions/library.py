@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from linkwright.descriptions.description import TEXT_NAME, Description
 from linkwright.diagnostics import LinkwrightError
+from linkwright.packages import PackageFinder
 from linkwright.urdf import Reading, read
 from linkwright.urdf.plaintext import parse_as_urdfdom
 from linkwright.xmltree import Document, Element
@@ -27,13 +28,15 @@ class DescriptionLibrary:
 
     def __init__(self) -> None:
         self._descriptions: OrderedDict[str, Description] = OrderedDict()
+        self._finders: dict[str, PackageFinder] = {}
 
-    def remember(self, description: Description, text: str | None = None) -> str:
+    def remember(self, description: Description, text: str | None = None, packages: PackageFinder | None = None) -> str:
         """Keep a description for those who have no more than its text.
 
         Args:
             description: a description.
             text: what stands for its text elsewhere, where that is another one.
+            packages: finds what it names, where that may be others than those of the rest of the program.
 
         Returns:
             The text.
@@ -41,9 +44,15 @@ class DescriptionLibrary:
         text = description.text if text is None else text
         self._descriptions[text] = description
         self._descriptions.move_to_end(text)
+        if packages is not None:
+            self._finders[text] = packages
         if len(self._descriptions) > _KEPT_TEXTS:
-            self._descriptions.popitem(last=False)
+            self._finders.pop(self._descriptions.popitem(last=False)[0], None)
         return text
+
+    def packages(self, text: str) -> PackageFinder | None:
+        """What finds the packages that a remembered description names; None where nobody said so."""
+        return self._finders.get(text)
 
     def files(self, text: str) -> tuple[Path, ...]:
         """What a remembered description was made from, the main file first; empty where nobody said so."""

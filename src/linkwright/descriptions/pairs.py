@@ -15,6 +15,7 @@ from linkwright.packages import PackageFinder
 
 if TYPE_CHECKING:
     from linkwright.descriptions.revisions import Revision
+    from linkwright.urdf import Robot
 
 
 @dataclass(frozen=True)
@@ -37,6 +38,11 @@ class Model:
         """What readers know the file by."""
         return self.named(str(self.path))
 
+    @property
+    def title(self) -> str:
+        """The name of the file without its folders, ``HEAD:arm.urdf`` where it is of a commit."""
+        return self.path.name if self.revision is None else f"{self.revision.name}:{self.path.name}"
+
     def named(self, file: str) -> str:
         """What readers know one of its files by: ``HEAD:robots/arm.urdf``, or a path from the current folder."""
         name = file if self.revision is None else self.revision.label(file)
@@ -55,6 +61,12 @@ class Model:
         if found.robot is None:
             raise LinkwrightError(*map(self._relabelled, found.diagnostics))
         return found
+
+    def read_robot(self) -> Robot:
+        """The robot; raises as `read` does."""
+        robot = self.read().robot
+        assert robot is not None
+        return robot
 
     def _relabelled(self, diagnostic: Diagnostic) -> Diagnostic:
         """A finding that names files of a commit as git does."""
@@ -94,18 +106,21 @@ class Pair:
         Raises:
             LinkwrightError: see `Model.read`.
         """
-        return self.compare(self.old.read(), self.new.read())
+        return self.compare(self.old.read_robot(), self.new.read_robot())
 
-    def compare(self, old: Description, new: Description) -> Comparison:
-        """How they differ, where both were read and have robots."""
-        if old.robot is None or new.robot is None:
-            raise ValueError("a description without a robot cannot be compared")
-        before, after = Side(old.robot), Side(new.robot)
+    def compare(self, old: Robot, new: Robot) -> Comparison:
+        """How robots that were read of the two differ."""
+        before, after = Side(old), Side(new)
         if self.old.revision is not None:
             ours, theirs = self.old.revision.normalizers(self.new.finder)
-            before = Side(old.robot, ours, lambda address: self.old.finder.resolve(address, self.old.path.parent))
-            after = Side(new.robot, theirs, lambda address: self.new.finder.resolve(address, self.new.path.parent))
+            before = Side(old, ours, lambda address: self.old.finder.resolve(address, self.old.path.parent))
+            after = Side(new, theirs, lambda address: self.new.finder.resolve(address, self.new.path.parent))
         return compare(before, after)
+
+
+def text_of_old(description: Description) -> str:
+    """A text for an old description that no new one has: those who read by the text alone must not mix them up."""
+    return f"{description.text}\n<!-- the old one -->\n"
 
 
 def pair_of(old: Path, new: Path, values: Mapping[str, str]) -> Pair:

@@ -127,7 +127,7 @@ class Descriptions:
 
     def remember(self, call: XacroCall, description: Description, text: str | None = None) -> str:
         """Keep a description; returns its text, which is `text` if that is what stands for it elsewhere."""
-        text = self.library.remember(description, text)
+        text = self.library.remember(description, text, self.finder)
         self._files[call] = description.files
         self._calls[text] = call
         self._warnings[call] = description.remarks

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from linkwright._version import __version__
@@ -15,6 +15,7 @@ from linkwright.viewer.config.locations import keep_unsaved
 from linkwright.viewer.config.rviz_config import RvizConfig
 from linkwright.viewer.context import GraphChanges, ViewerContext
 from linkwright.viewer.displays.base.display import ViewerDisplay
+from linkwright.viewer.features.comparison.feature import ComparisonFeature
 from linkwright.viewer.features.joints import JointsFeature
 from linkwright.viewer.features.page_feature import PageFeature, make_features
 from linkwright.viewer.features.timeline import TimelineFeature
@@ -29,6 +30,8 @@ from linkwright.viewer.web.outbox import Payload
 
 if TYPE_CHECKING:
     from linkwright.bag import BagReader, Playback
+    from linkwright.descriptions.pairs import Pair
+    from linkwright.graph import Node
     from linkwright.nodes.joint_panel import JointPanel
     from linkwright.viewer.web.server import WebServer
 
@@ -167,6 +170,10 @@ class Viewer:
     def playback_failed(self, error: LinkwrightError) -> None:
         """Tell pages that the recording cannot be read on."""
         self._timeline.failed(error)
+
+    def attach_comparison(self, pair: Pair, node: Node) -> Callable[[str], None]:
+        """Have pages see how two descriptions differ; see `ComparisonFeature.attach`."""
+        return next(each for each in self._features if isinstance(each, ComparisonFeature)).attach(pair, node)
 
     @property
     def _timeline(self) -> TimelineFeature:

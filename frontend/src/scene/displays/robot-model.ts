@@ -1,5 +1,5 @@
 import { Box3, Group, Matrix4, Vector3, type Object3D, type Raycaster } from "three";
-import type { RobotScene } from "../../protocol";
+import type { LinkScene, RobotScene } from "../../protocol";
 import { framePose } from "../pose";
 import { RobotDrawing } from "../robot/robot-drawing";
 import { shade } from "../studio-light";
@@ -8,6 +8,8 @@ import type { Drawing, DrawingContext } from "./drawing";
 
 /** A new robot takes the place of the old one when its meshes are there, or after this long without them. */
 const SWAP_WITHIN_MS = 300;
+/** Links that are nearer to each other than this are in one place: m, and parts of quaternions. */
+const ONE_PLACE = 1e-4;
 
 /** rviz_default_plugins/RobotModel */
 export class RobotModelDrawing implements Drawing {
@@ -27,7 +29,7 @@ export class RobotModelDrawing implements Drawing {
       if (robot?.display === display.id) this.take(robot);
     };
     this.contrast = session.inspect.current.contrast;
-    this.forget = [session.robotChanged.on(take), session.inspect.changed.on(() => this.inspectChanged())];
+    this.forget = [session.robotChanged.on(take), session.inspect.changed.on(() => this.inspectChanged()), session.comparison.changed.on(() => this.recolor())];
     take(session.robots.get(display.id));
   }
 
@@ -74,12 +76,13 @@ export class RobotModelDrawing implements Drawing {
 
   update(): void {
     if (this.styleIsOld && this.shown) {
-      this.shown.style(this.context.display.rows, this.contrast, this.lit);
-      shade(this.shown.root, this.lit);
+      const { display, session } = this.context;
+      this.shown.style(display.rows, this.contrast, this.lit, (link) => session.comparison.instead(display.id, link));
+      shade(this.shown.root, this.lit && !session.comparison.isOld(display.id));
     }
     this.styleIsOld = false;
     const { frames } = this.context.session;
-    this.shown?.place((link, matrix) => framePose(frames, frames.row(link.frame), matrix));
+    this.shown?.place((link, matrix) => framePose(frames, frames.row(link.frame), matrix), this.covered());
     this.shown?.look(this.context.camera());
   }
 
@@ -120,6 +123,24 @@ export class RobotModelDrawing implements Drawing {
     for (const forget of this.forget) forget();
     this.next?.dispose();
     this.shown?.dispose();
+  }
+
+  /** Tells which links of an old description are not drawn: those that look as in the new one, and are where that has them. */
+  private covered(): ((link: LinkScene) => boolean) | undefined {
+    const { display, session } = this.context;
+    const { comparison, displays, frames, robots } = session;
+    const other = comparison.isOld(display.id) ? (comparison.compared?.new.display ?? "") : "";
+    if (displays.find(other)?.enabled !== true) return undefined;
+    const frameOf = new Map(robots.get(other)?.links.map(({ name, frame }) => [name, frame]));
+    return ({ name, frame }) => {
+      const twin = comparison.twinOf(display.id, name);
+      return twin !== undefined && frames.apart(frame, frameOf.get(twin) ?? "") < ONE_PLACE;
+    };
+  }
+
+  private recolor(): void {
+    this.styleIsOld = true;
+    this.context.invalidate();
   }
 
   private inspectChanged(): void {

@@ -1,5 +1,6 @@
 import { Group, Matrix4, type Mesh, type Object3D } from "three";
 import type { LinkScene } from "../../protocol";
+import type { Instead } from "../../state/comparison";
 import type { MaterialPool } from "../materials";
 import { LinkTrail } from "./link-trail";
 import { ShapeDrawing, type ShapeTold } from "./shape-drawing";
@@ -15,11 +16,13 @@ export interface LinkStyle {
   trail: boolean;
   /** Collisions over pale visuals, whether the display draws them or not. */
   contrast: boolean;
+  /** Takes the place of the colours of the description. */
+  instead: Instead | null;
 }
 
 /** In contrast: what is left of the visuals' alpha, and the collisions' colour and alpha. */
 const PALE = 0.3;
-const COLLISION_COLOR = [1, 0.55, 0.1] as const;
+const COLLISION: Instead = { color: [1, 0.55, 0.1] };
 const COLLISION_ALPHA = 0.55;
 
 const scratch = new Matrix4();
@@ -35,7 +38,7 @@ export class LinkDrawing {
   private readonly visualGroup = new Group();
   private readonly collisionGroup = new Group();
   private trail: LinkTrail | null = null;
-  private style: LinkStyle = { enabled: true, visual: true, collision: false, alpha: 1, trail: false, contrast: false };
+  private style: LinkStyle = { enabled: true, visual: true, collision: false, alpha: 1, trail: false, contrast: false, instead: null };
   private posed = false;
   private lost = false;
 
@@ -99,19 +102,20 @@ export class LinkDrawing {
   }
 
   paint(): void {
-    const { alpha, contrast } = this.style;
-    for (const each of this.visuals) each.paint(this.pool, contrast ? alpha * PALE : alpha, this.lost);
+    const { contrast, instead } = this.style;
+    const alpha = instead?.firm === true ? Math.sqrt(this.style.alpha) : this.style.alpha;
+    for (const each of this.visuals) each.paint(this.pool, contrast ? alpha * PALE : alpha, this.lost, instead);
     for (const each of this.collisions) {
-      if (contrast) each.paint(this.pool, alpha * COLLISION_ALPHA, this.lost, COLLISION_COLOR);
-      else each.paint(this.pool, alpha, this.lost);
+      if (contrast) each.paint(this.pool, alpha * COLLISION_ALPHA, this.lost, COLLISION);
+      else each.paint(this.pool, alpha, this.lost, instead);
     }
   }
 
   /** Moves to where it is. Without a transform RViz leaves a link where it was, in white. */
-  place(find: FindLink): void {
+  place(find: FindLink, isCovered: boolean): void {
     const found = find(this.link, this.root.matrix);
     this.posed ||= found;
-    this.root.visible = this.posed;
+    this.root.visible = this.posed && !isCovered;
     this.root.matrixWorldNeedsUpdate = true;
     if (found) this.trail?.follow(this.root.matrix);
     if (this.posed && found === this.lost) {

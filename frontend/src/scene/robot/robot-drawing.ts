@@ -1,5 +1,6 @@
 import { Box3, Group, Vector3, type Camera, type Matrix4, type Object3D, type Raycaster } from "three";
-import type { RobotScene } from "../../protocol";
+import type { LinkScene, RobotScene } from "../../protocol";
+import type { Instead } from "../../state/comparison";
 import type { PropertyRows } from "../../state/properties";
 import type { Described, Hit, SelectionBox } from "../picking";
 import { describedPose } from "../described-pose";
@@ -12,6 +13,8 @@ import { Solids, type SolidKind } from "./solids";
 
 /** Told once for each mesh of each link: `error` is null when all of it is drawn. */
 export type MeshReport = (link: string, url: string, error: string | null) => void;
+
+type InsteadOf = (link: string) => Instead | null;
 
 /** What is drawn: of a robot, or of all models of a world. */
 export type DrawnLinks = Pick<RobotScene, "links" | "joints">;
@@ -99,17 +102,21 @@ export class RobotDrawing {
     return boxes;
   }
 
-  /** `contrast` draws collisions over pale visuals; `isLit`: in the light of lamps in the scene, not of the camera. */
-  style(rows: PropertyRows, contrast: boolean, isLit = false): void {
+  /**
+   * `contrast` draws collisions over pale visuals; `isLit`: in the light of lamps in the scene, not of the camera;
+   * `instead`: what a link has in place of its own colours.
+   */
+  style(rows: PropertyRows, contrast: boolean, isLit = false, instead: InsteadOf = () => null): void {
     this.pool.isLit = isLit;
-    this.pool.renew(() => this.styleLinks(rows, contrast));
+    this.pool.renew(() => this.styleLinks(rows, contrast, instead));
     this.extras.style(rows);
   }
 
-  place(find: FindLink): void {
+  /** `isCovered`: whether another drawing shows a link already. */
+  place(find: FindLink, isCovered: (link: LinkScene) => boolean = () => false): void {
     const counts = new Map<SolidKind, number>();
     for (const link of this.links.values()) {
-      link.place(find);
+      link.place(find, isCovered(link.link));
       link.countSolids(counts);
     }
     this.solids.begin(counts);
@@ -176,7 +183,7 @@ export class RobotDrawing {
     this.pool.dispose();
   }
 
-  private styleLinks(rows: PropertyRows, contrast: boolean): void {
+  private styleLinks(rows: PropertyRows, contrast: boolean, instead: InsteadOf): void {
     const own = new Map(rows.find("Links")?.children.map((row) => [row.name, row]));
     const alpha = rows.number(1, "Alpha");
     const visual = rows.bool(true, "Visual Enabled");
@@ -192,6 +199,7 @@ export class RobotDrawing {
         alpha: alpha * (typeof linkAlpha === "number" ? linkAlpha : 1),
         trail: child("Show Trail") === true,
         contrast,
+        instead: instead(name),
       });
     }
   }

@@ -1,5 +1,6 @@
 import { Box3, Color, Group, Matrix4, Mesh, type BufferGeometry, type Material, type MeshLambertMaterial, type Texture } from "three";
 import type { Shape } from "../../protocol";
+import type { Instead } from "../../state/comparison";
 import { strings } from "../../strings";
 import { TOUCHED } from "../layers";
 import { errorMaterial, OPAQUE_FROM, RVIZ_RED, type Look, type MaterialPool, type Surface } from "../materials";
@@ -9,8 +10,6 @@ import { UNCOLOURED_GREY, type MeshTemplate, type OwnMaterial } from "../meshes/
 import { extrusion, ground, submesh } from "../objects/world-geometries";
 import { capsule, unitBox, unitCone, unitCylinder, unitPlane, unitSphere } from "../objects/geometries";
 import { solidKind, type SolidKind } from "./solids";
-
-type Colour = readonly [number, number, number];
 
 /** A part of a shape: what is drawn, and with which materials of the file's own. */
 interface Part {
@@ -107,9 +106,9 @@ export class ShapeDrawing {
   /**
    * Paints with the robot's and the link's alpha multiplied in; `lost` is RViz's white of links without transform.
    *
-   * @param instead a colour that takes the place of all others, r g b from 0 to 1.
+   * @param instead takes the place of all colours and textures.
    */
-  paint(pool: MaterialPool, alpha: number, lost: boolean, instead: Colour | null = null): void {
+  paint(pool: MaterialPool, alpha: number, lost: boolean, instead: Instead | null = null): void {
     for (const { mesh, own } of this.parts) {
       const materials = own.map((each) => (lost ? errorMaterial : pool.get(this.look(each, alpha, instead))));
       const [only = errorMaterial] = materials;
@@ -212,7 +211,7 @@ export class ShapeDrawing {
     return mesh;
   }
 
-  private asSolid(instead: Colour | null, alpha: number): Solid | null {
+  private asSolid(instead: Instead | null, alpha: number): Solid | null {
     const kind = solidKind(this.shape.kind);
     const [part] = this.parts;
     const look = this.look(null, alpha, instead);
@@ -236,8 +235,8 @@ export class ShapeDrawing {
    * RViz's red and another mesh the grey that RViz's mesh reader puts in. How opaque a part is says the URDF alone:
    * RViz does not read it from mesh files, where exporters often write it wrongly.
    */
-  private look(own: OwnMaterial | null, alpha: number, instead: Colour | null): Look {
-    if (instead) return { color: instead, map: null, vertexColors: false, alpha, doubleSided: true };
+  private look(own: OwnMaterial | null, alpha: number, instead: Instead | null): Look {
+    if (instead) return { color: instead.color, map: null, vertexColors: false, alpha, doubleSided: true, behind: instead.behind === true };
     const { kind, repaints } = this.shape;
     const doubleSided = kind === "mesh";
     const behind = kind === "plane";

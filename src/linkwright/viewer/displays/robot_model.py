@@ -309,7 +309,8 @@ class RobotModelDisplay(ViewerDisplay):
 
     def _show_robot(self, robot: Robot) -> None:
         before = {link.frame for link in self.scene.links}
-        builder = SceneBuilder(MeshIndex(self.context.finder))
+        finder = self.context.library.packages(self._text) or self.context.finder
+        builder = SceneBuilder(MeshIndex(finder))
         links = builder.links(robot, self.properties.text("TF Prefix"))
         self.context.meshes.replace(self.id, builder.index.folders)
         self._log_new_problems(builder.problems)

@@ -1,0 +1,109 @@
+import { beforeEach, describe, expect, it, vi } from "vitest";
+import { Connection } from "../src/connection/connection";
+import type { ComparedDescriptions, ComparedItem } from "../src/protocol";
+import { ComparisonState, grouped, MARK_COLORS, marksIn } from "../src/state/comparison";
+
+function item(part: Partial<ComparedItem> = {}): ComparedItem {
+  return {
+    subject: "link", name: "arm", kind: "changed", property: "mass", old: "1", new: "2", unit: "kg",
+    element: "arm", element_kind: "link", in_old: false, old_place: null, new_place: null, ...part,
+  };
+}
+
+const TOLD: ComparedDescriptions & { type: "compared_descriptions" } = {
+  type: "compared_descriptions",
+  old: { display: "display-2", label: "old.urdf", marks: { camera: "removed" } },
+  new: { display: "display-1", label: "new.urdf", marks: { arm: "changed" } },
+  joints: {},
+  shapes: { arm: "arm" },
+  items: [item(), item({ property: "origin xyz" }), item({ subject: "joint" }), item({ name: "camera", kind: "removed", property: "", element: "camera", in_old: true })],
+};
+
+describe("two descriptions in one scene", () => {
+  let connection: Connection;
+  let comparison: ComparisonState;
+
+  beforeEach(() => {
+    connection = new Connection("ws://localhost/ws");
+    comparison = new ComparisonState(connection);
+    connection.message.emit(TOLD);
+  });
+
+  it("draws all of the old robot in one colour, behind the new one, and what is gone more firmly in its own", () => {
+    const ghost = comparison.instead("display-2", "arm");
+    const gone = comparison.instead("display-2", "camera");
+    expect(ghost).toMatchObject({ behind: true, firm: false });
+    expect(gone).toMatchObject({ behind: true, firm: true });
+    expect(gone?.color.map((part) => Math.round(part * 255))).toEqual([0xcc, 0x33, 0x77]);
+    expect(comparison.isOld("display-2")).toBe(true);
+  });
+
+  it("draws of the new robot only what differs in another colour, and nothing when marks are off", () => {
+    expect(comparison.instead("display-1", "arm")?.behind).toBeUndefined();
+    expect(comparison.instead("display-1", "base")).toBeNull();
+    expect(comparison.instead("display-7", "arm")).toBeNull();
+    const changed = vi.fn();
+    comparison.changed.on(changed);
+    comparison.marks = false;
+    expect(changed).toHaveBeenCalledTimes(1);
+    expect(comparison.instead("display-1", "arm")).toBeNull();
+    expect(comparison.instead("display-2", "camera")).toEqual(comparison.instead("display-2", "arm"));
+  });
+
+  it("names the link or joint that shows a difference, in the robot that has it", () => {
+    const [arm, , , camera] = TOLD.items;
+    expect(arm && comparison.elementOf(arm)).toEqual({ display: "display-1", kind: "link", name: "arm" });
+    expect(camera && comparison.elementOf(camera)).toEqual({ display: "display-2", kind: "link", name: "camera" });
+    expect(comparison.elementOf(item({ element: "" }))).toBeNull();
+  });
+
+  it("knows nothing of a program that it was not told of", () => {
+    connection.message.emit({ type: "hello", protocol: 1, version: "", title: "" });
+    expect(comparison.compared).toBeNull();
+    expect(comparison.instead("display-2", "arm")).toBeNull();
+    expect(comparison.isOld("")).toBe(false);
+  });
+
+  it("puts differences about one thing together, and into the legend what there is", () => {
+    const groups = grouped(TOLD.items);
+    expect(groups.map(({ items, kind }) => [items.length, kind])).toEqual([[2, "changed"], [1, "changed"], [1, "removed"]]);
+    expect(marksIn([TOLD.new, TOLD.old])).toEqual(["changed", "removed", "old"]);
+  });
+});
+
+/** Machado, Oliveira and Fernandes (2009), severity 1: what linear colours look like to those who lack a cone. */
+const SIGHT: Readonly<Record<string, readonly (readonly number[])[]>> = {
+  all: [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
+  "no red": [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216], [-0.003882, -0.048116, 1.051998]],
+  "no green": [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.01182, 0.04294, 0.968881]],
+  "no blue": [[1.255528, -0.076749, -0.178779], [-0.078411, 0.930809, 0.147602], [0.004733, 0.691367, 0.3039]],
+};
+
+function times(matrix: readonly (readonly number[])[], vector: readonly number[]): number[] {
+  return matrix.map((row) => row.reduce((sum, each, i) => sum + each * (vector[i] ?? 0), 0));
+}
+
+/** CIE L*a*b* of a colour, as some see it. */
+function lab(hex: string, sight: readonly (readonly number[])[]): number[] {
+  const linear = [1, 3, 5].map((from) => {
+    const part = parseInt(hex.slice(from, from + 2), 16) / 255;
+    return part <= 0.04045 ? part / 12.92 : ((part + 0.055) / 1.055) ** 2.4;
+  });
+  const seen = times(sight, linear).map((part) => Math.min(1, Math.max(0, part)));
+  const xyz = times([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]], seen);
+  const [x = 0, y = 0, z = 0] = [0.9505, 1, 1.089].map((white, i) => {
+    const ratio = (xyz[i] ?? 0) / white;
+    return ratio > 0.008856 ? Math.cbrt(ratio) : 7.787 * ratio + 16 / 116;
+  });
+  return [116 * y - 16, 500 * (x - y), 200 * (y - z)];
+}
+
+describe.each(Object.entries(SIGHT))("to eyes with cones: %s", (_, sight) => {
+  const colors = Object.entries(MARK_COLORS);
+  const pairs = colors.flatMap(([one, a], i) => colors.slice(i + 1).map(([other, b]) => [one, other, a, b] as const));
+
+  it.each(pairs)("%s and %s differ (CIE76, 25; 2.3 is just seen)", (_one, _other, a, b) => {
+    const [first, second] = [lab(a, sight), lab(b, sight)];
+    expect(Math.hypot(...first.map((each, i) => each - (second[i] ?? 0)))).toBeGreaterThan(25);
+  });
+});

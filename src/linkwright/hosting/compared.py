@@ -1,0 +1,136 @@
+"""Two descriptions that are shown in one scene: the new one as `view` shows it, the old one seen through."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from linkwright.hosting.launch_log import LaunchLog
+from linkwright.hosting.plans import VIEWER, HostOptions
+from linkwright.hosting.reload import LiveReload
+from linkwright.hosting.signals import SignalWatch, run_to_end
+from linkwright.hosting.view import ModelView
+from linkwright.hosting.xacro_calls import DescriptionError, Descriptions, XacroCall
+
+if TYPE_CHECKING:
+    from linkwright.descriptions import Description, DescriptionLibrary
+    from linkwright.descriptions.pairs import Model, Pair
+    from linkwright.diagnostics import Diagnostic
+    from linkwright.packages import PackageFinder
+    from linkwright.viewer import RvizConfig, Viewer
+
+
+def run_compared_view(pair: Pair, options: HostOptions, *, foxglove: int | None = None) -> int:
+    """Show two descriptions in one scene, with what differs, until the user ends it.
+
+    Args:
+        pair: the two; the caller closes it.
+        options: how it is run.
+        foxglove: a port for Foxglove and Lichtblick to connect to; None for none.
+
+    Returns:
+        The exit status, see `linkwright.hosting.signals.run_to_end`.
+
+    Raises:
+        LinkwrightError: the old description is that of a commit, and cannot be read.
+    """
+    options = replace(options, title=f"{pair.old.title} → {pair.new.title}")
+    log = LaunchLog()
+    if pair.old.revision is not None:
+        pair.old.read()  # nobody can repair it
+
+    def run(signals: SignalWatch) -> bool:
+        async def show() -> bool:
+            signals.session = view = ComparedView(pair, options, log)
+            return await view.run(foxglove)
+
+        return signals.run(show)
+
+    return run_to_end(run, pair.new.finder, log)
+
+
+class ComparedView(ModelView):
+    """Two descriptions on the running event loop; both are followed on disk.
+
+    Args:
+        pair: the two.
+        options: how it is run.
+        log: what is printed.
+    """
+
+    def __init__(self, pair: Pair, options: HostOptions, log: LaunchLog) -> None:
+        super().__init__(_call_of(pair.new), pair.new.finder, options, log)
+        self._pair = pair
+        self._old_call = _call_of(pair.old)
+        self._old = _OldDescriptions(pair.old.finder, self.descriptions.library)
+        self.reload = LiveReload(self.descriptions, self._show_findings, log)
+        self._old_reload = LiveReload(self._old, self._show_findings, log)
+
+    def _publish(self) -> bool:
+        if self._pair.old.path.is_file():
+            return super()._publish()
+        self._read_old()  # says why there is none
+        self.shut_down("there is no model")
+        return False
+
+    def _plan_others(self) -> None:
+        self._plan("joint_state_publisher_gui", "joint_state_publisher_gui")
+        self._plan(*VIEWER, name="viewer", viewer_config=self._viewer_config, viewer_started=self._attach)
+
+    def _viewer_config(self) -> RvizConfig:
+        from linkwright.viewer.features.comparison.feature import show_old
+
+        config = super()._viewer_config()
+        show_old(config, self._pair.old.title)
+        return config
+
+    def _attach(self, viewer: Viewer) -> None:
+        node = self.host.graph.create_node("old_robot_state_publisher", start_parameter_services=False)
+        publish = viewer.attach_comparison(self._pair, node)
+
+        def show(text: str) -> None:
+            self.mend(self._old_call)
+            publish(text)
+
+        text = self._read_old()
+        if text is not None:
+            show(text)
+        if self._pair.old.revision is None:
+            self._old_reload.bind(self._old_call, show)
+            self._old_reload.start()
+
+    def _read_old(self) -> str | None:
+        """The text of the old description; None where there is none now, which is told."""
+        try:
+            text = self._old.expand(self._old_call)
+        except DescriptionError as error:
+            self.fail(self._old_call)
+            self._old_reload.report(self._old_call, error.diagnostics)
+            return None
+        self._old_reload.report(self._old_call, self._old.warnings_of(self._old_call))
+        return text
+
+    def _show_findings(self, _: list[Diagnostic]) -> None:
+        self.host.show_findings([*self.reload.findings(), *self._old_reload.findings()])
+
+    async def _close(self) -> None:
+        self._old_reload.close()
+        await super()._close()
+
+
+class _OldDescriptions(Descriptions):
+    """Descriptions whose texts no other description has: both files may say the same."""
+
+    def __init__(self, finder: PackageFinder, library: DescriptionLibrary) -> None:
+        super().__init__(finder)
+        self._library = library
+
+    def remember(self, call: XacroCall, description: Description, text: str | None = None) -> str:
+        """Keep a description; returns what stands for its text."""
+        from linkwright.descriptions.pairs import text_of_old
+
+        return super().remember(call, description, text_of_old(description) if text is None else text)
+
+
+def _call_of(model: Model) -> XacroCall:
+    return XacroCall(model.path, tuple(model.values.items()))

@@ -1,0 +1,129 @@
+"""The old one of two descriptions as a robot of the graph: its text, and its links where those of the new one are."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Mapping
+
+import numpy as np
+
+from linkwright.descriptions.comparison import Comparison
+from linkwright.geometry.arrays import compose, invert, row_from_pose
+from linkwright.graph import (
+    DESCRIPTION_QOS,
+    SENSOR_DATA_QOS,
+    STATIC_TF_PUBLISHER_QOS,
+    TF_QOS,
+    Node,
+)
+from linkwright.messages import JointState, String, TFMessage, TransformBatch
+from linkwright.nodes.joint_layout import layout_of
+from linkwright.nodes.joint_settings import JointSettings
+from linkwright.nodes.robot_transforms import MOVING_TYPES, RobotTransforms
+from linkwright.urdf import Robot
+
+PREFIX = "old"
+"""The TF Prefix of its frames."""
+TOPIC = "/old/robot_description"
+"""Where its text is published."""
+
+
+class OldRobot:
+    """Publishes a description, and transforms by which its joints stand as those of another robot do.
+
+    What both have is where it is in the other one; joints that only the old one has stand at zero, or in the middle of
+    limits without zero.
+
+    Args:
+        node: publishes, and is told the other one's joint states.
+    """
+
+    def __init__(self, node: Node) -> None:
+        self._node = node
+        self._text = node.create_publisher(String, TOPIC, DESCRIPTION_QOS)
+        self._fixed = node.create_publisher(TFMessage, "/tf_static", STATIC_TF_PUBLISHER_QOS)
+        self._moving = node.create_publisher(TFMessage, "/tf", TF_QOS)
+        self._positions: dict[str, float] = {}
+        self._transforms: RobotTransforms | None = None
+        self._leaders: dict[str, str] = {}
+        self._zeros: dict[str, float] = {}
+        node.create_subscription(JointState, "joint_states", self._moved, SENSOR_DATA_QOS)
+
+    def publish(self, text: str) -> None:
+        """Publish a description; `place` says where it is."""
+        self._text.publish(String(text))
+
+    def place(self, old: Robot, new: Robot, comparison: Comparison) -> None:
+        """Publish where the links are.
+
+        Args:
+            old: what the text says.
+            new: the robot that joint states are about.
+            comparison: which links and joints of the two are the same.
+        """
+        now = self._node.get_clock().now_ns()
+        self._transforms = RobotTransforms(old, f"{PREFIX}/")
+        self._leaders = joints_that_follow(old, new, comparison.joints)
+        self._zeros = _positions_at_zero(old, self._leaders)
+        fixed = self._transforms.fixed(now)
+        parent, pose = _anchor(old, new, comparison.links)
+        batch = TransformBatch(
+            (*fixed.parents, parent),
+            (*fixed.children, f"{PREFIX}/{old.root}"),
+            now,
+            np.vstack([fixed.poses, pose[np.newaxis]]),
+        )
+        self._fixed.publish(TFMessage(batch=batch))
+        self._publish_moving(now)
+
+    def _moved(self, message: JointState) -> None:
+        self._positions.update(zip(message.name, message.position, strict=False))
+        self._publish_moving(message.header.stamp.nanoseconds)
+
+    def _publish_moving(self, stamp_ns: int) -> None:
+        if self._transforms is None or not self._zeros:
+            return
+        known, leaders = self._positions, self._leaders
+        positions = [known.get(leaders.get(name, ""), zero) for name, zero in self._zeros.items()]
+        batch = self._transforms.recipe(tuple(self._zeros)).batch(positions, stamp_ns)
+        self._moving.publish(TFMessage(batch=batch))
+
+
+def joints_that_follow(old: Robot, new: Robot, same: Mapping[str, str]) -> dict[str, str]:
+    """Joints of the old robot whose positions are those of joints of the new one, by name: both turn, or both slide."""
+    return {
+        name: twin
+        for name, twin in same.items()
+        if {old.joints[name].type, new.joints[twin].type} <= MOVING_TYPES
+        and (old.joints[name].type == "prismatic") == (new.joints[twin].type == "prismatic")
+    }
+
+
+def _positions_at_zero(robot: Robot, leaders: Mapping[str, str]) -> dict[str, float]:
+    """Positions of the joints that are given one: all that move, but for those that mimic one of these."""
+    zeros = {joint.name: joint.zero for joint in layout_of(robot, JointSettings()).ranges.values()}
+    moving = [joint for joint in robot.joints.values() if joint.type in MOVING_TYPES]
+    given = {joint.name for joint in moving if joint.mimic is None or joint.name in leaders}
+    return {
+        joint.name: zeros.get(joint.name, 0.0)
+        for joint in moving
+        if joint.name in given or joint.mimic is None or joint.mimic.joint not in given
+    }
+
+
+def _anchor(old: Robot, new: Robot, same: Mapping[str, str]) -> tuple[str, np.ndarray]:
+    """The frame of the new robot that the old one's root hangs on, and the root's pose in it.
+
+    The link that both have and that is nearest to the old root is in one place; joints before it stand at zero.
+    """
+    below: dict[str, list[tuple[str, np.ndarray]]] = {}
+    for joint in old.joints.values():
+        below.setdefault(joint.parent, []).append((joint.child, row_from_pose(joint.origin)))
+    start = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0])
+    waiting = deque([(old.root, start)])
+    while waiting:
+        link, pose = waiting.popleft()
+        if link in same:
+            return same[link], invert(pose)
+        waiting += [(child, compose(pose, origin)) for child, origin in below.get(link, ())]
+    return new.root, start

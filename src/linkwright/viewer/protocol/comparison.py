@@ -1,0 +1,62 @@
+"""Two descriptions in one scene: how they differ, and which links show it."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from linkwright.viewer.protocol.message import Record, ServerMessage
+
+Mark = Literal["added", "removed", "changed"]
+"""What happened to a link: by its own description or by that of the joint that moves it."""
+
+
+class ComparedRobot(Record):
+    """One of two descriptions: its RobotModel display, empty where none shows it, its name, and the links to mark."""
+
+    display: str
+    label: str
+    marks: dict[str, Mark]
+
+
+class ComparedPlace(Record):
+    """Where something is written, from 1: as readers know the place, and as the Source panel does, or with no file."""
+
+    text: str
+    file: str
+    line: int
+
+
+class ComparedItem(Record):
+    """One difference, as `linkwright diff` tells it.
+
+    `property` is empty where it is about all of the thing; `old` and `new` are None where a description says nothing.
+    `element` is the link or joint that shows it, empty where there is none, and `in_old` whether only the old
+    description has that.
+    """
+
+    subject: Literal["robot", "link", "joint", "extension"]
+    name: str
+    kind: Literal["added", "removed", "renamed", "changed"]
+    property: str
+    old: str | None
+    new: str | None
+    unit: str
+    element: str
+    element_kind: Literal["link", "joint"]
+    in_old: bool
+    old_place: ComparedPlace | None
+    new_place: ComparedPlace | None
+
+
+class ComparedDescriptions(ServerMessage):
+    """How two descriptions differ.
+
+    By names in the old one: `joints` are the joints of the new one that they follow, `shapes` the links of the new one
+    that have the same shapes.
+    """
+
+    old: ComparedRobot
+    new: ComparedRobot
+    joints: dict[str, str]
+    shapes: dict[str, str]
+    items: list[ComparedItem]

@@ -1,0 +1,190 @@
+"""Two descriptions in one scene: the list, what is selected, and how both robots are drawn."""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.sync_api import Page
+
+from tests.browser.conftest import becomes, state, until
+from tests.browser.pixels import colors_at
+
+pytestmark = pytest.mark.browser
+
+OLD = """\
+<robot name="stand">
+  <material name="green"><color rgba="0 0.6 0 1"/></material>
+  <link name="base"><visual><geometry><box size="1 1 0.2"/></geometry><material name="green"/></visual></link>
+  <link name="arm"><visual><geometry><box size="0.2 0.2 1"/></geometry><material name="green"/></visual></link>
+  <link name="camera"><visual><geometry><sphere radius="0.15"/></geometry><material name="green"/></visual></link>
+  <joint name="turn" type="continuous"><origin xyz="0 0 0.6"/><parent link="base"/><child link="arm"/>
+    <axis xyz="1 0 0"/></joint>
+  <joint name="mount" type="fixed"><origin xyz="0.4 0.4 0.2"/><parent link="base"/><child link="camera"/></joint>
+</robot>
+"""
+NEW = """\
+<robot name="stand">
+  <material name="green"><color rgba="0 0.6 0 1"/></material>
+  <link name="base"><visual><geometry><box size="1 1 0.2"/></geometry><material name="green"/></visual></link>
+  <link name="arm"><visual><geometry><box size="0.2 0.2 1"/></geometry><material name="green"/></visual></link>
+  <link name="lidar"><visual><geometry><sphere radius="0.15"/></geometry><material name="green"/></visual></link>
+  <joint name="turn" type="continuous"><origin xyz="0 0.3 0.6"/><parent link="base"/><child link="arm"/>
+    <axis xyz="1 0 0"/></joint>
+  <joint name="mast" type="fixed"><origin xyz="-0.4 -0.4 0.2"/><parent link="base"/><child link="lidar"/></joint>
+</robot>
+"""
+BLUE, YELLOW, RED, GREY = "#56b4e9", "#f0c020", "#cc3377", "#c4ccd6"
+
+
+@pytest.fixture
+def files(tmp_path: Path) -> tuple[Path, Path]:
+    """The old file and the new one."""
+    folder = tmp_path / "models"
+    folder.mkdir()
+    old, new = folder / "old.urdf", folder / "new.urdf"
+    old.write_text(OLD, encoding="utf-8")
+    new.write_text(NEW, encoding="utf-8")
+    return old, new
+
+
+def looks(page: Page, which: int) -> dict[str, tuple[str, float]]:
+    """Colour and opacity of each link of the first or second robot."""
+    robots = [each["drawn"] for each in state(page, "displays") if each["class"].endswith("RobotModel")]
+    shown = {name: told["visuals"] for name, told in robots[which]["links"].items()}
+    return {
+        name: (shapes[0]["materials"][0]["color"], round(shapes[0]["materials"][0]["opacity"], 2))
+        for name, shapes in shown.items()
+        if shapes
+    }
+
+
+def bounds(page: Page, which: int, link: str) -> Any:
+    robots = [each["drawn"] for each in state(page, "displays") if each["class"].endswith("RobotModel")]
+    box = robots[which]["links"][link]["visuals"][0]["bounds"]
+    return [(low + high) / 2 for low, high in zip(box["min"], box["max"], strict=True)]
+
+
+def group(page: Page, name: str, kind: str = "Link"):
+    return page.locator(".difference-group", has=page.get_by_title(f"Select {name} and", exact=False)).filter(
+        has_text=kind
+    )
+
+
+def test_both_robots_are_drawn_and_what_differs_has_a_colour(start, open_page, files):
+    page = open_page(start("view", *map(str, files)))
+    page.get_by_text("5 differences").wait_for()
+    green = "#009900"
+    becomes(lambda: looks(page, 0), {"base": (green, 1), "arm": (YELLOW, 1), "lidar": (BLUE, 1)})
+    becomes(lambda: looks(page, 1), {"arm": (GREY, 0.4), "camera": (RED, 0.63)})
+    assert page.locator(".comparison-legend li").all_inner_texts() == ["added", "changed", "removed", "old"]
+    page.get_by_label("Colour what differs").uncheck()
+    becomes(lambda: set(looks(page, 0).values()), {(green, 1)})
+    becomes(lambda: set(looks(page, 1).values()), {(GREY, 0.4)})
+
+
+def pixels(page: Page) -> list[tuple[int, int, int]]:
+    """Colours of the scene at places in rows and columns."""
+    until(page, "lw.settled")
+    box = page.locator(".canvas-box canvas").first.bounding_box()
+    assert box is not None
+    spots = [
+        (box["x"] + box["width"] * i / 60, box["y"] + box["height"] * j / 60)
+        for i in range(1, 60)
+        for j in range(9, 57)
+    ]
+    return colors_at(page, *spots)
+
+
+def show(page: Page, title: str, *, on: bool) -> None:
+    """Switch a robot on or off."""
+    box = page.get_by_title(title, exact=False).get_by_role("checkbox")
+    count = "lw.displays.filter((each) => each.class.endsWith('RobotModel') && each.enabled).length"
+    before = page.evaluate(f"() => {{ const lw = window.linkwright; return {count}; }}")
+    box.set_checked(on)
+    until(page, f"{count} === {before + (1 if on else -1)}")
+
+
+def test_an_old_robot_in_the_same_place_is_not_seen(start, open_page, files):
+    old, new = files
+    old.write_text(NEW, encoding="utf-8")
+    page = open_page(start("view", str(old), str(new)))
+    page.get_by_text("say the same").wait_for()
+    both = pixels(page)
+    assert sum(g > 60 and g > 2 * max(r, b) for r, g, b in both) > 100, "the robot is seen"
+    show(page, "Show the old robot", on=False)
+    alone = pixels(page)
+    assert [(one, other) for one, other in zip(both, alone, strict=True) if one != other] == []
+
+
+def test_each_robot_can_be_shown_alone_and_the_old_one_as_opaque_as_wanted(start, open_page, files):
+    page = open_page(start("view", *map(str, files)))
+    page.get_by_text("5 differences").wait_for()
+    both = pixels(page)
+    show(page, "Show the new robot", on=False)
+    old_only = pixels(page)
+    assert sum(g > 60 and g > 2 * max(r, b) for r, g, b in old_only) == 0
+    assert old_only != both
+    page.get_by_label("How opaque the old robot is").fill("1")
+    becomes(lambda: {alpha for _, alpha in looks(page, 1).values()}, {1})
+    opaque = pixels(page)
+    assert sum(sum(each) for each in opaque) > sum(sum(each) for each in old_only), (
+        "its grey is brighter than what is behind"
+    )
+    show(page, "Show the new robot", on=True)
+    show(page, "Show the old robot", on=False)
+    becomes(lambda: sum(b > 1.5 * r and b > 60 for r, g, b in pixels(page)) > 0, True)
+
+
+def test_a_difference_selects_what_shows_it_and_leads_to_both_places(start, open_page, files):
+    page = open_page(start("view", *map(str, files)))
+    group(page, "lidar").locator("button.difference-name").click()
+    page.locator(".selection-card strong", has_text="lidar").wait_for()
+    near = state(page, "view.distance")
+    page.keyboard.press("Escape")
+    group(page, "camera").locator("button.difference-name").click()
+    page.locator(".selection-card strong", has_text="camera").wait_for()
+    assert state(page, "view.distance") == pytest.approx(near, rel=0.05), "both spheres are of one size"
+    group(page, "turn", "Joint").locator(".difference-values").click()
+    page.locator(".selection-card strong", has_text="arm").wait_for()
+    assert "0 0 0.6" in group(page, "turn", "Joint").inner_text()
+    for side, number in (("old.urdf:6", 6), ("new.urdf:6", 6)):
+        group(page, "turn", "Joint").get_by_role("button", name=side, exact=False).click()
+        becomes(lambda name=side[:8]: state(page, "panels.source.origin.file").endswith(name), True)
+        becomes(lambda: [each["from"] for each in state(page, "panels.source.origin.marks")][-1:], [number])
+
+
+def test_joints_move_both_and_edits_of_either_are_followed(start, open_page, files):
+    old, new = files
+    page = open_page(start("view", *map(str, files)))
+    page.get_by_text("5 differences").wait_for()
+    page.locator('[data-joint="turn"] input[type=range]').fill("1.5707963")
+    becomes(lambda: [round(each, 2) for each in bounds(page, 0, "arm")], [0, 0.3, 0.6])
+    until(page, "Math.abs(lw.frames['old/arm'].orientation[0] - Math.SQRT1_2) < 1e-3")
+    new.write_text(NEW.replace('xyz="0 0.3 0.6"', 'xyz="0 0 0.6"'), encoding="utf-8")
+    page.get_by_text("4 differences").wait_for()
+    old.write_text(OLD.replace('size="1 1 0.2"', 'size="1 1 0.3"'), encoding="utf-8")
+    page.get_by_text("5 differences").wait_for()
+    group(page, "base").get_by_text("1 1 0.3").wait_for()
+    old.write_text(OLD.replace("</robot>", ""), encoding="utf-8")
+    page.get_by_text("old.urdf:", exact=False).first.wait_for()
+    old.write_text(NEW, encoding="utf-8")
+    page.get_by_text("1 difference", exact=True).wait_for()
+
+
+def test_a_commit_is_the_old_one(start, open_page, files):
+    _, new = files
+    folder = new.parent
+    identity = ["-c", "user.name=t", "-c", "user.email=t@example.org"]
+    new.write_text(OLD, encoding="utf-8")
+    for words in (["init", "-q"], ["add", "new.urdf"], [*identity, "commit", "-qm", "one"]):
+        subprocess.run(["git", *words], cwd=folder, check=True)
+    new.write_text(NEW, encoding="utf-8")
+    page = open_page(start("view", str(new), "--against", "HEAD"))
+    page.get_by_text("5 differences").wait_for()
+    becomes(lambda: looks(page, 1).get("camera"), (RED, 0.63))
+    group(page, "camera").get_by_role("button", name="HEAD:new.urdf:5", exact=False).click()
+    becomes(lambda: state(page, "panels.source.origin.file").endswith("files/new.urdf"), True)
+    page.locator(".source-panel").get_by_text('"camera"').first.wait_for()
