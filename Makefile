@@ -67,7 +67,7 @@ test-browser: $(VENV)/.dev page
 # Against real ROS 2 (Jazzy) from wheels of PyPI, which there are for Linux and Python 3.12.
 test-ros: $(VENV)/.dev .build/ros/.ready
 	LINKWRIGHT_ROS_PYTHON=$(CURDIR)/.build/ros/bin/python RMW_IMPLEMENTATION=rmw_fastrtps_cpp \
-		$(BIN)/pytest tests/wire/test_real_ros.py tests/standins/test_real_names.py $(ARGS)
+		$(BIN)/pytest tests/wire/test_real_ros.py tests/wire/test_real_services.py tests/standins/test_real_names.py $(ARGS)
 
 .build/ros/.ready: | $(UV)
 	$(UV) venv --quiet --clear --python 3.12 .build/ros

@@ -95,3 +95,11 @@ def serve(answers: dict[str, Callable[..., Any]]) -> None:
     for line in sys.stdin:
         question, *arguments = json.loads(line)
         print(json.dumps(answers[question](*arguments)), flush=True)
+
+
+def linkwright(*words: str) -> tuple[str, str, int]:
+    """What a command prints, its errors and its exit status."""
+    done = subprocess.run(
+        [sys.executable, "-m", "linkwright", *words], capture_output=True, text=True, timeout=60, check=False
+    )
+    return done.stdout, done.stderr, done.returncode

@@ -2,7 +2,7 @@
 
 It has publishers on ``/from_ros``, ``/states_from_ros`` and ``/images_from_ros``, a lasting one on
 ``/lasting_from_ros``, and subscriptions to ``/to_ros``, ``/states_to_ros``, ``/images_to_ros`` and, lasting,
-``/lasting_to_ros``; a service ``/flip``; and a parameter ``speed``.
+``/lasting_to_ros``; services ``/flip`` and ``/echo``; and a parameter ``speed``.
 """
 
 from __future__ import annotations
@@ -15,8 +15,11 @@ from typing import Any
 import rclpy
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rclpy.parameter_client import AsyncParameterClient
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from sensor_msgs.msg import Image, JointState
+from sensor_msgs.srv import SetCameraInfo
 from std_msgs.msg import String
 from std_srvs.srv import SetBool
 
@@ -45,7 +48,8 @@ class RealPeer:
             self.node.create_subscription(
                 message_type, f"{kind}to_ros", heard.append, qos, event_callbacks=subscription_events
             )
-        self.node.create_service(SetBool, "flip", lambda _, response: response)
+        self.node.create_service(SetBool, "flip", flip)
+        self.node.create_service(SetCameraInfo, "echo", echo)
         self.node.declare_parameter("speed", 1.5)
         self.publishers["lasting_"].publish(String(data="said before"))
         threading.Thread(target=rclpy.spin, args=(self.node,), daemon=True).start()
@@ -81,11 +85,46 @@ class RealPeer:
 
         threading.Thread(target=work, daemon=True).start()
 
-    def call(self, service: str) -> None:
-        """Ask, without waiting for the answer."""
-        client = self.node.create_client(SetBool, service)
+    def echoes(self, service: str, texts: list[str]) -> list[str]:
+        """What a service answers that says again what it is told, asked with one text after another at once."""
+        client = self.node.create_client(SetCameraInfo, service)
         assert client.wait_for_service(60)
-        client.call_async(SetBool.Request(data=True))
+        requests = [SetCameraInfo.Request() for _ in texts]
+        for request, text in zip(requests, texts, strict=True):
+            request.camera_info.distortion_model = text
+        answers = [self._answer(client.call_async(request)).status_message for request in requests]
+        self.node.destroy_client(client)
+        return answers
+
+    def echoes_are_right(self, service: str, prefix: str, count: int) -> int:
+        """How many of many calls got the answer that was meant for them."""
+        texts = [f"{prefix} {number}" for number in range(count)]
+        return sum(text == answer for text, answer in zip(texts, self.echoes(service, texts), strict=True))
+
+    def parameters_of(self, node: str) -> list[str]:
+        """Empty when it does not answer, as one that was killed."""
+        client = AsyncParameterClient(self.node, node)
+        assert client.wait_for_services(60)
+        try:
+            return sorted(self._answer(client.list_parameters([], 1), 2.0).result.names)
+        except TimeoutError:
+            return []
+
+    def set_parameter_of(self, node: str, name: str, value: float) -> list[Any]:
+        """Set it, and whether that was done, and what it is then."""
+        client = AsyncParameterClient(self.node, node)
+        assert client.wait_for_services(60)
+        done = self._answer(client.set_parameters([Parameter(name, value=value)])).results[0].successful
+        return [done, self._answer(client.get_parameters([name])).values[0].double_value]
+
+    @staticmethod
+    def _answer(future: Any, seconds: float = 30.0) -> Any:
+        """What another thread hands over, in time."""
+        came = threading.Event()
+        future.add_done_callback(lambda _: came.set())
+        if not came.wait(seconds):
+            raise TimeoutError
+        return future.result()
 
     def received(self, topic: str) -> list[str]:
         return [message.data for message in self.heard[topic]]
@@ -100,10 +139,20 @@ class RealPeer:
         return self.mismatched
 
 
+def flip(request: Any, response: Any) -> Any:
+    response.success, response.message = not request.data, "by ROS"
+    return response
+
+
+def echo(request: Any, response: Any) -> Any:
+    response.success, response.status_message = True, request.camera_info.distortion_model
+    return response
+
+
 def main() -> None:
     peer = RealPeer(sys.argv[1])
     questions = "nodes published_by hashes publish publish_state publish_images received received_states"
-    questions += " received_images mismatches call"
+    questions += " received_images mismatches echoes echoes_are_right parameters_of set_parameter_of"
     serve({question: getattr(peer, question) for question in questions.split()})
     rclpy.shutdown()
 

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import os
-import subprocess
-import sys
 import time
 
 import pytest
 
 from linkwright.graph.names.identity import NodeIdentity
 from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile, ReliabilityPolicy
-from linkwright.messages import String, get_message, get_service, type_hash
+from linkwright.messages import String, get_message, type_hash
 from tests.domains import own_domain
+from tests.wire.programs import linkwright
 
 PYTHON = os.environ.get("LINKWRIGHT_ROS_PYTHON", "")
 LASTING = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -31,14 +30,6 @@ def real_node(programs):
 
 def has(us, name):
     return NodeIdentity(name, "/") in us.transport.remote_nodes()
-
-
-def linkwright(*words):
-    """What a command prints, its errors and its exit status."""
-    done = subprocess.run(
-        [sys.executable, "-m", "linkwright", *words], capture_output=True, text=True, timeout=60, check=False
-    )
-    return done.stdout, done.stderr, done.returncode
 
 
 @pytest.mark.parametrize("we_are_first", [True, False])
@@ -213,48 +204,6 @@ def test_ours_that_is_killed_is_gone_there_and_its_successor_is_heard(processes,
     publisher.publish(String(data="the next one"))
     assert real.ask_until(bool, "received", "to_ros") == ["the next one"]
     real.ask_until(lambda nodes: nodes.count(["/", "victim"]) == 1, "nodes", seconds=10)
-
-
-def test_a_service_on_fast_dds_is_listed_and_said_to_be_out_of_reach(processes, real_node, monkeypatch):
-    monkeypatch.setenv("RMW_IMPLEMENTATION", "rmw_fastrtps_cpp")
-    real_node()
-    us = processes("ours")
-    us.spin_until(lambda: us.node.count_services("/real_node/get_parameters") == 1)
-    client = us.node.create_client(get_service("rcl_interfaces/srv/GetParameters"), "/real_node/get_parameters")
-    us.spin_until(lambda: client.unreachable)
-    assert not client.wait_for_service(0.1)
-    assert not client.wait_for_service(0.1)
-    (warning,) = us.warnings()
-    assert "RMW_IMPLEMENTATION=rmw_cyclonedds_cpp" in warning
-
-
-def test_a_service_of_ours_that_fast_dds_calls_says_that_it_cannot_answer(processes, real_node):
-    us = processes("ours")
-    asked = []
-    us.node.create_service(get_service("std_srvs/srv/SetBool"), "/our_flip", lambda *both: asked.append(both))
-    real = real_node()
-    real.ask("call", "/our_flip")
-    us.spin_until(us.warnings)
-    (warning,) = us.warnings()
-    assert "A node on Fast DDS (rmw_fastrtps_cpp) calls service '/our_flip'" in warning
-    assert not asked
-
-
-@pytest.mark.parametrize(
-    "words",
-    [
-        ("param", "get", "/real_node", "speed"),
-        ("param", "list", "/real_node"),
-        ("service", "call", "/flip", "std_srvs/srv/SetBool", "{data: true}"),
-    ],
-)
-def test_verbs_that_ask_a_node_on_fast_dds_say_at_once_that_they_cannot(real_node, monkeypatch, words):
-    monkeypatch.setenv("RMW_IMPLEMENTATION", "rmw_fastrtps_cpp")
-    real_node()
-    out, err, status = linkwright(*words)
-    assert (out, status) == ("", 1)
-    assert err.startswith("error[CLI443]")
-    assert "RMW_IMPLEMENTATION=rmw_cyclonedds_cpp" in err
 
 
 def test_verbs_show_what_a_node_there_has(real_node):

@@ -112,22 +112,3 @@ def test_an_action_elsewhere_is_carried_out(processes):
     a.spin_until(lambda: len(feedback) == 3)
     client.destroy()
     server.destroy()
-
-
-def test_why_servers_outside_cannot_be_asked_is_logged_once_when_it_matters(processes):
-    a = processes("a", join_now=False)
-    client = a.node.create_client(SetBool, "flip")
-    client.set_unreachable("it speaks another language")
-    assert a.warnings() == []
-    assert not client.wait_for_service(0.01)
-    client.call_async(SetBool.Request())
-    assert a.warnings() == ["it speaks another language"]
-
-
-def test_a_request_that_waits_has_the_reason_logged_when_it_is_known(processes):
-    a = processes("a", join_now=False)
-    client = a.node.create_client(SetBool, "flip")
-    client.call_async(SetBool.Request())
-    assert a.warnings() == []
-    client.set_unreachable("it speaks another language")
-    assert a.warnings() == ["it speaks another language"]

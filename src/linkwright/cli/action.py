@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from linkwright.cli.calls import is_ready, node_names
+from linkwright.cli.calls import node_names
 from linkwright.cli.lookup import absolute, unknown
 from linkwright.cli.names_listing import add_count_argument, add_types_argument, print_names_and_types
 from linkwright.cli.nested import SubVerb, configure_nested, run_nested
@@ -134,7 +134,7 @@ def run_send_goal(arguments: argparse.Namespace) -> int:
 
         client = ActionClient(session.node, kind, name)
         print("Waiting for an action server to become available...")
-        if not await is_ready(session, name, client, client.server_is_ready, arguments.timeout):
+        if not await session.until(client.server_is_ready, arguments.timeout):
             raise LinkwrightError(
                 Diagnostic(
                     "CLI430",

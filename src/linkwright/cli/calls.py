@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from linkwright.cli.lookup import absolute_or_given, is_hidden, unknown
@@ -10,7 +9,6 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, joined, phrase
 
 if TYPE_CHECKING:
     from linkwright.cli.session import Session
-    from linkwright.graph import ActionClient, Client
 
 APPEARS_WITHIN = 5.0
 """Seconds within which a service that a node should have must appear, as in ros2cli."""
@@ -33,13 +31,13 @@ async def call(
         timeout: how long to wait for the response, in seconds; as long as it takes when left out.
 
     Raises:
-        NoAnswerError: CLI421, the service is not there; CLI422, it does not answer in time; CLI443, it cannot be asked.
+        NoAnswerError: CLI421, the service is not there; CLI422, it does not answer in time.
     """
     from linkwright.messages import get_service
 
     client = session.node.create_client(get_service(service_type), service_name)
     try:
-        if not await is_ready(session, service_name, client, client.service_is_ready, APPEARS_WITHIN):
+        if not await session.until(client.service_is_ready, APPEARS_WITHIN):
             raise NoAnswerError(
                 Diagnostic(
                     "CLI421",
@@ -67,44 +65,6 @@ async def call(
         return response
     finally:
         session.node.destroy_client(client)
-
-
-async def is_ready(
-    session: Session,
-    name: str,
-    client: Client[Any, Any] | ActionClient,
-    ready: Callable[[], bool],
-    timeout: float | None = None,
-) -> bool:
-    """Wait for a client's server; not for one that is there and cannot be asked.
-
-    Args:
-        session: of the verb.
-        name: of the service or the action.
-        client: of it.
-        ready: tells whether the client's server is ready.
-        timeout: how long to wait, in seconds; for any time when None.
-
-    Returns:
-        Whether it is ready; False when the time has passed.
-
-    Raises:
-        NoAnswerError: CLI443, it cannot be asked.
-    """
-    await session.until(lambda: ready() or bool(client.unreachable), timeout)
-    if not ready() and client.unreachable:
-        raise NoAnswerError(
-            Diagnostic(
-                "CLI443",
-                phrase(
-                    "'{name}' is offered by a node on Fast DDS (rmw_fastrtps_cpp), whose services cannot be"
-                    " called from here",
-                    name=name,
-                ),
-                hint=phrase("start that node with RMW_IMPLEMENTATION=rmw_cyclonedds_cpp"),
-            )
-        )
-    return ready()
 
 
 def node_names(session: Session, *, hidden: bool = False) -> list[str]:

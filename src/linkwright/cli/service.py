@@ -7,7 +7,6 @@ import asyncio
 import sys
 from typing import TYPE_CHECKING, Any
 
-from linkwright.cli.calls import is_ready
 from linkwright.cli.echo_format import EchoFormat, add_format_arguments
 from linkwright.cli.lookup import absolute, unknown, visible
 from linkwright.cli.names_listing import (
@@ -156,10 +155,10 @@ def run_call(arguments: argparse.Namespace) -> int:
 
     async def job(session: Session) -> int:
         client = session.node.create_client(kind, name)
-        if not await is_ready(session, name, client, client.service_is_ready, _AT_ONCE):
+        if not await session.until(client.service_is_ready, _AT_ONCE):
             _check_type(session, name, kind.TYPE_NAME)
             print("waiting for service to become available...")
-            if not await is_ready(session, name, client, client.service_is_ready, arguments.timeout):
+            if not await session.until(client.service_is_ready, arguments.timeout):
                 message = phrase("service '{name}' did not appear in {timeout} s", name=name, timeout=arguments.timeout)
                 raise LinkwrightError(Diagnostic("CLI421", message))
         loop = asyncio.get_running_loop()

@@ -133,11 +133,6 @@ class ActionClient(ActionEndpoint):
             subscription.get_publisher_count() for subscription in (self._feedback, self._status)
         )
 
-    @property
-    def unreachable(self) -> str:
-        """Why no server can be asked though there are some outside; see `Client.unreachable`."""
-        return self._goal_client.unreachable
-
     def wait_for_server(self, timeout_sec: float | None = None) -> bool:
         """Block the calling thread until a server is there; see `Client.wait_for_service`."""
         return self._handle.graph.wait_until(self.server_is_ready, timeout_sec)

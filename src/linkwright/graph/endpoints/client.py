@@ -60,9 +60,6 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         self._describe(node, srv_type, srv_name, qos_profile)
         self.outside: OutsideService | None = None
         """The server in another process; None while there is none. See `set_outside`."""
-        self.unreachable = ""
-        """Why the servers in other processes cannot be called; empty otherwise. See `set_unreachable`."""
-        self._has_told_unreachable = False
         self._server: Service[Request, Response] | None = None
         self._numbers = itertools.count(1)
         self._lock = threading.RLock()
@@ -93,10 +90,7 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         Returns:
             Whether one is available. False also when the graph is closed meanwhile.
         """
-        is_there = self.node.graph.wait_until(self.service_is_ready, timeout_sec)
-        if not is_there:
-            self._tell_unreachable()
-        return is_there
+        return self.node.graph.wait_until(self.service_is_ready, timeout_sec)
 
     def call_async(self, request: Request) -> Future[Response]:
         """Send a request; the future gets the response.
@@ -116,7 +110,6 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
             with self._lock:
                 self._unsent.append((future, request))
             self._send_waiting()
-            self._tell_unreachable()
         return future
 
     def call(self, request: Request, timeout_sec: float | None = None) -> Response | None:
@@ -189,22 +182,6 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         self.outside = outside
         self._send_waiting()
         self.node.graph.notify_change()
-
-    def set_unreachable(self, reason: str) -> None:
-        """Called by the transport: why the servers in other processes cannot be called; empty when they can.
-
-        It is logged once, when a request waits or `wait_for_service` has waited in vain.
-        """
-        self.unreachable = reason
-        if self._unsent:
-            self._tell_unreachable()
-        self.node.graph.notify_change()
-
-    def _tell_unreachable(self) -> None:
-        has_server = self._server is not None or self.outside is not None
-        if self.unreachable and not self._has_told_unreachable and not has_server:
-            self._has_told_unreachable = True
-            self.node.logger.warning(self.unreachable)
 
     def _send_waiting(self) -> None:
         while self._server is not None or self.outside is not None:

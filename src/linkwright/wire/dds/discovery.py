@@ -27,7 +27,7 @@ from linkwright.wire.dds.discovery_info import (
     encode,
 )
 from linkwright.wire.dds.names import DISCOVERY_TOPIC, parse_user_data
-from linkwright.wire.dds.participant import Participant, process_namespace
+from linkwright.wire.dds.participant import SERVICES_NAME, Participant, process_namespace
 from linkwright.wire.dds.qos import endpoint_qos, profile_of
 from linkwright.wire.dds.remote import RemoteEndpoint, RemoteGraph, RemoteParticipant, runs
 from linkwright.wire.dds.type_descriptions import WireTypes
@@ -129,6 +129,8 @@ class Discovery:
             return
         facts = parse_user_data(self._dds.user_data(qos))
         name, process, host = self._dds.entity_name(qos), self._process_of(qos), self._host_of(qos)
+        if name == SERVICES_NAME:
+            return
         self._remote.participant_came(RemoteParticipant(guid, facts.get("enclave", "/"), name, process, host))
 
     def _host_of(self, qos: int) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from linkwright.wire.dds.participant import Participant
 from linkwright.wire.dds.remote import RemoteGraph
@@ -17,10 +17,8 @@ class Domain:
         participant: ours.
         remote: who is outside.
         types: descriptions of types.
-        said: what was logged of the domain as a whole, once.
     """
 
     participant: Participant
     remote: RemoteGraph
     types: WireTypes
-    said: set[str] = field(default_factory=set)

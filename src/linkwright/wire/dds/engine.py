@@ -19,10 +19,11 @@ from linkwright.wire.dds.departures import Departures
 from linkwright.wire.dds.discovery import Discovery
 from linkwright.wire.dds.discovery_info import NodeEntities
 from linkwright.wire.dds.domain import Domain
-from linkwright.wire.dds.participant import Participant
+from linkwright.wire.dds.participant import SERVICES_NAME, Participant
 from linkwright.wire.dds.remote import RemoteGraph
+from linkwright.wire.dds.rtps.participant import RtpsParticipant
 from linkwright.wire.dds.services import IncomingService, OutsideServer
-from linkwright.wire.dds.settings import Settings
+from linkwright.wire.dds.settings import Range, Settings
 from linkwright.wire.dds.topics import IncomingTopic, OutgoingTopic
 from linkwright.wire.dds.waiting import WaitingThread
 
@@ -67,6 +68,9 @@ class Engine:
     ) -> None:
         self._remote = remote
         self._departures = departures
+        self._settings = settings
+        self._fast: RtpsParticipant | None = None
+        self._is_fast_possible = settings.range is not Range.OFF
         self._work = work
         self._logger = logger
         self._participant = Participant(settings)
@@ -113,6 +117,8 @@ class Engine:
         for topic in (*self._outgoing.values(), *self._leaving):
             if not topic.acknowledged(max(0, int((deadline - time.monotonic()) * 1e9))):
                 break
+        if self._fast is not None:
+            self._fast.close()
         self._participant.close()
 
     def abandon(self) -> None:
@@ -167,6 +173,7 @@ class Engine:
         """Mirror a service."""
         incoming = IncomingService(service, self._domain, self._control.wake)
         self._services[service] = incoming
+        self._meet_fast(incoming)
         self._reception.attach(incoming.pair.reader, incoming.on_data)
         self._is_told = False
 
@@ -174,6 +181,7 @@ class Engine:
         """Mirror a client."""
         outside = OutsideServer(client, self._domain, self._on_match)
         self._clients[client] = outside
+        self._meet_fast(outside)
         self._reception.attach(outside.pair.reader, outside.on_data)
         self._control.attach(outside.pair.writer, outside.on_writer_status)
         self._is_told = False
@@ -230,11 +238,36 @@ class Engine:
         changed, self._discovery.changed = self._discovery.changed, False
         if changed:
             self._discovery.review_gid_size()
+            self._look_for_fast()
         if changed or matches_changed:
             for client in tuple(self._clients.values()):
                 client.review()
         if changed:
             self._remote.announce()
+
+    def _meet_fast(self, mirrored: IncomingService | OutsideServer) -> None:
+        """Have a new service or client known to the participants of Fast DDS."""
+        if self._fast is None:
+            self._look_for_fast()
+        else:
+            mirrored.meet_fast(self._fast)
+
+    def _look_for_fast(self) -> None:
+        """Look for the participants of Fast DDS, from the first on that there is for a service or a client of ours."""
+        fast = self._remote.fast_participants()
+        if self._fast is None and self._is_fast_possible and fast and (self._services or self._clients):
+            self._is_fast_possible = False
+            try:
+                self._fast = RtpsParticipant(self._settings, SERVICES_NAME, self._on_match)
+            except OSError as error:
+                self._logger.warning(f"Services and clients of nodes on Fast DDS are out of reach: {error}")
+                return
+            for service in self._services.values():
+                service.meet_fast(self._fast)
+            for client in self._clients.values():
+                client.meet_fast(self._fast)
+        if self._fast is not None:
+            self._fast.expect(fast)
 
     def _on_match(self) -> None:
         self._matches_changed = True
@@ -253,10 +286,10 @@ class Engine:
                 self._mismatched.pop(topic, None)
 
     def _review_replies(self) -> bool:
-        waiting = [each for each in tuple(self._services.values()) if each.has_late_replies]
+        waiting = [each for each in tuple(self._services.values()) if each.has_more_to_do]
         for service in waiting:
             service.review()
-        return any(service.has_late_replies for service in waiting)
+        return any(service.has_more_to_do for service in waiting)
 
     def _end_leaving(self) -> None:
         now = time.monotonic()

@@ -15,6 +15,9 @@ from linkwright.wire.dds.type_descriptions import WireTypes
 NAME = "linkwright"
 """How our participants' entity names begin."""
 
+SERVICES_NAME = "linkwright-services"
+"""The entity name of our participants for services with Fast DDS, which have no nodes of their own."""
+
 
 def entity_name() -> str:
     """The name of a participant of this process: what it is, its process and the process namespace that counts in.

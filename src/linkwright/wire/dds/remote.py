@@ -27,6 +27,9 @@ from linkwright.wire.type_names import ros_type
 _FAST_DDS = b"\x01\x0f"
 """How the GUIDs of its entities begin."""
 
+_PREFIX = 12
+"""Bytes of a GUID that name the participant."""
+
 _ENDPOINTS_WITHIN = 1.3
 """Seconds within which a participant's first endpoint is heard of; Fast DDS repeats what was missed after 1 s."""
 
@@ -241,6 +244,16 @@ class RemoteGraph:
         """All participants."""
         with self._lock:
             return list(self._participants.values())
+
+    def fast_participants(self) -> set[bytes]:
+        """The prefixes of the GUIDs of the participants of Fast DDS that are not known to have been killed."""
+        dead = self._dead_participants()
+        with self._lock:
+            return {guid[:_PREFIX] for guid in self._participants if is_fast(guid) and guid not in dead}
+
+    def is_dead(self, prefix: bytes) -> bool:
+        """Whether a participant, named by the prefix of its GUIDs, is known to have been killed."""
+        return any(guid.startswith(prefix) for guid in self._dead_participants())
 
     def all_announced(self) -> bool:
         """Whether each participant with a writer of ``ros_discovery_info`` has announced its nodes."""

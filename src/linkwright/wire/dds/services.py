@@ -4,8 +4,8 @@ A service is two topics. rmw_cyclonedds_cpp writes a header before each request:
 sequence number of the request. The server writes the same before its reply; all replies reach all clients of a service,
 and each picks its own. The USER_DATA of both endpoints of a client or a server name them as belonging together.
 
-rmw_fastrtps_cpp has the same beside the samples (inline QoS), which Cyclone neither hands on nor writes.
-Nothing goes between its clients and servers and ours, because each would take the other's header for content.
+rmw_fastrtps_cpp has the same beside the samples (inline QoS), which Cyclone neither hands on nor writes: what is called
+from there, or calls from here, has a second reader and writer for that (`linkwright.wire.dds.fast_services`).
 """
 
 from __future__ import annotations
@@ -20,9 +20,8 @@ from functools import partial
 from threading import Lock
 from typing import TYPE_CHECKING, Any
 
-from linkwright.diagnostics import LinkwrightError
 from linkwright.graph.endpoints.service_introspection import RequestId
-from linkwright.messages import deserialize, serialize, type_hash
+from linkwright.messages import definition_of, serialize
 from linkwright.wire.dds.cyclone import (
     ANY_STATE,
     DATA_AVAILABLE,
@@ -32,14 +31,17 @@ from linkwright.wire.dds.cyclone import (
     write,
 )
 from linkwright.wire.dds.domain import Domain
-from linkwright.wire.dds.names import Role, dds_topic, endpoint_id
+from linkwright.wire.dds.fast_services import EarlyRequest, FastClient, FastServer
+from linkwright.wire.dds.names import Role, dds_topic
 from linkwright.wire.dds.qos import endpoint_qos
 from linkwright.wire.dds.remote import RemoteEndpoint, is_fast
+from linkwright.wire.dds.service_messages import read_or_warn, service_facts
 
 if TYPE_CHECKING:
     from linkwright.graph.endpoints.base import Endpoint
     from linkwright.graph.endpoints.client import Client
     from linkwright.graph.endpoints.service import Service
+    from linkwright.wire.dds.rtps.participant import RtpsParticipant
 
 HEADER = struct.Struct("<Qq")
 """The id of the client, and the sequence number of the request."""
@@ -48,14 +50,6 @@ _ENCAPSULATION = 4
 _BODY = _ENCAPSULATION + HEADER.size
 _LITTLE_ENDIAN = b"\x00\x01\x00\x00"
 _AT_ONCE = 64
-_OUT_OF_REACH = (
-    "Service '{}' is offered by a node on Fast DDS (rmw_fastrtps_cpp), whose services cannot be called from here; "
-    "start that node with RMW_IMPLEMENTATION=rmw_cyclonedds_cpp"
-)
-_ASKED_IN_VAIN = (
-    "A node on Fast DDS (rmw_fastrtps_cpp) calls service '{}', and perhaps others; it cannot be answered from here: "
-    "start that node with RMW_IMPLEMENTATION=rmw_cyclonedds_cpp"
-)
 _REPLY_WAITS = 1.0
 """Seconds for which a reply waits until the client's reader is known; then it is written all the same."""
 
@@ -76,9 +70,9 @@ class _Pair:
         self.request_topic = dds_topic(Role.REQUEST, endpoint.name)
         self.reply_topic = dds_topic(Role.REPLY, endpoint.name)
         service = endpoint.interface
-        facts = _facts(os.urandom(16), service, is_server=is_server)
-        request = participant.create_topic(self.request_topic, domain.types.with_header(service.Request))
-        reply = participant.create_topic(self.reply_topic, domain.types.with_header(service.Response))
+        facts = service_facts(os.urandom(16), service, is_server=is_server)
+        request = participant.create_topic(self.request_topic, _described(domain, service.Request))
+        reply = participant.create_topic(self.reply_topic, _described(domain, service.Response))
         self._topics = (request, reply)
         with endpoint_qos(endpoint.qos_profile, facts) as qos:
             self.reader = participant.create_reader(request if is_server else reply, qos)
@@ -96,13 +90,10 @@ class _Pair:
         self._dds.dds_take_status(entity, c.byref(status), mask)
         return bool(status.value)
 
-    def samples(self) -> Iterator[tuple[int, int, bytes, Any]]:
-        """The samples that have come: client id, sequence number, body as CDR, and Cyclone's information on each."""
+    def samples(self) -> Iterator[tuple[bytes, Any]]:
+        """The samples that have come, as CDR, and Cyclone's information on each."""
         taken = self._dds.take_bytes(self.reader, ANY_STATE, _AT_ONCE)
-        for data, info in taken if isinstance(taken, list) else ():
-            if info.valid_data and len(data) >= _BODY:
-                client_id, number = HEADER.unpack_from(data, _ENCAPSULATION)
-                yield client_id, number, data[:_ENCAPSULATION] + data[_BODY:], info
+        return (each for each in (taken if isinstance(taken, list) else ()) if each[1].valid_data)
 
     def write(self, client_id: int, number: int, message: Any) -> None:
         """Write a request or a reply."""
@@ -131,10 +122,17 @@ class OutsideServer:
         self._client_id = int.from_bytes(os.urandom(8), "little")
         self._answers: dict[int, Callable[[Any], None]] = {}
         self._is_ready = False
-        self._is_out_of_reach = False
+        self._by_cyclone = False
+        self._fast: FastClient | None = None
+
+    def meet_fast(self, participant: RtpsParticipant) -> None:
+        """Call servers on Fast DDS too."""
+        self._fast = FastClient(self._client, participant, self._remote.is_dead)
 
     def send(self, request: Any, answer: Callable[[Any], None], number: int) -> Callable[[], None]:
         """Write a request; returns a function that gives it up."""
+        if self._fast is not None and not self._by_cyclone:
+            return self._fast.send(request, answer)
         self._answers[number] = answer
         self.pair.write(self._client_id, number, request)
         return partial(self._forget, number)
@@ -144,11 +142,12 @@ class OutsideServer:
         if self.pair.has_matched(self.pair.reader):
             self._matched()
         count = 0
-        for client_id, number, body, _ in self.pair.samples():
+        for data, _ in self.pair.samples():
             count += 1
+            client_id, number, body = _divided(data)
             answer = self._answers.pop(number, None) if client_id == self._client_id else None
             if answer is not None:
-                response = _read(body, self._client.srv_type.Response, self._client)
+                response = read_or_warn(body, self._client.srv_type.Response, self._client)
                 if response is not None:
                     answer(response)
         return count == _AT_ONCE
@@ -161,19 +160,18 @@ class OutsideServer:
 
     def review(self) -> None:
         """Find out whether a server is there whose reader and writer both are connected with ours."""
-        is_ready = self._server_is_there()
+        self._by_cyclone = self._server_is_there()
+        is_ready = self._by_cyclone or (self._fast is not None and self._fast.is_ready())
         if is_ready != self._is_ready:
             self._is_ready = is_ready
             self._client.set_outside(self if is_ready else None)
-        is_out_of_reach = not is_ready and self._server_is_fast()
-        if is_out_of_reach != self._is_out_of_reach:
-            self._is_out_of_reach = is_out_of_reach
-            self._client.set_unreachable(_OUT_OF_REACH.format(self._client.name) if is_out_of_reach else "")
 
     def close(self) -> None:
         """Leave; requests without a reply stay so."""
         self._client.set_outside(None)
         self._answers.clear()
+        if self._fast is not None:
+            self._fast.close()
         self.pair.close()
 
     def abandon(self) -> None:
@@ -188,11 +186,6 @@ class OutsideServer:
         ours = [each for each in listening if each is not None and not each.is_fast]
         replying = [self._remote.endpoint(each) for each in self._dds.matched(self.pair.reader, writer=False)]
         return any(_belong_together(a, b, "serviceid") for a in ours for b in replying)
-
-    def _server_is_fast(self) -> bool:
-        """Whether a server is there that cannot be called; to be known, it need not be connected."""
-        readers = self._remote.endpoints_of(self.pair.request_topic, writers=False)
-        return any(each.is_fast for each in readers)
 
 
 class IncomingService:
@@ -210,26 +203,33 @@ class IncomingService:
         self._remote = domain.remote
         self._dds = load()
         self.pair = _Pair(service, domain, is_server=True)
-        self._said = domain.said
+        self._fast: FastServer | None = None
+        self._early: list[EarlyRequest] = []
         self._late: deque[tuple[float, RemoteEndpoint | None, int, int, Any]] = deque()
         self._lock = Lock()
 
     def on_data(self) -> bool:
         """Have the requests answered that have come; whether there are more."""
-        if self.pair.has_matched(self.pair.reader):
-            self._tell_of_fast_clients()
         count = 0
-        for client_id, number, body, info in self.pair.samples():
+        for data, info in self.pair.samples():
             count += 1
             sender = self._remote.endpoint(info.publication_handle)
-            if sender is not None and sender.is_fast:
+            if self._from_fast(sender, data, info):
                 continue
-            request = _read(body, self._service.srv_type.Request, self._service)
+            client_id, number, body = _divided(data)
+            request = read_or_warn(body, self._service.srv_type.Request, self._service) if body else None
             if request is None:
                 continue
             gid = bytes(16) if sender is None else sender.guid
             self._service.receive(request, partial(self._reply, sender, client_id, number), RequestId(gid, number))
         return count == _AT_ONCE
+
+    def meet_fast(self, participant: RtpsParticipant) -> None:
+        """Answer clients on Fast DDS too."""
+        self._fast = FastServer(self._service, participant)
+        early, self._early = self._early, []
+        for request in early:
+            self._fast.came_early(request)
 
     def review(self) -> None:
         """Write the replies whose client can be reached by now, or could not for too long."""
@@ -240,24 +240,32 @@ class IncomingService:
                     self.pair.write(client_id, number, response)
                 else:
                     self._late.append((due, sender, client_id, number, response))
+        if self._fast is not None:
+            self._fast.review()
 
     @property
-    def has_late_replies(self) -> bool:
-        """Whether replies wait for their clients."""
-        return bool(self._late)
+    def has_more_to_do(self) -> bool:
+        """Whether replies wait for their clients, or requests for what tells their clients."""
+        return bool(self._late) or (self._fast is not None and self._fast.has_more_to_do)
 
     def close(self) -> None:
         """Answer other processes no more."""
+        if self._fast is not None:
+            self._fast.close()
         self.pair.close()
 
-    def _tell_of_fast_clients(self) -> None:
-        """Say once that some cannot be answered; what they ask may not even look like a request here."""
-        if _ASKED_IN_VAIN in self._said:
-            return
-        asking = self._dds.matched(self.pair.reader, writer=False)
-        if any(is_fast(self._dds.writer_guid(self.pair.reader, each)) for each in asking):
-            self._said.add(_ASKED_IN_VAIN)
-            self._service.node.logger.warning(_ASKED_IN_VAIN.format(self._service.name))
+    def _from_fast(self, sender: RemoteEndpoint | None, data: bytes, info: Any) -> bool:
+        """Whether a request came from Fast DDS, whose clients are answered by `FastServer`."""
+        guid = sender.guid if sender else self._dds.writer_guid(self.pair.reader, info.publication_handle)
+        if not is_fast(guid):
+            return False
+        request = EarlyRequest(guid, data, info.source_timestamp, time.monotonic())
+        if self._fast is None:
+            self._early = [*self._early[-_AT_ONCE:], request]
+        else:
+            self._fast.came_early(request)
+            self._waits()
+        return True
 
     def _reply(self, sender: RemoteEndpoint | None, client_id: int, number: int, response: Any) -> None:
         if not self._service.destroyed:
@@ -283,15 +291,14 @@ def _belong_together(a: RemoteEndpoint | None, b: RemoteEndpoint | None, key: st
     return a.participant == b.participant
 
 
-def _facts(identity: bytes, service: Any, *, is_server: bool) -> bytes:
-    key = "serviceid" if is_server else "clientid"
-    return f"{key}={endpoint_id(identity)};typehash={type_hash(service)};".encode()
+def _described(domain: Domain, message_class: Any) -> Any:
+    """A type by its name alone: requests of Fast DDS come without the header."""
+    return domain.types.by_name(definition_of(message_class).type_name)
 
 
-def _read(body: bytes, message_class: Any, endpoint: Any) -> Any:
-    """A request or response; None when it cannot be read, which is logged."""
-    try:
-        return deserialize(body, message_class)
-    except LinkwrightError as error:
-        endpoint.node.logger.warning(f"Dropped a malformed message of service '{endpoint.name}': {error}")
-        return None
+def _divided(data: bytes) -> tuple[int, int, bytes]:
+    """The client's id, the sequence number, and the body as CDR; the body is empty where there is no header."""
+    if len(data) < _BODY:
+        return 0, 0, b""
+    client_id, number = HEADER.unpack_from(data, _ENCAPSULATION)
+    return client_id, number, data[:_ENCAPSULATION] + data[_BODY:]

@@ -64,6 +64,7 @@ class Settings:
         warnings: what the user may want to know.
         user_configuration: the value of CYCLONEDDS_URI.
         own_configurations: the fragments without that.
+        peers: other machines to be asked without multicast.
     """
 
     domain_id: int
@@ -73,6 +74,7 @@ class Settings:
     warnings: tuple[str, ...] = ()
     user_configuration: str = ""
     own_configurations: tuple[str, ...] = ()
+    peers: tuple[str, ...] = ()
 
 
 def read_settings(environment: Mapping[str, str] | None = None, *, domain_id: int | None = None) -> Settings:
@@ -102,6 +104,7 @@ def read_settings(environment: Mapping[str, str] | None = None, *, domain_id: in
         warnings=tuple(warnings),
         user_configuration=user,
         own_configurations=own,
+        peers=() if reach in (Range.OFF, Range.SYSTEM_DEFAULT) else tuple(peers),
     )
 
 

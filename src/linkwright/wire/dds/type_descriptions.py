@@ -17,9 +17,6 @@ from linkwright.messages import definition_of, get_message
 from linkwright.messages.definition import Container, FieldType, Structure
 from linkwright.wire.type_names import dds_type
 
-HEADER_MEMBERS = ("client_guid", "sequence_number")
-"""What rmw_cyclonedds_cpp puts before requests and replies: an unsigned and a signed integer of 64 bits."""
-
 _OCTETS = ("byte", "char")
 
 DISCOVERY_TYPE = "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_"
@@ -33,16 +30,12 @@ class WireTypes:
     """Makes the descriptions, each once; may be used from any thread."""
 
     def __init__(self) -> None:
-        self._made: dict[tuple[str, object], Any] = {}
+        self._made: dict[object, Any] = {}
         self._lock = RLock()
 
     def message(self, message_class: type[Any]) -> Any:
         """The description of a message type."""
-        return self._described("", definition_of(message_class))
-
-    def with_header(self, message_class: type[Any]) -> Any:
-        """The description of a request or reply with the header that goes before it."""
-        return self._described("header", definition_of(message_class))
+        return self._described(definition_of(message_class))
 
     def discovery(self) -> Any:
         """The description of ``rmw_dds_common/msg/ParticipantEntitiesInfo``: its name, and nothing of its contents.
@@ -52,27 +45,23 @@ class WireTypes:
         return self._named(DISCOVERY_TYPE)
 
     def by_name(self, type_name: str) -> Any:
-        """The description of a message type of which nothing but its name is known."""
+        """The description of a message type by its name alone, of which Cyclone checks nothing."""
         return self._named(dds_type(type_name))
 
     def _named(self, name: str) -> Any:
         with self._lock:
-            if ("", name) not in self._made:
-                self._made["", name] = struct_class(name, {})
-            return self._made["", name]
+            if name not in self._made:
+                self._made[name] = struct_class(name, {})
+            return self._made[name]
 
-    def _described(self, variant: str, structure: Structure) -> Any:
-        key = (variant, structure)
+    def _described(self, structure: Structure) -> Any:
         with self._lock:
-            if key not in self._made:
-                self._made[key] = struct_class(dds_type(structure.type_name), self._members(structure, variant))
-            return self._made[key]
+            if structure not in self._made:
+                self._made[structure] = struct_class(dds_type(structure.type_name), self._members(structure))
+            return self._made[structure]
 
-    def _members(self, structure: Structure, variant: str) -> dict[str, Any]:
-        types = _idl_types()
+    def _members(self, structure: Structure) -> dict[str, Any]:
         members: dict[str, Any] = {}
-        if variant == "header":
-            members = dict(zip(HEADER_MEMBERS, (types.uint64, types.int64), strict=True))
         try:
             for field in structure.wire_fields:
                 members[field.name] = self._member(field.type)

@@ -1,0 +1,232 @@
+"""Services and clients as rmw_fastrtps knows them.
+
+Which request a reply is for stands beside the sample there, in the inline QoS of RTPS. Cyclone neither writes nor hands
+that on, so a participant of our own does (`linkwright.wire.dds.rtps`), with a reader and a writer for each service and
+client beside those of Cyclone.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from threading import Lock
+from typing import TYPE_CHECKING, Any
+
+from linkwright.graph.endpoints.service_introspection import RequestId
+from linkwright.messages import definition_of, serialize
+from linkwright.wire.dds.names import Role, dds_topic
+from linkwright.wire.dds.rtps.participant import RtpsParticipant
+from linkwright.wire.dds.rtps.values import NO_NUMBER, PREFIX, is_reader, read_related_identity, related_identity
+from linkwright.wire.dds.service_messages import read_or_warn, service_facts
+from linkwright.wire.type_names import dds_type
+
+if TYPE_CHECKING:
+    from linkwright.graph.endpoints.client import Client
+    from linkwright.graph.endpoints.service import Service
+    from linkwright.wire.dds.rtps.messages import Data
+
+_REPLY_WAITS = 10.0
+"""Seconds for which a reply waits until the client's reader is known; then the client is taken to be gone."""
+
+_SETTLED = 0.1
+"""Seconds after a client's writer was heard first, after which all is here that it had sent before."""
+
+_EARLY_WAITS = 10.0
+"""Seconds for which an early request waits for its client to be heard."""
+
+_SAME_TIME = 1000
+"""Two readings of one time stamp differ by less (ns): it is a fraction of 2^-32 s on the wire."""
+
+_REMEMBERED = 64
+
+
+@dataclass(frozen=True, slots=True)
+class EarlyRequest:
+    """A request that came to Cyclone's reader, which does not tell its number.
+
+    Attributes:
+        writer: the GUID of the client's writer.
+        body: CDR with its header.
+        written: by the client's clock, in ns.
+        came: when, by the steady clock.
+    """
+
+    writer: bytes
+    body: bytes
+    written: int
+    came: float
+
+
+class FastServer:
+    """A service of this process, as clients on Fast DDS call it.
+
+    A client there takes a service for ready as soon as it knows one reader and one writer of it, which may be those of
+    Cyclone. What it asks then comes to Cyclone's reader alone, which hands on no number; `came_early` takes it, and it
+    gets its number when the client is heard here.
+
+    Args:
+        service: the service.
+        participant: ours for Fast DDS.
+    """
+
+    def __init__(self, service: Service[Any, Any], participant: RtpsParticipant) -> None:
+        self._service = service
+        self._participant = participant
+        facts = service_facts(os.urandom(16), service.srv_type, is_server=True)
+        request, response = _types(service.srv_type)
+        self._late: deque[tuple[float, bytes, int, Any]] = deque()
+        self._early: list[EarlyRequest] = []
+        self._seen: dict[bytes, deque[tuple[int, int]]] = {}
+        self._lock = Lock()
+        self._replies = participant.add_writer(dds_topic(Role.REPLY, service.name), response, facts)
+        self._requests = participant.add_reader(dds_topic(Role.REQUEST, service.name), request, facts, self._on_data)
+
+    def came_early(self, request: EarlyRequest) -> None:
+        """Take a request from Cyclone's reader; it is dropped when it comes here too."""
+        heard_at = self._participant.matched_writers(self._requests).get(request.writer)
+        if heard_at is None or time.monotonic() < heard_at + _SETTLED:
+            with self._lock:
+                self._early.append(request)
+
+    def review(self) -> None:
+        """Write the replies whose client is known by now, and have early requests answered whose number is."""
+        now = time.monotonic()
+        with self._lock:
+            late, self._late = self._late, deque()
+        for due, client, number, response in late:
+            if now < due:
+                self._reply(client, number, response, due)
+        if self._early:
+            self._number_early(now)
+
+    @property
+    def has_more_to_do(self) -> bool:
+        """Whether `review` is to be called soon."""
+        return bool(self._late or self._early)
+
+    def close(self) -> None:
+        """Answer no more."""
+        self._participant.remove(self._requests)
+        self._participant.remove(self._replies)
+
+    def _on_data(self, sample: Data) -> None:
+        seen = self._seen.setdefault(sample.writer, deque(maxlen=_REMEMBERED))
+        seen.append((sample.number, sample.time))
+        told = read_related_identity(sample.inline, sample.order)
+        client = sample.writer
+        if told is not None and is_reader(told[0]) and told[0].startswith(sample.source):
+            client = told[0]
+        self._ask(sample.payload or b"", sample.writer, client, sample.number)
+
+    def _ask(self, body: bytes, writer: bytes, client: bytes, number: int) -> None:
+        request = read_or_warn(body, self._service.srv_type.Request, self._service)
+        if request is not None:
+            self._service.receive(request, partial(self._reply, client, number), RequestId(writer, number))
+
+    def _reply(self, client: bytes, number: int, response: Any, due: float | None = None) -> None:
+        if self._service.destroyed:
+            return
+        if self._can_reach(client):
+            inline = related_identity(client, number)
+            self._participant.write(self._replies, serialize(response), inline=inline, to=client[:PREFIX])
+        else:
+            with self._lock:
+                self._late.append((due or time.monotonic() + _REPLY_WAITS, client, number, response))
+            self._participant.changed()
+
+    def _can_reach(self, client: bytes) -> bool:
+        """Whether the client's reader is known; of an early request only the client's participant is."""
+        wanted = client if is_reader(client) else client[:PREFIX]
+        return any(reader.startswith(wanted) for reader in self._participant.matched_readers(self._replies))
+
+    def _number_early(self, now: float) -> None:
+        """Give early requests the numbers before the first that came here, in their order."""
+        heard = self._participant.matched_writers(self._requests)
+        with self._lock:
+            early, self._early = self._early, []
+            ready = {each.writer for each in early if _is_settled(heard.get(each.writer), now)}
+            self._early = [each for each in early if each.writer not in ready and now < each.came + _EARLY_WAITS]
+        for writer in ready:
+            seen = tuple(self._seen.get(writer, ()))
+            known = [written for _, written in seen]
+            missed = [
+                each
+                for each in early
+                if each.writer == writer and not any(abs(each.written - time_) < _SAME_TIME for time_ in known)
+            ]
+            top = min(number for number, _ in seen) - 1 if seen else self._participant.last_of(self._requests, writer)
+            for number, request in zip(range(top - len(missed) + 1, top + 1), missed, strict=True):
+                self._ask(request.body, writer, writer, number)
+
+
+class FastClient:
+    """The servers on Fast DDS, as a client of this process calls them.
+
+    Args:
+        client: the client.
+        participant: ours for Fast DDS.
+        is_dead: whether a participant, named by the prefix of its GUIDs, is known to have been killed.
+    """
+
+    def __init__(
+        self, client: Client[Any, Any], participant: RtpsParticipant, is_dead: Callable[[bytes], bool]
+    ) -> None:
+        self._client = client
+        self._participant = participant
+        self._is_dead = is_dead
+        facts = service_facts(os.urandom(16), client.srv_type, is_server=False)
+        request, response = _types(client.srv_type)
+        self._answers: dict[int, Callable[[Any], None]] = {}
+        self._lock = Lock()
+        self._replies = participant.add_reader(dds_topic(Role.REPLY, client.name), response, facts, self._on_data)
+        self._requests = participant.add_writer(dds_topic(Role.REQUEST, client.name), request, facts)
+        self._identities = (self._replies.reader.guid, self._requests.writer.guid)
+
+    def send(self, request: Any, answer: Callable[[Any], None]) -> Callable[[], None]:
+        """Write a request; returns a function that gives it up."""
+        inline = related_identity(self._replies.reader.guid, NO_NUMBER)
+        with self._lock:
+            number = self._participant.write(self._requests, serialize(request), inline=inline)
+            self._answers[number] = answer
+        return partial(self._forget, number)
+
+    def is_ready(self) -> bool:
+        """Whether a server knows both ends of this client: before that its reply would be missed."""
+        listening = {guid[:PREFIX] for guid in self._participant.matched_readers(self._requests)}
+        return any(
+            heard_at is not None and guid[:PREFIX] in listening and not self._is_dead(guid[:PREFIX])
+            for guid, heard_at in self._participant.matched_writers(self._replies).items()
+        )
+
+    def close(self) -> None:
+        """Leave; requests without a reply stay so."""
+        self._answers.clear()
+        self._participant.remove(self._requests)
+        self._participant.remove(self._replies)
+
+    def _forget(self, number: int) -> None:
+        self._answers.pop(number, None)
+
+    def _on_data(self, sample: Data) -> None:
+        told = read_related_identity(sample.inline, sample.order)
+        if told is None or told[0] not in self._identities:
+            return
+        with self._lock:
+            answer = self._answers.pop(told[1], None)
+        if answer is not None:
+            response = read_or_warn(sample.payload or b"", self._client.srv_type.Response, self._client)
+            if response is not None:
+                answer(response)
+
+
+def _is_settled(heard_at: float | None, now: float) -> bool:
+    return heard_at is not None and now >= heard_at + _SETTLED
+
+
+def _types(service: Any) -> tuple[str, str]:
+    """The DDS types of requests and replies."""
+    return dds_type(definition_of(service.Request).type_name), dds_type(definition_of(service.Response).type_name)

@@ -1,0 +1,153 @@
+"""What participants and endpoints tell of themselves (SPDP and SEDP; DDSI-RTPS 2.5, 8.5 and 9.6.2)."""
+
+from __future__ import annotations
+
+import struct
+from dataclasses import dataclass
+
+from linkwright.wire.dds.rtps import values as v
+from linkwright.wire.dds.rtps.messages import Data
+from linkwright.wire.dds.rtps.values import Address, MalformedError, Parameters
+
+_LITTLE_ENDIAN_LIST = b"\x00\x03\x00\x00"
+_BIG_ENDIAN_LIST = b"\x00\x02"
+_GONE = 0x03
+"""Disposed, unregistered, or both."""
+
+_LONGEST_LEASE = 300.0
+_USUAL_LEASE = 100.0
+
+
+@dataclass(frozen=True, slots=True)
+class ParticipantData:
+    """A participant.
+
+    Attributes:
+        prefix: of its GUIDs.
+        vendor: which implementation it is of.
+        lease: seconds without a word from it after which it counts as gone.
+        discovery: where its discovery listens.
+        user: where its readers and writers listen that say nothing else.
+    """
+
+    prefix: bytes
+    vendor: bytes
+    lease: float
+    discovery: tuple[Address, ...]
+    user: tuple[Address, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class EndpointData:
+    """A reader or writer of another participant; `addresses` is empty where it listens where its participant does."""
+
+    guid: bytes
+    topic: str
+    type_name: str
+    is_reliable: bool
+    addresses: tuple[Address, ...]
+
+
+def describe_participant(prefix: bytes, name: str, lease: float, addresses: list[Address]) -> bytes:
+    """The SPDP sample of a participant of ours."""
+    return _LITTLE_ENDIAN_LIST + v.parameters(
+        (v.PID_PROTOCOL_VERSION, v.VERSION),
+        (v.PID_VENDOR, v.VENDOR),
+        (v.PID_PARTICIPANT_GUID, prefix + v.PARTICIPANT),
+        *((v.PID_METATRAFFIC_UNICAST_LOCATOR, v.locator(each)) for each in addresses),
+        *((v.PID_DEFAULT_UNICAST_LOCATOR, v.locator(each)) for each in addresses),
+        (v.PID_LEASE, struct.pack("<iI", int(lease), 0)),
+        (v.PID_BUILTIN_ENDPOINTS, struct.pack("<I", v.BUILTIN_ENDPOINTS)),
+        (v.PID_ENTITY_NAME, v.text(name)),
+    )
+
+
+def describe_endpoint(guid: bytes, topic: str, type_name: str, facts: bytes) -> bytes:
+    """The SEDP sample of a reader or writer of ours: reliable and volatile, as services are."""
+    return _LITTLE_ENDIAN_LIST + v.parameters(
+        (v.PID_ENDPOINT_GUID, guid),
+        (v.PID_PARTICIPANT_GUID, guid[: v.PREFIX] + v.PARTICIPANT),
+        (v.PID_TOPIC_NAME, v.text(topic)),
+        (v.PID_TYPE_NAME, v.text(type_name)),
+        (v.PID_RELIABILITY, v.RELIABLE),
+        (v.PID_DURABILITY, v.VOLATILE),
+        (v.PID_USER_DATA, v.octets(facts)),
+        (v.PID_PROTOCOL_VERSION, v.VERSION),
+        (v.PID_VENDOR, v.VENDOR),
+        (v.PID_KEY_HASH, guid),
+    )
+
+
+def key_of(guid: bytes, *, gone: bool = False) -> bytes:
+    """Inline QoS that names an endpoint, or says that it is gone."""
+    status = ((v.PID_STATUS_INFO, bytes((0, 0, 0, _GONE))),) if gone else ()
+    return v.parameters((v.PID_KEY_HASH, guid), *status)
+
+
+def gone_guid(sample: Data) -> bytes:
+    """The GUID of the participant or endpoint that a sample says is gone; empty when it does not say that.
+
+    Raises:
+        MalformedError: the sample names none.
+    """
+    status = sample.inline.get(v.PID_STATUS_INFO)
+    if not status or not status[0][3:4] or not status[0][3] & _GONE:
+        return b""
+    key = sample.inline.get(v.PID_KEY_HASH)
+    if key is None and sample.payload is not None:
+        found, _ = _list(sample.payload)
+        key = found.get(v.PID_ENDPOINT_GUID) or found.get(v.PID_PARTICIPANT_GUID)
+    if not key or len(key[0]) < 16:
+        raise MalformedError("the end of nobody")
+    return key[0][:16]
+
+
+def read_participant(payload: bytes) -> ParticipantData:
+    """A participant out of its SPDP sample.
+
+    Raises:
+        MalformedError: it says not enough.
+    """
+    found, order = _list(payload)
+    lease = _USUAL_LEASE
+    for value in found.get(v.PID_LEASE, ()):
+        if len(value) >= 8:
+            lease = min(float(struct.unpack_from(order + "i", value)[0] & 0x7FFF_FFFF), _LONGEST_LEASE)
+    return ParticipantData(
+        prefix=_needed(found, v.PID_PARTICIPANT_GUID, 16)[: v.PREFIX],
+        vendor=_needed(found, v.PID_VENDOR, 2)[:2],
+        lease=lease,
+        discovery=tuple(v.read_locators(found.get(v.PID_METATRAFFIC_UNICAST_LOCATOR, []), order)),
+        user=tuple(v.read_locators(found.get(v.PID_DEFAULT_UNICAST_LOCATOR, []), order)),
+    )
+
+
+def read_endpoint(payload: bytes, *, is_writer: bool) -> EndpointData:
+    """A reader or writer out of its SEDP sample.
+
+    Raises:
+        MalformedError: it says not enough.
+    """
+    found, order = _list(payload)
+    reliable = is_writer
+    for value in found.get(v.PID_RELIABILITY, ()):
+        reliable = len(value) >= 4 and struct.unpack_from(order + "I", value)[0] == 2
+    return EndpointData(
+        guid=_needed(found, v.PID_ENDPOINT_GUID, 16)[:16],
+        topic=v.read_text(_needed(found, v.PID_TOPIC_NAME, 4), order),
+        type_name=v.read_text(_needed(found, v.PID_TYPE_NAME, 4), order),
+        is_reliable=reliable,
+        addresses=tuple(v.read_locators(found.get(v.PID_UNICAST_LOCATOR, []), order)),
+    )
+
+
+def _list(payload: bytes) -> tuple[Parameters, str]:
+    order = ">" if payload[:2] == _BIG_ENDIAN_LIST else "<"
+    return v.read_parameters(payload, 4, order)[0], order
+
+
+def _needed(found: Parameters, pid: int, size: int) -> bytes:
+    values = found.get(pid)
+    if not values or len(values[0]) < size:
+        raise MalformedError(f"nothing under {pid:#06x}")
+    return values[0]

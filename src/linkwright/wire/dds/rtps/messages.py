@@ -1,0 +1,279 @@
+"""Messages of RTPS as bytes: those that come, as far as they are understood, and those that go (DDSI-RTPS 2.5, 9.4)."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass, field
+
+from linkwright.wire.dds.rtps.values import (
+    PREFIX,
+    UNKNOWN,
+    VENDOR,
+    VERSION,
+    MalformedError,
+    Parameters,
+    read_parameters,
+)
+
+_HEADER = 20
+_LITTLE, _FINAL = 0x01, 0x02
+_ACKNACK, _HEARTBEAT, _GAP, _INFO_TS, _INFO_SRC, _INFO_DST = 0x06, 0x07, 0x08, 0x09, 0x0C, 0x0E
+_NACK_FRAG, _DATA, _DATA_FRAG = 0x12, 0x15, 0x16
+_INLINE = 0x02
+_HAS_DATA = 0x04
+_MOST_MISSING = 256
+FRAGMENT = 60_000
+"""Bytes of a sample that go into one datagram, which holds 65 507."""
+
+
+@dataclass(frozen=True, slots=True)
+class Data:
+    """A sample, or a fragment of one.
+
+    Attributes:
+        source: the prefix of its participant.
+        reader: the entity that it is for; `UNKNOWN` for all that match.
+        writer: the GUID of its writer.
+        number: its sequence number.
+        order: ``<`` or ``>``, of `inline`.
+        inline: what stands beside the sample.
+        payload: serialized; None where there is nothing but a key.
+        time: when it was written, in ns since the epoch; 0 where that is not said.
+        first: for fragments, the number of the first, from 1; 0 of a whole sample.
+        fragment: for fragments, the size of each.
+        size: for fragments, that of the sample.
+    """
+
+    source: bytes
+    reader: bytes
+    writer: bytes
+    number: int
+    order: str
+    inline: Parameters
+    payload: bytes | None
+    time: int = 0
+    first: int = 0
+    fragment: int = 0
+    size: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Heartbeat:
+    """A writer says what it has; `first` is one more than `last` when that is nothing."""
+
+    source: bytes
+    reader: bytes
+    writer: bytes
+    first: int
+    last: int
+    final: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Gap:
+    """A writer says what is not for a reader: everything from `start` to before `base`, and `others`."""
+
+    source: bytes
+    reader: bytes
+    writer: bytes
+    start: int
+    base: int
+    others: Collection[int]
+
+
+@dataclass(frozen=True, slots=True)
+class AckNack:
+    """A reader says that it has everything before `base`, and what it lacks of the rest."""
+
+    source: bytes
+    reader: bytes
+    writer: bytes
+    base: int
+    missing: Collection[int]
+    final: bool
+
+
+@dataclass(frozen=True, slots=True)
+class NackFrag:
+    """A reader says which fragments of a sample it lacks."""
+
+    source: bytes
+    reader: bytes
+    writer: bytes
+    number: int
+    missing: Collection[int]
+
+
+Submessage = Data | Heartbeat | Gap | AckNack | NackFrag
+
+
+@dataclass(slots=True)
+class _Context:
+    source: bytes
+    for_us: bool = True
+    time: int = 0
+    own: bytes = field(default=b"")
+
+
+def vendor_of(packet: bytes) -> bytes:
+    """Which implementation sent a message; empty when it is none."""
+    return packet[6:8] if packet[:4] == b"RTPS" and len(packet) >= _HEADER else b""
+
+
+def parse(packet: bytes, own_prefix: bytes) -> Iterator[Submessage]:
+    """What a message says to a participant; it ends where the message cannot be understood."""
+    if not vendor_of(packet):
+        return
+    context = _Context(packet[8:_HEADER], own=own_prefix)
+    offset = _HEADER
+    while offset + 4 <= len(packet):
+        kind, flags = packet[offset], packet[offset + 1]
+        order = "<" if flags & _LITTLE else ">"
+        (size,) = struct.unpack_from(order + "H", packet, offset + 2)
+        start = offset + 4
+        end = start + size if size or kind == _INFO_TS else len(packet)
+        try:
+            understood = _read(kind, flags, order, packet[start:end], context)
+        except (struct.error, MalformedError):
+            return
+        if understood is not None and context.for_us:
+            yield understood
+        offset = end
+
+
+def _read(kind: int, flags: int, order: str, body: bytes, context: _Context) -> Submessage | None:
+    if kind == _INFO_DST:
+        context.for_us = body[:PREFIX] in (context.own, bytes(PREFIX))
+    elif kind == _INFO_SRC:
+        context.source = body[8 : 8 + PREFIX]
+    elif kind == _INFO_TS:
+        context.time = 0 if flags & _FINAL else _time(body, order)
+    elif kind in (_DATA, _DATA_FRAG):
+        return _read_data(kind, flags, order, body, context)
+    elif kind == _HEARTBEAT:
+        first, last = _number(body, 8, order), _number(body, 16, order)
+        return Heartbeat(context.source, body[:4], context.source + body[4:8], first, last, bool(flags & _FINAL))
+    elif kind == _GAP:
+        base, others = _number_set(body, 16, order)
+        return Gap(context.source, body[:4], context.source + body[4:8], _number(body, 8, order), base, others)
+    elif kind == _ACKNACK:
+        base, missing = _number_set(body, 8, order)
+        return AckNack(context.source, context.source + body[:4], body[4:8], base, missing, bool(flags & _FINAL))
+    elif kind == _NACK_FRAG:
+        base, count = struct.unpack_from(order + "II", body, 16)
+        missing = _bits(body, 24, base, count, order)
+        return NackFrag(context.source, context.source + body[:4], body[4:8], _number(body, 8, order), missing)
+    return None
+
+
+def _read_data(kind: int, flags: int, order: str, body: bytes, context: _Context) -> Data:
+    (to_inline,) = struct.unpack_from(order + "H", body, 2)
+    offset = 4 + to_inline
+    first = fragment = size = 0
+    has_data = bool(flags & _HAS_DATA)
+    if kind == _DATA_FRAG:
+        first, _, fragment, size = struct.unpack_from(order + "IHHI", body, 20)
+        has_data = True
+        if not first or not fragment:
+            raise MalformedError("a fragment without a place")
+    inline: Parameters = {}
+    if flags & _INLINE:
+        inline, offset = read_parameters(body, offset, order)
+    payload = body[offset:] if has_data else None
+    writer, number = context.source + body[8:12], _number(body, 12, order)
+    return Data(context.source, body[4:8], writer, number, order, inline, payload, context.time, first, fragment, size)
+
+
+def _time(body: bytes, order: str) -> int:
+    seconds, fraction = struct.unpack_from(order + "II", body)
+    return int(seconds) * 1_000_000_000 + (int(fraction) * 1_000_000_000 >> 32)
+
+
+def _number(body: bytes, offset: int, order: str) -> int:
+    high, low = struct.unpack_from(order + "iI", body, offset)
+    return (int(high) << 32) + int(low)
+
+
+def _number_set(body: bytes, offset: int, order: str) -> tuple[int, list[int]]:
+    base = _number(body, offset, order)
+    (count,) = struct.unpack_from(order + "I", body, offset + 8)
+    return base, _bits(body, offset + 12, base, count, order)
+
+
+def _bits(body: bytes, offset: int, base: int, count: int, order: str) -> list[int]:
+    if count > _MOST_MISSING:
+        raise MalformedError("a set with more than 256 numbers")
+    words = struct.unpack_from(f"{order}{(count + 31) // 32}I", body, offset)
+    return [base + bit for bit in range(count) if words[bit // 32] >> (31 - bit % 32) & 1]
+
+
+# --- making them -----------------------------------------------------------------------------------------------------
+
+
+def message(prefix: bytes, *submessages: bytes, to: bytes = b"") -> bytes:
+    """A message of a participant, for the one with the prefix `to` or for all."""
+    destination = _submessage(_INFO_DST, 0, to) if to else b""
+    return b"RTPS" + VERSION + VENDOR + prefix + destination + b"".join(submessages)
+
+
+def info_timestamp(nanoseconds: int) -> bytes:
+    """INFO_TS: when what follows was written."""
+    seconds, rest = divmod(nanoseconds, 1_000_000_000)
+    return _submessage(_INFO_TS, 0, struct.pack("<II", seconds, (rest << 32) // 1_000_000_000))
+
+
+def data(reader: bytes, writer: bytes, number: int, payload: bytes | None, inline: bytes = b"") -> bytes:
+    """DATA, or without a payload one that tells of the key in `inline` alone."""
+    flags = (_INLINE if inline else 0) | (0 if payload is None else _HAS_DATA)
+    head = struct.pack("<HH", 0, 16) + reader + writer + _pack(number)
+    return _submessage(_DATA, flags, head + inline + (payload or b""))
+
+
+def fragments_of(payload: bytes) -> int:
+    """Into how many fragments a payload is divided."""
+    return (len(payload) + FRAGMENT - 1) // FRAGMENT
+
+
+def data_fragment(reader: bytes, writer: bytes, number: int, payload: bytes, which: int, inline: bytes = b"") -> bytes:
+    """DATA_FRAG with one fragment of a payload, counted from 1."""
+    head = struct.pack("<HH", 0, 28) + reader + writer + _pack(number)
+    head += struct.pack("<IHHI", which, 1, FRAGMENT, len(payload))
+    part = payload[(which - 1) * FRAGMENT : which * FRAGMENT]
+    return _submessage(_DATA_FRAG, _INLINE if inline else 0, head + inline + part)
+
+
+def heartbeat(reader: bytes, writer: bytes, first: int, last: int, count: int, *, final: bool = False) -> bytes:
+    """HEARTBEAT."""
+    body = reader + writer + _pack(first) + _pack(last) + struct.pack("<I", count)
+    return _submessage(_HEARTBEAT, _FINAL if final else 0, body)
+
+
+def gap(reader: bytes, writer: bytes, start: int, base: int) -> bytes:
+    """GAP over everything from `start` to before `base`."""
+    return _submessage(_GAP, 0, reader + writer + _pack(start) + _pack(base) + struct.pack("<I", 0))
+
+
+def acknack(
+    reader: bytes, writer: bytes, base: int, missing: Collection[int], count: int, *, final: bool = True
+) -> bytes:
+    """ACKNACK: everything before `base` is here, and what is missing from there on, at most 256 further."""
+    size = max(missing) - base + 1 if missing else 0
+    words = [0] * ((size + 31) // 32)
+    for number in missing:
+        words[(number - base) // 32] |= 1 << (31 - (number - base) % 32)
+    body = reader + writer + _pack(base) + struct.pack(f"<I{len(words)}II", size, *words, count)
+    return _submessage(_ACKNACK, _FINAL if final else 0, body)
+
+
+def _pack(number: int) -> bytes:
+    return struct.pack("<iI", number >> 32, number & 0xFFFF_FFFF)
+
+
+def _submessage(kind: int, flags: int, body: bytes) -> bytes:
+    body += bytes(-len(body) % 4)
+    return struct.pack("<BBH", kind, flags | _LITTLE, len(body) if len(body) < 0x1_0000 else 0) + body
+
+
+ALL = UNKNOWN
+"""The entity id by which all readers are meant."""

@@ -1,0 +1,153 @@
+"""The socket of a participant, and where others are looked for."""
+
+from __future__ import annotations
+
+import socket
+import time
+from collections.abc import Iterable
+from contextlib import suppress
+from dataclasses import dataclass
+
+from linkwright.wire.dds.local_sockets import multicast_port
+from linkwright.wire.dds.rtps.values import Address
+from linkwright.wire.dds.rtps.writer import Packet
+from linkwright.wire.dds.settings import Range, Settings, most_participants, own_addresses
+
+_LOOPBACK = "127.0.0.1"
+_GROUP = "239.255.0.1"
+_FIRST_UNICAST, _PORTS_EACH = 10, 2
+_FEW = 33
+"""How many processes of a machine are looked for where ROS's variables say how far to look, as Cyclone does then."""
+
+_BUFFER = 4 << 20
+_LARGEST = 0x1_0000
+_BURST = 120_000
+"""Bytes after which sending pauses, so that they fit the buffer of who receives; the usual one holds 212 992."""
+
+_PAUSE = 0.001
+_NETWORK_TTL = 32
+
+
+@dataclass(frozen=True, slots=True)
+class Places:
+    """Where a participant is to be reached, and where it looks for others.
+
+    Attributes:
+        own: its addresses, without ports.
+        ports: at these ports others may listen.
+        hosts: at these addresses, by unicast.
+        interfaces: the addresses of the interfaces that multicast leaves through.
+        ttl: how far multicast goes; 0 for this machine.
+        only_here: whether nothing from another machine is listened to.
+    """
+
+    own: tuple[str, ...]
+    ports: range
+    hosts: tuple[str, ...]
+    interfaces: tuple[str, ...]
+    ttl: int
+    only_here: bool
+
+
+def places_of(settings: Settings) -> Places:
+    """Where to look with these settings; see `docs/decisions/0011-dds.md`."""
+    others = tuple(own_addresses()[:3])
+    local, machine = settings.range is Range.LOCALHOST, settings.range is Range.MACHINE
+    first = multicast_port(settings.domain_id) + _FIRST_UNICAST
+    most = most_participants(settings.domain_id)
+    count = most if machine else min(most, _FEW)
+    return Places(
+        own=(_LOOPBACK,) if local or machine or not others else others,
+        ports=range(first, first + _PORTS_EACH * count, _PORTS_EACH),
+        hosts=(_LOOPBACK, *(others if machine else ()), *_resolved(settings.peers)),
+        interfaces=() if local else (_LOOPBACK, *others),
+        ttl=0 if machine else _NETWORK_TTL,
+        only_here=machine or (local and not settings.peers),
+    )
+
+
+def _resolved(peers: Iterable[str]) -> list[str]:
+    found = []
+    for peer in peers:
+        with suppress(OSError):
+            found.append(socket.gethostbyname(peer))
+    return found
+
+
+class Network:
+    """The socket.
+
+    Args:
+        settings: the domain and how far to look.
+
+    Raises:
+        OSError: there is none to be had.
+    """
+
+    SOCKET = socket.socket
+    """What it is made of."""
+
+    def __init__(self, settings: Settings) -> None:
+        self._places = places_of(settings)
+        self._group = (_GROUP, multicast_port(settings.domain_id))
+        self._here = {_LOOPBACK, *own_addresses()}
+        self.socket = self.SOCKET(socket.AF_INET, socket.SOCK_DGRAM)
+        try:
+            self.socket.bind((_LOOPBACK if self._places.own == (_LOOPBACK,) and not self._places.hosts[1:] else "", 0))
+            self.socket.setblocking(False)
+            for option in (socket.SO_RCVBUF, socket.SO_SNDBUF):
+                with suppress(OSError):
+                    self.socket.setsockopt(socket.SOL_SOCKET, option, _BUFFER)
+            self.socket.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, self._places.ttl)
+        except OSError:
+            self.socket.close()
+            raise
+        port = self.socket.getsockname()[1]
+        self.addresses: list[Address] = [(host, port) for host in self._places.own]
+
+    def receive(self) -> tuple[bytes, Address] | None:
+        """A message that came, and from where; None when there is no more."""
+        while True:
+            try:
+                packet, source = self.socket.recvfrom(_LARGEST)
+            except BlockingIOError:
+                return None
+            except OSError:
+                continue  # somebody whom we sent to does not listen any more (Windows says so here)
+            if not self._places.only_here or self._is_here(source[0]):
+                return packet, source
+
+    def send(self, packets: Iterable[Packet]) -> None:
+        """Send messages; what the system does not take is lost, and asked for again by who lacks it."""
+        burst = 0
+        for packet, addresses in packets:
+            burst += len(packet)
+            if burst > _BURST:
+                time.sleep(_PAUSE)
+                burst = len(packet)
+            for address in addresses:
+                with suppress(OSError):
+                    self.socket.sendto(packet, address)
+
+    def send_everywhere(self, packet: bytes) -> None:
+        """Send a message to wherever somebody may be."""
+        self.send([(packet, tuple((host, port) for host in self._places.hosts for port in self._places.ports))])
+        for interface in self._places.interfaces:
+            with suppress(OSError):
+                self.socket.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, socket.inet_aton(interface))
+                self.socket.sendto(packet, self._group)
+
+    def best_of(self, addresses: Iterable[Address]) -> tuple[Address, ...]:
+        """Where to send to reach who listens at some addresses: one of this machine is enough."""
+        known = tuple(dict.fromkeys(addresses))
+        here = sorted((each for each in known if self._is_here(each[0])), key=lambda each: each[0] != _LOOPBACK)
+        if here:
+            return (here[0],)
+        return () if self._places.only_here else known
+
+    def close(self) -> None:
+        """Close the socket."""
+        self.socket.close()
+
+    def _is_here(self, host: str) -> bool:
+        return host in self._here or host.startswith("127.")

@@ -1,0 +1,502 @@
+"""A participant of RTPS that has readers and writers of services for the participants of Fast DDS.
+
+It speaks with these alone: others learn that it exists, because nobody knows where a participant of Fast DDS listens
+before it has answered, and are told of no endpoints.
+"""
+
+from __future__ import annotations
+
+import os
+import select
+import socket
+import threading
+import time
+from collections.abc import Callable, Iterable
+from contextlib import suppress
+from dataclasses import dataclass, field
+from functools import partial
+
+from linkwright.wire.dds.rtps import values as v
+from linkwright.wire.dds.rtps.discovery_data import (
+    EndpointData,
+    ParticipantData,
+    describe_endpoint,
+    describe_participant,
+    gone_guid,
+    key_of,
+    read_endpoint,
+    read_participant,
+)
+from linkwright.wire.dds.rtps.messages import (
+    AckNack,
+    Data,
+    Gap,
+    Heartbeat,
+    NackFrag,
+    Submessage,
+    acknack,
+    data,
+    heartbeat,
+    message,
+    parse,
+    vendor_of,
+)
+from linkwright.wire.dds.rtps.network import Network
+from linkwright.wire.dds.rtps.reader import Reader
+from linkwright.wire.dds.rtps.values import Address, MalformedError
+from linkwright.wire.dds.rtps.writer import Packet, Writer
+from linkwright.wire.dds.settings import Settings
+
+_LEASE = 10.0
+_ANNOUNCED_EVERY = 3.0
+_LOOKED_FOR_AFTER = (0.0, 0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 3.0)
+"""Seconds between the messages with which somebody is looked for; the last goes on for ever."""
+
+_EARLY = 64
+"""How many samples of writers are kept that came before these were known."""
+
+_IDLE = 1.0
+
+
+@dataclass(slots=True)
+class _Peer:
+    told: ParticipantData
+    until: float
+    discovery: tuple[Address, ...]
+    user: tuple[Address, ...]
+    endpoints: dict[bytes, EndpointData] = field(default_factory=dict)
+
+
+@dataclass(eq=False, slots=True)
+class LocalReader:
+    """A reader of ours; made by `RtpsParticipant.add_reader`."""
+
+    reader: Reader
+    topic: str
+    type_name: str
+    announced: int
+    on_data: Callable[[Data], None]
+
+
+@dataclass(eq=False, slots=True)
+class LocalWriter:
+    """A writer of ours; made by `RtpsParticipant.add_writer`."""
+
+    writer: Writer
+    topic: str
+    type_name: str
+    announced: int
+
+
+class RtpsParticipant:
+    """A participant with its socket and its thread.
+
+    Args:
+        settings: the domain and how far to look.
+        name: what it calls itself.
+        changed: called in its thread, or in that of the caller, when a reader or writer was matched, heard or left.
+
+    Raises:
+        OSError: there is no socket to be had.
+    """
+
+    def __init__(self, settings: Settings, name: str, changed: Callable[[], None]) -> None:
+        self.prefix = v.VENDOR + os.urandom(v.PREFIX - len(v.VENDOR))
+        self.changed = changed
+        """Called when something may have changed; see the argument."""
+        self._network = Network(settings)
+        self._self = describe_participant(self.prefix, name, _LEASE, self._network.addresses)
+        self._lock = threading.RLock()
+        self._peers: dict[bytes, _Peer] = {}
+        self._expected: frozenset[bytes] = frozenset()
+        self._looked = 0
+        self._look_at = 0.0
+        self._announce_at = 0.0
+        self._announced = 0
+        self._made = 0
+        self._count = 0
+        self._publications = Writer(self.prefix + v.PUBLICATIONS_WRITER, lasting=True)
+        self._subscriptions = Writer(self.prefix + v.SUBSCRIPTIONS_WRITER, lasting=True)
+        self._heard_publications = Reader(self.prefix + v.PUBLICATIONS_READER)
+        self._heard_subscriptions = Reader(self.prefix + v.SUBSCRIPTIONS_READER)
+        self._readers: dict[bytes, LocalReader] = {}
+        self._writers: dict[bytes, LocalWriter] = {}
+        self._early: list[Data] = []
+        self._closing = False
+        self._bell, self._ringer = socket.socketpair()
+        self._bell.setblocking(False)
+        self._ringer.setblocking(False)
+        self._thread = threading.Thread(target=self._run, name="linkwright-rtps", daemon=True)
+        self._thread.start()
+
+    # --- asked by services and clients -------------------------------------------------------------------------------
+
+    def add_reader(self, topic: str, type_name: str, facts: bytes, on_data: Callable[[Data], None]) -> LocalReader:
+        """A reader.
+
+        Args:
+            topic: the DDS topic.
+            type_name: the DDS type.
+            facts: its USER_DATA.
+            on_data: called in the participant's thread with each sample.
+        """
+        with self._lock:
+            guid = self._new_guid(v.READER_KIND)
+            packets = self._subscriptions.write(describe_endpoint(guid, topic, type_name, facts), inline=key_of(guid))
+            local = LocalReader(Reader(guid), topic, type_name, self._subscriptions.last, on_data)
+            self._readers[guid[v.PREFIX :]] = local
+            packets += self._match_all(topic)
+        self._network.send(packets)
+        return local
+
+    def add_writer(self, topic: str, type_name: str, facts: bytes) -> LocalWriter:
+        """A writer; for the arguments see `add_reader`."""
+        with self._lock:
+            guid = self._new_guid(v.WRITER_KIND)
+            packets = self._publications.write(describe_endpoint(guid, topic, type_name, facts), inline=key_of(guid))
+            local = LocalWriter(Writer(guid), topic, type_name, self._publications.last)
+            self._writers[guid[v.PREFIX :]] = local
+            packets += self._match_all(topic)
+        self._network.send(packets)
+        self._ring()
+        return local
+
+    def remove(self, local: LocalReader | LocalWriter) -> None:
+        """Delete a reader or writer."""
+        is_reader = isinstance(local, LocalReader)
+        guid = local.reader.guid if isinstance(local, LocalReader) else local.writer.guid
+        telling = self._subscriptions if is_reader else self._publications
+        with self._lock:
+            self._readers.pop(guid[v.PREFIX :], None)
+            self._writers.pop(guid[v.PREFIX :], None)
+            telling.withdraw(local.announced)
+            packets = telling.write(None, inline=key_of(guid, gone=True))
+        self._network.send(packets)
+
+    def write(self, local: LocalWriter, payload: bytes, *, inline: bytes = b"", to: bytes = b"") -> int:
+        """Write a sample; `Writer.write` tells of the arguments.
+
+        Returns:
+            Its sequence number.
+        """
+        with self._lock:
+            packets = local.writer.write(payload, inline=inline, to=to)
+            number = local.writer.last
+        self._network.send(packets)
+        self._ring()
+        return number
+
+    def matched_readers(self, local: LocalWriter) -> list[bytes]:
+        """The GUIDs of the readers of other participants that a writer of ours writes for."""
+        with self._lock:
+            return list(local.writer.readers)
+
+    def matched_writers(self, local: LocalReader) -> dict[bytes, float | None]:
+        """The GUIDs of the writers that a reader of ours hears, and when each was heard first, by the steady clock."""
+        with self._lock:
+            return {guid: local.reader.heard_at(guid) for guid in local.reader.writers}
+
+    def last_of(self, local: LocalReader, writer: bytes) -> int:
+        """The highest sequence number that a writer has told a reader of ours."""
+        with self._lock:
+            return local.reader.last_of(writer)
+
+    def expect(self, prefixes: Iterable[bytes]) -> None:
+        """Look for participants of which others have told, until each has answered."""
+        with self._lock:
+            expected = frozenset(prefixes)
+            if expected - self._expected:
+                self._looked, self._look_at = 0, 0.0
+            self._expected = expected
+        self._ring()
+
+    def close(self) -> None:
+        """Say that it leaves, and end."""
+        self._closing = True
+        self._ring()
+        if threading.current_thread() is not self._thread:
+            self._thread.join()
+        self._tell_peers(self._spdp(gone=True))
+        self._network.close()
+        self._bell.close()
+        self._ringer.close()
+
+    # --- the thread ---------------------------------------------------------------------------------------------------
+
+    def _run(self) -> None:
+        while not self._closing:
+            timeout = self._due()
+            ready, _, _ = select.select([self._network.socket, self._bell], [], [], timeout)
+            if self._bell in ready:
+                with suppress(BlockingIOError):
+                    self._bell.recv(4096)
+            if self._network.socket in ready:
+                self._receive()
+
+    def _receive(self) -> None:
+        for _ in range(64):
+            received = self._network.receive()
+            if received is None:
+                return
+            packet, source = received
+            calls: list[Callable[[], None]] = []
+            with self._lock:
+                packets = self._understand(packet, source, calls)
+            self._network.send(packets)
+            for call in calls:
+                call()
+
+    def _due(self) -> float:
+        """Do what is due; seconds until the next."""
+        now = time.monotonic()
+        packets: list[Packet] = []
+        with self._lock:
+            for prefix in [each for each, peer in self._peers.items() if peer.until < now]:
+                self._forget_peer(prefix)
+            looking = bool(self._expected - self._peers.keys()) and now >= self._look_at
+            if looking:
+                self._look_at = now + _LOOKED_FOR_AFTER[min(self._looked + 1, len(_LOOKED_FOR_AFTER) - 1)]
+                self._looked += 1
+            telling = now >= self._announce_at
+            if telling:
+                self._announce_at = now + _ANNOUNCED_EVERY
+            entities = self._entities()
+            for entity in entities:
+                packets += entity.remind(now)
+            due = [each for entity in entities if (each := entity.next_reminder()) is not None]
+            due.append(self._announce_at)
+            if self._expected - self._peers.keys():
+                due.append(self._look_at)
+        self._network.send(packets)
+        if looking:
+            self._network.send_everywhere(self._spdp())
+        if telling:
+            self._tell_peers(self._spdp())
+        return max(0.0, min(_IDLE, min(due) - time.monotonic()))
+
+    def _entities(self) -> list[Reader | Writer]:
+        writers = [self._publications, self._subscriptions, *(each.writer for each in self._writers.values())]
+        readers = [self._heard_publications, self._heard_subscriptions]
+        return [*writers, *readers, *(each.reader for each in self._readers.values())]
+
+    def _ring(self) -> None:
+        with suppress(OSError):
+            self._ringer.send(b"!")
+
+    # --- discovery ----------------------------------------------------------------------------------------------------
+
+    def _spdp(self, *, gone: bool = False) -> bytes:
+        self._announced += 1
+        inline = key_of(self.prefix + v.PARTICIPANT, gone=gone)
+        payload = None if gone else self._self
+        return message(self.prefix, data(v.SPDP_READER, v.SPDP_WRITER, self._announced, payload, inline))
+
+    def _tell_peers(self, packet: bytes) -> None:
+        with self._lock:
+            peers = list(self._peers.values())
+        self._network.send((packet, peer.discovery) for peer in peers)
+
+    def _participant_said(self, sample: Data, vendor: bytes) -> list[Packet]:
+        if gone_guid(sample):
+            self._forget_peer(gone_guid(sample)[: v.PREFIX])
+            return []
+        if sample.payload is None:
+            return []
+        told = read_participant(sample.payload)
+        if told.vendor != v.FAST_DDS or vendor != v.FAST_DDS:
+            return []
+        discovery, user = self._network.best_of(told.discovery), self._network.best_of(told.user)
+        until = time.monotonic() + told.lease
+        known = self._peers.get(told.prefix)
+        if known is not None and known.told == told:
+            known.until = until
+            return []
+        if not discovery or not user:
+            return []
+        self._peers[told.prefix] = _Peer(told, until, discovery, user, known.endpoints if known else {})
+        packets: list[Packet] = [(self._spdp(), discovery)]
+        for reader, entity in (
+            (self._heard_publications, v.PUBLICATIONS_WRITER),
+            (self._heard_subscriptions, v.SUBSCRIPTIONS_WRITER),
+        ):
+            packets += reader.match(told.prefix + entity, discovery)
+        for writer, entity in (
+            (self._publications, v.PUBLICATIONS_READER),
+            (self._subscriptions, v.SUBSCRIPTIONS_READER),
+        ):
+            packets += writer.match(told.prefix + entity, discovery)
+        return packets
+
+    def _forget_peer(self, prefix: bytes) -> None:
+        peer = self._peers.pop(prefix, None)
+        if peer is None:
+            return
+        for guid in tuple(peer.endpoints):
+            self._unmatch(guid)
+        self._heard_publications.unmatch(prefix + v.PUBLICATIONS_WRITER)
+        self._heard_subscriptions.unmatch(prefix + v.SUBSCRIPTIONS_WRITER)
+        self._publications.unmatch(prefix + v.PUBLICATIONS_READER)
+        self._subscriptions.unmatch(prefix + v.SUBSCRIPTIONS_READER)
+
+    def _endpoint_said(self, sample: Data, *, is_writer: bool) -> list[Packet]:
+        peer = self._peers[sample.source]
+        gone = gone_guid(sample)
+        if gone:
+            peer.endpoints.pop(gone, None)
+            self._unmatch(gone)
+            return []
+        if sample.payload is None:
+            return []
+        told = read_endpoint(sample.payload, is_writer=is_writer)
+        if not told.guid.startswith(sample.source):
+            return []
+        peer.endpoints[told.guid] = told
+        return self._match(told, peer)
+
+    def _match_all(self, topic: str) -> list[Packet]:
+        return [
+            packet
+            for peer in self._peers.values()
+            for told in peer.endpoints.values()
+            if told.topic == topic
+            for packet in self._match(told, peer)
+        ]
+
+    def _match(self, told: EndpointData, peer: _Peer) -> list[Packet]:
+        if not told.is_reliable:
+            return []
+        addresses = self._network.best_of(told.addresses) or peer.user
+        packets = []
+        if v.is_reader(told.guid):
+            for local in self._writers.values():
+                if (local.topic, local.type_name) == (told.topic, told.type_name):
+                    packets += local.writer.match(told.guid, addresses)
+        else:
+            for listening in self._readers.values():
+                if (listening.topic, listening.type_name) == (told.topic, told.type_name):
+                    packets += listening.reader.match(told.guid, addresses)
+        return packets
+
+    def _unmatch(self, guid: bytes) -> None:
+        for local in self._writers.values():
+            local.writer.unmatch(guid)
+        for listening in self._readers.values():
+            listening.reader.unmatch(guid)
+
+    # --- what comes ---------------------------------------------------------------------------------------------------
+
+    def _understand(self, packet: bytes, source: Address, calls: list[Callable[[], None]]) -> list[Packet]:
+        """What is to be answered; `calls` gets what is to be done without the lock."""
+        packets: list[Packet] = []
+        vendor = vendor_of(packet)
+        for said in parse(packet, self.prefix):
+            if said.source == self.prefix:
+                return []
+            peer = self._peers.get(said.source)
+            if peer is not None:
+                peer.until = time.monotonic() + peer.told.lease
+            try:
+                if isinstance(said, Data) and said.writer[v.PREFIX :] == v.SPDP_WRITER:
+                    packets += self._participant_said(said, vendor)
+                elif peer is not None:
+                    packets += self._peer_said(said, calls)
+                else:
+                    packets += self._stranger_said(said, source)
+            except MalformedError:
+                break
+        return packets
+
+    def _stranger_said(self, said: Submessage, source: Address) -> list[Packet]:
+        """What keeps those quiet whom we tell nothing: there is nothing to be had, and nothing is lacked."""
+        self._count += 1
+        if isinstance(said, AckNack) and said.writer in (v.PUBLICATIONS_WRITER, v.SUBSCRIPTIONS_WRITER):
+            answer = heartbeat(said.reader[v.PREFIX :], said.writer, 1, 0, self._count, final=True)
+        elif isinstance(said, Heartbeat) and said.writer[v.PREFIX :] in (v.PUBLICATIONS_WRITER, v.SUBSCRIPTIONS_WRITER):
+            answer = acknack(said.reader, said.writer[v.PREFIX :], said.last + 1, (), self._count)
+        else:
+            return []
+        return [(message(self.prefix, answer, to=said.source), (source,))]
+
+    def _peer_said(self, said: Submessage, calls: list[Callable[[], None]]) -> list[Packet]:
+        if isinstance(said, AckNack | NackFrag):
+            writer = self._writer(said.writer)
+            if writer is None:
+                return []
+            if isinstance(said, NackFrag):
+                return writer.on_nack_frag(said)
+            was_heard = writer.has_heard(said.reader)
+            packets = writer.on_acknack(said)
+            if not was_heard and writer.has_heard(said.reader):
+                calls.append(self.changed)
+            return packets
+        if isinstance(said, Data):
+            return self._sample_came(said, calls)
+        packets = []
+        for reader in self._readers_for(said):
+            if isinstance(said, Gap):
+                reader.on_gap(said)
+                continue
+            heard_before = reader.heard_at(said.writer)
+            packets += reader.on_heartbeat(said)
+            if heard_before is None and reader.heard_at(said.writer) is not None:
+                calls.append(self.changed)
+        return packets
+
+    def _sample_came(self, said: Data, calls: list[Callable[[], None]]) -> list[Packet]:
+        builtin = {
+            v.PUBLICATIONS_WRITER: (self._heard_publications, True),
+            v.SUBSCRIPTIONS_WRITER: (self._heard_subscriptions, False),
+        }.get(said.writer[v.PREFIX :])
+        if builtin is not None:
+            reader, is_writer = builtin
+            whole = reader.on_data(said)
+            packets = [] if whole is None else self._endpoint_said(whole, is_writer=is_writer)
+            if whole is not None:
+                self._replay(calls)
+                calls.append(self.changed)
+            return packets
+        if said.writer not in self._peers[said.source].endpoints:
+            self._early = [*self._early[-_EARLY:], said]
+            return []
+        self._hand_on(said, calls)
+        return []
+
+    def _hand_on(self, said: Data, calls: list[Callable[[], None]]) -> None:
+        for local in self._readers.values():
+            if said.reader in (v.UNKNOWN, local.reader.guid[v.PREFIX :]):
+                whole = local.reader.on_data(said)
+                if whole is not None:
+                    calls.append(partial(local.on_data, whole))
+
+    def _replay(self, calls: list[Callable[[], None]]) -> None:
+        """Hand on what came before its writer was known."""
+        early, self._early = self._early, []
+        for said in early:
+            peer = self._peers.get(said.source)
+            if peer is not None and said.writer in peer.endpoints:
+                self._hand_on(said, calls)
+            elif peer is not None:
+                self._early.append(said)
+
+    def _readers_for(self, said: Heartbeat | Gap) -> Iterable[Reader]:
+        entity = said.writer[v.PREFIX :]
+        if entity == v.PUBLICATIONS_WRITER:
+            return (self._heard_publications,)
+        if entity == v.SUBSCRIPTIONS_WRITER:
+            return (self._heard_subscriptions,)
+        if said.reader == v.UNKNOWN:
+            return tuple(each.reader for each in self._readers.values())
+        local = self._readers.get(said.reader)
+        return () if local is None else (local.reader,)
+
+    def _writer(self, entity: bytes) -> Writer | None:
+        if entity == v.PUBLICATIONS_WRITER:
+            return self._publications
+        if entity == v.SUBSCRIPTIONS_WRITER:
+            return self._subscriptions
+        local = self._writers.get(entity)
+        return local.writer if local is not None else None
+
+    def _new_guid(self, kind: bytes) -> bytes:
+        self._made += 1
+        return self.prefix + self._made.to_bytes(3, "big") + kind

@@ -1,0 +1,161 @@
+"""Identifiers, parameter lists and locators of RTPS (DDSI-RTPS 2.5, 9.3 and 9.4)."""
+
+from __future__ import annotations
+
+import socket
+import struct
+
+Address = tuple[str, int]
+"""An IPv4 address and a port."""
+
+PREFIX = 12
+"""Bytes of a GUID that name the participant; four more name its entity."""
+
+UNKNOWN = bytes(4)
+PARTICIPANT = b"\x00\x00\x01\xc1"
+SPDP_WRITER, SPDP_READER = b"\x00\x01\x00\xc2", b"\x00\x01\x00\xc7"
+PUBLICATIONS_WRITER, PUBLICATIONS_READER = b"\x00\x00\x03\xc2", b"\x00\x00\x03\xc7"
+SUBSCRIPTIONS_WRITER, SUBSCRIPTIONS_READER = b"\x00\x00\x04\xc2", b"\x00\x00\x04\xc7"
+WRITER_KIND, READER_KIND = b"\x03", b"\x04"
+"""The last byte of the entity id of a writer or reader of a type without keys."""
+
+FAST_DDS = b"\x01\x0f"
+VENDOR = b"\x4c\x57"
+"""Ours, in no use by others (their list is kept by the OMG)."""
+
+VERSION = b"\x02\x03"
+
+PID_LEASE = 0x0002
+PID_TOPIC_NAME = 0x0005
+PID_TYPE_NAME = 0x0007
+PID_PROTOCOL_VERSION = 0x0015
+PID_VENDOR = 0x0016
+PID_RELIABILITY = 0x001A
+PID_DURABILITY = 0x001D
+PID_USER_DATA = 0x002C
+PID_UNICAST_LOCATOR = 0x002F
+PID_DEFAULT_UNICAST_LOCATOR = 0x0031
+PID_METATRAFFIC_UNICAST_LOCATOR = 0x0032
+PID_PARTICIPANT_GUID = 0x0050
+PID_BUILTIN_ENDPOINTS = 0x0058
+PID_ENDPOINT_GUID = 0x005A
+PID_ENTITY_NAME = 0x0062
+PID_KEY_HASH = 0x0070
+PID_STATUS_INFO = 0x0071
+PID_RELATED_SAMPLE_IDENTITY = 0x0083
+PID_RELATED_SAMPLE_IDENTITY_OF_FAST_DDS = 0x800F
+"""By which Fast DDS before 2.14 says it."""
+
+_PID_SENTINEL = 0x0001
+
+BUILTIN_ENDPOINTS = 0x3F
+"""SPDP, and SEDP for publications and subscriptions: writers and readers of each."""
+
+RELIABLE = struct.pack("<IiI", 2, 0, 0x1999_9999)
+"""RELIABILITY: reliable, blocking 100 ms at most."""
+
+VOLATILE = bytes(4)
+NO_NUMBER = -1 << 32
+"""SEQUENCENUMBER_UNKNOWN."""
+
+_UDP_V4 = 1
+_LOCATOR = struct.Struct("<iI")
+_IDENTITY = struct.Struct("<iI")
+
+Parameters = dict[int, list[bytes]]
+
+
+class MalformedError(ValueError):
+    """What came is not what the specification says."""
+
+
+def parameter(pid: int, value: bytes) -> bytes:
+    """A parameter, filled up to a multiple of four bytes."""
+    value += bytes(-len(value) % 4)
+    return struct.pack("<HH", pid, len(value)) + value
+
+
+def parameters(*pairs: tuple[int, bytes]) -> bytes:
+    """A list of parameters with its end."""
+    return b"".join(parameter(*each) for each in pairs) + struct.pack("<HH", _PID_SENTINEL, 0)
+
+
+def read_parameters(data: bytes, offset: int, order: str) -> tuple[Parameters, int]:
+    """The parameters that begin at an offset, each with all its values, and where the list ends.
+
+    Raises:
+        MalformedError: it has no end.
+    """
+    found: Parameters = {}
+    while offset + 4 <= len(data):
+        pid, size = struct.unpack_from(order + "HH", data, offset)
+        offset += 4
+        if pid == _PID_SENTINEL:
+            return found, offset
+        if offset + size > len(data):
+            break
+        found.setdefault(pid, []).append(data[offset : offset + size])
+        offset += size
+    raise MalformedError("a list of parameters without its end")
+
+
+def text(value: str) -> bytes:
+    """A string as CDR."""
+    encoded = value.encode() + b"\0"
+    return struct.pack("<I", len(encoded)) + encoded
+
+
+def octets(value: bytes) -> bytes:
+    """A sequence of octets as CDR."""
+    return struct.pack("<I", len(value)) + value
+
+
+def read_text(value: bytes, order: str) -> str:
+    """A string of CDR.
+
+    Raises:
+        MalformedError: it is cut short.
+    """
+    if len(value) < 4:
+        raise MalformedError("a string without its length")
+    (size,) = struct.unpack_from(order + "I", value)
+    if size > len(value) - 4:
+        raise MalformedError("a string that is cut short")
+    return value[4 : 4 + size].rstrip(b"\0").decode(errors="replace")
+
+
+def locator(address: Address) -> bytes:
+    """A locator of UDPv4."""
+    return _LOCATOR.pack(_UDP_V4, address[1]) + bytes(12) + socket.inet_aton(address[0])
+
+
+def read_locators(values: list[bytes], order: str) -> list[Address]:
+    """Those of UDPv4; Fast DDS tells of shared memory too."""
+    found = []
+    for value in values:
+        if len(value) >= 24:
+            kind, port = struct.unpack_from(order + "iI", value)
+            if kind == _UDP_V4 and 0 < port < 0x1_0000:
+                found.append((socket.inet_ntoa(value[20:24]), port))
+    return found
+
+
+def related_identity(guid: bytes, number: int) -> bytes:
+    """Inline QoS that says which sample of which writer (or reader) another sample belongs to, for all Fast DDS."""
+    value = guid + _IDENTITY.pack(number >> 32, number & 0xFFFF_FFFF)
+    return parameters((PID_RELATED_SAMPLE_IDENTITY, value), (PID_RELATED_SAMPLE_IDENTITY_OF_FAST_DDS, value))
+
+
+def read_related_identity(inline: Parameters, order: str) -> tuple[bytes, int] | None:
+    """GUID and sequence number out of inline QoS; None where it says nothing about them."""
+    for pid in (PID_RELATED_SAMPLE_IDENTITY, PID_RELATED_SAMPLE_IDENTITY_OF_FAST_DDS):
+        for value in inline.get(pid, ()):
+            if len(value) >= 24:
+                high, low = struct.unpack_from(order + "iI", value, 16)
+                return value[:16], (high << 32) + low
+    return None
+
+
+def is_reader(guid: bytes) -> bool:
+    """Whether a GUID is that of a reader (9.3.1.2)."""
+    return bool(guid[15] & 0x04)

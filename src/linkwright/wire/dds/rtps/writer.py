@@ -1,0 +1,219 @@
+"""Writers of RTPS that see to it that every reader gets everything (DDSI-RTPS 2.5, 8.4.9)."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from linkwright.wire.dds.rtps.messages import (
+    FRAGMENT,
+    AckNack,
+    NackFrag,
+    data,
+    data_fragment,
+    fragments_of,
+    gap,
+    heartbeat,
+    info_timestamp,
+    message,
+)
+from linkwright.wire.dds.rtps.values import PREFIX, Address
+
+_FIRST_REPEAT, _LAST_REPEAT = 0.1, 2.0
+"""Seconds after which a reader that has not acknowledged is reminded, and to which that grows."""
+
+_MOST = 1000
+_MOST_BYTES = 64 << 20
+"""How many samples wait for acknowledgement at most, and how many bytes of them; then the oldest is forgotten."""
+
+Packet = tuple[bytes, tuple[Address, ...]]
+"""A message and where it goes."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Change:
+    payload: bytes | None
+    inline: bytes
+    to: bytes
+    time: int
+
+    def is_for(self, reader: bytes) -> bool:
+        return reader.startswith(self.to)
+
+
+@dataclass(slots=True)
+class _Reader:
+    addresses: tuple[Address, ...]
+    base: int
+    """Everything before it was acknowledged, or is not for this reader."""
+    due: float = 0.0
+    repeat: float = _FIRST_REPEAT
+    heard: bool = False
+
+
+class Writer:
+    """A writer.
+
+    Args:
+        guid: 16 bytes.
+        lasting: whether readers that come later get what was written before.
+    """
+
+    def __init__(self, guid: bytes, *, lasting: bool = False) -> None:
+        self.guid = guid
+        self._lasting = lasting
+        self._changes: dict[int, _Change] = {}
+        self._bytes = 0
+        self._last = 0
+        self._count = 0
+        self._readers: dict[bytes, _Reader] = {}
+
+    @property
+    def readers(self) -> Iterable[bytes]:
+        """The GUIDs of the readers that it writes for."""
+        return self._readers.keys()
+
+    def has_heard(self, reader: bytes) -> bool:
+        """Whether a reader has said something, so that it knows this writer."""
+        known = self._readers.get(reader)
+        return known is not None and known.heard
+
+    def match(self, reader: bytes, addresses: tuple[Address, ...]) -> list[Packet]:
+        """Write for a reader from now on; what it is to be told first."""
+        if reader in self._readers:
+            self._readers[reader].addresses = addresses
+            return []
+        known = self._readers[reader] = _Reader(addresses, 1 if self._lasting else self._last + 1)
+        if not self._lasting:
+            return [self._packet(reader, known, self._beat(reader, known))]
+        return self._everything(reader, known)
+
+    def unmatch(self, reader: bytes) -> None:
+        """Write no longer for a reader."""
+        self._readers.pop(reader, None)
+        self._forget_acknowledged()
+
+    def write(self, payload: bytes | None, *, inline: bytes = b"", to: bytes = b"") -> list[Packet]:
+        """A new sample.
+
+        Args:
+            payload: serialized; None for the end of what the key in `inline` names.
+            inline: what stands beside it.
+            to: how the GUIDs of its readers begin; the others are told that it is not for them.
+
+        Returns:
+            What is to be sent.
+        """
+        self._last += 1
+        number = self._last
+        self._changes[number] = _Change(payload, inline, to, time.time_ns())
+        self._bytes += len(payload or b"")
+        while len(self._changes) > 1 and (len(self._changes) > _MOST or self._bytes > _MOST_BYTES):
+            self._drop(min(self._changes))
+        packets: list[Packet] = []
+        for reader, known in self._readers.items():
+            known.due, known.repeat = time.monotonic() + _FIRST_REPEAT, _FIRST_REPEAT
+            packets += self._sample(reader, known, number)
+        return packets
+
+    def withdraw(self, number: int) -> None:
+        """Tell those who come later no more of a sample."""
+        self._drop(number)
+
+    @property
+    def last(self) -> int:
+        """The number of the newest sample."""
+        return self._last
+
+    def on_acknack(self, said: AckNack) -> list[Packet]:
+        """What a reader that acknowledges, and lacks something, is to be sent."""
+        known = self._readers.get(said.reader)
+        if known is None:
+            return []
+        known.heard = True
+        if said.base > known.base:
+            known.base = min(said.base, self._last + 1)
+            known.repeat = _FIRST_REPEAT
+            known.due = time.monotonic() + known.repeat
+            self._forget_acknowledged()
+        packets = [each for number in said.missing for each in self._again(said.reader, known, number)]
+        if packets or (not said.final and not said.missing):
+            packets.append(self._packet(said.reader, known, self._beat(said.reader, known)))
+        return packets
+
+    def on_nack_frag(self, said: NackFrag) -> list[Packet]:
+        """The fragments that a reader lacks."""
+        known, change = self._readers.get(said.reader), self._changes.get(said.number)
+        if known is None or change is None or change.payload is None or not change.is_for(said.reader):
+            return []
+        most = fragments_of(change.payload)
+        wanted = [each for each in said.missing if 1 <= each <= most]
+        packets = [self._fragment(said.reader, known, said.number, change, change.payload, each) for each in wanted]
+        return [*packets, self._packet(said.reader, known, self._beat(said.reader, known))]
+
+    def remind(self, now: float) -> list[Packet]:
+        """Heartbeats for the readers that have not acknowledged for some time."""
+        packets = []
+        for reader, known in self._readers.items():
+            if known.base <= self._last and now >= known.due:
+                known.due = now + known.repeat
+                known.repeat = min(known.repeat * 2, _LAST_REPEAT)
+                packets.append(self._packet(reader, known, self._beat(reader, known)))
+        return packets
+
+    def next_reminder(self) -> float | None:
+        """When `remind` is to be called; None while everything was acknowledged."""
+        return min((known.due for known in self._readers.values() if known.base <= self._last), default=None)
+
+    # --- inside ------------------------------------------------------------------------------------------------------
+
+    def _everything(self, reader: bytes, known: _Reader) -> list[Packet]:
+        known.due = time.monotonic() + _FIRST_REPEAT
+        packets = [each for number in sorted(self._changes) for each in self._sample(reader, known, number)]
+        return packets or [self._packet(reader, known, self._beat(reader, known))]
+
+    def _sample(self, reader: bytes, known: _Reader, number: int) -> Iterator[Packet]:
+        change = self._changes[number]
+        beat = self._beat(reader, known)
+        entity = reader[PREFIX:]
+        if not change.is_for(reader):
+            yield self._packet(reader, known, gap(entity, self.guid[PREFIX:], number, number + 1), beat)
+        elif change.payload is not None and len(change.payload) > FRAGMENT:
+            for which in range(1, fragments_of(change.payload) + 1):
+                yield self._fragment(reader, known, number, change, change.payload, which)
+            yield self._packet(reader, known, beat)
+        else:
+            sample = data(entity, self.guid[PREFIX:], number, change.payload, change.inline)
+            yield self._packet(reader, known, info_timestamp(change.time), sample, beat)
+
+    def _again(self, reader: bytes, known: _Reader, number: int) -> Iterator[Packet]:
+        if number in self._changes:
+            yield from self._sample(reader, known, number)
+        elif number <= self._last:
+            yield self._packet(reader, known, gap(reader[PREFIX:], self.guid[PREFIX:], number, number + 1))
+
+    def _fragment(
+        self, reader: bytes, known: _Reader, number: int, change: _Change, payload: bytes, which: int
+    ) -> Packet:
+        part = data_fragment(reader[PREFIX:], self.guid[PREFIX:], number, payload, which, change.inline)
+        return self._packet(reader, known, info_timestamp(change.time), part)
+
+    def _beat(self, reader: bytes, known: _Reader) -> bytes:
+        self._count += 1
+        first = min(self._changes, default=self._last + 1) if self._lasting else min(known.base, self._last + 1)
+        return heartbeat(reader[PREFIX:], self.guid[PREFIX:], first, self._last, self._count)
+
+    def _packet(self, reader: bytes, known: _Reader, *submessages: bytes) -> Packet:
+        return message(self.guid[:PREFIX], *submessages, to=reader[:PREFIX]), known.addresses
+
+    def _forget_acknowledged(self) -> None:
+        base = min((known.base for known in self._readers.values()), default=self._last + 1)
+        for number in [each for each in self._changes if each < base]:
+            if not self._lasting or self._changes[number].payload is None:
+                self._drop(number)
+
+    def _drop(self, number: int) -> None:
+        change = self._changes.pop(number, None)
+        if change is not None:
+            self._bytes -= len(change.payload or b"")

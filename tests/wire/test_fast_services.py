@@ -1,0 +1,126 @@
+"""Services with Fast DDS, played by a process that sends what it sends; `test_real_services` has the real one."""
+
+from __future__ import annotations
+
+import threading
+
+import pytest
+
+from linkwright.messages import get_service
+from linkwright.wire.dds.fast_services import EarlyRequest, FastServer
+
+SetCameraInfo = get_service("sensor_msgs/srv/SetCameraInfo")
+LARGE = "x" * 300_000
+
+
+def echo(request, response):
+    response.success, response.status_message = True, request.camera_info.distortion_model
+    return response
+
+
+def says(text):
+    request = SetCameraInfo.Request()
+    request.camera_info.distortion_model = text
+    return request
+
+
+@pytest.mark.parametrize("text", ["hej", LARGE])
+def test_a_client_of_ours_takes_the_answer_that_is_for_it(processes, programs, text):
+    us = processes("ours")
+    client = us.node.create_client(SetCameraInfo, "/fast_echo")
+    peer = programs("fast_peer")
+    us.spin_until(client.service_is_ready)
+    future = client.call_async(says(text))
+    us.spin_until(future.done)
+    assert future.result().status_message == text
+    assert not us.warnings()
+    peer.end()
+    us.spin_until(lambda: not client.service_is_ready())
+
+
+@pytest.mark.parametrize("text", ["hej", LARGE])
+def test_a_service_of_ours_answers_with_the_identity_of_the_request(processes, programs, text):
+    us = processes("ours")
+    us.node.create_service(SetCameraInfo, "/our_echo", echo)
+    peer = programs("fast_peer")
+    us.spin_until(lambda: peer.ask("is_matched"))
+    answers = []
+    thread = threading.Thread(target=lambda: answers.append(peer.ask("ask", text)))
+    thread.start()
+    us.spin_until(lambda: answers)
+    thread.join()
+    assert answers == [text]
+    assert not us.warnings()
+
+
+def test_who_speaks_with_cyclone_alone_has_no_other_participant(processes):
+    a, b = processes("a"), processes("b")
+    a.node.create_service(SetCameraInfo, "/our_echo", echo)
+    client = b.node.create_client(SetCameraInfo, "/our_echo")
+    assert client.wait_for_service(60)
+    assert not [thread.name for thread in threading.enumerate() if thread.name == "linkwright-rtps"]
+
+
+def test_without_a_socket_there_is_one_warning_and_the_rest_works(processes, programs, monkeypatch):
+    def refuse(*_):
+        raise OSError("no sockets today")
+
+    monkeypatch.setattr("linkwright.wire.dds.rtps.participant.Network", refuse)
+    us = processes("ours")
+    us.node.create_service(SetCameraInfo, "/our_echo", echo)
+    programs("fast_peer")
+    us.spin_until(us.warnings)
+    assert us.warnings() == ["Services and clients of nodes on Fast DDS are out of reach: no sockets today"]
+
+
+class _Heard:
+    """What a participant knows of one client's writer."""
+
+    def __init__(self, heard_at, last):
+        self.heard_at, self.last = heard_at, last
+
+    def add_writer(self, *_):
+        return "writer"
+
+    def add_reader(self, *_):
+        return "reader"
+
+    def matched_writers(self, _):
+        return {b"w" * 16: self.heard_at}
+
+    def last_of(self, *_):
+        return self.last
+
+
+class _Service:
+    name = "/our_echo"
+    srv_type = SetCameraInfo
+    destroyed = False
+
+    def __init__(self):
+        self.asked = []
+
+    def receive(self, request, _reply, request_id):
+        self.asked.append((request.camera_info.distortion_model, request_id.number))
+
+
+def test_early_requests_get_the_numbers_before_the_first_that_was_heard(monkeypatch):
+    from linkwright.messages import serialize
+
+    now = 100.0
+    monkeypatch.setattr("linkwright.wire.dds.fast_services.time.monotonic", lambda: now)
+    service, participant = _Service(), _Heard(heard_at=None, last=7)
+    server = FastServer(service, participant)
+    for number, text in enumerate(["six", "seven"]):
+        server.came_early(EarlyRequest(b"w" * 16, serialize(says(text)), 1_000_000 * number, now))
+    server.review()
+    assert service.asked == []
+    participant.heard_at = now
+    server.review()
+    assert server.has_more_to_do
+    now += 0.2
+    server.review()
+    assert service.asked == [("six", 6), ("seven", 7)]
+    assert not server.has_more_to_do
+    server.came_early(EarlyRequest(b"w" * 16, serialize(says("eight")), 9_000_000, now))
+    assert not server.has_more_to_do  # what comes from now on comes with its number

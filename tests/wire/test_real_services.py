@@ -1,0 +1,165 @@
+"""Services, parameters and verbs with nodes of real ROS 2 on Fast DDS; see `test_real_ros`."""
+
+from __future__ import annotations
+
+import os
+import threading
+
+import pytest
+
+from linkwright.graph.parameters.client import AsyncParameterClient
+from linkwright.messages import get_service
+from tests.wire.programs import linkwright
+
+PYTHON = os.environ.get("LINKWRIGHT_ROS_PYTHON", "")
+CALLS = 1000
+LARGE = 1_000_000
+SetBool = get_service("std_srvs/srv/SetBool")
+SetCameraInfo = get_service("sensor_msgs/srv/SetCameraInfo")
+
+pytestmark = pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ROS_PYTHON names no interpreter with rclpy")
+
+
+@pytest.fixture
+def real_node(programs):
+    def start(name="real_node", **variables):
+        return programs("real_peer", name, python=PYTHON, RMW_IMPLEMENTATION="rmw_fastrtps_cpp", **variables)
+
+    return start
+
+
+def echo(request, response):
+    response.success, response.status_message = True, request.camera_info.distortion_model
+    return response
+
+
+def says(text):
+    request = SetCameraInfo.Request()
+    request.camera_info.distortion_model = text
+    return request
+
+
+def answered(us, future):
+    us.spin_until(future.done, 30)
+    return future.result()
+
+
+def asking(us, peer, *question):
+    """The answer to a question, for which our callbacks have to run meanwhile."""
+    answers = []
+    thread = threading.Thread(target=lambda: answers.append(peer.ask(*question)))
+    thread.start()
+    us.spin_until(lambda: answers, 120)
+    thread.join()
+    return answers[0]
+
+
+@pytest.mark.parametrize("we_are_first", [True, False])
+def test_a_thousand_calls_of_ours_are_answered_each_with_its_own(processes, real_node, we_are_first):
+    us = processes("ours") if we_are_first else None
+    real_node()
+    us = us or processes("ours")
+    client = us.node.create_client(SetCameraInfo, "/echo")
+    us.spin_until(client.service_is_ready)
+    for number in range(CALLS):
+        assert answered(us, client.call_async(says(f"call {number}"))).status_message == f"call {number}"
+
+
+def test_a_thousand_calls_from_there_are_answered_each_with_its_own(processes, real_node):
+    us = processes("ours")
+    us.node.create_service(SetCameraInfo, "/our_echo", echo)
+    peer = real_node()
+    assert asking(us, peer, "echoes_are_right", "/our_echo", "call", CALLS) == CALLS
+
+
+def test_the_first_call_of_the_first_node_there_is_answered(processes, real_node):
+    """It takes the service for ready as soon as it knows what Cyclone tells, so it asks before we know who it is."""
+    us = processes("ours")
+    us.node.create_service(SetCameraInfo, "/our_echo", echo)
+    for attempt in range(3):
+        peer = real_node(f"real_node_{attempt}")
+        assert asking(us, peer, "echoes", "/our_echo", ["one", "two"]) == ["one", "two"]
+        peer.end()
+
+
+def test_three_clients_there_and_one_here_at_once(processes, real_node):
+    us = processes("ours")
+    us.node.create_service(SetCameraInfo, "/our_echo", echo)
+    client = us.node.create_client(SetCameraInfo, "/echo")
+    peers = [real_node(f"real_node_{number}") for number in range(3)]
+    counts = []
+    threads = [
+        threading.Thread(
+            target=lambda peer=peer, number=number: counts.append(
+                peer.ask("echoes_are_right", "/our_echo", f"client {number}", CALLS // 5)
+            )
+        )
+        for number, peer in enumerate(peers)
+    ]
+    for thread in threads:
+        thread.start()
+    us.spin_until(client.service_is_ready)
+    mine = [answered(us, client.call_async(says(f"mine {number}"))).status_message for number in range(20)]
+    us.spin_until(lambda: len(counts) == 3, 120)
+    for thread in threads:
+        thread.join()
+    assert counts == [CALLS // 5] * 3
+    assert mine == [f"mine {number}" for number in range(20)]
+
+
+def test_what_is_larger_than_a_packet_goes_both_ways(processes, real_node):
+    us = processes("ours")
+    us.node.create_service(SetCameraInfo, "/our_echo", echo)
+    client = us.node.create_client(SetCameraInfo, "/echo")
+    peer = real_node()
+    us.spin_until(client.service_is_ready)
+    large = "".join(chr(ord("a") + number % 26) for number in range(LARGE))
+    assert answered(us, client.call_async(says(large))).status_message == large
+    assert asking(us, peer, "echoes", "/our_echo", [large, "small"]) == [large, "small"]
+
+
+def test_a_server_there_that_is_killed_is_gone_and_its_successor_is_called(processes, real_node):
+    us = processes("ours")
+    client = us.node.create_client(SetCameraInfo, "/echo")
+    first = real_node()
+    us.spin_until(client.service_is_ready)
+    assert answered(us, client.call_async(says("first"))).status_message == "first"
+    first.kill()
+    real_node()
+    us.spin_until(client.service_is_ready)
+    us.spin_until(lambda: answered(us, client.call_async(says("again"))).status_message == "again")
+
+
+def test_a_server_of_ours_that_is_killed_has_a_successor_that_answers(processes, programs, real_node):
+    ours = programs("our_program", "ours")
+    peer = real_node()
+    assert "use_sim_time" in peer.ask("parameters_of", "ours")
+    ours.kill()
+    us = processes("ours")
+    us.node.declare_parameter("second", 1.0)
+    # What is asked before the new one is known there was asked of the one that was killed.
+    while "second" not in asking(us, peer, "parameters_of", "ours"):
+        pass
+
+
+def test_parameters_are_read_and_set_both_ways(processes, real_node):
+    us = processes("ours")
+    us.node.declare_parameter("speed", 1.5)
+    peer = real_node()
+    assert "speed" in asking(us, peer, "parameters_of", "ours")
+    assert asking(us, peer, "set_parameter_of", "ours", "speed", 2.5) == [True, 2.5]
+    assert us.node.get_parameter("speed").value == 2.5
+    parameters = AsyncParameterClient(us.node, "/real_node")
+    us.spin_until(parameters.services_are_ready)
+    assert answered(us, parameters.get_parameters(["speed"])).values[0].double_value == 1.5
+
+
+def test_verbs_call_services_and_parameters_there(real_node):
+    real_node()
+    out, err, status = linkwright("service", "call", "/flip", "std_srvs/srv/SetBool", "{data: false}")
+    assert "success=True, message='by ROS'" in out
+    assert (err, status) == ("", 0)
+    assert linkwright("param", "get", "/real_node", "speed") == ("Double value is: 1.5\n", "", 0)
+    assert linkwright("param", "set", "/real_node", "speed", "2.5") == ("Set parameter successful\n", "", 0)
+    assert "speed: 2.5" in linkwright("param", "dump", "/real_node")[0]
+    assert "  speed\n" in linkwright("param", "list", "/real_node")[0]

@@ -1,0 +1,165 @@
+"""RTPS as bytes, and that everything arrives once however much is lost."""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+
+from linkwright.wire.dds.rtps import discovery_data, values
+from linkwright.wire.dds.rtps.messages import (
+    FRAGMENT,
+    AckNack,
+    Data,
+    Gap,
+    Heartbeat,
+    NackFrag,
+    acknack,
+    data,
+    message,
+    parse,
+)
+from linkwright.wire.dds.rtps.reader import Reader
+from linkwright.wire.dds.rtps.writer import Writer
+
+OURS, THEIRS = b"LW" + bytes(10), b"\x01\x0f" + bytes(range(10))
+AT = (("127.0.0.1", 7411),)
+WRITER, READER = OURS + b"\0\0\1\3", THEIRS + b"\0\0\1\4"
+
+
+def test_a_request_of_fast_dds_is_read_as_it_is_on_the_wire():
+    packet = bytes.fromhex(
+        "52545053 0203 010f 010f000102030405060708 09".replace(" ", "")  # header, version 2.3, eProsima
+        + "09010800 05000000 00000080".replace(" ", "")  # INFO_TS: 5.5 s
+        + "15074000 0000 1000 00000104 00000203 00000000 2a000000".replace(" ", "")  # DATA: to inline QoS, 42
+        + "83001800 010f0001020304050607080900000304 ffffffff 00000000".replace(" ", "")  # related_sample_identity
+        + "01000000".replace(" ", "")
+        + "00010000 01000000".replace(" ", "")
+    )
+    (said,) = parse(packet[:20] + packet[20:], OURS)
+    assert isinstance(said, Data)
+    assert (said.writer, said.reader, said.number) == (THEIRS + b"\0\0\2\3", b"\0\0\1\4", 42)
+    assert said.time == 5_500_000_000
+    assert said.payload == bytes.fromhex("0001000001000000")
+    assert values.read_related_identity(said.inline, said.order) == (THEIRS + b"\0\0\3\4", values.NO_NUMBER)
+
+
+def test_the_identity_of_a_reply_stands_under_both_parameters_of_fast_dds():
+    inline = values.related_identity(READER, (3 << 32) + 5)
+    identity = READER + bytes.fromhex("0300000005000000")
+    assert inline == b"\x83\0\x18\0" + identity + b"\x0f\x80\x18\0" + identity + b"\1\0\0\0"
+
+
+def test_an_acknowledgement_names_what_is_missing():
+    packet = message(THEIRS, acknack(READER[12:], WRITER[12:], 40, [41, 72], 1), to=OURS)
+    (said,) = parse(packet, OURS)
+    assert said == AckNack(THEIRS, READER, WRITER[12:], 40, [41, 72], final=True)
+
+
+@pytest.mark.parametrize("cut", range(4, 100, 3))
+def test_what_is_cut_short_is_not_believed(cut):
+    packet = message(THEIRS, data(b"\0\0\1\4", b"\0\0\2\3", 1, b"\0\1\0\0hej!", values.related_identity(READER, 1)))
+    for said in parse(packet[:cut], OURS):
+        assert isinstance(said, Data)
+
+
+def test_noise_is_survived():
+    noise = random.Random(5)
+    whole = message(THEIRS, data(b"\0\0\1\4", b"\0\0\2\3", 1, b"\0\1\0\0hej!", values.related_identity(READER, 1)))
+    for _ in range(2000):
+        packet = bytearray(whole)
+        for _ in range(noise.randrange(1, 6)):
+            packet[noise.randrange(20, len(packet))] = noise.randrange(256)
+        list(parse(bytes(packet), OURS))
+
+
+def test_messages_for_others_are_passed_over():
+    packet = message(THEIRS, data(b"\0\0\1\4", b"\0\0\2\3", 1, b"\0\1\0\0"), to=b"somebody els")
+    assert list(parse(packet, OURS)) == []
+
+
+def test_endpoints_are_told_and_read():
+    told = discovery_data.describe_endpoint(WRITER, "rr/flipReply", "std_srvs::srv::dds_::SetBool_Response_", b"a=b;")
+    read = discovery_data.read_endpoint(told, is_writer=True)
+    assert read == discovery_data.EndpointData(
+        WRITER, "rr/flipReply", "std_srvs::srv::dds_::SetBool_Response_", True, ()
+    )
+    spdp = discovery_data.describe_participant(OURS, "us", 10.0, list(AT))
+    assert discovery_data.read_participant(spdp) == discovery_data.ParticipantData(OURS, values.VENDOR, 10.0, AT, AT)
+
+
+class _Line:
+    """A writer of ours and a reader of theirs, with packets between them that may get lost."""
+
+    def __init__(self, loss, seed=1):
+        self.writer, self.reader = Writer(WRITER), Reader(READER)
+        self.loss, self.random = loss, random.Random(seed)
+        self.got = []
+        self.carry(self.reader.match(WRITER, AT) + self.writer.match(READER, AT))
+
+    def carry(self, packets):
+        waiting = list(packets)
+        while waiting:
+            packet, _ = waiting.pop(0)
+            if self.random.random() < self.loss:
+                continue
+            for said in parse(packet, THEIRS if packet[8:20] == OURS else OURS):
+                waiting += self._said(said)
+
+    def _said(self, said):
+        if isinstance(said, AckNack):
+            return self.writer.on_acknack(said)
+        if isinstance(said, NackFrag):
+            return self.writer.on_nack_frag(said)
+        if isinstance(said, Heartbeat):
+            return self.reader.on_heartbeat(said)
+        if isinstance(said, Gap):
+            self.reader.on_gap(said)
+            return []
+        whole = self.reader.on_data(said)
+        self.got += [] if whole is None else [(whole.number, whole.payload)]
+        return []
+
+    def settle(self):
+        now = 1e9
+        for _ in range(400):
+            now += 10
+            self.carry(self.writer.remind(now))
+            if self.writer.next_reminder() is None:
+                return
+        raise AssertionError("never acknowledged")
+
+
+@pytest.mark.parametrize("loss", [0.0, 0.3, 0.6])
+def test_everything_arrives_once(loss):
+    line = _Line(loss)
+    for number in range(50):
+        line.carry(line.writer.write(b"\0\1\0\0" + number.to_bytes(4, "little")))
+    line.settle()
+    assert sorted(line.got) == [(n + 1, b"\0\1\0\0" + n.to_bytes(4, "little")) for n in range(50)]
+
+
+@pytest.mark.parametrize("loss", [0.0, 0.3])
+def test_fragments_become_the_sample_they_were(loss):
+    line = _Line(loss)
+    payload = random.Random(2).randbytes(FRAGMENT * 7 + 12)
+    line.carry(line.writer.write(payload, inline=values.related_identity(READER, 9)))
+    line.settle()
+    assert line.got == [(1, payload)]
+
+
+def test_what_is_for_another_reader_is_no_gap_to_wait_for():
+    line = _Line(0.0)
+    line.carry(line.writer.write(b"\0\1\0\0", to=b"somebody els"))
+    line.carry(line.writer.write(b"\0\1\0\0mine", to=THEIRS))
+    assert line.got == [(2, b"\0\1\0\0mine")]
+    assert line.writer.next_reminder() is None
+
+
+def test_a_reader_that_comes_late_gets_nothing_of_before():
+    writer = Writer(WRITER)
+    for _ in range(3):
+        writer.write(b"\0\1\0\0")
+    ((packet, _),) = writer.match(READER, AT)
+    (said,) = parse(packet, THEIRS)
+    assert (said.first, said.last) == (4, 3)
