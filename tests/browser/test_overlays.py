@@ -6,8 +6,12 @@ from itertools import combinations
 
 import pytest
 
+from linkwright.graph import DESCRIPTION_QOS
+from linkwright.messages import String
 from tests.browser.arm import write_arm
 from tests.browser.conftest import becomes, state, until
+from tests.browser.kept import keep
+from tests.browser.live import configuration
 
 pytestmark = pytest.mark.browser
 
@@ -18,6 +22,7 @@ OVERLAYS = (
     ".inspect-card",
     ".selection-card",
     ".line-notice:not([data-notice])",
+    "[data-notice=owner]",
     "[data-notice=meshes]",
     ".voice-notice",
 )
@@ -70,6 +75,8 @@ def test_nothing_that_lies_over_the_scene_lies_over_something_else(start, open_p
         page.set_viewport_size({"width": width, "height": height})
         page.evaluate(TELL)
         becomes(lambda: overlapping(page.evaluate(BOXES, list(OVERLAYS))), [])
+        until(page, "lw.settled")
+        keep(page, f"overlays-{width}x{height}")
 
 
 def unfold(page) -> None:
@@ -127,3 +134,16 @@ def test_fit_shows_all_of_the_robot_again(start, open_page, tmp_path):
     until(page, "lw.view.values.Distance === 10")
     page.keyboard.press("Shift+F")
     until(page, "lw.view.values.Distance < 10")
+
+
+def test_a_description_that_takes_the_place_of_another_is_told(live, open_page):
+    viewer = live(configuration("- {Class: rviz_default_plugins/RobotModel, Name: Robot, Enabled: true}"))
+    viewer.publish("/robot_description", String(data=WIDE), DESCRIPTION_QOS)
+    page = open_page(viewer)
+    notice = page.locator("[data-notice=owner]")
+    assert notice.is_hidden()
+    other = viewer.run(lambda: viewer.node.graph.create_node("other"))
+    publisher = viewer.run(lambda: other.create_publisher(String, "/robot_description", DESCRIPTION_QOS))
+    viewer.run(lambda: publisher.publish(String(data=WIDE.replace('"wide"', '"narrow"'))))
+    notice.get_by_text("The description of another node is shown now").wait_for()
+    becomes(lambda: "Robot The description of /other is shown" in notice.inner_text(), True)

@@ -33,7 +33,14 @@ export class LineNotice {
     this.element.title = pace.isSlow ? words.slowPageHint : words.slowLineHint;
     const lines = reduced.map((each) => h("div", {}, h("b", {}, this.name(each)), ` ${lineText(each)}`));
     if (this.told === "now" && pace.software !== null) lines.push(h("div", {}, words.software(pace.software)));
+    if (this.told === "now" && this.isLitAutomatically) lines.push(h("div", {}, words.plainLight));
     this.element.replaceChildren(h("strong", {}, pace.isSlow ? words.slowPage : words.slowLine), ...lines);
+  }
+
+  /** Whether a light was left to the page, which takes the camera's where it is slow. */
+  private get isLitAutomatically(): boolean {
+    const { globalOptions, displays } = this.session.displays;
+    return [globalOptions, ...displays.map(({ rows }) => rows)].some((rows) => rows.text("", "Light") === "Automatic");
   }
 
   private tellSlowPage(update: () => void): void {

@@ -6,6 +6,7 @@ import { ConnectionNotice } from "./connection-notice";
 import { DiagnosticsBanner } from "./diagnostics-banner";
 import { InspectMenu } from "./inspect-menu";
 import { OrientationSign } from "./orientation-sign";
+import { OwnerNotice } from "./owner-notice";
 import { LineNotice } from "./line-notice";
 import { MeshNotice } from "./mesh-notice";
 import type { WorldCommands } from "./modelling/world-commands";
@@ -38,7 +39,7 @@ export class ScenePanel implements Panel {
     const sign = new OrientationSign(session);
     const simulation = new SimulationBar(session.simulation, session.modelling, commands);
     const notices = h("div", { class: "notices" }, simulation.element, notice.element, banner.element);
-    const told = [new LineNotice(session), new MeshNotice(session.meshProgress), new VoiceNotice(session.voice)];
+    const told = [new LineNotice(session), new OwnerNotice(session), new MeshNotice(session.meshProgress), new VoiceNotice(session.voice)];
     this.column.element.append(inspect.element, card.element, ...told.map((each) => each.element));
     this.box = h(
       "div",

@@ -182,6 +182,10 @@ export class Stage {
     const { displays, frames, view, selection } = session;
     session.pace.software = this.viewport.software;
     loop.judged.on((late) => session.pace.frame(late));
+    session.pace.changed.on(() => {
+      this.viewport.foundSlow ||= session.pace.isSlow;
+      for (const display of displays.displays) this.propertiesChanged(display);
+    });
     const invalidate = (): void => loop.invalidate();
     displays.treeChanged.on(() => this.matchDisplays());
     displays.rowsChanged.on((display) => this.propertiesChanged(display));
@@ -226,8 +230,8 @@ export class Stage {
         const invalidate = (): void => this.loop.invalidate();
         const beside = (show: () => void): void => this.loop.beside(show);
         const camera = (): Camera => this.viewport.camera;
-        const hasGpu = (): boolean => this.viewport.hasGpu;
-        const drawing = new Drawing({ display, session, meshes, panels, invalidate, beside, camera, hasGpu });
+        const affordsStudio = (): boolean => this.viewport.affordsStudio;
+        const drawing = new Drawing({ display, session, meshes, panels, invalidate, beside, camera, affordsStudio });
         this.drawings.set(display.id, { display, drawing, pacing: new Pacing(invalidate) });
         this.viewport.scene.add(drawing.root);
         drawing.interactionChanged?.(this.interaction);
@@ -281,7 +285,7 @@ export class Stage {
   /** Whether a studio lights robots; a world is lit as its display says. */
   private get isInStudio(): boolean {
     const light = this.session.displays.globalOptions.text("Camera", "Light");
-    return this.worlds().length === 0 && (light === "Studio" || (light === "Automatic" && this.viewport.hasGpu));
+    return this.worlds().length === 0 && (light === "Studio" || (light === "Automatic" && this.viewport.affordsStudio));
   }
 
   private lightOfStudio(isOn: boolean): OwnLight | null {

@@ -49,6 +49,8 @@ export class Viewport {
   private readonly around = new SkyAndFog(this.scene);
   private ownBackground = "#303030";
   private drawnBy: string | null = null;
+  /** Frames came late; it stays so, as light that comes and goes is worse than either. */
+  foundSlow = false;
   private readonly headlight = new DirectionalLight(0xffffff, (1 - AMBIENT) * Math.PI);
 
   constructor(readonly container: HTMLElement, resized: () => void) {
@@ -77,9 +79,9 @@ export class Viewport {
     this.renderer.setClearColor(new Color(color));
   }
 
-  /** Whether a graphics card draws, and not the processor. */
-  get hasGpu(): boolean {
-    return this.software === null;
+  /** Whether a light with shadows does not make the page slow: a graphics card draws, and was not found slow. */
+  get affordsStudio(): boolean {
+    return this.software === null && !this.foundSlow;
   }
 
   /** What draws with the processor, as it calls itself; null where a graphics card draws. */

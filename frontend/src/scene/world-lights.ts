@@ -35,14 +35,14 @@ export class WorldLights {
   private lighting: Lighting = "Camera";
   private shadowed = false;
 
-  constructor(private readonly hasGpu: () => boolean) {
+  constructor(private readonly affordsStudio: () => boolean) {
     this.root.matrixAutoUpdate = false;
   }
 
   /** Takes what the display's properties and its world say. */
   style(rows: PropertyRows, scene: WorldScene): void {
     const chosen = rows.text("Automatic", "Light");
-    this.lighting = chosen === "Studio" || chosen === "World" || chosen === "Camera" ? chosen : this.hasGpu() ? "Studio" : "Camera";
+    this.lighting = chosen === "Studio" || chosen === "World" || chosen === "Camera" ? chosen : this.affordsStudio() ? "Studio" : "Camera";
     this.shadowed = this.lighting !== "Camera" && rows.bool(true, "Shadows") && (this.lighting === "Studio" || scene.shadows);
     const key = [this.lighting, this.shadowed, scene.revision].join();
     if (key === this.made) return;

@@ -19,8 +19,8 @@ export interface DrawingContext {
   readonly beside: (show: () => void) => void;
   /** The camera of the 3-D view, as it stands now. */
   readonly camera: () => Camera;
-  /** Whether a graphics card draws, and not the processor. */
-  readonly hasGpu: () => boolean;
+  /** Whether a light with shadows does not make the page slow. */
+  readonly affordsStudio: () => boolean;
 }
 
 /** The scene as it was just drawn, for displays that draw it once more. */

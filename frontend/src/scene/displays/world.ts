@@ -36,7 +36,7 @@ export class WorldDrawing implements Drawing {
 
   constructor(private readonly context: DrawingContext) {
     this.root.matrixAutoUpdate = false;
-    this.lights = new WorldLights(() => context.hasGpu());
+    this.lights = new WorldLights(() => context.affordsStudio());
     this.root.add(this.lights.root, this.sensors.root);
   }
 

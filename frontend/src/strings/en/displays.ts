@@ -71,6 +71,7 @@ export const displays = {
   topicNotShown: "no display shows this",
   showAll: "Show topics that no display shows, too",
   noTopics: "Nothing publishes on any topic yet.",
+  otherDescription: "The description of another node is shown now",
   notFound: "Nothing found.",
   topics: "Known topics",
 };

@@ -68,6 +68,7 @@ export const displays: typeof english = {
   topicNotShown: "没有显示项能显示它",
   showAll: "也列出没有显示项能显示的话题",
   noTopics: "目前还没有节点在任何话题上发布消息。",
+  otherDescription: "现在显示的是另一个节点的描述",
   notFound: "没有找到。",
   topics: "已知话题",
 };

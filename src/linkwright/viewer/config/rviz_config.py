@@ -44,7 +44,7 @@ GLOBAL_OPTIONS = (
         "enum",
         "Camera",
         "What lights the scene: the camera, as in RViz, or a studio, with shadows on the ground. Automatic: the studio "
-        "where a graphics card draws, else the camera. A simulated world is lit as its display says.",
+        "where a graphics card draws and keeps up, else the camera. A simulated world is lit as its display says.",
         options=("Automatic", "Camera", "Studio"),
     ),
 )

@@ -76,7 +76,7 @@ class WorldDisplay(TopicDisplay):
             "Automatic",
             "What lights the scene: the camera, as in RViz, a studio, or the lights of the world with its background, "
             "sky and fog. "
-            "Automatic: the studio where a graphics card draws, else the camera.",
+            "Automatic: the studio where a graphics card draws and keeps up, else the camera.",
             options=("Automatic", "Camera", "Studio", "World"),
         ),
         PropertySpec("Shadows", "bool", True, "Let the lights of the studio and of the world cast shadows."),
