@@ -137,6 +137,7 @@ def test_the_phrase_that_says_more_of_itself_is_meant() -> None:
     ("text", "code", "line", "column", "said"),
     [
         ("places: {}\n", "VOICE302", 1, 1, "'commands' is missing"),
+        ("places: {}\ncommands: {}\n", "VOICE302", 2, 11, "there is no command in 'commands'"),
         ("- a\n", "VOICE302", 1, 1, "must be keys and values"),
         ("commands: [\n", "VOICE302", 2, 1, "not valid YAML"),
         ("command: {}\n", "VOICE302", 1, 1, "has no 'command'"),

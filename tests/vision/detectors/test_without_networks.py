@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import cv2
 import numpy as np
 import pytest
@@ -142,3 +144,31 @@ def test_what_was_found_is_drawn_and_the_picture_is_left_as_it_is():
         np.array([[[50, 60], [150, 60], [150, 160], [50, 160]]], np.float32),
     )
     assert tuple(drawn(picture, marker)[160, 100]) == colour_of("ball")
+
+
+WITHOUT = ("colours", "aruco", "apriltag", "qr", "line")
+
+
+@pytest.mark.parametrize("name", WITHOUT)
+@pytest.mark.parametrize(
+    ("setting", "options"),
+    [
+        ("'labels'", {"labels": Path("names.txt")}),
+        ("'imgsz'", {"size": (320, 640)}),
+        ("'device'", {"device": "gpu"}),
+    ],
+)
+def test_what_only_networks_have_is_refused(name, setting, options):
+    with pytest.raises(LinkwrightError) as caught:
+        make_detector(name, DetectorOptions(**options))
+    (found,) = caught.value.diagnostics
+    assert found.code == "VISION109"
+    assert setting in str(found.message)
+    assert found.hint is not None
+
+
+@pytest.mark.parametrize("name", WITHOUT)
+def test_a_gpu_is_of_no_use_to_them_and_they_say_so(name):
+    (note,) = make_detector(name, DetectorOptions(device="cuda:0")).notes
+    assert "'cuda:0'" in str(note)
+    assert make_detector(name, DetectorOptions()).notes == ()

@@ -65,6 +65,9 @@ class _Reader:
         commands = top.mapping("commands")
         if commands is None:
             raise top.error(phrase("'commands' is missing: it says what the robot can be told"))
+        if not commands:
+            message = phrase("there is no command in 'commands': it says what the robot can be told")
+            raise top.error(message, top.node("commands"))
         places = {name: self._place(name, node) for name, node in self._entries(top, "places")}
         for name, node in self._entries(top, "objects"):
             self._name("object", name, node)

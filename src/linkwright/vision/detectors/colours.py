@@ -7,8 +7,10 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
+from linkwright.diagnostics import Phrase
 from linkwright.vision.detections import Detections
 from linkwright.vision.detector import Detector, Limits
+from linkwright.vision.detectors.devices import without_network
 from linkwright.vision.detectors.library import load_opencv
 from linkwright.vision.detectors.options import DetectorOptions
 from linkwright.vision.detectors.selection import most_certain
@@ -41,6 +43,7 @@ class ColourDetector(Detector):
 
     def __init__(self, options: DetectorOptions) -> None:
         load_opencv()
+        self._notes = without_network(options)
         given = options.settings.get("colours", COLOURS)
         if not isinstance(given, Mapping) or not given:
             raise bad_setting("colours", given)
@@ -51,6 +54,11 @@ class ColourDetector(Detector):
     def names(self) -> tuple[str, ...]:
         """The colours."""
         return tuple(self._ranges)
+
+    @property
+    def notes(self) -> tuple[Phrase, ...]:
+        """That it needs no GPU, where it was given one."""
+        return self._notes
 
     def detect(self, picture: NDArray[np.uint8], limits: Limits) -> Detections:
         """Find patches."""

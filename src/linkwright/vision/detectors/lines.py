@@ -5,9 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from linkwright.diagnostics import Phrase
 from linkwright.vision.detections import Detections
 from linkwright.vision.detector import Detector, Limits
 from linkwright.vision.detectors.colours import mask_of
+from linkwright.vision.detectors.devices import without_network
 from linkwright.vision.detectors.library import load_opencv
 from linkwright.vision.detectors.options import DetectorOptions
 from linkwright.vision.detectors.selection import most_certain
@@ -37,6 +39,7 @@ class LineDetector(Detector):
 
     def __init__(self, options: DetectorOptions) -> None:
         load_opencv()
+        self._notes = without_network(options)
         self._colour = hsv_range("colour", options.settings.get("colour", _DARK))
         self._part = number(options.settings, "part", 0.25, 0.01, 1.0)
         self._least_area = number(options.settings, "least_area", 150.0, 1.0, 1e9)
@@ -45,6 +48,11 @@ class LineDetector(Detector):
     def names(self) -> tuple[str, ...]:
         """One: ``line``."""
         return _NAMES
+
+    @property
+    def notes(self) -> tuple[Phrase, ...]:
+        """That it needs no GPU, where it was given one."""
+        return self._notes
 
     def detect(self, picture: NDArray[np.uint8], limits: Limits) -> Detections:
         """Find the line."""

@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from linkwright.diagnostics import Phrase
 from linkwright.vision.detections import Detections
 from linkwright.vision.detector import Detector, Limits
+from linkwright.vision.detectors.devices import without_network
 from linkwright.vision.detectors.library import load_opencv
 from linkwright.vision.detectors.options import DetectorOptions
 from linkwright.vision.detectors.selection import most_certain
@@ -31,6 +33,7 @@ class MarkerDetector(Detector):
 
     def __init__(self, options: DetectorOptions, dictionary: str = _USUAL_MARKERS) -> None:
         aruco = load_opencv().aruco
+        self._notes = without_network(options)
         known = [name.removeprefix(_PREFIX) for name in sorted(dir(aruco)) if name.startswith(_PREFIX)]
         given = {
             name: str(value).removeprefix(_PREFIX) for name, value in options.settings.items() if name == "dictionary"
@@ -46,6 +49,11 @@ class MarkerDetector(Detector):
     def names(self) -> tuple[str, ...]:
         """The numbers of the markers."""
         return self._names
+
+    @property
+    def notes(self) -> tuple[Phrase, ...]:
+        """That it needs no GPU, where it was given one."""
+        return self._notes
 
     def detect(self, picture: NDArray[np.uint8], limits: Limits) -> Detections:
         """Find markers."""
@@ -69,17 +77,22 @@ class QrDetector(Detector):
     """QR codes; the class of a code is its text, its score 1. One that cannot be read is not told of.
 
     Raises:
-        LinkwrightError: VISION101, OpenCV is missing.
+        LinkwrightError: VISION101 OpenCV is missing, VISION109 it is given what only networks have.
     """
 
     def __init__(self, options: DetectorOptions) -> None:
-        del options  # it has no settings
         self._detector = load_opencv().QRCodeDetector()
+        self._notes = without_network(options)
 
     @property
     def names(self) -> tuple[str, ...]:
         """None: the texts are those in the picture."""
         return ()
+
+    @property
+    def notes(self) -> tuple[Phrase, ...]:
+        """That it needs no GPU, where it was given one."""
+        return self._notes
 
     def detect(self, picture: NDArray[np.uint8], limits: Limits) -> Detections:
         """Find codes."""

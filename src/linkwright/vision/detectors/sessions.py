@@ -7,11 +7,10 @@ from pathlib import Path
 from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, foreign, phrase
+from linkwright.vision.detectors.devices import gpu_of
 from linkwright.vision.detectors.library import load_onnxruntime
-from linkwright.vision.detectors.settings import bad_setting
 
 _CPU, _CUDA = "CPUExecutionProvider", "CUDAExecutionProvider"
-_DEVICE = re.compile(r"(?:cuda(?::(\d+))?|(\d+))$")
 _OF_THE_LIBRARY = re.compile(r"^.* failed:\s*|/onnxruntime_src/\S+ (?:.*?\) (?=[A-Z]))?")
 """Where in onnxruntime's own code something failed, which stands before the reason."""
 _TOO_NEW = re.compile(r"IR version|[Oo]pset \d+")
@@ -33,12 +32,10 @@ def load_session(file: Path, device: str) -> tuple[Any, list[Phrase]]:
     onnxruntime = load_onnxruntime()
     providers: list[Any] = [_CPU]
     notes: list[Phrase] = []
-    if device.lower() not in ("", "cpu"):
-        gpu = _DEVICE.match(device.lower())
-        if gpu is None:
-            raise bad_setting("device", device, phrase("it is 'cpu', or 'cuda:0' for the first GPU"))
+    gpu = gpu_of(device)
+    if gpu is not None:
         if _CUDA in onnxruntime.get_available_providers():
-            providers.insert(0, (_CUDA, {"device_id": gpu[1] or gpu[2] or "0"}))
+            providers.insert(0, (_CUDA, {"device_id": gpu}))
         else:
             notes.append(phrase("onnxruntime has no '{device}' here; the network runs on the CPU", device=device))
     how = onnxruntime.SessionOptions()

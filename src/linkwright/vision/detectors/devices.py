@@ -1,0 +1,46 @@
+"""Where networks run, and what detectors that have none say to options that only networks have."""
+
+from __future__ import annotations
+
+import re
+
+from linkwright.diagnostics import Phrase, phrase
+from linkwright.vision.detectors.options import DetectorOptions
+from linkwright.vision.detectors.settings import bad_setting
+
+_GPU = re.compile(r"(?:cuda(?::(\d+))?|(\d+))$")
+
+
+def gpu_of(device: str) -> str | None:
+    """The number of the GPU that a device is; None for the CPU.
+
+    Args:
+        device: ``cpu``, ``cuda``, ``cuda:0``, ``0``.
+
+    Raises:
+        LinkwrightError: VISION109, it is none of them.
+    """
+    if device.lower() in ("", "cpu"):
+        return None
+    gpu = _GPU.match(device.lower())
+    if gpu is None:
+        raise bad_setting("device", device, phrase("it is 'cpu', or 'cuda:0' for the first GPU"))
+    return gpu[1] or gpu[2] or "0"
+
+
+def without_network(options: DetectorOptions) -> tuple[Phrase, ...]:
+    """See to it that a detector that has no network is given nothing that would be one's.
+
+    Returns:
+        What its user should be told once: that it needs no GPU, where it was given one.
+
+    Raises:
+        LinkwrightError: VISION109, it is given labels or the size of an input, or there is no such device.
+    """
+    given = {"labels": options.labels, "imgsz": options.size and "x".join(map(str, options.size[::-1]))}
+    for name, value in given.items():
+        if value is not None:
+            raise bad_setting(name, value, phrase("only networks have it, and this detector has none: leave it out"))
+    if gpu_of(options.device) is None:
+        return ()
+    return (phrase("this detector has no network that '{device}' would run; it uses the CPU", device=options.device),)
