@@ -54,3 +54,11 @@ def detection(header: Any, left: float, top: float, right: float, bottom: float,
     result.hypothesis.class_id, result.hypothesis.score = name, score
     made.results = [result]
     return made
+
+
+def yolo_detection(left: float, top: float, right: float, bottom: float, name: str, score: float) -> Any:
+    """A yolo_msgs/msg/Detection of a box, of class 4."""
+    made = get_message("yolo_msgs/msg/Detection")(class_id=4, class_name=name, score=score)
+    made.bbox.center.position.x, made.bbox.center.position.y = (left + right) / 2, (top + bottom) / 2
+    made.bbox.size.x, made.bbox.size.y = float(right - left), float(bottom - top)
+    return made

@@ -8,9 +8,9 @@ import pytest
 from linkwright.graph import STATIC_TF_PUBLISHER_QOS
 from linkwright.messages import TFMessage, Time, TransformBatch, get_message
 from linkwright.nodes import NodeOptions
-from linkwright.nodes.vision.detect_3d_node import Detect3DNode
+from linkwright.nodes.vision.detect_3d_node import Detect3DNode, YoloDetect3DNode
 from linkwright.testing import SteppedGraph
-from tests.nodes.vision.red_things import detection
+from tests.nodes.vision.red_things import detection, yolo_detection
 
 NOW = Time.from_nanoseconds(10**9)
 
@@ -21,8 +21,8 @@ def test():
         yield graph
 
 
-def start(test, **parameters):
-    node = Detect3DNode(test.graph, NodeOptions(parameters=parameters))
+def start(test, kind=Detect3DNode, **parameters):
+    node = kind(test.graph, NodeOptions(parameters=parameters))
     found = test.record("/detections_3d")
     markers = test.record("/markers")
     test.settle()
@@ -155,3 +155,24 @@ def test_a_lens_that_is_not_known_is_said(test):
     start(test)
     camera(test, "/camera_info", distortion_model="equidistant", d=[0.1, 0.0, 0.0, 0.0])
     assert "equidistant" in said(test)[-1]
+
+
+def test_as_yolo_ros_with_its_messages_and_parameters(test):
+    parameters = {"maximum_detection_threshold": 0.3, "depth_image_reliability": 2, "depth_info_reliability": 2}
+    _, found, markers = start(test, YoloDetect3DNode, **parameters)
+    camera(test, "/depth_info")
+    depth(test, WALL)
+    array = get_message("yolo_msgs/msg/DetectionArray")(header=header())
+    array.detections = [yolo_detection(*BOX, "ball", 0.9)]
+    array.detections[0].id = "7"
+    test.publish("/detections", array)
+    test.settle()
+    (each,) = found.last.detections
+    at, size = each.bbox3d.center.position, each.bbox3d.size
+    assert (at.x, at.y, at.z) == pytest.approx((2.1, 0.0, 0.5), abs=0.02)
+    assert (size.y, size.z) == pytest.approx((0.16, 0.16), abs=0.01)
+    assert found.last.header.frame_id == each.bbox3d.frame_id == "base_link"
+    assert (each.id, each.class_name, each.bbox.center.position.x) == ("7", "ball", 320.0)
+    assert array.detections[0].bbox3d.frame_id == "", "what others hear, too, stays as it is"
+    _, box, label = markers.last.markers
+    assert (box.scale.y, label.text) == (size.y, "ball 7 2.0 m")

@@ -7,9 +7,9 @@ import pytest
 from linkwright.diagnostics import LinkwrightError
 from linkwright.messages import Time, get_message
 from linkwright.nodes import NodeOptions
-from linkwright.nodes.vision.tracking_node import TrackingNode
+from linkwright.nodes.vision.tracking_node import TrackingNode, YoloTrackingNode
 from linkwright.testing import SteppedGraph
-from tests.nodes.vision.red_things import detection
+from tests.nodes.vision.red_things import detection, yolo_detection
 
 
 def picture(test, number, *things):
@@ -54,3 +54,24 @@ def test_parameters_are_those_of_bytetrack():
 def test_values_that_mean_nothing_are_refused(given):
     with SteppedGraph() as test, pytest.raises(LinkwrightError):
         TrackingNode(test.graph, NodeOptions(parameters=given))
+
+
+def test_as_yolo_ros_with_its_messages_and_parameters():
+    with SteppedGraph() as test:
+        parameters = {"tracker": "bytetrack.yaml", "image_reliability": 1, "min_hits": 1}
+        YoloTrackingNode(test.graph, NodeOptions(namespace="/yolo", parameters=parameters))
+        tracked = test.record("/yolo/tracking")
+        test.settle()
+        array = get_message("yolo_msgs/msg/DetectionArray")()
+        array.header.frame_id = "camera"
+        array.detections = [yolo_detection(10, 20, 40, 60, "ball", 0.9), yolo_detection(80, 20, 90, 60, "cone", 0.8)]
+        test.publish("/yolo/detections", array)
+        test.settle()
+        assert [(each.id, each.class_name, each.class_id) for each in tracked.last.detections] == [
+            ("1", "ball", 4),
+            ("2", "cone", 4),
+        ]
+        assert tracked.last.detections[0].bbox.size.y == 40
+        assert tracked.last.header.frame_id == "camera"
+        assert [each.id for each in array.detections] == ["", ""], "what others hear, too, stays as it is"
+        assert not any("no parameter" in record.text or "not read" in record.text for record in test.log)

@@ -2,14 +2,14 @@
 
 Source: yolo_ros 4 (the executable, the topics ``detections``, ``depth_image``, ``depth_info`` and ``detections_3d``,
 the parameters, and that pictures half a second apart belong together). Different on purpose: detections are those of
-vision_msgs; depth images of 32FC1 are metres whatever the divisor, as REP 118 has them; and with a ``ground_frame``
-things that no depth is known of are where they stand on the ground.
+vision_msgs, but for the node that goes by the name in yolo_ros; depth images of 32FC1 are metres whatever the divisor,
+as REP 118 has them; and with a ``ground_frame`` things that no depth is known of are where they stand on the ground.
 """
 
 from __future__ import annotations
 
 from collections import deque
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +21,7 @@ from linkwright.nodes.depthimage_to_laserscan import depths_of
 from linkwright.nodes.frame_poses import FramePoses
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 from linkwright.nodes.settings import positive, tell_unknown
-from linkwright.nodes.vision.detection_reading import best_hypothesis, box_of
+from linkwright.nodes.vision.detection_reading import VISION_FORM, YOLO_FORM, DetectionForm
 from linkwright.vision.detectors.drawing import colour_of
 from linkwright.vision.places.camera import CameraModel, camera_model
 from linkwright.vision.places.positions import Place, place_by_depth, place_on_ground
@@ -52,6 +52,7 @@ class Detect3DNode(SingleNode):
     """
 
     DEFAULT_NAME = "detect_3d_node"
+    FORM: ClassVar[DetectionForm] = VISION_FORM
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
@@ -74,9 +75,7 @@ class Detect3DNode(SingleNode):
         self._poses = FramePoses(node, "detections have no place:")
         self._depths: deque[Any] = deque(maxlen=_KEPT)
         self._cameras: dict[str, CameraModel] = {}
-        self._array = get_message("vision_msgs/msg/Detection3DArray")
-        self._detection = get_message("vision_msgs/msg/Detection3D")
-        self._hypothesis = get_message("vision_msgs/msg/ObjectHypothesisWithPose")
+        self._array = get_message(self.FORM.places)
         self._publisher = node.create_publisher(self._array, "detections_3d", _DEPTH)
         self._markers = node.create_publisher(get_message("visualization_msgs/msg/MarkerArray"), "markers", _DEPTH)
         info = get_message("sensor_msgs/msg/CameraInfo")
@@ -85,7 +84,7 @@ class Detect3DNode(SingleNode):
         node.create_subscription(
             info, "camera_info", lambda message: self._see_camera("colour", message), SENSOR_DATA_QOS
         )
-        node.create_subscription(get_message("vision_msgs/msg/Detection2DArray"), "detections", self._see, _DEPTH)
+        node.create_subscription(get_message(self.FORM.pictures), "detections", self._see, _DEPTH)
 
     def _see_camera(self, which: str, message: Any) -> None:
         try:
@@ -108,7 +107,7 @@ class Detect3DNode(SingleNode):
                     places.append(place)
         self._publisher.publish(found)
         if self._markers.get_subscription_count():
-            self._markers.publish(_markers(found, places))
+            self._markers.publish(_markers(self.FORM, found, places))
 
     def _places(self, message: Any) -> list[Place | None]:
         """Where the detections are, in the optical frame of their picture."""
@@ -118,7 +117,7 @@ class Detect3DNode(SingleNode):
             return [None] * len(message.detections)
         depths, ground = self._depths_at(message), self._ground_below(message)
         places: list[Place | None] = []
-        for box in map(box_of, message.detections):
+        for box in map(self.FORM.box, message.detections):
             place = None
             if depths is not None:
                 place = place_by_depth(box, depths, camera, spread=self._spread, farthest=self._farthest)
@@ -161,18 +160,8 @@ class Detect3DNode(SingleNode):
 
     def _placed(self, detection: Any, place: Place, pose: Transform, header: Any) -> Any:
         """A detection with its place in the target frame: a box with x along the view and z up."""
-        placed = self._detection(header=header, id=detection.id)
-        x, y, z, *turn = compose(pose, (*place.centre, *_FORWARD))
-        at = placed.bbox.center
-        at.position.x, at.position.y, at.position.z = x, y, z
-        at.orientation.x, at.orientation.y, at.orientation.z, at.orientation.w = turn
-        size = placed.bbox.size
-        size.x, size.y, size.z = place.depth, place.width, place.height
-        for each in detection.results:
-            result = self._hypothesis(hypothesis=each.hypothesis)
-            result.pose.pose = at
-            placed.results.append(result)
-        return placed
+        middle = compose(pose, (*place.centre, *_FORWARD))
+        return self.FORM.placed(detection, header, middle, (place.depth, place.width, place.height))
 
     def _complain(self, reason: str) -> None:
         self._node.get_logger().warning(
@@ -180,21 +169,28 @@ class Detect3DNode(SingleNode):
         )
 
 
-def _markers(found: Any, places: list[Place]) -> Any:
+class YoloDetect3DNode(Detect3DNode):
+    """detect_3d_node of yolo_ros: yolo_msgs/msg/DetectionArray in and out, with places in ``bbox3d``."""
+
+    FORM = YOLO_FORM
+
+
+def _markers(form: DetectionForm, found: Any, places: list[Place]) -> Any:
     """A visualization_msgs/msg/MarkerArray with a box and a label for each detection."""
     kind = get_message("visualization_msgs/msg/Marker")
     array = get_message("visualization_msgs/msg/MarkerArray")()
     array.markers.append(kind(header=found.header, action=kind.DELETEALL))
     for number, (each, place) in enumerate(zip(found.detections, places, strict=True)):
-        name, _ = best_hypothesis(each)
+        name, _ = form.best(each)
+        volume = form.place(each)
         box, label = (
             kind(header=found.header, ns=ns, id=number, type=shape, action=kind.ADD)
             for ns, shape in (("boxes", kind.CUBE), ("labels", kind.TEXT_VIEW_FACING))
         )
         box.lifetime.sec = label.lifetime.sec = _MARKER_SECONDS
-        box.pose, box.scale = each.bbox.center, each.bbox.size
-        at, above = label.pose.position, each.bbox.center.position
-        at.x, at.y, at.z = above.x, above.y, above.z + each.bbox.size.z / 2 + _LABEL_METRES
+        box.pose, box.scale = volume.center, volume.size
+        at, above = label.pose.position, volume.center.position
+        at.x, at.y, at.z = above.x, above.y, above.z + volume.size.z / 2 + _LABEL_METRES
         label.scale.z = _LABEL_METRES
         distance = float(np.linalg.norm(place.centre))
         label.text = " ".join(filter(None, (name, each.id, f"{distance:.1f} m")))

@@ -1,36 +1,119 @@
-"""Detections of vision_msgs, as they are read."""
+"""Detections of vision_msgs and yolo_msgs, as they are read, and as they are given ids and places."""
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
+from copy import copy
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from linkwright.geometry.single import Transform
+from linkwright.messages import get_message
 from linkwright.vision.detections import Detections
 
 
-def detections_of(message: Any) -> Detections:
-    """What a vision_msgs/msg/Detection2DArray says, in its order: the best hypothesis of each detection."""
-    best = [best_hypothesis(each) for each in message.detections]
-    names = tuple(dict.fromkeys(name for name, _ in best))
-    return Detections(
-        np.array([box_of(each) for each in message.detections], np.float32).reshape(-1, 4),
-        np.array([score for _, score in best], np.float32),
-        np.array([names.index(name) for name, _ in best], np.int32),
-        names,
-    )
+class DetectionForm(ABC):
+    """How the messages of a package tell of detections.
+
+    Args:
+        pictures: the type of message with detections in a picture.
+        places: that with detections in metres.
+    """
+
+    def __init__(self, pictures: str, places: str) -> None:
+        self.pictures, self.places = pictures, places
+
+    def read(self, message: Any) -> Detections:
+        """What a message says, in its order: the best hypothesis of each detection."""
+        best = [self.best(each) for each in message.detections]
+        names = tuple(dict.fromkeys(name for name, _ in best))
+        return Detections(
+            np.array([self.box(each) for each in message.detections], np.float32).reshape(-1, 4),
+            np.array([score for _, score in best], np.float32),
+            np.array([names.index(name) for name, _ in best], np.int32),
+            names,
+        )
+
+    def with_id(self, detection: Any, number: int) -> Any:
+        """The detection with the id that a tracker gave it."""
+        tracked = copy(detection)
+        tracked.id = str(number)
+        return tracked
+
+    @abstractmethod
+    def best(self, detection: Any) -> tuple[str, float]:
+        """The class and the score that a detection most likely has; no class where it says none."""
+
+    @abstractmethod
+    def box(self, detection: Any) -> NDArray[np.float64]:
+        """Left, top, right and bottom of a detection in a picture, pixels: shape ``(4,)``."""
+
+    @abstractmethod
+    def placed(self, detection: Any, header: Any, pose: Transform, size: tuple[float, float, float]) -> Any:
+        """The detection with its place: middle and size of a box in metres, in the frame of the header."""
+
+    @abstractmethod
+    def place(self, detection: Any) -> Any:
+        """The box in metres of a detection with its place: a message with ``center`` and ``size``."""
 
 
-def best_hypothesis(detection: Any) -> tuple[str, float]:
-    """The class and the score that a detection most likely has; no class where it says none."""
-    if not detection.results:
-        return "", 0.0
-    best = max((each.hypothesis for each in detection.results), key=lambda each: float(each.score))
-    return best.class_id, float(best.score)
+class _Vision(DetectionForm):
+    """vision_msgs: a detection has hypotheses, of which the class is a text."""
+
+    def best(self, detection: Any) -> tuple[str, float]:
+        if not detection.results:
+            return "", 0.0
+        best = max((each.hypothesis for each in detection.results), key=lambda each: float(each.score))
+        return best.class_id, float(best.score)
+
+    def box(self, detection: Any) -> NDArray[np.float64]:
+        return _corners(detection.bbox.center.position, detection.bbox.size_x, detection.bbox.size_y)
+
+    def placed(self, detection: Any, header: Any, pose: Transform, size: tuple[float, float, float]) -> Any:
+        made = get_message("vision_msgs/msg/Detection3D")(header=header, id=detection.id)
+        _fill(made.bbox, pose, size)
+        for each in detection.results:
+            result = get_message("vision_msgs/msg/ObjectHypothesisWithPose")(hypothesis=each.hypothesis)
+            result.pose.pose = made.bbox.center
+            made.results.append(result)
+        return made
+
+    def place(self, detection: Any) -> Any:
+        return detection.bbox
 
 
-def box_of(detection: Any) -> NDArray[np.float64]:
-    """Left, top, right and bottom of a vision_msgs/msg/Detection2D, pixels: shape ``(4,)``."""
-    middle, half = detection.bbox.center.position, (detection.bbox.size_x / 2, detection.bbox.size_y / 2)
+class _Yolo(DetectionForm):
+    """yolo_msgs: a detection has one class, and its place beside its box in the picture."""
+
+    def best(self, detection: Any) -> tuple[str, float]:
+        return detection.class_name, float(detection.score)
+
+    def box(self, detection: Any) -> NDArray[np.float64]:
+        return _corners(detection.bbox.center.position, detection.bbox.size.x, detection.bbox.size.y)
+
+    def placed(self, detection: Any, header: Any, pose: Transform, size: tuple[float, float, float]) -> Any:
+        made = copy(detection)
+        made.bbox3d = get_message("yolo_msgs/msg/BoundingBox3D")(frame_id=header.frame_id)
+        _fill(made.bbox3d, pose, size)
+        return made
+
+    def place(self, detection: Any) -> Any:
+        return detection.bbox3d
+
+
+VISION_FORM: DetectionForm = _Vision("vision_msgs/msg/Detection2DArray", "vision_msgs/msg/Detection3DArray")
+YOLO_FORM: DetectionForm = _Yolo("yolo_msgs/msg/DetectionArray", "yolo_msgs/msg/DetectionArray")
+
+
+def _corners(middle: Any, width: float, height: float) -> NDArray[np.float64]:
+    half = width / 2, height / 2
     return np.array([middle.x - half[0], middle.y - half[1], middle.x + half[0], middle.y + half[1]], np.float64)
+
+
+def _fill(box: Any, pose: Transform, size: tuple[float, float, float]) -> None:
+    at = box.center
+    at.position.x, at.position.y, at.position.z = pose[:3]
+    at.orientation.x, at.orientation.y, at.orientation.z, at.orientation.w = pose[3:]
+    box.size.x, box.size.y, box.size.z = size

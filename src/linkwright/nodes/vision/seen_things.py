@@ -11,7 +11,7 @@ from linkwright.graph import SENSOR_DATA_QOS, Node
 from linkwright.images import BadImageError, RangeFinder, picture_of
 from linkwright.messages import get_message
 from linkwright.nodes.frame_poses import FramePoses
-from linkwright.nodes.vision.detection_reading import best_hypothesis, box_of
+from linkwright.nodes.vision.detection_reading import VISION_FORM
 from linkwright.vision.places.colours import colour_of
 
 _DEPTH = 10
@@ -87,7 +87,7 @@ class SeenThings:
         if pixels.ndim != 3:
             return
         for detection in message.detections:
-            colour = colour_of(pixels[:, :, :3], box_of(detection)) if detection.id else None
+            colour = colour_of(pixels[:, :, :3], VISION_FORM.box(detection)) if detection.id else None
             if colour is not None:
                 votes = self._votes.setdefault(detection.id, Counter())
                 votes[colour] += 1
@@ -109,7 +109,7 @@ class SeenThings:
             x, y, *_ = compose(pose, (at.x, at.y, at.z, 0.0, 0.0, 0.0, 1.0))
             colours = self._votes.get(each.id)
             colour = colours.most_common(1)[0][0] if colours else None
-            name, score = best_hypothesis(each)
+            name, score = VISION_FORM.best(each)
             size = each.bbox.size
             shape = size.y / size.z if size.z > 0 else 1.0
             self.things.append(Thing(name, each.id, colour, x, y, size.y / 2, shape, score, time_ns))

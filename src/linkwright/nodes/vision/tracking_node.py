@@ -2,20 +2,21 @@
 
 Source: yolo_ros 4 (the executable, the topics ``detections`` and ``tracking``); its parameters are in a file of
 ByteTrack's there, and parameters of the node here. Different on purpose: it needs no pictures, and both topics are
-vision_msgs/msg/Detection2DArray.
+vision_msgs/msg/Detection2DArray, but for the node that goes by the name in yolo_ros.
 """
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
 
-from linkwright.graph import Graph
+from linkwright.graph import Graph, ParameterDescriptor
 from linkwright.messages import get_message
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 from linkwright.nodes.settings import bad_value, positive, tell_unknown
-from linkwright.nodes.vision.detection_reading import detections_of
+from linkwright.nodes.vision.detection_reading import VISION_FORM, YOLO_FORM, DetectionForm
 from linkwright.vision.places.tracker import Tracker, TrackerSettings
 
+_ANY = ParameterDescriptor(dynamic_typing=True)
 _DEPTH = 10
 _PICTURES_A_SECOND = 30.0
 """Of the pictures that ``track_buffer`` counts."""
@@ -33,16 +34,18 @@ class TrackingNode(SingleNode):
     """
 
     DEFAULT_NAME = "tracking_node"
+    FORM: ClassVar[DetectionForm] = VISION_FORM
+    IGNORED: ClassVar[tuple[str, ...]] = ("tracker",)  # of yolo_ros; there is one tracker here
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         node = self._node
         with starting(node):
-            node.declare_parameter("tracker", "bytetrack.yaml")  # of yolo_ros; there is one tracker here
+            for name in self.IGNORED:
+                node.declare_parameter(name, None, _ANY)
             self._tracker = Tracker(self._settings())
             tell_unknown(node)
-        self._array = get_message("vision_msgs/msg/Detection2DArray")
-        self._detection = get_message("vision_msgs/msg/Detection2D")
+        self._array = get_message(self.FORM.pictures)
         self._publisher = node.create_publisher(self._array, "tracking", _DEPTH)
         node.create_subscription(self._array, "detections", self._see, _DEPTH)
 
@@ -67,11 +70,16 @@ class TrackingNode(SingleNode):
         return positive(self._node, name, self._node.declare_parameter(name, usual).value)
 
     def _see(self, message: Any) -> None:
-        ids = self._tracker.update(detections_of(message), message.header.stamp.nanoseconds / 1e9)
+        ids = self._tracker.update(self.FORM.read(message), message.header.stamp.nanoseconds / 1e9)
         tracked = self._array(header=message.header)
         tracked.detections = [
-            self._detection(header=each.header, results=each.results, bbox=each.bbox, id=str(number))
-            for each, number in zip(message.detections, ids, strict=True)
-            if number
+            self.FORM.with_id(each, number) for each, number in zip(message.detections, ids, strict=True) if number
         ]
         self._publisher.publish(tracked)
+
+
+class YoloTrackingNode(TrackingNode):
+    """tracking_node of yolo_ros: both topics are yolo_msgs/msg/DetectionArray."""
+
+    FORM = YOLO_FORM
+    IGNORED = (*TrackingNode.IGNORED, "image_reliability")  # it needs no pictures
