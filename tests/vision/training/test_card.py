@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import hashlib
 import json
 
 import numpy as np
@@ -7,7 +8,7 @@ import pytest
 
 from linkwright.vision.detections import Detections
 from linkwright.vision.evaluation import Things, evaluate
-from linkwright.vision.training.card import Examination, card, confusion, made_of
+from linkwright.vision.training.card import Examination, card, confusion, made_of, origin
 
 BOXES = np.array([[0, 0, 8, 8], [20, 20, 60, 60]], np.float32)
 
@@ -46,13 +47,38 @@ def test_confusion_has_a_row_for_what_is_there_and_a_column_for_what_was_said():
     ]
 
 
+def sum_of(world):
+    return hashlib.sha256(world.encode()).hexdigest()
+
+
+def write_card(folder, *worlds, more=()):
+    """What `linkwright dataset` writes down of pictures that were made in one run, or in more."""
+    folder.mkdir(exist_ok=True)
+    listed = [{"name": f"rooms/{each}.world", "file": f"{each}.world", "sha256": sum_of(each)} for each in worlds]
+    runs = [{"seed": 3, "most": 10}, *more]
+    made = [{"worlds": listed, "added": ["mbot.urdf"], "options": options} for options in runs]
+    (folder / "dataset.json").write_text(json.dumps({"made": made}))
+    return folder
+
+
+def test_a_card_says_which_worlds_judge_and_which_of_them_taught_too(tmp_path):
+    lesson = write_card(tmp_path / "lesson", "playground", "house")
+    assert origin(write_card(tmp_path / "unseen", "maze", "line_track"), lesson) == (
+        "Worlds: line_track, maze. Options: seed 3, most 10. None of them taught it."
+    )
+    seen = origin(write_card(tmp_path / "seen", "maze", "house"), lesson)
+    assert seen.endswith(" It was taught with other pictures of house.")
+    text = card("eye", {}, [Examination("Rooms", figures([0, 1]), seen)])
+    assert f"## Rooms\n\n{seen}\n\n1 pictures." in text
+    assert origin(tmp_path, lesson) == ""
+    assert origin(write_card(tmp_path / "unseen", "maze"), tmp_path).endswith(" Options: seed 3, most 10.")
+
+
 def test_a_card_says_how_the_dataset_was_made(tmp_path):
-    world = {"name": "playground", "file": "playground.world", "sha256": "0123456789abcdef"}
-    made = {"worlds": [world], "added": ["mbot.urdf"], "options": {"seed": 3, "most": 10}}
-    (tmp_path / "dataset.json").write_text(json.dumps({"made": [made, made]}))
+    write_card(tmp_path, "playground", more=[{"seed": 3, "most": 10}, {"seed": 4, "most": 10}])
     assert made_of(tmp_path) == {
-        "worlds": "playground (sha256 0123456789ab)",
-        "options of linkwright dataset": "seed 3, most 10; seed 3, most 10",
+        "worlds": f"playground (sha256 {sum_of('playground')[:12]})",
+        "options of linkwright dataset": "seed 3, most 10; seed 4, most 10",
         "robots and models put in": "mbot.urdf",
     }
 

@@ -56,7 +56,7 @@ def weights(course: Course) -> np.ndarray:
 
 
 def test_a_network_overfits_eight_pictures(shapes, tmp_path):
-    course = course_of(options(shapes, tmp_path, epochs=300, rate=1.5e-3))
+    course = course_of(options(shapes, tmp_path, epochs=300, whole_epochs=300, rate=1.5e-3))
     epochs = []
     course.run(epochs.append)
     first, last = np.mean([each.losses for each in epochs[:5]], 0), np.mean([each.losses for each in epochs[-5:]], 0)
@@ -71,6 +71,18 @@ def test_the_same_seed_gives_the_same_weights_and_another_one_others(shapes, tmp
         course.run(lambda _: None)
     assert (weights(same[0]) == weights(same[1])).all()
     assert (weights(same[0]) != weights(same[2])).any()
+
+
+def test_with_16_bits_it_learns_the_same_but_for_rounding(shapes, tmp_path):
+    losses = []
+    for precision in ("float32", "bfloat16"):
+        course, told = course_of(options(shapes, tmp_path, epochs=12, whole_epochs=0, precision=precision)), []
+        course.run(told.append)
+        assert all(each.dtype == torch.float32 for each in course.network.parameters())
+        losses.append([each.losses for each in told])
+    exact, rounded = np.array(losses)
+    assert (exact != rounded).any()
+    assert rounded == pytest.approx(exact, rel=0.2)
 
 
 def test_what_is_resumed_ends_as_if_it_had_not_been_interrupted(shapes, tmp_path):
@@ -169,7 +181,7 @@ def test_the_command_trains_judges_and_writes_a_card(shapes, tmp_path, capsys, m
     assert told.out.count("mAP50 ") >= 2
     card = (tmp_path / "eye.md").read_text(encoding="utf-8")
     assert f"vision train {shapes}" in card
-    assert "## shapes (val), which it never saw" in card
+    assert "## Held out: shapes (val)" in card
     assert main(["vision", "evaluate", str(tmp_path / "eye.onnx"), str(shapes), "--confusion"]) == 0
     assert "8 pictures: mAP50" in capsys.readouterr().out
     assert main([*words, "--resume", "--epochs", "3"]) == 0

@@ -6,9 +6,12 @@ import numpy as np
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.vision.training.pictures import changed, read_lesson, read_picture
+from linkwright.vision.training.options import Options, View
+from linkwright.vision.training.pictures import Lesson, changed, read_lesson, read_picture, repeated, repeats
 from linkwright.vision.training.reading import open_dataset
 from tests.vision.training.pictures_of_shapes import NAMES, write_shapes
+
+VIEW = View((64, 64), (0.42, 1.1))
 
 
 @pytest.fixture
@@ -141,7 +144,7 @@ def test_boxes_stay_with_what_they_are_around(shapes):
     lesson = read_lesson(open_dataset(shapes).read("train"), 96, 96)
     seen = 0
     for seed in range(40):
-        picture, things = changed(lesson, seed % 3, (64, 64), np.random.default_rng(seed))
+        picture, things = changed(lesson, seed % 3, VIEW, np.random.default_rng(seed))
         assert picture.shape == (64, 64, 3)
         for kind, left, top, right, bottom in things:
             assert 0 <= left < right <= 64
@@ -155,6 +158,35 @@ def test_boxes_stay_with_what_they_are_around(shapes):
 
 def test_the_same_dice_change_a_picture_in_the_same_way(shapes):
     lesson = read_lesson(open_dataset(shapes).read("train"), 96, 96)
-    one, other = (changed(lesson, 0, (64, 64), np.random.default_rng(5)) for _ in range(2))
+    one, other = (changed(lesson, 0, VIEW, np.random.default_rng(5)) for _ in range(2))
     assert (one[0] == other[0]).all()
     assert (one[1] == other[1]).all()
+
+
+def test_the_last_epochs_are_of_whole_pictures(shapes):
+    options = Options(shapes, shapes, epochs=5, whole_epochs=2, width=96, height=96)
+    assert [options.view(epoch).size for epoch in range(5)] == [(64, 64)] * 3 + [(96, 96)] * 2
+    assert options.view(4).scales[0] > options.view(0).scales[0]
+    lesson = read_lesson(open_dataset(shapes).read("train"), 96, 96)
+    same = View((96, 96), (1.0, 1.0))
+    (_, things) = changed(lesson, 0, same, np.random.default_rng(5))
+    here = lesson.things[0]
+    sides = (things[:, 3:] - things[:, 1:3]) / (here[:, 3:] - here[:, 1:3])
+    assert (things[:, 0] == here[:, 0]).all()
+    assert np.median(sides) == pytest.approx(1, abs=0.12)  # seen whole, and as large as they are
+
+
+def test_pictures_of_rare_classes_are_seen_more_often():
+    def picture(*classes):
+        return np.array([[each, 0, 0, 9, 9] for each in classes], np.float32).reshape(-1, 5)
+
+    things = (*[picture(0)] * 16, *[picture(1, 0)] * 8, picture(2), picture(-4, 0), picture())
+    lesson = Lesson(np.zeros((len(things), 1, 1, 3), np.uint8), things)
+    times = repeats(lesson, 4)
+    assert times[:24] == pytest.approx(1)  # classes 0 and 1 are at the median of 8, or more frequent
+    assert times[24] == pytest.approx(np.sqrt(8))
+    assert times[25:] == pytest.approx(1)  # what is to be ignored, or nothing
+    chosen = [repeated(times, np.random.default_rng(seed)) for seed in range(200)]
+    counts = np.mean([np.bincount(each, minlength=len(things)) for each in chosen], 0)
+    assert counts[:24] == pytest.approx(1)
+    assert counts[24] == pytest.approx(np.sqrt(8), abs=0.15)

@@ -30,6 +30,13 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--name", default="detector", help="of the network and its card, default detector")
     parser.add_argument("--epochs", type=positive_int, default=40, help="how often it sees each picture, default 40")
+    parser.add_argument(
+        "--whole-epochs",
+        metavar="N",
+        type=unsigned_int,
+        default=2,
+        help="so many of them, the last ones, with whole pictures instead of parts, default 2",
+    )
     parser.add_argument("--batch", type=positive_int, default=16, help="pictures in a step, default 16")
     parser.add_argument("--rate", type=positive_float, default=0.002, help="the highest learning rate, default 0.002")
     parser.add_argument(
@@ -40,6 +47,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--seed", type=unsigned_int, default=0, help="of all that is drawn by lot, default 0")
     parser.add_argument("--threads", type=positive_int, default=2, help="of the processor, default 2")
+    parser.add_argument(
+        "--precision",
+        choices=("float32", "bfloat16"),
+        default="float32",
+        help="what it computes with while it learns: float32 (default), or bfloat16, faster where the processor has it",
+    )
     parser.add_argument(
         "--device",
         choices=("auto", "cpu"),
@@ -69,6 +82,7 @@ def run(arguments: argparse.Namespace) -> int:
         output=arguments.output,
         name=arguments.name,
         epochs=arguments.epochs,
+        whole_epochs=arguments.whole_epochs,
         batch=arguments.batch,
         rate=arguments.rate,
         width=width,
@@ -76,6 +90,7 @@ def run(arguments: argparse.Namespace) -> int:
         channels=arguments.channels,
         seed=arguments.seed,
         threads=arguments.threads,
+        precision=arguments.precision,
         device=arguments.device,
         resume=arguments.resume,
         held_out=tuple(arguments.held_out),

@@ -20,10 +20,12 @@ class Examination:
     Attributes:
         title: what the pictures are.
         figures: how well it does on them.
+        origin: what they were made of; empty where that is not known.
     """
 
     title: str
     figures: Evaluation
+    origin: str = ""
 
 
 def card(name: str, facts: Mapping[str, str], examinations: Sequence[Examination]) -> str:
@@ -37,7 +39,8 @@ def card(name: str, facts: Mapping[str, str], examinations: Sequence[Examination
     lines = [f"# {name}", "", "| | |", "| --- | --- |"]
     lines += [f"| {key} | {_cell(value)} |" for key, value in facts.items()]
     for each in examinations:
-        lines += ["", f"## {each.title}", "", *_figures(each.figures)]
+        origin = [each.origin, ""] if each.origin else []
+        lines += ["", f"## {each.title}", "", *origin, *_figures(each.figures)]
     lines += ["", "## Where it fails", ""]
     failures = [line for each in examinations for line in _failures(each)]
     lines += failures or ["Nothing stands out in these pictures."]
@@ -46,15 +49,51 @@ def card(name: str, facts: Mapping[str, str], examinations: Sequence[Examination
 
 def made_of(folder: Path) -> dict[str, str]:
     """What the card of `linkwright dataset` says of the making; nothing where another program made the dataset."""
+    making = _making(folder)
+    if making is None:
+        return {}
+    worlds = ", ".join(f"{name} (sha256 {digest[:12]})" for name, digest in sorted(making.worlds))
+    made = {"worlds": worlds, "options of linkwright dataset": making.options}
+    return {**made, "robots and models put in": ", ".join(sorted(making.added))} if making.added else made
+
+
+def origin(folder: Path, lesson: Path) -> str:
+    """Of which worlds the pictures of a dataset are, and whether the network was taught with pictures of them, too.
+
+    Args:
+        folder: of the dataset that judges.
+        lesson: of the one that taught.
+    """
+    making, taught = _making(folder), _making(lesson)
+    if making is None:
+        return ""
+    told = f"Worlds: {', '.join(sorted(name for name, _ in making.worlds))}. Options: {making.options}."
+    if taught is None:
+        return told
+    digests = {digest for _, digest in taught.worlds}
+    known = ", ".join(sorted(name for name, digest in making.worlds if digest in digests))
+    return f"{told} {f'It was taught with other pictures of {known}.' if known else 'None of them taught it.'}"
+
+
+@dataclass(frozen=True, slots=True)
+class _Making:
+    """What a dataset was made of: worlds as pairs of name and SHA-256, options in words, files put in."""
+
+    worlds: frozenset[tuple[str, str]]
+    options: str
+    added: frozenset[str]
+
+
+def _making(folder: Path) -> _Making | None:
+    """What `linkwright dataset` wrote down of the making; None where there is nothing."""
     try:
         runs = json.loads((folder / "dataset.json").read_text(encoding="utf-8"))["made"]
-        worlds = {f"{each['name']} (sha256 {each['sha256'][:12]})" for run in runs for each in run["worlds"]}
+        worlds = {(Path(each["file"]).stem, str(each["sha256"])) for run in runs for each in run["worlds"]}
         added = {str(each) for run in runs for each in run["added"]}
-        options = "; ".join(", ".join(f"{key} {value}" for key, value in run["options"].items()) for run in runs)
-    except (OSError, ValueError, KeyError, TypeError):
-        return {}
-    made = {"worlds": ", ".join(sorted(worlds)), "options of linkwright dataset": options}
-    return {**made, "robots and models put in": ", ".join(sorted(added))} if added else made
+        options = [", ".join(f"{key} {value}" for key, value in run["options"].items()) for run in runs]
+    except (OSError, ValueError, KeyError, TypeError, AttributeError):
+        return None
+    return _Making(frozenset(worlds), "; ".join(dict.fromkeys(options)), frozenset(added))
 
 
 def table(figures: Evaluation) -> list[str]:

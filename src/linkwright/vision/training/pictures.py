@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, phrase
 from linkwright.vision.detectors.letterbox import letterboxed
 from linkwright.vision.detectors.library import load_opencv
+from linkwright.vision.training.options import View
 from linkwright.vision.training.reading import Labelled
 
 GREY = 114
 """Around pictures of another shape, as trainers of the YOLO family do it."""
 _FEWEST_PIXELS = 3.0  # a thing that is narrower after a change is no longer asked for
 _LEAST_SHARE = 0.3  # nor one of which less is left
-_SMALLEST, _LARGEST = 0.42, 1.1  # how large pictures become
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,8 +76,33 @@ def read_lesson(labelled: Sequence[Labelled], width: int, height: int) -> Lesson
     return Lesson(pictures, tuple(things))
 
 
+def repeats(lesson: Lesson, classes: int) -> NDArray[np.float64]:
+    """How often each picture is seen in an epoch: once, and more often where something of a rare class is in it.
+
+    A class that is in a share f of the pictures counts as rare below the median m of these shares; its pictures are
+    seen sqrt(m / f) times, as with the repeat factors of LVIS (Gupta and others 2019).
+
+    Returns:
+        Shape ``(n,)``, 1 or more.
+    """
+    there: NDArray[np.bool_] = np.zeros((len(lesson.things), classes), np.bool_)
+    for row, things in zip(there, lesson.things, strict=True):
+        row[things[things[:, 0] >= 0, 0].astype(np.int64)] = True
+    pictures = there.sum(0)
+    usual = float(np.median(pictures[pictures > 0])) if pictures.any() else 1.0
+    factors = np.maximum(1.0, np.sqrt(usual / np.maximum(pictures, 1)))
+    found: NDArray[np.float64] = np.where(there, factors, 1.0).max(1, initial=1.0)
+    return found
+
+
+def repeated(times: NDArray[np.float64], chance: np.random.Generator) -> NDArray[np.int64]:
+    """The numbers of pictures, each so often; chance decides of fractions."""
+    whole: NDArray[np.int64] = np.floor(times + chance.random(len(times))).astype(np.int64)
+    return np.repeat(np.arange(len(times)), whole)
+
+
 def changed(
-    lesson: Lesson, place: int, view: tuple[int, int], chance: np.random.Generator
+    lesson: Lesson, place: int, view: View, chance: np.random.Generator
 ) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
     """A part of a picture as another camera in another light might have taken it.
 
@@ -86,7 +111,7 @@ def changed(
     Args:
         lesson: the pictures.
         place: of the picture in it.
-        view: width and height of the part.
+        view: how large the part is, and by what pictures are scaled.
         chance: where the dice come from.
 
     Returns:
@@ -95,7 +120,9 @@ def changed(
     cv2 = load_opencv()
     picture, things = lesson.pictures[place], lesson.things[place]
     height, width = picture.shape[:2]
-    scale = float(np.exp(chance.uniform(np.log(_SMALLEST), np.log(_LARGEST))))
+    size = view.size
+    smallest, largest = np.log(view.scales)
+    scale = float(np.exp(chance.uniform(smallest, largest)))
     mirror = -1.0 if chance.random() < 0.5 else 1.0
     aspect = float(np.exp(chance.uniform(-0.1, 0.1)))
     across, down = scale * aspect, scale / aspect
@@ -103,15 +130,15 @@ def changed(
     asked = things[things[:, 0] >= 0]
     if len(asked) and chance.random() < 0.7:  # something is to be seen
         some = asked[int(chance.integers(len(asked)))]
-        middle = (some[1:3] + some[3:5]) / 2 + chance.uniform(-0.4, 0.4, 2) * view / np.array((across, down))
+        middle = (some[1:3] + some[3:5]) / 2 + chance.uniform(-0.4, 0.4, 2) * size / np.array((across, down))
     # The part lies within the picture; where that is too small, grey is around.
-    room = np.array((width, height)) - np.array(view) / (across, down)
-    corner = np.clip(middle - np.array(view) / (across, down) / 2, np.minimum(room, 0), np.maximum(room, 0))
+    room = np.array((width, height)) - np.array(size) / (across, down)
+    corner = np.clip(middle - np.array(size) / (across, down) / 2, np.minimum(room, 0), np.maximum(room, 0))
     left, top = corner
-    shift = -left * across if mirror > 0 else view[0] + left * across
+    shift = -left * across if mirror > 0 else size[0] + left * across
     turn: NDArray[np.float32] = np.array([[across * mirror, 0, shift], [0, down, -top * down]], np.float32)
-    moved = cv2.warpAffine(picture, turn, view, flags=cv2.INTER_LINEAR, borderValue=(GREY, GREY, GREY))
-    return _in_other_light(moved, chance), _moved(things, turn, *view)
+    moved = cv2.warpAffine(picture, turn, size, flags=cv2.INTER_LINEAR, borderValue=(GREY, GREY, GREY))
+    return _in_other_light(moved, chance), _moved(things, turn, *size)
 
 
 def _in_other_light(picture: NDArray[np.uint8], chance: np.random.Generator) -> NDArray[np.uint8]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, phrase
 from linkwright.vision.evaluation import Evaluation
-from linkwright.vision.training.card import Examination, card, made_of
+from linkwright.vision.training.card import Examination, card, made_of, origin
 from linkwright.vision.training.library import need_pytorch
 from linkwright.vision.training.measuring import measure
 from linkwright.vision.training.options import Options
@@ -90,8 +90,9 @@ def teach(options: Options, tell: Callable[[Epoch], None]) -> Taught:
         write_whole_file(network, content)
         examinations = [Examination(f"Pictures kept from {dataset.folder.name}", measure(network, dataset.names, exam))]
         for other, split, pictures in held_out:
-            title = f"{other.folder.name} ({split}), which it never saw"
-            examinations.append(Examination(title, measure(network, other.names, pictures)))
+            title = f"Held out: {other.folder.name} ({split})"
+            judged = measure(network, other.names, pictures)
+            examinations.append(Examination(title, judged, origin(other.folder, dataset.folder)))
         text = options.output / f"{options.name}.md"
         write_whole_file(text, card(options.name, facts, examinations))
     except OSError as error:

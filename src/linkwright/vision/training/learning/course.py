@@ -26,7 +26,7 @@ from linkwright.vision.training.learning.network import Network, Shape, cells
 from linkwright.vision.training.learning.optimizer import Optimizer
 from linkwright.vision.training.measuring import LIMITS
 from linkwright.vision.training.options import Options
-from linkwright.vision.training.pictures import Lesson, changed
+from linkwright.vision.training.pictures import Lesson, changed, repeated, repeats
 
 _WARM_UP = 100  # steps in which the rate grows to its highest
 _LEAST_RATE = 0.02  # of the highest, at the end
@@ -79,6 +79,7 @@ class Course:
         self.names = tuple(names)
         self.options = options
         self._lesson, self._exam = lesson, exam
+        self._repeats = repeats(lesson, len(names))
         self.shape = Shape(len(names), options.channels)
         self._device = torch.device("cuda" if options.device == "auto" and torch.cuda.is_available() else "cpu")
         self.network = Network(self.shape).to(self._device, memory_format=torch.channels_last)
@@ -134,7 +135,8 @@ class Course:
         batches = list(self._batches(epoch))
         for chosen, seed in batches:
             pictures, things = self._batch(chosen, seed)
-            boxes, logits = self.network(pictures)
+            with torch.autocast(self._device.type, torch.bfloat16, enabled=self.options.precision == "bfloat16"):
+                boxes, logits = self.network(pictures)
             middles, _ = cells(pictures.shape[3], pictures.shape[2], pictures.device)
             total, parts = loss(boxes, logits, middles, things)
             self._optimizer.forget_gradients()
@@ -149,14 +151,16 @@ class Course:
 
     def _batches(self, epoch: int) -> Iterator[tuple[NDArray[np.int64], int]]:
         """The pictures of each step, in an order that only the seed and the epoch decide."""
-        order = np.random.default_rng((self.options.seed, epoch)).permutation(len(self._lesson.things))
+        chance = np.random.default_rng((self.options.seed, epoch))
+        order = chance.permutation(repeated(self._repeats, chance))
         size = min(self.options.batch, len(order))
         for start in range(0, len(order) - size + 1, size):
             yield order[start : start + size], start
 
     def _batch(self, chosen: NDArray[np.int64], start: int) -> tuple[Tensor, Tensor]:
         chance = np.random.default_rng((self.options.seed, self.epoch, start))
-        both = [changed(self._lesson, int(place), self.options.view, chance) for place in chosen]
+        view = self.options.view(self.epoch)
+        both = [changed(self._lesson, int(place), view, chance) for place in chosen]
         most = max([1, *(len(things) for _, things in both)])
         table: NDArray[np.float32] = np.full((len(both), most, 5), -1, np.float32)
         for row, (_, things) in zip(table, both, strict=True):
