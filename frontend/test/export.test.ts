@@ -55,6 +55,24 @@ describe("the robot of an exported page", () => {
     expect(moved(robot, quarter, "base")).toEqual([0, 0, 0, 0, 0, 0, 1]);
   });
 
+  it("takes along another robot whose joints follow its own, and leaves those of it alone that follow none", () => {
+    const names = [...TABLE.names, "old/base", "old/arm", "old/hand"];
+    const table: FrameTable = { ...TABLE, names, parents: [...TABLE.parents, 2, 4, 5] };
+    const old: RobotScene = {
+      ...ROBOT,
+      display: "o",
+      links: ["base", "arm", "hand"].map((name) => ({ ...link(name), frame: `old/${name}` })),
+      joints: [joint("spin", "revolute", "base", "arm", { position: [1, 0, 0] }), joint("gone", "revolute", "arm", "hand")],
+    };
+    const zero = { ...AT_ZERO, poses: rows([1, 0, 0], [1, 0, 0], [0, 0, 0], [1, 0, 0.5], [0, 0, 0], [1, 0, 0], [1, 2, 0]) };
+    const both = new MovingRobot(table, zero, ROBOT, controls, [{ robot: old, joints: { spin: "turn" } }]);
+    const { poses } = both.transforms({ turn: Math.PI / 2 });
+    const at = (name: string): number[] => [...poses.subarray(names.indexOf(name) * 7, names.indexOf(name) * 7 + 7)].map((each) => Math.round(each * 1e5) / 1e5 + 0);
+    const half = Math.round(HALF * 1e5) / 1e5;
+    expect(at("old/arm")).toEqual([1, 0, 0, 0, 0, half, half]);
+    expect(at("old/hand")).toEqual([-1, 0, 0, 0, 0, half, half]);
+  });
+
   it("keeps the fixed frame where it is, though it is not the root", () => {
     const fixed = { ...AT_ZERO, poses: rows([0, 0, 0], [0, 0, 0], [-1, 0, 0], [0, 0, 0.5]) };
     const turned = new MovingRobot(TABLE, fixed, ROBOT, [control("turn")]).transforms({ turn: Math.PI });

@@ -11,6 +11,7 @@ from playwright.sync_api import Page
 
 from tests.browser.conftest import becomes, state, until
 from tests.browser.pixels import colors_at
+from tests.browser.test_export import export, open_file  # noqa: F401 - a fixture
 
 pytestmark = pytest.mark.browser
 
@@ -188,3 +189,23 @@ def test_a_commit_is_the_old_one(start, open_page, files):
     group(page, "camera").get_by_role("button", name="HEAD:new.urdf:5", exact=False).click()
     becomes(lambda: state(page, "panels.source.origin.file").endswith("files/new.urdf"), True)
     page.locator(".source-panel").get_by_text('"camera"').first.wait_for()
+
+
+def test_a_review_opens_from_disk_with_both_robots_the_list_and_joints_that_move_both(open_file, files, tmp_path):  # noqa: F811 - the fixture
+    old, new = files
+    out = tmp_path / "review.html"
+    export(out, old, str(new))
+    assert str(tmp_path) not in out.read_text(encoding="utf-8")
+    page = open_file(out)
+    assert page.locator(".comparison-count").inner_text() == "5 differences"
+    becomes(lambda: looks(page, 1), {"arm": (GREY, 0.4), "camera": (RED, 0.63)})
+    assert looks(page, 0)["lidar"] == (BLUE, 1)
+    assert "old.urdf:6" in group(page, "turn", "Joint").inner_text()
+    assert group(page, "turn", "Joint").get_by_role("button", name="old.urdf", exact=False).count() == 0
+    group(page, "camera").locator("button.difference-name").click()
+    page.locator(".selection-card strong", has_text="camera").wait_for()
+    page.locator('[data-joint="turn"] input[type=range]').fill("1.5707963")
+    becomes(lambda: round(state(page, "frames")["arm"]["orientation"][0], 3), 0.707)
+    assert round(state(page, "frames")["old/arm"]["orientation"][0], 3) == 0.707
+    page.get_by_title("Show the new robot", exact=False).get_by_role("checkbox").uncheck()
+    becomes(lambda: sorted(looks(page, 1)), ["arm", "base", "camera"])

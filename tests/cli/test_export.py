@@ -96,3 +96,42 @@ def test_files_outside_the_packages_that_went_in_are_told(model, capsys, monkeyp
     assert "what 3 files outside the packages say is in it" in said
     named = [word for word in said.split() if "secret" in word or "own" in word or "shared" in word]
     assert [name.rpartition("/")[2] for name in named] == ["secret.xacro", "secret.yaml", "secret.obj"]
+
+
+def test_two_descriptions_are_one_page_without_paths_of_the_machine(model, monkeypatch):
+    folder = model / "page" / "export"
+    folder.mkdir(parents=True)
+    for name in ("export.js", "export.css"):
+        (folder / name).write_text("")
+    monkeypatch.setattr(html, "PAGE_FOLDER", model / "page")
+    (model / "new.xacro").write_text(MODEL.replace('default="1"', 'default="2"'))
+    assert main(["export", "review.html", "box.xacro", "new.xacro"]) == 0
+    page = (model / "review.html").read_text()
+    assert '"type":"compared_descriptions"' in page
+    assert '"old":"box 1 1 1","new":"box 2 1 1","unit":"m"' in page
+    assert '"text":"box.xacro:3:' in page
+    assert page.count('"type":"robot_scene"') == 2
+    assert str(model) not in page
+    assert main(["export", "same.html", "box.xacro", "new.xacro", "size:=3"]) == 0
+    assert '"items":[]' in (model / "same.html").read_text()
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["r.glb", "box.xacro", "box.xacro"], "'r.glb' should end with .html"),
+        (["r.html", "box.xacro", "box.xacro", "box.xacro"], "give one file, two to compare"),
+        (["r.html", "box.xacro", "box.xacro", "--against", "HEAD"], "give one file, two to compare"),
+    ],
+)
+def test_what_cannot_be_compared_is_wrong_usage(model, words, said, capsys):
+    assert main(["export", *words]) == 2
+    assert said in capsys.readouterr().err
+    assert not list(model.glob("r.*"))
+
+
+def test_a_broken_old_one_is_told_with_its_place(model, capsys):
+    (model / "old.xacro").write_text(MODEL.replace("</robot>", ""))
+    assert main(["export", "r.html", "old.xacro", "box.xacro"]) == 1
+    assert "old.xacro:" in capsys.readouterr().err
+    assert not (model / "r.html").exists()

@@ -3,6 +3,7 @@ import "../styles/controls.css";
 import "../styles/scene.css";
 import "../styles/panels.css";
 import "../styles/description.css";
+import "../styles/comparison.css";
 import "./export.css";
 import { h } from "../dom";
 import { publishInspection } from "../inspection";
@@ -48,6 +49,7 @@ function start(app: HTMLElement, recorded: HTMLElement): void {
     lookFrom: (side: Parameters<typeof lookFrom>[0]): void => {
       if (stage) lookFrom(side, session, stage);
     },
+    fit: (): void => stage?.fit(),
     reset: (): void => {
       connection.reset();
       session.view.reset();

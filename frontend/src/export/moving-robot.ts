@@ -6,11 +6,18 @@ type Positions = Readonly<Record<string, number>>;
 
 const MOST_FOLLOWED = 64;
 
-/** A frame below another: where it stands in it, and the joint that moves it. */
+/** A frame below another: where it stands in it, and the joint that moves it, at the position of the one that leads it. */
 interface Frame {
   readonly parent: number;
   readonly fixed: Matrix4;
   readonly joint: JointScene | null;
+  readonly leader: string;
+}
+
+/** A robot whose joints follow those of another: by the name of each the name of that. */
+export interface FollowingRobot {
+  readonly robot: RobotScene;
+  readonly joints: Readonly<Record<string, string>>;
 }
 
 /**
@@ -27,18 +34,19 @@ export class MovingRobot {
     recorded: Transforms,
     robot: RobotScene,
     private readonly controls: readonly JointControl[],
+    following: readonly FollowingRobot[] = [],
   ) {
     const poses = table.names.map((_, row) => poseAt(recorded.poses, row));
-    const frameOf = new Map(robot.links.map(({ name, frame }) => [name, frame]));
-    const joints = new Map(robot.joints.map((joint) => [frameOf.get(joint.child), joint]));
+    const own = Object.fromEntries(robot.joints.map(({ name }) => [name, name]));
+    const led = new Map([{ robot, joints: own }, ...following].flatMap(ledFrames));
     this.frames = table.names.map((name, row) => {
       const parent = table.parents[row] ?? -1;
-      const own = poses[row] ?? null;
+      const pose = poses[row] ?? null;
       const above = poses[parent] ?? null;
-      const joint = joints.get(name) ?? null;
-      const moves = joint !== null && joint.kind !== "floating" && frameOf.get(joint.parent) === table.names[parent];
-      const fixed = own && above ? above.clone().invert().multiply(own) : (own?.clone() ?? new Matrix4());
-      return { parent, fixed, joint: moves ? joint : null };
+      const found = led.get(name);
+      const joint = found && found.above === table.names[parent] ? found.joint : null;
+      const fixed = pose && above ? above.clone().invert().multiply(pose) : (pose?.clone() ?? new Matrix4());
+      return { parent, fixed, joint, leader: found?.leader ?? "" };
     });
     this.order = parentsFirst(this.frames);
     // The fixed frame stays where it is, wherever in the tree it is: of the frames with a pose, the one at the origin.
@@ -50,8 +58,8 @@ export class MovingRobot {
   transforms(positions: Positions): Transforms {
     const poses = this.frames.map(() => new Matrix4());
     for (const row of this.order) {
-      const { parent, fixed, joint } = this.frames[row] as Frame;
-      const local = joint ? jointPose(joint, this.position(joint.name, positions)) : fixed;
+      const { parent, fixed, joint, leader } = this.frames[row] as Frame;
+      const local = joint ? jointPose(joint, this.position(leader, positions)) : fixed;
       const above = poses[parent];
       poses[row]?.copy(local);
       if (above) poses[row]?.premultiply(above);
@@ -78,6 +86,16 @@ export class MovingRobot {
     }
     return (positions[at] ?? 0) * factor + offset;
   }
+}
+
+/** The frames that joints of a robot move, each with its joint, the frame above it and the joint that leads. */
+function ledFrames({ robot, joints }: FollowingRobot): [string, { joint: JointScene; above: string | undefined; leader: string }][] {
+  const frameOf = new Map(robot.links.map(({ name, frame }) => [name, frame]));
+  return robot.joints.flatMap((joint) => {
+    const [frame, leader] = [frameOf.get(joint.child), joints[joint.name]];
+    if (frame === undefined || leader === undefined || joint.kind === "floating") return [];
+    return [[frame, { joint, above: frameOf.get(joint.parent), leader }]];
+  });
 }
 
 /** The pose of a joint's child link in its parent link. */

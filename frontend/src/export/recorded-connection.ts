@@ -49,7 +49,10 @@ export class RecordedConnection extends Connection {
     const robot = messages.find((message) => message.type === "robot_scene" && message.display === display);
     const recorded = frames.map((frame) => unpackTransforms(bytesOf(frame).buffer)).find((each) => each !== null);
     if (robot?.type !== "robot_scene" || !recorded) return;
-    this.robot = new MovingRobot(table, recorded, robot, this.controls);
+    const compared = messages.find((message) => message.type === "compared_descriptions");
+    const old = compared && messages.find((message) => message.type === "robot_scene" && message.display === compared.old.display);
+    const following = old?.type === "robot_scene" && old !== robot ? [{ robot: old, joints: compared?.joints ?? {} }] : [];
+    this.robot = new MovingRobot(table, recorded, robot, this.controls, following);
   }
 
   private move(positions: Readonly<Record<string, number>>): void {

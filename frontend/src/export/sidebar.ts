@@ -1,5 +1,6 @@
 import { button, h } from "../dom";
 import { icon } from "../icons";
+import { ComparisonPanel } from "../panels/comparison-panel";
 import { tickBox } from "../panels/controls";
 import { jointBar } from "../panels/joint-bar";
 import { JointRow } from "../panels/joint-row";
@@ -15,6 +16,8 @@ const SIDES: readonly Side[] = ["iso", "front", "left", "top"];
 /** What the sidebar has the page do. */
 export interface SidebarActions {
   lookFrom(side: Side): void;
+  /** Looks at all of what is selected. */
+  fit(): void;
   reset(): void;
 }
 
@@ -48,6 +51,7 @@ export class Sidebar {
       "aside",
       { class: "sidebar", aria: { label: words.sidebar } },
       h("header", {}, h("h1", {}, name), themes, languages),
+      this.comparison(),
       h("section", { aria: { label: words.shown } }, h("h2", {}, words.shown), h("div", { class: "shown" }, ...this.boxes())),
       h("section", { aria: { label: words.views } }, h("h2", {}, words.views), h("div", { class: "sides" }, ...this.views())),
       this.joints(),
@@ -55,12 +59,20 @@ export class Sidebar {
     );
   }
 
+  /** How two descriptions differ, where two are in the file. */
+  private comparison(): HTMLElement | null {
+    const { comparison } = this.session;
+    if (comparison.compared === null) return null;
+    const panel = new ComparisonPanel(this.session, () => this.actions.fit());
+    return h("section", { aria: { label: strings.comparison.panel } }, h("h2", {}, strings.comparison.panel), panel.element);
+  }
+
   private boxes(): HTMLElement[] {
     const words = strings.sharing.exported;
     const { displays } = this.session.displays;
     const robot = displays.find(({ id }) => id === this.display);
     const boxes = robot ? [this.rowBox(robot, "Visual Enabled", words.visual), this.rowBox(robot, "Collision Enabled", words.collision)] : [];
-    const others = displays.filter(({ id, isGroup, supported }) => id !== this.display && !isGroup && supported);
+    const others = displays.filter(({ id, isGroup, supported }) => id !== this.display && !isGroup && supported && !this.session.comparison.isOld(id));
     return [...boxes, ...others.map((each) => this.displayBox(each))].filter((box) => box !== null);
   }
 

@@ -5,10 +5,12 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Sequence
+from contextlib import ExitStack
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from linkwright.assignments import parse_assignments
-from linkwright.cli.model_arguments import add_model
+from linkwright.cli.model_arguments import add_second_model, asked_pair, names_file
 from linkwright.cli.output import write_output
 from linkwright.diagnostics import (
     Diagnostic,
@@ -22,6 +24,9 @@ from linkwright.diagnostics import (
     print_diagnostics,
 )
 
+if TYPE_CHECKING:
+    from linkwright.descriptions.pairs import Pair
+
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
@@ -31,36 +36,59 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="the file to write: OUT.html has the robot with sliders for its joints and needs no server and no "
         "network; OUT.glb is glTF 2.0 with a node for each link",
     )
-    add_model(parser)
+    parser.add_argument("file", metavar="FILE", help="the URDF or xacro file")
+    add_second_model(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Write the file and say so."""
-    from linkwright.descriptions import DescriptionLibrary, examine
-    from linkwright.packages import PackageFinder
-    from linkwright.viewer.features.export.feature import FORMATS, export_snapshot, format_of
-    from linkwright.viewer.model_snapshot import snapshot_of_model
+    from linkwright.viewer.features.export.feature import FORMATS, format_of
 
     if format_of(arguments.out) is None:
         endings = " or ".join(f".{ending}" for ending in FORMATS)
         swapped = "; the file to write comes first" if format_of(arguments.file) is not None else ""
         print(f"linkwright export: '{arguments.out}' should end with {endings}{swapped}", file=sys.stderr)
         return 2
-    path = Path(arguments.file).absolute()
-    finder = PackageFinder(start=[path.parent, Path.cwd()])
-    description = examine(path, arguments=parse_assignments(arguments.values), packages=finder, xacro=True)
+    with ExitStack() as stack:
+        pair = None
+        if arguments.against or any(map(names_file, arguments.words)):
+            pair = asked_pair(arguments, stack)
+            if pair is None or not arguments.out.lower().endswith(".html"):
+                told = "give one file, two to compare, or one and --against COMMIT"
+                html = f"'{arguments.out}' should end with .html, as two descriptions are compared"
+                print(f"linkwright export: {told if pair is None else html}", file=sys.stderr)
+                return 2
+        try:
+            return _write(arguments, pair)
+        except LinkwrightError as error:
+            print_diagnostics(error.diagnostics, sys.stderr)
+            return 1
+
+
+def _write(arguments: argparse.Namespace, pair: Pair | None) -> int:
+    """Write the file of one description, or of two."""
+    from linkwright.descriptions import DescriptionLibrary, examine
+    from linkwright.descriptions.pairs import text_of_old
+    from linkwright.packages import PackageFinder
+    from linkwright.viewer.features.export.feature import export_snapshot
+    from linkwright.viewer.model_snapshot import OldDescription, snapshot_of_model
+
     library = DescriptionLibrary()
+    old = None
+    if pair is None:
+        path = Path(arguments.file).absolute()
+        finder = PackageFinder(start=[path.parent, Path.cwd()])
+        description = examine(path, arguments=parse_assignments(arguments.words), packages=finder, xacro=True)
+    else:
+        finder, description, before = pair.new.finder, pair.new.read(), pair.old.read()
+        old = OldDescription(pair, library.remember(before, text_of_old(before), pair.old.finder))
     text = library.remember(description)
     print_diagnostics(description.diagnostics, sys.stderr)
     if description.robot is None or not description.robot.root:
         return 1  # without a name for its first link nothing can be placed
-    snapshot = snapshot_of_model(text, description.robot, library, finder)
+    snapshot = snapshot_of_model(text, description.robot, library, finder, old)
     print_diagnostics(snapshot.problems, sys.stderr)
-    try:
-        data = export_snapshot(snapshot, arguments.out.rpartition(".")[2].lower())
-    except LinkwrightError as error:
-        print_diagnostics(error.diagnostics, sys.stderr)
-        return 1
+    data = export_snapshot(snapshot, arguments.out.rpartition(".")[2].lower())
     write_output(Path(arguments.out), data)
     print(f"Created file {arguments.out} ({_size(len(data))})")
     if snapshot.outside:

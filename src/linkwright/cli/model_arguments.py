@@ -27,6 +27,17 @@ def add_values(
     parser.add_argument(name, metavar=metavar, nargs="*", default=nothing, help=values_help)
 
 
+def add_second_model(parser: argparse.ArgumentParser) -> None:
+    """`words`, a second file that the first is compared with and values for both, and the option `against`."""
+    add_values(
+        parser,
+        values_help="a second file, the new one of two that are compared, and NAME:=VALUE for <xacro:arg>",
+        name="words",
+        metavar="NEW",
+    )
+    add_against(parser)
+
+
 def add_against(parser: argparse.ArgumentParser) -> None:
     """The commit that a description is compared with."""
     parser.add_argument(

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from linkwright.assignments import parse_assignments
-from linkwright.cli.model_arguments import add_against, add_values, asked_pair, names_file
+from linkwright.cli.model_arguments import add_second_model, asked_pair, names_file
 
 if TYPE_CHECKING:
     from linkwright.hosting.plans import HostOptions
@@ -20,13 +20,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "file", metavar="FILE", help="the URDF or xacro file, or a recording: its .mcap or .db3 file or its folder"
     )
-    add_values(
-        parser,
-        values_help="a second file, the new one of two that are compared, and NAME:=VALUE for <xacro:arg>",
-        name="words",
-        metavar="NEW",
-    )
-    add_against(parser)
+    add_second_model(parser)
     parser.add_argument(
         "--join", action="store_true", help="join the ROS 2 network (ROS_DOMAIN_ID), where other programs see the nodes"
     )

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import time
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from linkwright.descriptions import DescriptionLibrary
 from linkwright.graph import DESCRIPTION_QOS, STATIC_TF_PUBLISHER_QOS, TF_QOS, Graph
@@ -14,12 +16,18 @@ from linkwright.nodes.robot_transforms import RobotTransforms
 from linkwright.packages import PackageFinder
 from linkwright.urdf import Robot
 from linkwright.viewer.config.rviz_config import RvizConfig
+from linkwright.viewer.features.comparison.feature import show_old
 from linkwright.viewer.features.export.snapshot import Snapshot, snapshot_of
 from linkwright.viewer.size import has_visuals, size_of
 from linkwright.viewer.viewer import Viewer
 
+if TYPE_CHECKING:
+    from linkwright.descriptions.pairs import Pair
 
-def snapshot_of_model(text: str, robot: Robot, library: DescriptionLibrary, finder: PackageFinder) -> Snapshot:
+
+def snapshot_of_model(
+    text: str, robot: Robot, library: DescriptionLibrary, finder: PackageFinder, old: OldDescription | None = None
+) -> Snapshot:
     """What `linkwright view` would show of a model, its joints at zero or as near as their limits allow.
 
     Args:
@@ -27,13 +35,31 @@ def snapshot_of_model(text: str, robot: Robot, library: DescriptionLibrary, find
         robot: what it says.
         library: knows where its parts were written.
         finder: finds its meshes.
+        old: what it is compared with; None for nothing.
     """
-    return asyncio.run(_take(text, robot, library, finder))
+    return asyncio.run(_take(text, robot, library, finder, old))
 
 
-async def _take(text: str, robot: Robot, library: DescriptionLibrary, finder: PackageFinder) -> Snapshot:
+@dataclass(frozen=True)
+class OldDescription:
+    """The old one of two descriptions.
+
+    Attributes:
+        pair: both.
+        text: the text that stands for the old one in the library.
+    """
+
+    pair: Pair
+    text: str
+
+
+async def _take(
+    text: str, robot: Robot, library: DescriptionLibrary, finder: PackageFinder, old: OldDescription | None
+) -> Snapshot:
     graph = Graph(on_log=lambda _: None)
     config = RvizConfig.for_model(robot.root, size=size_of(robot), frames=not has_visuals(robot))
+    if old is not None:
+        show_old(config, old.pair.old.title)
     viewer = Viewer(graph, library=library, finder=finder, config=config, title=robot.name)
     viewer.manager.start()
     node = graph.create_node("robot_state_publisher")
@@ -47,6 +73,9 @@ async def _take(text: str, robot: Robot, library: DescriptionLibrary, finder: Pa
         TFMessage(batch=transforms.fixed(now))
     )
     node.create_publisher(TFMessage, "/tf", TF_QOS).publish(TFMessage(batch=moving))
+    if old is not None:
+        publisher = graph.create_node("old_robot_state_publisher", start_parameter_services=False)
+        viewer.attach_comparison(old.pair, publisher)(old.text)
     await graph.settle()
     try:
         return snapshot_of(viewer, viewer.manager)

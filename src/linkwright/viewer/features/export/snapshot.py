@@ -25,7 +25,9 @@ from linkwright.nodes.joint_layout import layout_of
 from linkwright.nodes.joint_settings import JointSettings
 from linkwright.packages import enclosing_package
 from linkwright.urdf import Joint, Robot
+from linkwright.viewer.features.comparison.feature import without_paths
 from linkwright.viewer.protocol.binary import FrameTable, unpack_transforms
+from linkwright.viewer.protocol.comparison import ComparedDescriptions
 from linkwright.viewer.protocol.displays import Display, DisplayProperties, Property, Tree
 from linkwright.viewer.protocol.joints import JointControl, JointPositions, Joints
 from linkwright.viewer.protocol.message import ServerMessage
@@ -216,16 +218,20 @@ def snapshot_of(viewer: FeatureHost, manager: VisualizationManager, view: View |
     Raises:
         LinkwrightError: VIEW201, there is no robot.
     """
-    models = (model for model in manager.robot_models() if model.enabled and model.scene.links)
-    model = next(models, None)
-    if model is None:
+    models = [model for model in manager.robot_models() if model.enabled and model.scene.links]
+    if not models:
         raise no_robot()
     told, frames = viewer.opening_messages(manager)
     if view is not None:
         told = [ViewState(view, each.revision) if isinstance(each, ViewState) else each for each in told]
-    snapshot = take_snapshot(model, told, frames, viewer.context.meshes)
-    read = viewer.context.library.files(model.text)
-    return dataclasses.replace(snapshot, outside=files_outside(read, snapshot.scene, snapshot.meshes))
+    snapshot = take_snapshot(models[0], told, frames, viewer.context.meshes)
+    files = viewer.context.library.files
+    outside = [path for each in models for path in files_outside(files(each.text), each.scene, snapshot.meshes)]
+    return dataclasses.replace(
+        snapshot,
+        outside=list(dict.fromkeys(outside)),
+        problems=[problem for each in models for problem in _problems(each)],
+    )
 
 
 def files_outside(read: Sequence[Path], scene: RobotScene, meshes: MeshFolders) -> list[Path]:
@@ -279,6 +285,8 @@ def take_snapshot(
             messages.append(_anonymous(message))
         elif isinstance(message, RobotScene):
             messages.append(replace(message, links=[replace(link, place=None) for link in message.links]))
+        elif isinstance(message, ComparedDescriptions):
+            messages.append(without_paths(message))
         elif isinstance(message, _TAKEN):
             messages.append(message)
     controls = _controls(robot)
@@ -286,7 +294,15 @@ def take_snapshot(
         Joints(controls),
         JointPositions({each.name: positions.get(each.name, 0.0) for each in controls}),
     ]
-    problems = [
+    problems = _problems(model)
+    return Snapshot(
+        robot.name, robot, scene, positions, messages, frames, meshes.copy(), problems, _marker_meshes(payloads)
+    )
+
+
+def _problems(model: RobotModelDisplay) -> list[Diagnostic]:
+    """What of a robot cannot be drawn."""
+    return [
         Diagnostic(
             "VIEW203",
             phrase("of link '{link}' something is left out: {text}", link=link, text=foreign(text)),
@@ -295,9 +311,6 @@ def take_snapshot(
         for link, texts in model.file_problems.items()
         for text in texts
     ]
-    return Snapshot(
-        robot.name, robot, scene, positions, messages, frames, meshes.copy(), problems, _marker_meshes(payloads)
-    )
 
 
 def no_robot() -> LinkwrightError:
