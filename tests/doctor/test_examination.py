@@ -12,6 +12,7 @@ from linkwright.doctor import (
     ClockSeen,
     DescriptionSeen,
     FixedFrame,
+    FrameSeen,
     JointSeen,
     Observation,
     StampSeen,
@@ -199,6 +200,21 @@ def test_a_fixed_frame_that_does_not_exist():
     assert found.hint == "choose another Fixed Frame; the root of all frames is 'map'"
     near = only(replace(WELL, fixed_frames=(FixedFrame("bse", "x"),)), "DOC309")
     assert near.hint == "did you mean 'base'?"
+
+
+def test_messages_in_a_frame_that_does_not_exist():
+    lost = FrameSeen("/scan", "/laser", "lazer")
+    found = only(replace(WELL, frames=(lost,)), "DOC310")
+    assert found.message == "'/scan' of '/laser' is in frame 'lazer', which does not exist"
+    assert "static_transform_publisher" in found.hint
+    near = only(replace(WELL, frames=(FrameSeen("/scan", "/laser", "whel"),)), "DOC310")
+    assert near.hint == "did you mean 'wheel'?"
+    assert codes(replace(WELL, frames=(FrameSeen("/scan", "/laser", "base"),))) == []
+
+
+def test_messages_in_a_frame_are_well_where_nobody_publishes_transforms_at_all():
+    alone = Observation(seconds=3.0, nodes=("/laser",), frames=(FrameSeen("/scan", "/laser", "laser"),))
+    assert "DOC310" not in codes(alone)
 
 
 def test_the_world_of_a_simulation_is_a_frame_that_can_be_shown():

@@ -8,6 +8,7 @@ import threading
 import pytest
 
 from linkwright.graph.parameters.client import AsyncParameterClient
+from linkwright.graph.qos.profile import HistoryPolicy
 from linkwright.messages import get_service
 from tests.wire.programs import linkwright
 
@@ -105,6 +106,29 @@ def test_three_clients_there_and_one_here_at_once(processes, real_node):
         thread.join()
     assert counts == [CALLS // 5] * 3
     assert mine == [f"mine {number}" for number in range(20)]
+
+
+def test_what_they_keep_is_unknown_as_they_do_not_tell_it(processes, real_node):
+    us = processes("ours")
+    real_node()
+    us.spin_until(lambda: us.node.get_publishers_info_by_topic("/from_ros"))
+    (info,) = us.node.get_publishers_info_by_topic("/from_ros")
+    assert info.qos_profile.history is HistoryPolicy.UNKNOWN
+
+
+@pytest.mark.parametrize("ours", [{"ROS_LOCALHOST_ONLY": "1"}, {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}])
+@pytest.mark.parametrize("we_are_first", [True, False])
+def test_calls_go_both_ways_where_both_stay_on_the_machine(processes, real_node, monkeypatch, ours, we_are_first):
+    peer = None if we_are_first else real_node(ROS_AUTOMATIC_DISCOVERY_RANGE="LOCALHOST")
+    for name, value in ours.items():
+        monkeypatch.setenv(name, value)
+    us = processes("ours")
+    us.node.create_service(SetCameraInfo, "/our_echo", echo)
+    client = us.node.create_client(SetCameraInfo, "/echo")
+    peer = peer or real_node(ROS_AUTOMATIC_DISCOVERY_RANGE="LOCALHOST")
+    us.spin_until(client.service_is_ready)
+    assert answered(us, client.call_async(says("hej"))).status_message == "hej"
+    assert asking(us, peer, "echoes", "/our_echo", ["hej"]) == ["hej"]
 
 
 def test_what_is_larger_than_a_packet_goes_both_ways(processes, real_node):

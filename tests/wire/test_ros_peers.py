@@ -123,7 +123,13 @@ def test_endpoints_tell_type_hashes_and_which_belong_together(processes, program
 @pytest.mark.skipif(os.environ.get("CI") == "true", reason="machines of CI may have no interface with multicast")
 @pytest.mark.parametrize("network", ["humble", "jazzy", "jazzy localhost", "localhost"])
 @pytest.mark.parametrize("we_are_first", [True, False])
-def test_real_nodes_with_the_network_settings_they_have_are_met(processes, programs, network, we_are_first):
+@pytest.mark.parametrize("variable", ["", "ROS_LOCALHOST_ONLY=1", "ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST"])
+def test_real_nodes_with_the_network_settings_they_have_are_met(
+    processes, programs, network, we_are_first, variable, monkeypatch
+):
+    name, _, value = variable.partition("=")
+    if name:
+        monkeypatch.setenv(name, value)
     if we_are_first:
         us = processes("ours")
         programs("ros_peer", network.split()[0].replace("localhost", "humble"), "real_node", network)

@@ -68,10 +68,17 @@ def test_the_subnet_is_as_rmw_cyclonedds_has_it():
     }
 
 
-def test_localhost_is_as_rmw_cyclonedds_has_it():
-    said = elements(read_settings({"ROS_LOCALHOST_ONLY": "1"}))
+def test_localhost_is_this_machine_on_all_its_ways():
+    """rmw_cyclonedds of Humble takes the loopback interface alone then, and Jazzy the one that Cyclone chooses."""
+    machine = read_settings({}).configurations
+    assert read_settings({"ROS_LOCALHOST_ONLY": "1"}).configurations == machine
+    assert read_settings({"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}).configurations == machine
+
+
+def test_localhost_with_peers_is_as_rmw_cyclonedds_has_it():
+    said = elements(read_settings({"ROS_LOCALHOST_ONLY": "1", "ROS_STATIC_PEERS": "192.0.2.7"}))
     assert said["General/AllowMulticast"] == ["false"]
-    assert said["Discovery/Peers/Peer"] == [{"address": "localhost"}]
+    assert said["Discovery/Peers/Peer"] == [{"address": "localhost"}, {"address": "192.0.2.7"}]
 
 
 def test_the_users_configuration_goes_last():

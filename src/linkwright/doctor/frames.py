@@ -30,6 +30,7 @@ def examine_frames(seen: Observation, robots: Sequence[RobotSeen]) -> Iterator[D
         yield from _missing(seen, robot)
     yield from _trees(seen, robots)
     yield from _fixed_frames(seen, robots)
+    yield from _frames_of_messages(seen, robots)
 
 
 def _contradictions(seen: Observation) -> Iterator[Diagnostic]:
@@ -310,6 +311,33 @@ def _fixed_frames(seen: Observation, robots: Sequence[RobotSeen]) -> Iterator[Di
             notes=(Note(there),),
             hint=near or _another(roots),
         )
+
+
+def _frames_of_messages(seen: Observation, robots: Sequence[RobotSeen]) -> Iterator[Diagnostic]:
+    """Where there are transforms, messages in frames that have none; those of robots are told of as such."""
+    if not seen.transforms:
+        return
+    known = {name for each in seen.transforms for name in (each.parent, each.child)}
+    robot_frames = {robot.frame(joint.child) for robot in robots for joint in robot.joints}
+    robot_frames |= {robot.frame(robot.root) for robot in robots}
+    if seen.publishers_of(_WORLD_POSES):
+        known.add(_WORLD)
+    for each in seen.frames:
+        if each.frame not in known | robot_frames:
+            yield Diagnostic(
+                "DOC310",
+                phrase(
+                    "'{topic}' of {sender} is in frame '{frame}', which does not exist",
+                    topic=each.topic,
+                    sender=listed([each.sender]),
+                    frame=each.frame,
+                ),
+                notes=(Note(phrase("frames there are: {known}", known=listed(sorted(known)))),),
+                hint=did_you_mean(each.frame, known)
+                or phrase(
+                    "publish its transform, as static_transform_publisher does, or have the node name another frame"
+                ),
+            )
 
 
 def _another(roots: Sequence[str]) -> Phrase:

@@ -81,6 +81,21 @@ class StampSeen:
 
 
 @dataclass(frozen=True, slots=True)
+class FrameSeen:
+    """A frame that messages of one node on one topic are in.
+
+    Attributes:
+        topic: where they came.
+        sender: full name of the node that published them.
+        frame: its name, as the last message had it.
+    """
+
+    topic: str
+    sender: str
+    frame: str
+
+
+@dataclass(frozen=True, slots=True)
 class VelocitiesSeen:
     """The velocities on one topic.
 
@@ -133,6 +148,7 @@ class Observation:
         joints: what was published of joints.
         descriptions: the robot descriptions published.
         stamps: of topics whose messages have a header.
+        frames: those that messages are in, of topics whose messages have a header.
         velocities: who published velocities.
         clock: what ``/clock`` told; None when it told nothing.
         sim_time: ``use_sim_time`` of the nodes that answered, by full name.
@@ -148,6 +164,7 @@ class Observation:
     joints: tuple[JointSeen, ...] = ()
     descriptions: tuple[DescriptionSeen, ...] = ()
     stamps: tuple[StampSeen, ...] = ()
+    frames: tuple[FrameSeen, ...] = ()
     velocities: tuple[VelocitiesSeen, ...] = ()
     clock: ClockSeen | None = None
     sim_time: Mapping[str, bool] = field(default_factory=dict)

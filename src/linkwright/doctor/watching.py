@@ -17,6 +17,7 @@ from linkwright.doctor.record import (
     ClockSeen,
     DescriptionSeen,
     FixedFrame,
+    FrameSeen,
     JointSeen,
     Observation,
     StampSeen,
@@ -94,6 +95,7 @@ async def observe(
         joints=watcher.joints(),
         descriptions=tuple(watcher.descriptions.values()),
         stamps=watcher.stamps_seen(sim_time),
+        frames=watcher.frames_seen(),
         velocities=watcher.velocities(),
         clock=watcher.clock,
         sim_time=sim_time,
@@ -113,6 +115,7 @@ class _Watcher:
         self._transforms: dict[tuple[str, str], tuple[set[str], bool, bool]] = {}
         self._joints: dict[str, tuple[set[str], set[str]]] = {}
         self._stamps: dict[tuple[str, str], tuple[int, int]] = {}
+        self._frames: dict[tuple[str, str], str] = {}
         self._velocities: dict[str, set[str]] = {}
         self.descriptions: dict[tuple[str, str], DescriptionSeen] = {}
         self.clock: ClockSeen | None = None
@@ -230,7 +233,9 @@ class _Watcher:
         if driving:
             self._on_velocity(topic, info)
         seconds, nanoseconds = _STAMP[data[1] & 1].unpack_from(data, _CDR_HEADER)
-        self._note_stamp(topic, self._sender(topic, info), seconds, nanoseconds)
+        sender = self._sender(topic, info)
+        self._note_stamp(topic, sender, seconds, nanoseconds)
+        self._frames[topic, sender] = _frame_of(data)
 
     def _note_stamp(self, topic: str, sender: str, seconds: int, nanoseconds: int) -> None:
         self._stamps[topic, sender] = (seconds * _SECOND + nanoseconds, time.time_ns())
@@ -267,6 +272,11 @@ class _Watcher:
                 now_ns = self.clock.last_ns
             found.append(StampSeen(topic, sender, now_ns - stamp_ns, zero=stamp_ns == 0))
         return tuple(found)
+
+    def frames_seen(self) -> tuple[FrameSeen, ...]:
+        """The frames that messages are in, by topic and sender; what names none is left out."""
+        named = sorted(each for each in self._frames.items() if each[1])
+        return tuple(FrameSeen(topic, sender, frame) for (topic, sender), frame in named)
 
     # --- what is asked -----------------------------------------------------------------------------------------------
 
@@ -317,6 +327,13 @@ class _Watcher:
 
 async def _result(future: Future[Any]) -> Any:
     return await future
+
+
+def _frame_of(data: bytes) -> str:
+    """The frame in the header that a message begins with, as CDR; the rest of the message is not read."""
+    start = _CDR_HEADER + _STAMP[0].size
+    size = int.from_bytes(data[start : start + 4], "little" if data[1] & 1 else "big")
+    return data[start + 4 : start + 4 + size].rstrip(b"\0").decode(errors="replace").lstrip("/")
 
 
 def _is_tool(full_name: str) -> bool:

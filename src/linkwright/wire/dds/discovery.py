@@ -29,7 +29,7 @@ from linkwright.wire.dds.discovery_info import (
 from linkwright.wire.dds.names import DISCOVERY_TOPIC, parse_user_data
 from linkwright.wire.dds.participant import SERVICES_NAME, Participant, process_namespace
 from linkwright.wire.dds.qos import endpoint_qos, profile_of
-from linkwright.wire.dds.remote import RemoteEndpoint, RemoteGraph, RemoteParticipant, runs
+from linkwright.wire.dds.remote import RemoteEndpoint, RemoteGraph, RemoteParticipant, is_fast, runs
 from linkwright.wire.dds.type_descriptions import WireTypes
 from linkwright.wire.dds.waiting import WaitingThread
 
@@ -161,9 +161,8 @@ class Discovery:
             self._remote.endpoint_went(guid)
             return
         facts = parse_user_data(self._dds.user_data(qos))
-        endpoint = RemoteEndpoint(
-            guid, info.instance_handle, owner, is_writer, topic, type_name, profile_of(qos), facts
-        )
+        profile = profile_of(qos, tells_history=not is_fast(guid))
+        endpoint = RemoteEndpoint(guid, info.instance_handle, owner, is_writer, topic, type_name, profile, facts)
         self._remote.endpoint_came(endpoint)
         if is_writer and topic == DISCOVERY_TOPIC:
             self._note_evidence(endpoint)

@@ -167,7 +167,7 @@ def _machine(interfaces: str, addresses: list[str], most: int, *, multicast: boo
 
 def _fragments(reach: Range, peers: list[str], most: int) -> list[str]:
     """Configurations in the order of preference, without the user's own."""
-    if reach is Range.MACHINE:
+    if reach is Range.MACHINE or (reach is Range.LOCALHOST and not peers):
         addresses = own_addresses()[:_OWN_ADDRESSES]
         loopback_alone = [
             _machine(_LOOPBACK, [], most, multicast=True),

@@ -52,7 +52,8 @@ class Places:
 def places_of(settings: Settings) -> Places:
     """Where to look with these settings; see `docs/decisions/0011-dds.md`."""
     others = tuple(own_addresses()[:3])
-    local, machine = settings.range is Range.LOCALHOST, settings.range is Range.MACHINE
+    local = settings.range is Range.LOCALHOST and bool(settings.peers)
+    machine = settings.range is Range.MACHINE or (settings.range is Range.LOCALHOST and not local)
     first = multicast_port(settings.domain_id) + _FIRST_UNICAST
     most = most_participants(settings.domain_id)
     count = most if machine else min(most, _FEW)
@@ -62,7 +63,7 @@ def places_of(settings: Settings) -> Places:
         hosts=(_LOOPBACK, *(others if machine else ()), *_resolved(settings.peers)),
         interfaces=() if local else (_LOOPBACK, *others),
         ttl=0 if machine else _NETWORK_TTL,
-        only_here=machine or (local and not settings.peers),
+        only_here=machine,
     )
 
 
