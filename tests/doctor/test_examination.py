@@ -98,6 +98,11 @@ def test_nobody_is_there():
     assert "ROS_AUTOMATIC_DISCOVERY_RANGE" in found.hint
 
 
+def test_over_zenoh_a_router_may_be_missing():
+    found = only(Observation(seconds=2.0, environment={"ROS_DOMAIN_ID": "150"}, over_zenoh=True), "DOC801")
+    assert "rmw_zenohd" in found.hint
+
+
 def test_a_domain_that_may_not_work():
     assert codes(replace(WELL, environment={"ROS_DOMAIN_ID": "150"})) == ["DOC803"]
     assert codes(replace(WELL, environment={"ROS_DOMAIN_ID": "101"})) == []
@@ -352,6 +357,7 @@ def test_quality_of_service_that_does_not_match_names_policy_and_sides():
             QoSProfile(5, ReliabilityPolicy.RELIABLE, DurabilityPolicy.TRANSIENT_LOCAL),
         ),
     )
+    assert codes(replace(seen, over_zenoh=True)) == []  # there it gets them
     found = only(seen, "DOC203")
     assert found.message == ("'/rviz' gets nothing from '/lidar' on topic '/scan': their quality of service differs")
     assert [note.message for note in found.notes] == [

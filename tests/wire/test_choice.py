@@ -56,6 +56,20 @@ def test_what_is_missing_is_named(installed):
     assert "the package 'cyclonedds' is not installed" in why_not({"RMW_IMPLEMENTATION": CYCLONE})
 
 
+def test_a_process_with_neither_says_so_and_goes_on(installed):
+    installed()
+    log = []
+    graph = Graph(threads=True, on_log=log.append)
+    try:
+        assert join(graph, environment={}) is None
+        assert join(graph, environment={"LINKWRIGHT_DDS": "0"}) is None
+        (record,) = log
+        assert record.text.startswith("This process speaks to no other one: neither DDS nor Zenoh is installed")
+        assert graph.create_node("alone").get_node_names() == ["alone"]
+    finally:
+        graph.close_now()
+
+
 def test_settings_are_those_of_the_transport_that_is_chosen():
     wrong = {"ZENOH_CONFIG_OVERRIDE": "mode"}
     check_settings(wrong)

@@ -31,7 +31,7 @@ def add_viewer_options(parser: argparse.ArgumentParser) -> None:
     """The options about the page, which `launch` and `run` have too."""
     parser.add_argument("--no-open", action="store_true", help="do not open the page in the browser")
     parser.add_argument("--host", default="127.0.0.1", help="address to serve the page at (default: %(default)s)")
-    parser.add_argument("--port", type=port, help="port to serve the page at (default: 7447, or the next free one)")
+    parser.add_argument("--port", type=port, help="port to serve the page at (default: 7448, or the next free one)")
     parser.add_argument(
         "--foxglove", metavar="PORT", type=port, help="let Foxglove and Lichtblick connect to this port of this machine"
     )

@@ -10,10 +10,20 @@ from linkwright.doctor.record import Observation
 _HIGHEST_SAFE_DOMAIN = 101
 """On Linux the ports of higher domains overlap with those that the system gives away."""
 
+_OVER_DDS = phrase(
+    "use the same ROS_DOMAIN_ID as the nodes; for nodes on other computers set "
+    "ROS_AUTOMATIC_DISCOVERY_RANGE=SUBNET (and leave ROS_LOCALHOST_ONLY unset)"
+)
+_OVER_ZENOH = phrase(
+    "use the same ROS_DOMAIN_ID as the nodes; those of rmw_zenoh_cpp are found by a router, which"
+    " 'linkwright run rmw_zenoh_cpp rmw_zenohd' starts; those that speak DDS are not found over Zenoh"
+)
+
 
 def examine_environment(seen: Observation) -> Iterator[Diagnostic]:
     """Settings that keep nodes from seeing each other, and a graph with nobody in it."""
-    yield from _domain(seen.environment.get("ROS_DOMAIN_ID", ""))
+    if not seen.over_zenoh:
+        yield from _domain(seen.environment.get("ROS_DOMAIN_ID", ""))
     if seen.nodes:
         return
     settings = [f"{name}={value}" for name, value in sorted(seen.environment.items()) if value]
@@ -33,10 +43,7 @@ def examine_environment(seen: Observation) -> Iterator[Diagnostic]:
         phrase("no nodes are running where this shell looks"),
         severity=Severity.WARNING,
         notes=tuple(notes),
-        hint=phrase(
-            "use the same ROS_DOMAIN_ID as the nodes; for nodes on other computers set "
-            "ROS_AUTOMATIC_DISCOVERY_RANGE=SUBNET (and leave ROS_LOCALHOST_ONLY unset)"
-        ),
+        hint=_OVER_ZENOH if seen.over_zenoh else _OVER_DDS,
     )
 
 

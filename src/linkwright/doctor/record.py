@@ -155,6 +155,7 @@ class Observation:
         lifecycle: states of the managed nodes, by full name.
         fixed_frames: those that viewers go by.
         environment: the variables that say who sees whom.
+        over_zenoh: whether it was looked for over Zenoh, where no QoS keeps endpoints apart, and not over DDS.
     """
 
     seconds: float = 0.0
@@ -171,6 +172,7 @@ class Observation:
     lifecycle: Mapping[str, str] = field(default_factory=dict)
     fixed_frames: tuple[FixedFrame, ...] = ()
     environment: Mapping[str, str] = field(default_factory=dict)
+    over_zenoh: bool = False
 
     def of_kind(self, kind: EndpointKind) -> list[EndpointInfo]:
         """The endpoints of a kind."""

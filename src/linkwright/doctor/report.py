@@ -17,7 +17,7 @@ Section = tuple[str, Sequence[tuple[str, str]]]
 """A title, and names with values."""
 
 _PACKAGES = ("linkwright", "cyclonedds", "eclipse-zenoh", "rosbags", "numpy", "PyYAML", "colcon-core")
-_MARKS = ("ROS", "RMW", "RCUTILS", "CYCLONEDDS", "LINKWRIGHT", "AMENT", "COLCON")
+_MARKS = ("ROS", "RMW", "RCUTILS", "CYCLONEDDS", "ZENOH", "LINKWRIGHT", "AMENT", "COLCON")
 _EVERYWHERE = frozenset({"/parameter_events", "/rosout"})
 _PADDING = 4
 
@@ -123,7 +123,7 @@ def _compatibility(seen: Observation) -> list[tuple[str, str]]:
         for subscription in subscriptions:
             if subscription.name == publisher.name:
                 compatibility, reason = qos_check_compatible(publisher.qos, subscription.qos)
-                status = "OK" if compatibility is QoSCompatibility.OK else reason
+                status = "OK" if compatibility is QoSCompatibility.OK or seen.over_zenoh else reason
                 items += [
                     ("topic [type]", f"{publisher.name} [{publisher.type_name}]"),
                     ("publisher node", node_of(publisher)),

@@ -95,6 +95,8 @@ def _who(endpoints: list[EndpointInfo], type_name: str) -> Iterator[Note]:
 
 
 def _qos(seen: Observation) -> Iterator[Diagnostic]:
+    if seen.over_zenoh:
+        return
     publishers = seen.of_kind(EndpointKind.PUBLISHER)
     said = set()
     for subscription in seen.of_kind(EndpointKind.SUBSCRIPTION):

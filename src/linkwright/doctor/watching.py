@@ -28,6 +28,7 @@ from linkwright.doctor.record import (
 from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind, MessageInfo
 from linkwright.graph.names.rules import join
 from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from linkwright.wire.joining import ZENOH, middleware
 
 if TYPE_CHECKING:
     from linkwright.graph.computation_graph import Graph
@@ -43,6 +44,8 @@ _ENVIRONMENT = (
     "ROS_STATIC_PEERS",
     "CYCLONEDDS_URI",
     "RMW_IMPLEMENTATION",
+    "ZENOH_CONFIG_OVERRIDE",
+    "ZENOH_SESSION_CONFIG_URI",
 )
 _ANSWER_WITHIN = 1.0
 """Seconds for a node to answer what is asked of it; one that hangs is passed over."""
@@ -88,6 +91,7 @@ async def observe(
     await watcher.until_named()
     variables = os.environ if environment is None else environment
     return Observation(
+        over_zenoh=middleware() == ZENOH,
         seconds=seconds,
         nodes=tuple(watcher.nodes()),
         endpoints=tuple(watcher.endpoints()),

@@ -18,6 +18,9 @@ if TYPE_CHECKING:
     from linkwright.graph.command_line.log_setup import Logging
     from linkwright.nodes.options import Factory
 
+_APART = {("rmw_zenoh_cpp", "rmw_zenohd")}
+"""What carries the messages of others, and takes no part in their graph."""
+
 _SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
 """What ends a node: Ctrl-C, another program, the terminal that is closed."""
 
@@ -42,8 +45,9 @@ def main(package: str, executable: str, arguments: Sequence[str]) -> int:
     except LinkwrightError as error:
         print_diagnostics(error.diagnostics, sys.stderr)
         return 1
+    joins = (package, executable) not in _APART
     try:
-        return run_coroutine(lambda: _run(factory, list(arguments), logging), raise_interrupts)
+        return run_coroutine(lambda: _run(factory, list(arguments), logging, joins=joins), raise_interrupts)
     except LinkwrightError as error:
         print_diagnostics(error.diagnostics, sys.stderr)
         return 1
@@ -53,7 +57,7 @@ def main(package: str, executable: str, arguments: Sequence[str]) -> int:
         logging.close()
 
 
-async def _run(factory: Factory, arguments: list[str], logging: Logging) -> int:
+async def _run(factory: Factory, arguments: list[str], logging: Logging, *, joins: bool) -> int:
     from linkwright.graph import Graph
     from linkwright.nodes.options import FinishingNode, NodeOptions
 
@@ -67,7 +71,8 @@ async def _run(factory: Factory, arguments: list[str], logging: Logging) -> int:
             loop.add_signal_handler(number, ended.set)
     graph = Graph(on_log=logging.sink, levels=logging.levels)
     try:
-        _join_network(graph)
+        if joins:
+            _join_network(graph)
         running = factory(graph, NodeOptions(arguments=arguments, terminal=_terminal()))
         if isinstance(running, FinishingNode):
             running.finished.add_done_callback(lambda _: ended.set())

@@ -52,7 +52,7 @@ class Viewer:
         finder: finds packages, and so meshes.
         config: displays, options and view.
         host: what to listen on; anything but this machine's loopback address lets others in who know the token.
-        port: 0 for any; None for 7447 or the next free one.
+        port: 0 for any; None for 7448 or the next free one.
         title: of the page.
         options: of the node: its name, remappings, parameters and ROS arguments.
 

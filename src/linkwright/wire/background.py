@@ -342,6 +342,11 @@ def ends_by_error() -> bool:
     return isinstance(error, Exception) and not isinstance(error, ExternalShutdownException) and not is_interactive
 
 
+def say_alone(logger: Logger, reason: Phrase) -> None:
+    """Log that a process has no transport."""
+    logger.warning(f"This process speaks to no other one: {reason}. Everything inside of it works.")
+
+
 AnyTransport = TypeVar("AnyTransport", bound=BackgroundTransport)
 
 
@@ -359,7 +364,7 @@ def join_with(
     """
     if reason:
         if told:
-            logger.warning(f"This process speaks to no other one: {reason}. Everything inside of it works.")
+            say_alone(logger, reason)
         return None
     try:
         transport = make()

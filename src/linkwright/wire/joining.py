@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.wire import dds, zenoh
+from linkwright.wire.background import say_alone
+from linkwright.wire.switch import is_switched_off
 from linkwright.wire.zenoh.joining import is_installed as zenoh_is_installed
 
 if TYPE_CHECKING:
@@ -101,5 +103,10 @@ def join(
     Returns:
         The transport; None where there is none, it is switched off, or wrongly set.
     """
+    reason = why_not(environment)
+    if reason:
+        if not is_switched_off(environment):
+            say_alone(graph.get_logger("wire"), reason)
+        return None
     chosen = zenoh.join if middleware(environment) == ZENOH else dds.join
     return chosen(graph, domain_id=domain_id, environment=environment, only_looks=only_looks)

@@ -67,7 +67,9 @@ _PAGE_TYPES = {
     ".txt": "text/plain; charset=utf-8",
 }
 
-DEFAULT_PORT = 7447
+DEFAULT_PORT = 7448
+"""Beside 7447, where routers of Zenoh listen (decision 0066)."""
+
 _TRIES = 10
 _WILDCARDS = {"0.0.0.0": "127.0.0.1", "::": "::1"}  # noqa: S104 - what an address to open is instead of
 

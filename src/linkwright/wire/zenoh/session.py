@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import zenoh
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
@@ -14,7 +16,15 @@ def open_session(settings: Settings) -> zenoh.Session:
     Raises:
         LinkwrightError: DDS111, the configuration is refused; DDS112, the session cannot be opened with it.
     """
-    config = _configuration(settings)
+    return open_with(configuration(settings))
+
+
+def open_with(config: zenoh.Config) -> zenoh.Session:
+    """A session with a configuration.
+
+    Raises:
+        LinkwrightError: DDS112, it cannot be opened.
+    """
     try:
         return zenoh.open(config)
     except zenoh.ZError as error:
@@ -27,7 +37,18 @@ def open_session(settings: Settings) -> zenoh.Session:
         ) from error
 
 
-def _configuration(settings: Settings) -> zenoh.Config:
+def listening_at(config: zenoh.Config) -> list[str]:
+    """The addresses that a configuration listens at, where it is the same for all kinds of sessions."""
+    addresses = json.loads(config.get_json("listen/endpoints"))
+    return [str(each) for each in addresses] if isinstance(addresses, list) else []
+
+
+def configuration(settings: Settings) -> zenoh.Config:
+    """The configuration that the settings make.
+
+    Raises:
+        LinkwrightError: DDS111, it is refused.
+    """
     if settings.file:
         try:
             config = zenoh.Config.from_file(settings.file)

@@ -39,6 +39,9 @@ _SHARED: Entries = (
 )
 _ROUTER: Entries = (
     ("mode", '"router"'),
+    ("listen/endpoints", f'["tcp/localhost:{ROUTER_PORT}"]'),
+    ("open/return_conditions/connect_scouted", "false"),
+    ("scouting/delay", "0"),
     ("scouting/multicast/enabled", "false"),
     *_SHARED,
 )

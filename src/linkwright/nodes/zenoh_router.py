@@ -1,0 +1,48 @@
+"""``rmw_zenohd``: the router by which nodes of rmw_zenoh_cpp find each other."""
+
+from __future__ import annotations
+
+from importlib.util import find_spec
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, install_hint, phrase
+from linkwright.graph import Graph
+from linkwright.nodes.options import NodeOptions, SingleNode, create_node
+
+
+class ZenohRouter(SingleNode):
+    """A Zenoh router for as long as it runs, at tcp/localhost:7447 unless the settings say otherwise.
+
+    The settings are rmw_zenohd's, ``ZENOH_ROUTER_CONFIG_URI`` and ``ZENOH_CONFIG_OVERRIDE``. Unlike that it listens to
+    this machine alone by itself. Its node is a hidden one.
+
+    Args:
+        graph: the graph.
+        options: how it is started.
+
+    Raises:
+        LinkwrightError: NODE003, Zenoh is not installed; DDS111 and DDS112, the router cannot be opened.
+    """
+
+    DEFAULT_NAME = "_rmw_zenohd"
+
+    def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        if find_spec("zenoh") is None:
+            raise LinkwrightError(
+                Diagnostic("NODE003", phrase("a router of Zenoh needs Zenoh"), hint=install_hint("zenoh"))
+            )
+        from linkwright.wire.zenoh.session import configuration, listening_at, open_with
+        from linkwright.wire.zenoh.settings import read_router_settings
+
+        config = configuration(read_router_settings())
+        self._session = open_with(config)
+        try:
+            self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
+        except LinkwrightError:
+            self._session.close()
+            raise
+        self._node.get_logger().info(f"Zenoh router at {', '.join(listening_at(config))}")
+
+    def close(self) -> None:
+        """End it."""
+        self._session.close()
+        super().close()

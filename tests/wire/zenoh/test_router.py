@@ -1,0 +1,103 @@
+"""Routers: ours is one for whoever looks for it where rmw_zenoh_cpp does."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+
+import pytest
+
+from linkwright.messages import String
+from linkwright.wire.zenoh.settings import ATTEMPTS, OVERRIDES
+
+COMMAND = [sys.executable, "-m", "linkwright.node_program", "rmw_zenoh_cpp", "rmw_zenohd"]
+
+
+@pytest.fixture
+def start_router(router_port) -> Iterator[Callable[[], subprocess.Popen[str]]]:
+    """Starts a router at the port of the test; it has said that it is one when this returns."""
+    started: list[subprocess.Popen[str]] = []
+
+    def start() -> subprocess.Popen[str]:
+        settings = f'listen/endpoints=["tcp/localhost:{router_port}"];connect/endpoints=[]'
+        router = subprocess.Popen(
+            COMMAND,
+            env={**os.environ, OVERRIDES: settings},
+            stderr=subprocess.STDOUT,
+            stdout=subprocess.PIPE,
+            text=True,
+        )
+        started.append(router)
+        assert router.stdout is not None
+        assert f"Zenoh router at tcp/localhost:{router_port}" in router.stdout.readline()
+        return router
+
+    yield start
+    for router in started:
+        router.kill()
+        router.communicate()
+
+
+@pytest.fixture
+def by_router_alone(monkeypatch, router_port) -> None:
+    """Nobody is found by multicast."""
+    settings = f'connect/endpoints=["tcp/localhost:{router_port}"];scouting/multicast/enabled=false'
+    monkeypatch.setenv(OVERRIDES, settings)
+
+
+def test_processes_find_each_other_by_a_router_and_go_on_without_it(processes, start_router, by_router_alone):
+    router = start_router()
+    a, b = processes("a"), processes("b")
+    got: list[str] = []
+    b.node.create_subscription(String, "chatter", lambda message: got.append(message.data), 10)
+    publisher = a.node.create_publisher(String, "chatter", 10)
+    a.spin_until(lambda: publisher.get_subscription_count() == 1)
+    publisher.publish(String(data="with"))
+    b.spin_until(lambda: got == ["with"])
+    router.terminate()
+    assert router.wait(60) == 0
+    publisher.publish(String(data="without"))
+    b.spin_until(lambda: got == ["with", "without"])
+
+
+def test_who_waits_for_a_router_finds_one_that_comes_late(processes, start_router, by_router_alone, monkeypatch):
+    monkeypatch.setenv(ATTEMPTS, "0")
+    a, b = processes("a", join_now=False), processes("b", join_now=False)
+    start_router()
+    a.join(), b.join()
+    a.spin_until(lambda: "b" in a.node.get_node_names())
+    assert not a.warnings()
+
+
+def test_that_there_is_no_router_is_told_to_who_asks(processes, by_router_alone, monkeypatch):
+    monkeypatch.setenv(ATTEMPTS, "1")
+    us = processes("ours")
+    us.spin_until(us.warnings)
+    (text,) = us.warnings()
+    assert "There is no Zenoh router" in text
+    assert "linkwright run rmw_zenoh_cpp rmw_zenohd" in text
+
+
+def test_a_second_router_says_why_it_cannot_be_one(start_router, router_port):
+    start_router()
+    settings = f'listen/endpoints=["tcp/localhost:{router_port}"]'
+    second = subprocess.run(
+        COMMAND, check=False, env={**os.environ, OVERRIDES: settings}, capture_output=True, text=True, timeout=60
+    )
+    assert second.returncode == 1
+    assert "error[DDS112]: a session of Zenoh cannot be opened" in second.stderr
+    assert "Address already in use" in second.stderr
+
+
+@pytest.mark.parametrize(
+    ("settings", "said"),
+    [("mode", "'mode' in ZENOH_CONFIG_OVERRIDE is not a setting"), ("mode=17", "Zenoh refuses 'mode=17'")],
+)
+def test_a_setting_that_is_refused_is_told_with_its_name(monkeypatch, settings, said):
+    result = subprocess.run(
+        COMMAND, check=False, env={**os.environ, OVERRIDES: settings}, capture_output=True, text=True, timeout=60
+    )
+    assert result.returncode == 1
+    assert f"error[DDS111]: {said}" in result.stderr
