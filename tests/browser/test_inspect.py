@@ -27,7 +27,8 @@ def orange(page):
     """How many of some places on the arm's base are orange, as collisions are in contrast."""
     until(page, "lw.settled")  # a fine frame follows the coarse one
     box = page.locator(".canvas-box canvas").bounding_box()
-    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    free = page.locator(".stack").bounding_box()["x"] - box["x"]  # the card of Inspect is open
+    x, y = box["x"] + free / 2, box["y"] + box["height"] / 2
     seen = colors_at(page, *((x + dx, y + dy) for dx, dy in ((-40, 0), (-30, 10), (30, 10), (40, 0), (0, 25))))
     return sum(r > 100 and 0.3 * r < g < 0.8 * r and b < 0.7 * g for r, g, b in seen)
 
