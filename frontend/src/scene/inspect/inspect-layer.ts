@@ -29,6 +29,10 @@ export class InspectLayer {
       this.holdWhatIsNeeded();
       invalidate();
     });
+    // Positions may come after the transforms that they go with, which are drawn by then.
+    session.joints.positionsChanged.on(() => {
+      if (inspect.current.joints) invalidate();
+    });
     description.arrived.on(invalidate);
     description.findingsArrived.on(invalidate);
     this.holdWhatIsNeeded();
