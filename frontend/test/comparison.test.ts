@@ -1,6 +1,7 @@
 import { beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
 import type { ComparedDescriptions, ComparedItem } from "../src/protocol";
+import { shortPlace } from "../src/panels/place";
 import { ComparisonState, grouped, MARK_COLORS, marksIn } from "../src/state/comparison";
 
 function item(part: Partial<ComparedItem> = {}): ComparedItem {
@@ -18,6 +19,18 @@ const TOLD: ComparedDescriptions & { type: "compared_descriptions" } = {
   shapes: { arm: "arm" },
   items: [item(), item({ property: "origin xyz" }), item({ subject: "joint" }), item({ name: "camera", kind: "removed", property: "", element: "camera", in_old: true })],
 };
+
+describe("places of descriptions", () => {
+  it.each([
+    ["HEAD:robots/arm/urdf/arm.urdf:3:1", "HEAD:…/urdf/arm.urdf:3:1"],
+    ["HEAD:arm.urdf:3:1", "HEAD:arm.urdf:3:1"],
+    ["main~2:urdf/arm.urdf", "main~2:urdf/arm.urdf"],
+    ["/home/me/robots/arm/urdf/arm.urdf:3:1", "…/urdf/arm.urdf:3:1"],
+    ["urdf/arm.urdf:3:1", "urdf/arm.urdf:3:1"],
+  ])("%s is %s", (text, short) => {
+    expect(shortPlace(text)).toBe(short);
+  });
+});
 
 describe("two descriptions in one scene", () => {
   let connection: Connection;

@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Page
 
+from tests.browser.axe import violations
 from tests.browser.conftest import becomes, state, until
 from tests.browser.pixels import colors_at
 from tests.browser.test_export import export, open_file  # noqa: F401 - a fixture
@@ -189,6 +190,13 @@ def test_a_commit_is_the_old_one(start, open_page, files):
     group(page, "camera").get_by_role("button", name="HEAD:new.urdf:5", exact=False).click()
     becomes(lambda: state(page, "panels.source.origin.file").endswith("files/new.urdf"), True)
     page.locator(".source-panel").get_by_text('"camera"').first.wait_for()
+
+
+def test_the_panel_has_no_finding_of_axe_core(start, open_page, files):
+    page = open_page(start("view", *map(str, files)))
+    group(page, "camera").locator("button.difference-name").click()
+    page.locator(".difference-group.selected").wait_for()
+    assert violations(page, ".comparison") == []
 
 
 def test_a_review_opens_from_disk_with_both_robots_the_list_and_joints_that_move_both(open_file, files, tmp_path):  # noqa: F811 - the fixture

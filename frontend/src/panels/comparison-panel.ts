@@ -7,7 +7,7 @@ import type { Session } from "../state/session";
 import { strings } from "../strings";
 import { tickBox } from "./controls";
 import type { Panel } from "./panel";
-import { shortPath } from "./place";
+import { shortPlace } from "./place";
 
 const KIND_ICONS = { added: "plus", removed: "minus", renamed: "rename", changed: "options" } as const satisfies Record<string, IconName>;
 const SUBJECT_ICONS = { robot: "diagram", link: "cube", joint: "joints", extension: "code" } as const satisfies Record<string, IconName>;
@@ -79,7 +79,7 @@ export class ComparisonPanel implements Panel {
     const words = strings.comparison;
     for (const [tick, { label }] of [[this.old, compared.old], [this.new, compared.new]] as const) {
       const file = tick.querySelector(".comparison-file");
-      if (file) file.textContent = shortPath(label, 2);
+      if (file) file.textContent = shortPlace(label);
       tick.title = `${tick === this.old ? words.showOld : words.showNew}\n${label}`;
     }
     const marks = marksIn([compared.new, compared.old]);
@@ -129,8 +129,7 @@ export class ComparisonPanel implements Panel {
     const words = strings.comparison;
     const { focus, comparison } = this.session;
     const element = comparison.elementOf(first);
-    const name = h("strong", {}, first.name);
-    const label = [icon(SUBJECT_ICONS[first.subject]), h("span", { class: "difference-kind" }, words.subjects[first.subject]), name] as const;
+    const label = [icon(SUBJECT_ICONS[first.subject]), h("span", { class: "difference-kind" }, words.subjects[first.subject]), first.name] as const;
     const choose = (): void => {
       focus.select(element);
       this.look();
@@ -173,7 +172,7 @@ export class ComparisonPanel implements Panel {
   private place(place: ComparedPlace | null, side: "old" | "new"): HTMLElement | null {
     if (!place) return null;
     const { text, file, line } = place;
-    const words = [h("span", { class: "difference-side" }, strings.comparison[side]), shortPath(text, 2)] as const;
+    const words = [h("span", { class: "difference-side" }, strings.comparison[side]), shortPlace(text)] as const;
     const display = this.session.comparison.compared?.[side].display ?? "";
     if (file === "" || display === "") return h("span", { class: "place", title: text }, ...words);
     return button(text, () => this.session.description.placeAsked.emit({ file, line, display }), "place", ...words);
