@@ -46,8 +46,8 @@ interface Inspection {
   readonly tools: string[];
   /** All that is selected. */
   readonly selection: SelectedItem[];
-  /** The recording that is shown: times in s since its start. */
-  readonly timeline: { name: string; position: number; length: number; playing: boolean; problem: string } | null;
+  /** The recording or the last minutes that are shown: times in s since their start; bytes that are kept. */
+  readonly timeline: { name: string; position: number; length: number; playing: boolean; problem: string; live: boolean; kept: number } | null;
   readonly time: { paused: boolean; mode: string; source: string; sources: string[] };
   /** Joint positions of the Joints panel, rad or m. */
   readonly joints: Record<string, number>;
@@ -141,10 +141,10 @@ export function publishInspection(
       return session.selection.items.map((item) => ({ ...item }));
     },
     get timeline() {
-      const { timeline, position, playing, problem } = session.timeline;
+      const { timeline, position, playing, problem, live, kept } = session.timeline;
       if (!timeline) return null;
       const { name, start, end } = timeline;
-      return { name, position: position - start, length: end - start, playing, problem };
+      return { name, position: position - start, length: end - start, playing, problem, live, kept: kept?.size ?? 0 };
     },
     get time() {
       const { paused, mode, source, sources } = session.time;

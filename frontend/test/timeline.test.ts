@@ -1,11 +1,11 @@
 import { beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
-import { clockText, densities, passedText } from "../src/panels/timeline-text";
+import { agoText, clockText, densities, keptText, passedText } from "../src/panels/timeline-text";
 import type { PageMessage, Playhead } from "../src/protocol";
 import { TimelineState } from "../src/state/timeline";
 
 function playhead(part: Partial<Playhead> = {}): Playhead & { type: "playhead" } {
-  return { type: "playhead", position: 100, playing: false, speed: 1, loop: false, seeks: 0, problem: "", ...part };
+  return { type: "playhead", position: 100, playing: false, speed: 1, loop: false, seeks: 0, problem: "", live: false, ...part };
 }
 
 describe("the timeline", () => {
@@ -18,7 +18,7 @@ describe("the timeline", () => {
     connection = new Connection("ws://localhost/ws");
     vi.spyOn(connection, "send").mockImplementation((message) => void sent.push(message));
     timeline = new TimelineState(connection);
-    connection.message.emit({ type: "timeline", name: "drive", start: 100, end: 110, topics: [] });
+    connection.message.emit({ type: "timeline", name: "drive", start: 100, end: 110, topics: [], live: false });
     connection.message.emit(playhead());
   });
 
@@ -50,6 +50,20 @@ describe("the timeline", () => {
     connection.message.emit(playhead({ playing: true, position: 100.1 }));
     connection.message.emit(playhead({ playing: true, position: 100.2, loop: true }));
     expect(told).toEqual(["changed", "moved", "changed"]);
+  });
+
+  it("is at the end of the last minutes while the present is shown, however these move on", () => {
+    connection.message.emit({ type: "timeline", name: "", start: 100, end: 110, topics: [], live: true });
+    connection.message.emit(playhead({ live: true }));
+    connection.message.emit({ type: "kept", start: 105, end: 120, size: 5e6, most: 1e7 });
+    expect([timeline.playing, timeline.live, timeline.position]).toEqual([true, true, 120]);
+    timeline.play(false);
+    connection.message.emit(playhead({ position: 119 }));
+    expect([timeline.playing, timeline.live, timeline.position]).toEqual([false, false, 119]);
+    expect(agoText(1)).toBe("−0:01.00");
+    expect(keptText({ type: "kept", start: 105, end: 120, size: 5e6, most: 1e7 })).toBe("0:15 · 5.0 MB");
+    timeline.goLive();
+    expect(sent).toEqual([{ type: "play", playing: false }, { type: "go_live" }]);
   });
 
   it("is gone with a program that has none", () => {

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import AsyncIterator, Iterable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -122,8 +123,8 @@ class Shown:
         self.listener.create_subscription(String, topic, lambda message: self.heard.append(message.data), 100)
         self.playback.review()
 
-    def _tick(self, message: object) -> None:
-        stamp = message.clock  # type: ignore[attr-defined]
+    def _tick(self, message: Any) -> None:
+        stamp = message.clock
         self.times.append(stamp.sec * SECOND + stamp.nanosec - START)
 
     async def settle(self) -> None:

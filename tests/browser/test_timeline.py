@@ -162,3 +162,30 @@ def test_plots_are_of_the_time_that_is_shown(page: Page):
     until(page, f"{last} === 0")
     page.get_by_role("button", name="Play (Space)").click()
     until(page, f"{last} >= 1")
+
+
+def test_the_last_minutes_are_gone_back_to_and_left_for_the_present(start, open_page, tmp_path: Path):
+    model = tmp_path / "arm.urdf"
+    model.write_text(
+        '<robot name="arm"><link name="base"/><link name="tip"/><joint name="turn" type="continuous">'
+        '<parent link="base"/><child link="tip"/><axis xyz="0 0 1"/></joint></robot>'
+    )
+    page = open_page(start("view", str(model), "--history", "1MB"), wait=False)
+    until(page, "lw.timeline?.live && lw.timeline.kept > 1000 && lw.timeline.length > 2 && lw.frames.tip")
+    page.get_by_role("button", name="Pause (Space)").click()
+    until(page, "!lw.timeline.live && !lw.timeline.playing")
+    stood = state(page, "timeline")
+    until(page, f"lw.timeline.length > {stood['length'] + 1}")
+    page.get_by_role("slider", name="Time in the last minutes").click(position={"x": 3, "y": 5})
+    until(page, "lw.timeline.position < 1")
+    page.get_by_role("button", name="Show the present again").click()
+    until(page, "lw.timeline.live && lw.timeline.kept <= 1e6 && lw.frames.tip")
+
+
+def test_a_viewer_that_keeps_nothing_has_no_timeline(start, open_page, tmp_path: Path):
+    model = tmp_path / "arm.urdf"
+    model.write_text('<robot name="arm"><link name="base"/></robot>')
+    page = open_page(start("view", str(model), "--history", "0"), wait=False)
+    until(page, "lw.frames && lw.robot")
+    assert state(page, "timeline") is None
+    assert page.locator(".timeline-bar").is_hidden()

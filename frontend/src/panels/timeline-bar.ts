@@ -3,12 +3,12 @@ import { icon } from "../icons";
 import { TAKES_LETTERS } from "../scene/keyboard";
 import { SPEEDS, type TimelineState } from "../state/timeline";
 import { strings } from "../strings";
-import { clockText, densities, passedText } from "./timeline-text";
+import { agoText, clockText, densities, keptText, passedText } from "./timeline-text";
 
 /** Parts of the whole that Page Up and Page Down go. */
 const PAGE = 0.1;
 
-/** Along the foot of the page while a recording is shown: play, step, speed, loop, and a line of its time to drag on. */
+/** Along the foot of the page while a recording is shown, or the last minutes are kept: play, step, speed, loop, and a line of its time to drag on. */
 export class TimelineBar {
   readonly element: HTMLElement;
   private readonly play: HTMLButtonElement;
@@ -18,12 +18,19 @@ export class TimelineBar {
   private readonly marks = h("canvas", { class: "timeline-marks" });
   private readonly head = h("div", { class: "timeline-head" });
   private readonly track: HTMLElement;
+  private readonly live: HTMLButtonElement;
+  private readonly back: HTMLButtonElement;
+  private readonly forward: HTMLButtonElement;
   private readonly problem = h("span", { class: "timeline-problem", role: "alert" });
 
   constructor(private readonly timeline: TimelineState) {
     const words = strings.timeline;
     this.play = button(words.play, () => timeline.play(!timeline.playing), "tool bare", icon("play"));
     this.loop = button(words.loop, () => timeline.setLoop(!timeline.loop), "tool bare", icon("loop"));
+    this.live = button(words.live, () => timeline.goLive(), "timeline-live");
+    this.live.textContent = words.liveShort;
+    this.back = button(words.back, () => timeline.step(false), "tool bare", icon("stepBack"));
+    this.forward = button(words.forward, () => timeline.step(true), "tool bare", icon("step"));
     this.speed.append(...SPEEDS.map((speed) => new Option(`${speed}×`, String(speed))));
     this.speed.addEventListener("change", () => timeline.setSpeed(Number(this.speed.value)));
     this.track = h("div", { class: "timeline-track", role: "slider", tabIndex: 0, aria: { label: words.position } }, this.marks, this.head);
@@ -35,14 +42,15 @@ export class TimelineBar {
     this.element = h(
       "section",
       { class: "timeline-bar", aria: { label: words.label } },
-      button(words.back, () => timeline.step(false), "tool bare", icon("stepBack")),
+      this.back,
       this.play,
-      button(words.forward, () => timeline.step(true), "tool bare", icon("step")),
+      this.forward,
       this.track,
       this.problem,
       this.time,
       this.speed,
       this.loop,
+      this.live,
     );
     timeline.changed.on(() => this.show());
     timeline.moved.on(coalesced(() => this.move()));
@@ -54,7 +62,14 @@ export class TimelineBar {
   private show(): void {
     const { timeline, playing, speed, loop, problem } = this.timeline;
     const words = strings.timeline;
+    const minutes = timeline?.live ?? false;
     this.element.hidden = timeline === null;
+    this.element.classList.toggle("minutes", minutes);
+    this.live.hidden = !minutes;
+    this.live.setAttribute("aria-pressed", String(this.timeline.live));
+    this.forward.hidden = this.speed.hidden = minutes && this.timeline.live;
+    this.loop.hidden = minutes;
+    this.track.setAttribute("aria-label", minutes ? words.minutes : words.position);
     const label = playing ? words.pause : words.play;
     if (this.play.title !== label) {
       this.play.title = label;
@@ -71,14 +86,14 @@ export class TimelineBar {
   }
 
   private move(): void {
-    const { timeline, position } = this.timeline;
+    const { timeline, position, live, kept } = this.timeline;
     if (!timeline) return;
     const { start, end } = timeline;
-    const part = end > start ? (position - start) / (end - start) : 0;
+    const part = end > start ? Math.min(1, Math.max(0, (position - start) / (end - start))) : 1;
     this.head.style.left = `${(part * 100).toFixed(3)}%`;
-    const passed = passedText(position - start, end - start);
+    const passed = kept ? (live ? keptText(kept) : agoText(end - position)) : passedText(position - start, end - start);
     this.time.textContent = passed;
-    this.time.title = clockText(position);
+    this.time.title = kept ? `${clockText(position)}\n${strings.timeline.kept(keptText(kept), (kept.most / 1e6).toFixed(0))}` : clockText(position);
     this.track.setAttribute("aria-valuemin", "0");
     this.track.setAttribute("aria-valuemax", String(end - start));
     this.track.setAttribute("aria-valuenow", (position - start).toFixed(3));

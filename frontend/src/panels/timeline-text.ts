@@ -1,4 +1,4 @@
-import type { TimelineTopic } from "../protocol";
+import type { Kept, TimelineTopic } from "../protocol";
 
 /** Most topics that have a line of their own in the timeline. */
 const MOST_ROWS = 12;
@@ -7,6 +7,16 @@ const FAINTEST = 0.12;
 /** `0:07.250 / 1:30`: how much has passed, of how much. */
 export function passedText(passed: number, whole: number): string {
   return `${minutes(passed, 2)} / ${minutes(whole, whole < 10 ? 2 : 0)}`;
+}
+
+/** `1:30 · 45 MB`: how long a time is kept, and what it takes. */
+export function keptText({ start, end, size }: Kept): string {
+  return `${minutes(end - start, 0)} · ${(size / 1e6).toFixed(size < 1e7 ? 1 : 0)} MB`;
+}
+
+/** `−0:07.250`: how long ago what is shown was. */
+export function agoText(ago: number): string {
+  return `−${minutes(ago, 2)}`;
 }
 
 /** Date and time of day where this page is, with milliseconds, and the seconds since the epoch. */

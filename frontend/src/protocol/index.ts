@@ -97,7 +97,7 @@ import type {
   SpawnModel,
 } from "./simulation";
 import type { Clock, ResetTime, SetTime, TimeReset, TimeState, WatchClock } from "./time";
-import type { Play, Playhead, SeekTime, SetPlayback, StepTime, Timeline } from "./timeline";
+import type { GoLive, Kept, Play, Playhead, SeekTime, SetPlayback, StepTime, Timeline } from "./timeline";
 import type {
   AddTool,
   ChangeSavedView,
@@ -176,6 +176,7 @@ export type ServerMessage =
   | InertiaFindings
   | JointPositions
   | Joints
+  | Kept
   | LinkProvenance
   | LogLines
   | ModelChoices
@@ -243,6 +244,7 @@ export type PageMessage =
   | DumpParameters
   | DuplicateDisplays
   | EndTake
+  | GoLive
   | GroupDisplays
   | GroupThings
   | ImportWords

@@ -14,7 +14,17 @@ export interface Timeline {
   start: number;
   end: number;
   topics: TimelineTopic[];
+  live: boolean;
   type: "timeline";
+}
+
+/** What is kept of the last minutes: from when to when, how many bytes it takes, and how many it may. */
+export interface Kept {
+  start: number;
+  end: number;
+  size: number;
+  most: number;
+  type: "kept";
 }
 
 /** Where a recording is. While `playing`, told a few times a second. */
@@ -25,6 +35,7 @@ export interface Playhead {
   loop: boolean;
   seeks: number;
   problem: string;
+  live: boolean;
   type: "playhead";
 }
 
@@ -44,6 +55,11 @@ export interface SeekTime {
 export interface StepTime {
   forward: boolean;
   type: "step_time";
+}
+
+/** The user goes back from the last minutes to the present. */
+export interface GoLive {
+  type: "go_live";
 }
 
 /** The user plays a recording slower or faster, once or over and over. */

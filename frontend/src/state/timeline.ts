@@ -1,15 +1,16 @@
 import type { Connection } from "../connection/connection";
-import type { Playhead, Timeline } from "../protocol";
+import type { Kept, Playhead, Timeline } from "../protocol";
 import { Signal } from "./signal";
 
 export const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 5, 10] as const;
 
-/** A recording that the server plays: its times, and where it is. */
+/** A recording that the server plays, or what came in the last minutes: its times, and where it is. */
 export class TimelineState {
   readonly changed = new Signal();
   readonly moved = new Signal();
   private recording: Timeline | null = null;
   private playhead: Playhead | null = null;
+  private keptNow: Kept | null = null;
   /** Where the user is going, s; shown until the server is there. */
   private target: number | null = null;
   private asked = false;
@@ -18,13 +19,18 @@ export class TimelineState {
   constructor(private readonly connection: Connection) {
     connection.on("hello", () => {
       // A new connection knows nothing of what was asked for; a program without a recording tells of none.
-      this.recording = this.playhead = this.target = null;
+      this.recording = this.playhead = this.keptNow = this.target = null;
       this.asked = false;
       this.changed.emit();
     });
     connection.on("timeline", (timeline) => {
       this.recording = timeline;
       this.changed.emit();
+    });
+    connection.on("kept", (kept) => {
+      this.keptNow = kept;
+      if (this.recording?.live) this.recording = { ...this.recording, start: kept.start, end: kept.end };
+      this.moved.emit();
     });
     connection.on("playhead", (playhead) => this.take(playhead));
   }
@@ -34,8 +40,18 @@ export class TimelineState {
     return this.recording;
   }
 
+  /** Whether what is shown is the present, and time goes on. */
+  get live(): boolean {
+    return this.playhead?.live ?? false;
+  }
+
+  /** What is kept of the last minutes; null for a recording. */
+  get kept(): Kept | null {
+    return this.keptNow;
+  }
+
   get playing(): boolean {
-    return this.playhead?.playing ?? false;
+    return this.live || (this.playhead?.playing ?? false);
   }
 
   get speed(): number {
@@ -53,11 +69,16 @@ export class TimelineState {
 
   /** The time that is shown, s since the epoch. */
   get position(): number {
+    if (this.live && this.target === null) return this.recording?.end ?? 0;
     return this.target ?? this.playhead?.position ?? this.recording?.start ?? 0;
   }
 
   play(playing: boolean): void {
     this.connection.send({ type: "play", playing });
+  }
+
+  goLive(): void {
+    this.connection.send({ type: "go_live" });
   }
 
   step(forward: boolean): void {
@@ -94,7 +115,7 @@ export class TimelineState {
       if (this.target !== null && this.target !== this.wanted) this.ask(this.target);
       else this.target = null;
     }
-    const same = before !== null && (["playing", "speed", "loop", "problem"] as const).every((key) => before[key] === playhead[key]);
+    const same = before !== null && (["playing", "live", "speed", "loop", "problem"] as const).every((key) => before[key] === playhead[key]);
     if (same) this.moved.emit();
     else this.changed.emit();
   }

@@ -1,5 +1,6 @@
 """Recordings of topics: rosbag2's folders with MCAP or SQLite files."""
 
+from linkwright.bag.history import History
 from linkwright.bag.playback import FASTEST, SLOWEST, Output, Playback, Recording
 from linkwright.bag.player import Player, PlayOptions
 from linkwright.bag.publishing import PublishedRecording
@@ -16,6 +17,7 @@ __all__ = [
     "BagReader",
     "BagTopic",
     "BagWriter",
+    "History",
     "Output",
     "PlayOptions",
     "Playback",

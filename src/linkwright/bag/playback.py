@@ -55,8 +55,8 @@ class Output(Protocol):
     def tell_time(self, stamp_ns: int, /) -> None:
         """Tell which time it is, nanoseconds since the epoch."""
 
-    def publish(self, topic: str, data: bytes, /) -> None:
-        """Publish a message."""
+    def publish(self, topic: str, stamp_ns: int, data: bytes, /) -> None:
+        """Publish a message that was received at a time, nanoseconds since the epoch."""
 
 
 class Playback:
@@ -154,11 +154,19 @@ class Playback:
             if not forward:
                 before = self._recording.time_before(self._wanted, self._aim())
                 self.seek(self.start_ns if before is None else before)
-            elif self._target_ns is None and self._next is not None:
-                self._show_until(self._next[1])
-                self._tell()
+            elif self._target_ns is None:
+                self._next = next(self._stream, None) if self._next is None else self._next
+                if self._next is not None:
+                    self._show_until(self._next[1])
+                    self._tell()
         except LinkwrightError as error:
             self._fail(error)
+
+    def take_over(self, stamp_ns: int) -> None:
+        """Go on from a time whose state listeners know already."""
+        self.position_ns, self._target_ns = stamp_ns, None
+        self._wanted = self._output.wanted()
+        self._open_stream()
 
     def review(self) -> None:
         """Look who listens: a topic that nobody listened to before begins with its last message."""
@@ -167,8 +175,8 @@ class Playback:
             return
         new, self._wanted = wanted - self._wanted, wanted
         try:
-            for topic, _, data in self._recording.state_at(new, self.position_ns) if new else ():
-                self._output.publish(topic, data)
+            for message in self._recording.state_at(new, self.position_ns) if new else ():
+                self._output.publish(*message)
             self._open_stream()
         except LinkwrightError as error:
             self._fail(error)
@@ -200,8 +208,8 @@ class Playback:
             return
         self._output.tell_time(self.position_ns)
         self.begin_anew()
-        for topic, _, data in state:
-            self._output.publish(topic, data)
+        for message in state:
+            self._output.publish(*message)
         self._ticked_ns = self._steady_ns()
         self._tell()
 
@@ -217,14 +225,15 @@ class Playback:
         now = self._steady_ns()
         passed, self._ticked_ns = now - self._ticked_ns, now
         if self._target_ns is None:
+            end = self.end_ns  # that of what is still being recorded moves on
             try:
-                self._show_until(min(self.end_ns, self.position_ns + round(passed * self.speed)))
+                self._show_until(min(end, self.position_ns + round(passed * self.speed)))
             except LinkwrightError as error:
                 self._fail(error)
                 return
-            if self.position_ns >= self.end_ns and self.loop:
+            if self.position_ns >= end and self.loop:
                 self.seek(self.start_ns)
-            elif self.position_ns >= self.end_ns:
+            elif self.position_ns >= end:
                 self.pause()
                 return
         self._set_alarm()
@@ -232,16 +241,17 @@ class Playback:
     def _show_until(self, stamp_ns: int) -> None:
         """Publish what was received until a time, or as much of it as goes in one turn."""
         self._output.tell_time(stamp_ns)
+        if self._next is None:
+            self._next = next(self._stream, None)  # what is still being recorded has more now
         size = 0
         for _ in range(_MOST_MESSAGES):
             if self._next is None or self._next[1] > stamp_ns:
                 break
-            topic, stamp, data = self._next
             if size > _MOST_BYTES:
-                stamp_ns = stamp - 1
+                stamp_ns = self._next[1] - 1
                 break
-            self._output.publish(topic, data)
-            size += len(data)
+            self._output.publish(*self._next)
+            size += len(self._next[2])
             self._next = next(self._stream, None)
         else:
             if self._next is not None and self._next[1] <= stamp_ns:

@@ -67,6 +67,6 @@ class PublishedRecording:
         """Publish on ``/clock``."""
         self._clock.publish(self._clock.msg_type(clock=Time.from_nanoseconds(stamp_ns)))
 
-    def publish(self, topic: str, data: bytes) -> None:
+    def publish(self, topic: str, stamp_ns: int, data: bytes) -> None:
         """Publish a message."""
         self._publishers[topic].publish(data)

@@ -103,7 +103,7 @@ def run(arguments: argparse.Namespace) -> int:
         headless=arguments.headless,
         rate=arguments.rate,
     )
-    options = HostOptions(arguments.host, arguments.port, not arguments.no_open)
+    options = HostOptions(arguments.host, arguments.port, not arguments.no_open, history=arguments.history)
     with recording(arguments) as writer:
         status = run_simulated(world, finder, options, foxglove=arguments.foxglove, writer=writer)
     return status or int(has_errors(description.diagnostics))

@@ -79,6 +79,7 @@ def run(arguments: argparse.Namespace) -> int:
         prefix=arguments.launch_prefix,
         prefix_filter=arguments.launch_prefix_filter,
         foxglove=arguments.foxglove,
+        history=arguments.history,
         skip_missing=arguments.skip_missing,
         command_to_skip_missing=shlex.join(["linkwright", "launch", "--skip-missing", *arguments.words]),
     )

@@ -37,7 +37,13 @@ def run(arguments: argparse.Namespace) -> int:
 
     words = list(arguments.words)
     if is_viewer(arguments.package, arguments.executable):
-        options = LaunchOptions(arguments.host, arguments.port, not arguments.no_open, foxglove=arguments.foxglove)
+        options = LaunchOptions(
+            arguments.host,
+            arguments.port,
+            not arguments.no_open,
+            foxglove=arguments.foxglove,
+            history=arguments.history,
+        )
         return run_viewer(words, options)
     standins.activate()
     program = find_program(PackageFinder(), arguments.package, arguments.executable)

@@ -64,6 +64,6 @@ def run(arguments: argparse.Namespace) -> int:
         world = replace(
             world, description=model.description, text=model.text, name=model.name, arguments=tuple(values.items())
         )
-    options = HostOptions(arguments.host, arguments.port, not arguments.no_open)
+    options = HostOptions(arguments.host, arguments.port, not arguments.no_open, history=arguments.history)
     with recording(arguments) as writer:
         return run_simulated(world, finder, options, foxglove=arguments.foxglove, writer=writer)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import re
 import sys
 from contextlib import ExitStack
 from pathlib import Path
@@ -35,6 +36,29 @@ def add_viewer_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--foxglove", metavar="PORT", type=port, help="let Foxglove and Lichtblick connect to this port of this machine"
     )
+    parser.add_argument(
+        "--history",
+        metavar="SIZE",
+        type=size,
+        default="256MB",
+        help="memory for what came in the last minutes, which the page can go back to, such as 1GB; 0 for none "
+        "(default: %(default)s)",
+    )
+
+
+_UNITS = {"": 1, "B": 1, "KB": 10**3, "MB": 10**6, "GB": 10**9}
+
+
+def size(text: str) -> int:
+    """A number of bytes, such as ``256MB``.
+
+    Raises:
+        argparse.ArgumentTypeError: when it is none.
+    """
+    found = re.fullmatch(r"([0-9]{1,9}(?:\.[0-9]{1,3})?) ?([KMG]?B)?", text, re.ASCII | re.IGNORECASE)
+    if found is None:
+        raise argparse.ArgumentTypeError(f"'{text}' is not a size; give one such as 256MB, or 0")
+    return round(float(found[1]) * _UNITS[(found[2] or "").upper()])
 
 
 def port(text: str) -> int:
@@ -53,7 +77,9 @@ def run(arguments: argparse.Namespace) -> int:
     from linkwright.bag import is_recording
     from linkwright.hosting.plans import HostOptions
 
-    options = HostOptions(arguments.host, arguments.port, not arguments.no_open, network=arguments.join)
+    options = HostOptions(
+        arguments.host, arguments.port, not arguments.no_open, network=arguments.join, history=arguments.history
+    )
     is_bag = is_recording(Path(arguments.file))
     if not is_bag and (arguments.against or any(map(names_file, arguments.words))):
         return _run_compared(arguments, options)

@@ -74,7 +74,7 @@ class _ClockSubscription(Subscription[Any]):
         super().__init__(node, "rosgraph_msgs/msg/Clock", node.resolve_topic_name("/clock"), CLOCK_QOS, self._move)
         self._ros_clock = clock
 
-    def receive(self, message: Any, info: Any = None) -> None:
+    def enqueue(self, message: Any, info: Any = None) -> None:
         """Set the clock."""
         if type(message) is self._as_it_is:
             self._move(message)

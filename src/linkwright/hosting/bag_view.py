@@ -60,7 +60,7 @@ def run_bag_view(path: Path, options: HostOptions, *, foxglove: int | None = Non
     """
     path = path.absolute()
     finder = PackageFinder(start=[path.parent, Path.cwd()])
-    options = replace(options, title=path.name)
+    options = replace(options, title=path.name, history=0)
     log = LaunchLog()
 
     def run(signals: SignalWatch) -> bool:

@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 
 VIEWER = ("rviz2", "rviz2")
 """Package and executable of RViz, for which our viewer stands in."""
+DEFAULT_HISTORY = 256_000_000
+"""Bytes of the last minutes that a viewer keeps: of transforms alone hours, of a colour camera ten seconds."""
+
 _GAZEBO_WINDOW = "gzclient"
 """The executable of Gazebo's window, whose place our viewer takes, too."""
 
@@ -125,6 +128,7 @@ class HostOptions:
         open_browser: whether the page is opened in the user's browser.
         title: what the page is called.
         network: whether the nodes join the ROS 2 network, where other programs see them.
+        history: how many bytes of what comes a viewer keeps, to go back to the last minutes; 0 for none.
     """
 
     host: str = "127.0.0.1"
@@ -132,6 +136,7 @@ class HostOptions:
     open_browser: bool = True
     title: str = ""
     network: bool = True
+    history: int = DEFAULT_HISTORY
 
 
 class Supervisor(Protocol):

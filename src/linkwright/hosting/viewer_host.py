@@ -90,6 +90,7 @@ class ViewerHost:
             port=session.options.port,
             title=session.options.title,
             options=plan.node_options(session.descriptions.library),
+            history=session.options.history,
         )
         await viewer.start()
         self._viewers[plan.process_name] = plan, viewer

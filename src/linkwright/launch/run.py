@@ -10,6 +10,7 @@ from typing import Any
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.hosting.launch_log import LaunchLog
+from linkwright.hosting.plans import DEFAULT_HISTORY
 from linkwright.hosting.signals import SignalWatch, own_environment, run_to_end
 from linkwright.hosting.xacro_calls import Descriptions, use_descriptions
 from linkwright.launch.arguments import argument_listing, check_arguments
@@ -41,6 +42,7 @@ class LaunchOptions:
         skip_missing: whether what cannot run because something is not there is left out.
         command_to_skip_missing: what the user may type to have that; told where something is missing.
         network: whether the nodes of this process join the ROS 2 network, where other programs see them.
+        history: how many bytes of what comes a viewer keeps, to go back to the last minutes; 0 for none.
     """
 
     host: str = "127.0.0.1"
@@ -55,6 +57,7 @@ class LaunchOptions:
     skip_missing: bool = False
     command_to_skip_missing: str | None = None
     network: bool = True
+    history: int = DEFAULT_HISTORY
 
     @property
     def configurations(self) -> dict[str, str]:
@@ -73,6 +76,7 @@ class LaunchOptions:
             skip_missing=self.skip_missing,
             command_to_skip_missing=None if self.skip_missing else self.command_to_skip_missing,
             network=self.network,
+            history=self.history,
         )
 
 

@@ -12,6 +12,7 @@ from linkwright.descriptions import DescriptionLibrary
 from linkwright.diagnostics import Diagnostic, Severity
 from linkwright.graph import Node
 from linkwright.graph.introspection.graph_queries import GraphQueries
+from linkwright.graph.time.clock import ROSClock
 from linkwright.packages import PackageFinder
 from linkwright.viewer.frames.history import FrameHistory
 from linkwright.viewer.web.audience import PageGroup
@@ -64,6 +65,40 @@ class GraphChanges:
                 changed()
 
 
+class HeldTime:
+    """Whether the viewer's clock is held at another time than the present, by whoever shows the past.
+
+    Attributes:
+        switching: the clock is being held, or let go: nothing is to be forgotten because of that.
+    """
+
+    def __init__(self) -> None:
+        self._held = False
+        self.switching = False
+
+    def show(self, clock: ROSClock, now_ns: int) -> bool:
+        """Have a clock show a time, nanoseconds since the epoch; False for one that shows simulated time anyway."""
+        if clock.ros_time_is_active and not self._held:
+            return False
+        clock.override(now_ns)
+        self._held = True
+        self._switch(clock, True)
+        return True
+
+    def release(self, clock: ROSClock) -> None:
+        """Have the clock show the present."""
+        if self._held:
+            self._held = False
+            self._switch(clock, False)
+
+    def _switch(self, clock: ROSClock, held: bool) -> None:
+        self.switching = True
+        try:
+            clock.set_ros_time_is_active(held)
+        finally:
+            self.switching = False
+
+
 @dataclass(frozen=True, slots=True)
 class ViewerContext:
     """The node, the files and the pages of a viewer.
@@ -77,6 +112,7 @@ class ViewerContext:
         graph_changes: tells that nodes or endpoints came or went.
         meshes: the folders that pages may read from.
         downloads: files that were made for a page, to be fetched once.
+        held_time: whether its clock shows the past.
         display_ids: ids that no display of the viewer has had.
     """
 
@@ -88,6 +124,7 @@ class ViewerContext:
     graph_changes: GraphChanges
     meshes: MeshFolders = field(default_factory=MeshFolders)
     downloads: Downloads = field(default_factory=Downloads)
+    held_time: HeldTime = field(default_factory=HeldTime)
     display_ids: Iterator[str] = field(default_factory=lambda: map("display-{}".format, itertools.count(1)))
 
     def report(self, diagnostic: Diagnostic) -> None:

@@ -55,6 +55,7 @@ class Viewer:
         port: 0 for any; None for 7448 or the next free one.
         title: of the page.
         options: of the node: its name, remappings, parameters and ROS arguments.
+        history: how many bytes of what comes are kept, for pages to go back to the last minutes; 0 for none.
 
     Raises:
         LinkwrightError: a name, a remapping or a ROS argument is not valid.
@@ -71,7 +72,9 @@ class Viewer:
         port: int | None = None,
         title: str = "",
         options: NodeOptions | None = None,
+        history: int = 0,
     ) -> None:
+        self._history = history
         self._host, self._port, self._title = host, port, title
         self._url = ""
         self._node, _ = create_node(graph, options or NodeOptions(), _NAME)
@@ -118,6 +121,8 @@ class Viewer:
             self._node.get_logger().warning(
                 f"Listening on '{self._host}': whoever reaches it and knows the token can see and move the robot"
             )
+        if self._history:
+            self._timeline.keep(self._history)
         self.managers.shared.start()
         for feature in self._features:
             feature.start()

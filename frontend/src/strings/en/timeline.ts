@@ -7,5 +7,9 @@ export const timeline = {
   forward: "To the next message (→)",
   speed: "Speed",
   loop: "Begin anew at the end",
-  keys: "Recording: play, pause; step",
+  live: "Show the present again",
+  liveShort: "Live",
+  minutes: "Time in the last minutes",
+  kept: (kept: string, most: string) => `kept: ${kept} of ${most} MB`,
+  keys: "Recording, last minutes: play, pause; step",
 };

@@ -184,6 +184,12 @@ class Subscription(TopicEndpoint[M], Entity):
             message: the message, or its CDR bytes, which are deserialized when the callback's turn comes.
             info: its metadata; needed for messages of other processes.
         """
+        intake = self.node.intake
+        if intake is None or intake(self, message):
+            self.enqueue(message, info)
+
+    def enqueue(self, message: M | bytes | Detailed, info: MessageInfo | None = None) -> None:
+        """Queue a message for the callback, whatever the node's `intake` says; see `receive`."""
         if self._filter is not None and not self._is_wanted(message, self._filter):
             return
         self._waiting.append(message if info is None else Detailed(message, info))

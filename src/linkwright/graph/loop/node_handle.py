@@ -160,6 +160,8 @@ class NodeHandle(Handle):
     Attributes:
         timebase: what the graph's time is made of.
         default_callback_group: the group of entities that are in no other.
+        intake: is shown each message that comes for a subscription of the node, in any thread, with the subscription
+            before it; the message waits for the callback only if the answer is true. None for all messages to.
     """
 
     def __init__(
@@ -182,6 +184,7 @@ class NodeHandle(Handle):
         self.timebase = graph.timebase
         self.default_callback_group: CallbackGroup = MutuallyExclusiveCallbackGroup()
         self.is_destroyed = False
+        self.intake: Callable[[Any, Any], bool] | None = None
         self._parts: dict[Part, None] = {}
         self._cleanups: dict[Callable[[], object], None] = {}
 

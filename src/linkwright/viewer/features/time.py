@@ -100,6 +100,9 @@ class TimeFeature(PageFeature):
         self._tell_all()
 
     def _jumped(self, jump: TimeJump) -> None:
+        if self.context.held_time.switching:
+            return
+
         def reset() -> None:
             for manager in self.managers.all():
                 self._reset(manager)

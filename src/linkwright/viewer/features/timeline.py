@@ -1,4 +1,4 @@
-"""The timeline of a recording: its times for pages, and what they have it do."""
+"""The timeline of a recording, or of the last minutes: its times for pages, and what they have it do."""
 
 from __future__ import annotations
 
@@ -10,9 +10,12 @@ from linkwright.bag.playback import FASTEST, SLOWEST, Playback
 from linkwright.bag.reading import BagReader
 from linkwright.diagnostics import LinkwrightError
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
+from linkwright.viewer.live_history import LiveHistory
 from linkwright.viewer.protocol.message import ServerMessage
 from linkwright.viewer.protocol.time import TimeReset
 from linkwright.viewer.protocol.timeline import (
+    GoLive,
+    Kept,
     Play,
     Playhead,
     SeekTime,
@@ -29,16 +32,23 @@ _PERIOD = 0.1
 _PARTS = 200
 """Equal parts of a recording whose messages are counted."""
 
+_KEPT_PERIOD = 1.0
+"""Seconds between two times that pages are told how much of the last minutes is kept."""
+
+_PRESENT_NS = 100_000_000
+"""So near to the present, what is played of the last minutes has caught up with it."""
+
 _SECOND = 1_000_000_000
 
 
 class TimelineFeature(PageFeature):
-    """Shows pages where a recording is, and has it do what they ask for. Without a recording it does nothing.
+    """Shows pages where a recording is, and has it do what they ask for.
 
-    A recording begins to play when the first page opens.
+    Without a recording, nor a history of what comes, it does nothing. A recording begins to play
+    when the first page opens.
     """
 
-    RECEIVES: ClassVar[tuple[type, ...]] = (Play, SeekTime, StepTime, SetPlayback)
+    RECEIVES: ClassVar[tuple[type, ...]] = (Play, SeekTime, StepTime, SetPlayback, GoLive)
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -47,19 +57,33 @@ class TimelineFeature(PageFeature):
         self._problem = ""
         self._begun = False
         self._timer: asyncio.TimerHandle | None = None
+        self._telling: asyncio.TimerHandle | None = None
+        self._live: LiveHistory | None = None
+        self._was_playing = False
         self._loop = asyncio.get_running_loop()
 
     def attach(self, playback: Playback, bag: BagReader) -> None:
         """Have pages see a recording; `failed` is to be called when it cannot be read."""
         counts = bag.counts(_PARTS)
         topics = [TimelineTopic(at.name, at.type_name, at.count, counts.get(at.name, [])) for at in bag.topics]
-        self._timeline = Timeline(bag.path.name, bag.start_ns / _SECOND, bag.end_ns / _SECOND, topics)
+        if self._live is not None:
+            self._live.close()
+            self._live = None
+        self._timeline = Timeline(bag.path.name, bag.start_ns / _SECOND, bag.end_ns / _SECOND, topics, live=False)
         self._playback = playback
         playback.begin_anew = self._begin_anew
         playback.changed.append(self._changed)
         self.context.graph_changes.listen(playback.review)
         self.context.pages.publish(self._timeline)
         self._changed()
+
+    def keep(self, most_bytes: int) -> None:
+        """Keep what comes in the last minutes, so many bytes of it, and have pages see it."""
+        self._live = LiveHistory(self.context, most_bytes, self.failed)
+        self._live.begin_anew = self._begin_anew
+        self._live.changed = self._changed
+        self._playback = self._live.playback
+        self._playback.changed.append(self._changed)
 
     def failed(self, error: LinkwrightError) -> None:
         """The recording cannot be read on."""
@@ -70,6 +94,10 @@ class TimelineFeature(PageFeature):
     def opening(self) -> list[ServerMessage]:
         """The recording, and where it is."""
         playback = self._playback
+        if self._live is not None:
+            kept = self._kept(self._live)
+            self._tell_kept_later()
+            return [Timeline("", kept.start, kept.end, [], live=True), kept, self._playhead(self._live.playback)]
         if playback is None or self._timeline is None:
             return []
         if not self._begun:
@@ -78,12 +106,18 @@ class TimelineFeature(PageFeature):
             playback.play()
         return [self._timeline, self._playhead(playback)]
 
-    def receive(self, page: Page, message: Play | SeekTime | StepTime | SetPlayback) -> None:
+    def receive(self, page: Page, message: Play | SeekTime | StepTime | SetPlayback | GoLive) -> None:
         """Do what a page asks for."""
         playback = self._playback
         if playback is None:
             return
         self._problem = ""
+        if self._live is not None:
+            if isinstance(message, GoLive) or (message == Play(True) and self._live.live):
+                self._live.go_live()
+                return
+            if not isinstance(message, SetPlayback):
+                self._live.freeze()
         match message:
             case Play(playing):
                 playback.play() if playing else playback.pause()
@@ -101,7 +135,11 @@ class TimelineFeature(PageFeature):
         """Play nothing more."""
         if self._timer is not None:
             self._timer.cancel()
-        if self._playback is not None:
+        if self._telling is not None:
+            self._telling.cancel()
+        if self._live is not None:
+            self._live.close()
+        elif self._playback is not None:
             self.context.graph_changes.ignore(self._playback.review)
             self._playback.close()
 
@@ -119,6 +157,13 @@ class TimelineFeature(PageFeature):
         if self._timer is not None:
             self._timer.cancel()
             self._timer = None
+        live = self._live
+        if live is not None and not live.live:
+            playing = live.playback.playing
+            caught_up = live.history.end_ns - live.playback.position_ns < _PRESENT_NS
+            if self._was_playing and not playing and caught_up:
+                live.go_live()
+            self._was_playing = playing
         if self._playback is not None:
             self.context.pages.publish(self._playhead(self._playback))
             if self._playback.playing:
@@ -126,4 +171,20 @@ class TimelineFeature(PageFeature):
 
     def _playhead(self, playback: Playback) -> Playhead:
         position = playback.position_ns / _SECOND
-        return Playhead(position, playback.playing, playback.speed, playback.loop, playback.seeks, self._problem)
+        live = self._live is not None and self._live.live
+        return Playhead(position, playback.playing, playback.speed, playback.loop, playback.seeks, self._problem, live)
+
+    def _kept(self, live: LiveHistory) -> Kept:
+        history = live.history
+        return Kept(history.start_ns / _SECOND, history.end_ns / _SECOND, history.size, history.most_bytes)
+
+    def _tell_kept_later(self) -> None:
+        if self._telling is None:
+            self._telling = self._loop.call_later(_KEPT_PERIOD, self._tell_kept)
+
+    def _tell_kept(self) -> None:
+        """Tell pages how much is kept, as long as there are any."""
+        self._telling = None
+        if self._live is not None and len(self.context.pages):
+            self.context.pages.publish(self._kept(self._live))
+            self._tell_kept_later()

@@ -18,17 +18,31 @@ class TimelineTopic(Record):
 
 
 class Timeline(ServerMessage):
-    """The recording that is shown: its name, its times and topics."""
+    """The recording that is shown: its name, its times and topics.
+
+    With `live` it is what came in the last minutes: it has no name, and `Kept` tells how its ends move on.
+    """
 
     name: str
     start: float
     end: float
     topics: list[TimelineTopic]
+    live: bool
+
+
+class Kept(ServerMessage):
+    """What is kept of the last minutes: from when to when, how many bytes it takes, and how many it may."""
+
+    start: float
+    end: float
+    size: int
+    most: int
 
 
 class Playhead(ServerMessage):
     """Where a recording is. While `playing`, told a few times a second.
 
+    `live` is whether the present is shown, of a timeline of the last minutes.
     `seeks` is how often somebody went to another time: a page whose own has been done goes on to the next.
     `problem` says why it stands still where it cannot be read; else it is empty.
     """
@@ -39,6 +53,7 @@ class Playhead(ServerMessage):
     loop: bool
     seeks: int
     problem: str
+    live: bool
 
 
 class Play(PageMessage):
@@ -57,6 +72,10 @@ class StepTime(PageMessage):
     """The user goes to the next message of what is shown, or to the one before."""
 
     forward: bool
+
+
+class GoLive(PageMessage):
+    """The user goes back from the last minutes to the present."""
 
 
 class SetPlayback(PageMessage):

@@ -1,0 +1,186 @@
+"""The messages of the last minutes in memory, as many as go into so many bytes: a recording whose ends both move on."""
+
+from __future__ import annotations
+
+import sys
+import threading
+from bisect import bisect_left, bisect_right
+from collections import deque
+from collections.abc import Callable, Collection, Iterator
+
+from linkwright.bag.moments import STATIC_TRANSFORMS, TRANSFORMS, TRANSFORMS_NS, Recorded
+from linkwright.messages import TFMessage, deserialize
+
+_OVERHEAD = 200
+"""Bytes that a message takes besides its own: its tuple, two numbers, two places in lists."""
+
+_UNUSED = 1024
+"""Places at the beginning of a list that are given back together."""
+
+_Kept = tuple[int, int, bytes]
+"""When a message was received, nanoseconds since the epoch, how many came before it, and its CDR bytes."""
+
+
+class _Track:
+    """The messages of one topic. What is needed to show a moment outlives what is dropped: the last message before it.
+
+    Args:
+        name: of the topic.
+    """
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.kept: list[_Kept] = []
+        self.first = 0
+        self.dropped = 0
+        self.before: dict[object, _Kept] = {}
+
+    def drop(self) -> int:
+        """Drop the oldest message; returns the bytes that are free now."""
+        oldest = self.kept[self.first]
+        self.kept[self.first] = (oldest[0], oldest[1], b"")
+        self.first += 1
+        self.dropped += 1
+        if self.first >= _UNUSED:
+            del self.kept[: self.first]
+            self.first = 0
+        if self.name == TRANSFORMS:
+            return _size(oldest[2])  # of these only the last seconds are of use
+        key = deserialize(oldest[2], TFMessage).batch.children if self.name == STATIC_TRANSFORMS else None
+        replaced = self.before.pop(key, None)
+        self.before[key] = oldest
+        return 0 if replaced is None else _size(replaced[2])
+
+    def until(self, at_ns: int, count: int) -> list[_Kept]:
+        """The last messages up to a time, so many at most."""
+        end = bisect_right(self.kept, (at_ns, sys.maxsize), lo=self.first)
+        return self.kept[max(self.first, end - count) : end]
+
+    def between(self, start_ns: int, end_ns: int) -> list[_Kept]:
+        """The messages from one time to another, both included."""
+        begin = bisect_left(self.kept, (start_ns,), lo=self.first)
+        return self.kept[begin : bisect_right(self.kept, (end_ns, sys.maxsize), lo=self.first)]
+
+
+class History:
+    """Keeps what it is given until newer messages take its place; it can be played while it goes on being filled.
+
+    Messages may be added in any thread. Their times never go back, whatever the clock does.
+
+    Args:
+        most_bytes: how many bytes it may take; a message that alone is larger is not kept.
+        now_ns: tells the time, nanoseconds since the epoch.
+
+    Attributes:
+        lock: held while a message is added; to know that none is, hold it.
+        size: bytes that it takes.
+        count: how many messages were ever added.
+    """
+
+    def __init__(self, most_bytes: int, now_ns: Callable[[], int]) -> None:
+        self.most_bytes = most_bytes
+        self.lock = threading.RLock()
+        self.size = 0
+        self.count = 0
+        self._now_ns = now_ns
+        self._newest_ns = 0
+        self._tracks: dict[str, _Track] = {}
+        self._order: deque[_Track] = deque()
+
+    def add(self, topic: str, data: bytes) -> None:
+        """Keep a message that came now."""
+        size = _size(data)
+        if size > self.most_bytes:
+            return
+        with self.lock:
+            self._newest_ns = max(self._newest_ns, self._now_ns())
+            track = self._tracks.get(topic)
+            if track is None:
+                track = self._tracks[topic] = _Track(topic)
+            track.kept.append((self._newest_ns, self.count, data))
+            self._order.append(track)
+            self.count += 1
+            self.size += size
+            while self.size > self.most_bytes and self._order:
+                self.size -= self._order.popleft().drop()
+
+    @property
+    def start_ns(self) -> int:
+        """The time of the oldest message, nanoseconds since the epoch; now, where there is none."""
+        with self.lock:
+            oldest = self._order[0] if self._order else None
+            return self.end_ns if oldest is None else oldest.kept[oldest.first][0]
+
+    @property
+    def end_ns(self) -> int:
+        """Now: what is shown of the present is the last of each topic."""
+        return max(self._newest_ns, self._now_ns())
+
+    def messages(self, topics: Collection[str], start_ns: int) -> Iterator[Recorded]:
+        """The messages of some topics from a time on; when there are no more, it may be asked again later."""
+        return _Onward(self, topics, start_ns)
+
+    def state_at(self, topics: Collection[str], at_ns: int) -> list[Recorded]:
+        """The last message of each topic up to a time, of ``/tf`` those of two seconds, of ``/tf_static`` all."""
+        static: list[Recorded] = []
+        found: list[Recorded] = []
+        with self.lock:
+            for name in topics:
+                track = self._tracks.get(name)
+                if track is None:
+                    continue
+                if name == TRANSFORMS:
+                    kept = track.between(at_ns - TRANSFORMS_NS, at_ns)
+                else:
+                    kept = track.until(at_ns, sys.maxsize if name == STATIC_TRANSFORMS else 1)
+                    before = [each for each in track.before.values() if each[0] <= at_ns]
+                    if name == STATIC_TRANSFORMS:
+                        kept = before + kept
+                    kept = kept or before
+                into = static if name == STATIC_TRANSFORMS else found
+                into += [(name, stamp, data) for stamp, _, data in kept]
+        return static + sorted(found, key=lambda each: each[1])
+
+    def time_before(self, topics: Collection[str], at_ns: int) -> int | None:
+        """When the last message before a time was received, nanoseconds since the epoch; None where there is none."""
+        with self.lock:
+            last = [self._tracks[name].until(at_ns - 1, 1) for name in topics if name in self._tracks]
+            return max((each[0][0] for each in last if each), default=None)
+
+    def after(self, topics: Collection[str], start_ns: int, number: int) -> tuple[int, Recorded] | None:
+        """The first message of some topics from a time on that is not among the first `number`, and its number."""
+        best: tuple[_Kept, str] | None = None
+        with self.lock:
+            for name in topics:
+                track = self._tracks.get(name)
+                if track is None:
+                    continue
+                place = bisect_left(track.kept, (start_ns, number), lo=track.first)
+                if place < len(track.kept) and (best is None or track.kept[place][:2] < best[0][:2]):
+                    best = track.kept[place], name
+        if best is None:
+            return None
+        (stamp, found, data), name = best
+        return found, (name, stamp, data)
+
+
+class _Onward(Iterator[Recorded]):
+    """Messages in the order of their times. It ends where there are no more, and goes on when there are."""
+
+    def __init__(self, history: History, topics: Collection[str], start_ns: int) -> None:
+        self._history = history
+        self._topics = topics
+        self._start_ns = start_ns
+        self._number = 0
+
+    def __next__(self) -> Recorded:
+        found = self._history.after(self._topics, self._start_ns, self._number)
+        if found is None:
+            raise StopIteration
+        number, recorded = found
+        self._start_ns, self._number = recorded[1], number + 1
+        return recorded
+
+
+def _size(data: bytes) -> int:
+    return len(data) + _OVERHEAD

@@ -1,0 +1,96 @@
+"""The last minutes in a viewer: time stands still, goes back, and is the present again."""
+
+from __future__ import annotations
+
+import asyncio
+
+from linkwright.graph import DESCRIPTION_QOS
+from tests.skipping import skipping
+from tests.viewer.features.test_time import arrived, config
+from tests.viewer.scene import World, page, world
+
+KEPT = 10_000_000
+
+
+def moved(made: World, x: float) -> int:
+    """Publish where the arm is; returns when that was, nanoseconds."""
+    made.move({("base", "tip"): (x, 0, 0, 0, 0, 0, 1)})
+    return made.graph.timebase.now_ns()
+
+
+async def filled(made: World) -> list[float]:
+    """Publish five places of a frame, a second apart; the times between them, seconds."""
+    between = []
+    for x in range(5):
+        moved(made, float(x))
+        await asyncio.sleep(0.5)
+        between.append(made.graph.timebase.now_ns() / 1e9)
+        await asyncio.sleep(0.5)
+    return between
+
+
+@skipping
+async def test_time_stands_still_goes_back_and_is_the_present_again():
+    async with world(config(), history=KEPT) as made, page(made.viewer) as client:
+        timeline = await client.until("timeline")
+        assert timeline["live"]
+        await client.until("playhead", live=True)
+        between = await filled(made)
+        await arrived(client, "tip", 4)
+        await client.send("play", playing=False)
+        await client.until("playhead", live=False, playing=False)
+        moved(made, 9.0)
+        for number in (1, 3, 0):
+            await client.send("seek_time", position=between[number])
+            await arrived(client, "tip", number)
+        await client.send("step_time", forward=True)
+        await arrived(client, "tip", 1)
+        clock = made.viewer.context.node.get_clock()
+        assert between[0] < clock.now().nanoseconds / 1e9 < between[1], "the viewer's clock is that of what is shown"
+        await client.send("go_live")
+        await client.until("playhead", live=True)
+        await arrived(client, "tip", 9)
+        assert clock.now().nanoseconds / 1e9 > between[-1]
+
+
+@skipping
+async def test_what_is_played_goes_on_to_the_present():
+    async with world(config(), history=KEPT) as made, page(made.viewer) as client:
+        await client.until("playhead", live=True)
+        between = await filled(made)
+        await client.send("seek_time", position=between[0])
+        await client.until("playhead", live=False)
+        await client.send("set_playback", speed=10, loop=False)
+        await client.send("play", playing=True)
+        await arrived(client, "tip", 4)
+        await client.until("playhead", live=True)
+
+
+@skipping
+async def test_who_subscribes_while_time_stands_still_is_shown_what_was_then():
+    async with world(config(), history=KEPT) as made, page(made.viewer) as client:
+        made.describe("<robot name='early'/>")
+        heard: list[str] = []
+        node = made.viewer.context.node
+        node.create_subscription("std_msgs/msg/String", "robot_description", lambda _: None, DESCRIPTION_QOS)
+        await made.settle()
+        await client.send("play", playing=False)
+        await client.until("playhead", live=False)
+        made.describe("<robot name='late'/>")
+        node.create_subscription(
+            "std_msgs/msg/String", "robot_description", lambda message: heard.append(message.data), DESCRIPTION_QOS
+        )
+        await asyncio.sleep(1.0)
+        await made.settle()
+        assert heard == ["<robot name='early'/>"]
+        await client.send("go_live")
+        await client.until("playhead", live=True)
+        await made.settle()
+        assert heard[-1] == "<robot name='late'/>"
+
+
+@skipping
+async def test_without_room_nothing_is_kept():
+    async with world(config()) as made, page(made.viewer) as client:
+        assert "timeline" not in await client.opened()
+        assert made.viewer.context.node.handle.intake is None
