@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 VIEWER = ("rviz2", "rviz2")
 """Package and executable of RViz, for which our viewer stands in."""
 DEFAULT_HISTORY = 256_000_000
-"""Bytes of the last minutes that a viewer keeps: of transforms alone hours, of a colour camera ten seconds."""
+"""Bytes of the last minutes that a viewer keeps; the guide of the viewer says how long a time that is."""
 
 _GAZEBO_WINDOW = "gzclient"
 """The executable of Gazebo's window, whose place our viewer takes, too."""
