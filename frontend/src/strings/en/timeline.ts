@@ -7,7 +7,7 @@ export const timeline = {
   forward: "To the next message (→)",
   speed: "Speed",
   loop: "Begin anew at the end",
-  live: "Show the present again",
+  live: "Live: show the present again",
   liveShort: "Live",
   minutes: "Time in the last minutes",
   kept: (kept: string, most: string) => `kept: ${kept} of ${most} MB`,

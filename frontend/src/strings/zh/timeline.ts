@@ -9,7 +9,7 @@ export const timeline: typeof english = {
   forward: "下一条消息（→）",
   speed: "速度",
   loop: "到结尾后从头播放",
-  live: "回到当前时刻",
+  live: "实时：回到当前时刻",
   liveShort: "实时",
   minutes: "最近几分钟内的时间",
   kept: (kept: string, most: string) => `已保留：${kept}，上限 ${most} MB`,
