@@ -144,6 +144,8 @@ def test_a_clicked_link_tells_its_macro_call_and_values(page):
     row.locator(".row-name").dblclick()
     page.get_by_role("treeitem").filter(has_text="left_wheel_link").first.locator(".row-name").click()
     until(page, "lw.selected?.link === 'left_wheel_link'")
+    # Where it would lie over the robot, only its head is shown at first.
+    page.locator(".selection-card [aria-expanded=false]").click()
     provenance = page.locator(".selection-card .provenance")
     provenance.wait_for()
     told = provenance.inner_text()

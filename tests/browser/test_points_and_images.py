@@ -89,8 +89,7 @@ def test_a_point_is_selected_and_its_fields_are_shown(live, open_page):
     page = open_page(viewer, wait=False)
     viewer.publish("/cloud", three_points())
     until(page, "lw.displays[0]?.drawn?.points === 3")
-    page.locator(".dv-tabs-overflow-dropdown-root, .dv-tabs-overflow-dropdown-default").first.click()
-    page.locator(".dv-tabs-overflow-container").get_by_text("Selection", exact=True).click()
+    page.get_by_role("tab", name="Selection", exact=True).click()
     box = page.locator(".canvas-box canvas").bounding_box()
     middle = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
     viewer.settle(page)
