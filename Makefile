@@ -28,9 +28,9 @@ endif
 # One line where the Python is not fit, before anything is made with it.
 ifeq ($(VERSION)$(wildcard $(BIN)/python),)
 ifneq ($(MAKECMDGOALS),clean)
-UNFIT := $(shell $(PYTHON) -c 'import sys; v = sys.version_info[:2]; print("" if (3, 10) <= v < (3, 14) else "is %d.%d" % v)' 2>/dev/null || echo "is not there")
+UNFIT := $(shell $(PYTHON) -c 'import sys; v = sys.version_info[:2]; print("" if v >= (3, 10) else "is %d.%d" % v)' 2>/dev/null || echo "is not there")
 ifneq ($(UNFIT),)
-$(error Linkwright needs Python 3.10 to 3.13, and $(PYTHON) $(UNFIT); name another one, as in: make PYTHON=python3.12)
+$(error Linkwright needs Python 3.10 or newer, and $(PYTHON) $(UNFIT); name another one, as in: make PYTHON=python3.12)
 endif
 endif
 endif

@@ -53,8 +53,8 @@ def why_not(environment: Mapping[str, str] | None = None) -> Phrase:
     if reason and find_spec("cyclonedds") is None and not variables.get(VARIABLE, "").strip():
         return phrase(
             "neither DDS nor Zenoh is installed: run pip install 'linkwright[zenoh]', or 'linkwright[dds]' for the DDS"
-            " of ROS 2's default (there are wheels of it for Linux x86_64, Windows and macOS arm64; this is {system}"
-            " {machine} with Python {version})",
+            " of ROS 2's default (there are wheels of it for Linux x86_64, Windows and macOS arm64, up to Python"
+            " 3.13; this is {system} {machine} with Python {version})",
             system=platform.system(),
             machine=platform.machine(),
             version=platform.python_version(),

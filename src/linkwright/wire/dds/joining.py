@@ -28,7 +28,8 @@ def why_not(environment: Mapping[str, str] | None = None) -> Phrase:
     if find_spec("cyclonedds") is None:
         return phrase(
             "the package 'cyclonedds' is not installed: run pip install 'linkwright[dds]' (there are wheels of it for"
-            " Linux x86_64, Windows and macOS arm64; this is {system} {machine} with Python {version})",
+            " Linux x86_64, Windows and macOS arm64, up to Python 3.13; this is {system} {machine} with Python"
+            " {version})",
             system=platform.system(),
             machine=platform.machine(),
             version=platform.python_version(),

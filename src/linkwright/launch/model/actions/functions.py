@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import inspect
 from collections.abc import Callable, Coroutine, Iterable, Mapping
 from typing import Any
 
@@ -65,7 +66,7 @@ class OpaqueCoroutine(Action):
         **others: Any,
     ) -> None:
         super().__init__(**others)
-        if not asyncio.iscoroutinefunction(coroutine):
+        if not inspect.iscoroutinefunction(coroutine):
             kind = type(coroutine).__name__
             raise TypeError(f"OpaqueCoroutine expected a coroutine function for 'coroutine', got '{kind}'")
         self._coroutine = coroutine

@@ -1,0 +1,132 @@
+"""Whether everything that ``linkwright[all]`` brings can be installed without a compiler, by wheels in uv.lock."""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Iterator
+from importlib import import_module
+from typing import Any
+
+import pytest
+from packaging.markers import Marker
+from packaging.tags import Tag, compatible_tags, cpython_tags, mac_platforms
+from packaging.utils import parse_wheel_filename
+
+from tests.places import REPOSITORY
+
+tomllib: Any = import_module("tomllib" if sys.version_info >= (3, 11) else "tomli")
+
+PYTHONS = ("3.10", "3.11", "3.12", "3.13", "3.14", "3.15")
+SYSTEMS = {
+    "Linux x86_64": ("linux", "x86_64", [f"manylinux_2_{minor}_x86_64" for minor in range(28, 4, -1)]),
+    "Linux aarch64": (
+        "linux",
+        "aarch64",
+        ["manylinux2014_aarch64", *(f"manylinux_2_{minor}_aarch64" for minor in range(28, 16, -1))],
+    ),
+    "macOS arm64": ("darwin", "arm64", list(mac_platforms((15, 0), "arm64"))),
+    "macOS x86_64": ("darwin", "x86_64", list(mac_platforms((15, 0), "x86_64"))),
+    "Windows": ("win32", "AMD64", ["win_amd64"]),
+}
+PLAIN = {"empy", "srt"}
+"""Packages of Python alone that come as source only: installing them needs no compiler."""
+PLAIN_IF_NEED_BE = {"pyyaml": "3.15"}
+"""Packages that leave out what they cannot compile, and from which Python on they come as source only."""
+
+
+@pytest.fixture(scope="module")
+def lock() -> dict[str, list[dict[str, Any]]]:
+    packages: dict[str, list[dict[str, Any]]] = {}
+    for package in tomllib.loads((REPOSITORY / "uv.lock").read_text(encoding="utf-8"))["package"]:
+        packages.setdefault(package["name"], []).append(package)
+    return packages
+
+
+@pytest.mark.parametrize("python", PYTHONS)
+@pytest.mark.parametrize("system", SYSTEMS)
+def test_everything_is_installed_without_a_compiler(
+    system: str, python: str, lock: dict[str, list[dict[str, Any]]]
+) -> None:
+    allowed = PLAIN | {
+        name for name, since in PLAIN_IF_NEED_BE.items() if PYTHONS.index(python) >= PYTHONS.index(since)
+    }
+    needed = {package["name"]: package for package in _needed(lock, _environment(system, python))}
+    tags = _tags(system, python)
+    without = {name for name, package in needed.items() if not _has_wheel(package, tags)}
+    assert {"aiohttp", "numpy", "pillow", "vosk"} <= set(needed)  # of the base, and of extras
+    assert without - allowed == set()
+    assert without >= PLAIN, "what has wheels is no exception any more"
+
+
+def test_exceptions_for_new_pythons_are_still_needed(lock: dict[str, list[dict[str, Any]]]) -> None:
+    for name, since in PLAIN_IF_NEED_BE.items():
+        assert not _has_wheel(lock[name][0], _tags("Linux x86_64", since)), name
+
+
+def test_each_python_of_the_workflows_is_one_of_these() -> None:
+    text = (REPOSITORY / ".github" / "workflows" / "tests.yml").read_text(encoding="utf-8")
+    named = set(re.findall(r'"(3\.\d+)"', text))
+    assert {"3.10", "3.14"} <= named <= set(PYTHONS)
+
+
+def _environment(system: str, python: str) -> dict[str, str]:
+    platform, machine, _ = SYSTEMS[system]
+    return {
+        "extra": "",
+        "implementation_name": "cpython",
+        "os_name": "nt" if platform == "win32" else "posix",
+        "platform_machine": machine,
+        "platform_python_implementation": "CPython",
+        "platform_system": {"linux": "Linux", "darwin": "Darwin", "win32": "Windows"}[platform],
+        "python_full_version": f"{python}.9",
+        "python_version": python,
+        "sys_platform": platform,
+    }
+
+
+def _tags(system: str, python: str) -> set[Tag]:
+    version, platforms = [int(part) for part in python.split(".")], SYSTEMS[system][2]
+    interpreter = f"cp{''.join(python.split('.'))}"
+    return {*cpython_tags(version, platforms=platforms), *compatible_tags(version, interpreter, platforms)}
+
+
+def _has_wheel(package: dict[str, Any], tags: set[Tag]) -> bool:
+    return any(parse_wheel_filename(wheel["path"])[3] & tags for wheel in package.get("wheels", ()))
+
+
+def _needed(lock: dict[str, list[dict[str, Any]]], environment: dict[str, str]) -> Iterator[dict[str, Any]]:
+    """What ``linkwright[all]`` brings to such a machine."""
+    (root,) = lock["linkwright"]
+    asked = [*root["dependencies"], *root["optional-dependencies"]["all"]]
+    seen: set[tuple[str, str, str]] = set()
+    while asked:
+        wanted = asked.pop()
+        if "marker" in wanted and not Marker(wanted["marker"]).evaluate(environment):
+            continue
+        package = _chosen(lock, wanted, environment)
+        for extra in ("", *wanted.get("extra", ())):
+            if (package["name"], package["version"], extra) in seen:
+                continue
+            seen.add((package["name"], package["version"], extra))
+            asked += (
+                package.get("optional-dependencies", {}).get(extra, ()) if extra else package.get("dependencies", ())
+            )
+        if package is not root:
+            yield package
+
+
+def _chosen(
+    lock: dict[str, list[dict[str, Any]]], wanted: dict[str, Any], environment: dict[str, str]
+) -> dict[str, Any]:
+    """The version of a package that the lock has for a machine."""
+    (package,) = [
+        package
+        for package in lock[wanted["name"]]
+        if wanted.get("version", package["version"]) == package["version"]
+        and any(
+            Marker(marker).evaluate(environment)
+            for marker in package.get("resolution-markers", ("python_version > '3'",))
+        )
+    ]
+    return package
