@@ -13,7 +13,9 @@ import json
 import sys
 from collections.abc import Iterator, Sequence
 from html import escape
+from importlib import import_module, metadata
 from pathlib import Path
+from typing import Any
 
 from linkwright.cli.command import VERBS, parser_for
 from linkwright.cli.completion.candidates import TABLE
@@ -21,7 +23,10 @@ from linkwright.cli.tools.ros2 import COMMANDS
 from linkwright.launch.ros.executables import hosted_executables
 from linkwright.messages import catalogue
 
-TARGET = Path(__file__).resolve().parent.parent / "docs" / "commands.md"
+ROOT = Path(__file__).resolve().parent.parent
+TARGET = ROOT / "docs" / "commands.md"
+
+tomllib: Any = import_module("tomllib" if sys.version_info >= (3, 11) else "tomli")
 
 INTRODUCTION = """\
 # Commands
@@ -172,9 +177,24 @@ def _usage_word(action: argparse.Action) -> str:
     return word if action.required else f"[{word}]"
 
 
+def outdated_entry_points() -> set[str]:
+    """Our executables in which ``pyproject.toml`` and the installation, which the table is made from, differ."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    installed = {
+        point.name for point in metadata.distribution("linkwright").entry_points.select(group="linkwright.nodes")
+    }
+    return installed ^ set(project["entry-points"]["linkwright.nodes"])
+
+
 def main(words: Sequence[str]) -> int:
     """Write both, or with ``--check`` say whether they are current."""
     status = 0
+    differing = outdated_entry_points()
+    if differing:
+        print(
+            f"installed with other entry points ({', '.join(sorted(differing))}): run make .venv/.dev", file=sys.stderr
+        )
+        return 1
     for path, text in ((TARGET, generate()), (TABLE, completion_table())):
         if "--check" not in words:
             path.write_text(text, encoding="utf-8", newline="\n")
