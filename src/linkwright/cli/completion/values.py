@@ -83,6 +83,10 @@ def _description_arguments(asked: Asked) -> Iterable[str]:
     return [name for path in given if path.is_file() for name in _arguments_in(path, _XACRO_ARGUMENT)]
 
 
+def _second_description(asked: Asked) -> Iterable[str]:
+    return [*_description_arguments(asked), FILES]
+
+
 def _arguments_in(path: Path, pattern: re.Pattern[str]) -> list[str]:
     """The names of the arguments that a file declares; it is searched as text, because to run it takes too long."""
     text = path.read_text(encoding="utf-8", errors="replace")
@@ -135,6 +139,7 @@ _KINDS: dict[str, Callable[[Asked], Iterable[str]]] = {
     "LAUNCH_FILE": _launch_files,
     "LAUNCH_ARGUMENT": _launch_arguments,
     "NAME:=VALUE": _description_arguments,
+    "NEW": _second_description,
     "MODEL": _models,
     "ENGINE": _engines,
     "WAV": _files,
