@@ -6,6 +6,7 @@ from collections import deque
 from collections.abc import Mapping
 
 import numpy as np
+from numpy.typing import NDArray
 
 from linkwright.descriptions.comparison import Comparison
 from linkwright.geometry.arrays import compose, invert, row_from_pose
@@ -111,12 +112,12 @@ def _positions_at_zero(robot: Robot, leaders: Mapping[str, str]) -> dict[str, fl
     }
 
 
-def _anchor(old: Robot, new: Robot, same: Mapping[str, str]) -> tuple[str, np.ndarray]:
+def _anchor(old: Robot, new: Robot, same: Mapping[str, str]) -> tuple[str, NDArray[np.float64]]:
     """The frame of the new robot that the old one's root hangs on, and the root's pose in it.
 
     The link that both have and that is nearest to the old root is in one place; joints before it stand at zero.
     """
-    below: dict[str, list[tuple[str, np.ndarray]]] = {}
+    below: dict[str, list[tuple[str, NDArray[np.float64]]]] = {}
     for joint in old.joints.values():
         below.setdefault(joint.parent, []).append((joint.child, row_from_pose(joint.origin)))
     start = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0])
