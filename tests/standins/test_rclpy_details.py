@@ -299,7 +299,7 @@ def test_the_first_node_waits_for_the_network(monkeypatch):
         def wait_until_ready(self, timeout):
             waits.append(timeout)
 
-    monkeypatch.setattr("linkwright.wire.dds.join", lambda *_, **__: Joining())
+    monkeypatch.setattr("linkwright.wire.joining.join", lambda *_, **__: Joining())
     rclpy.init(context=context, args=[])
     for _ in range(2):
         rclpy.create_node("node", context=context)
