@@ -41,11 +41,6 @@ def why_not(environment: Mapping[str, str] | None = None) -> Phrase:
     return Phrase("")
 
 
-def available(environment: Mapping[str, str] | None = None) -> bool:
-    """Whether Zenoh can be joined."""
-    return not why_not(environment)
-
-
 def join(
     graph: Graph,
     *,
