@@ -9,7 +9,10 @@ import pytest
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import Graph, LogRecord
+from linkwright.messages import get_message
 from linkwright.sdf.text import parse_as_gazebo
+from linkwright.simulation.exchange import Exchange
+from linkwright.simulation.plugins.node import Output
 from linkwright.simulation.plugins.parameters import parameter, parameters_from
 from linkwright.simulation.plugins.registry import is_of_gz, library_name, needs_nothing
 from linkwright.simulation.plugins.ros_element import node_of
@@ -130,6 +133,27 @@ async def test_what_was_published_until_then_is_there_when_time_has_passed():
         assert recording.last.name == ["left_joint", "right_joint"]
         assert not log
         assert ("joints", "/") in graph.get_node_names_and_namespaces()
+
+
+async def test_a_message_of_values_is_made_once_and_only_when_it_is_handed_over():
+    graph, exchange, made = Graph(), Exchange(), []
+    node = graph.create_node("robot")
+    topics = ("/model/robot/where", "/where")
+    output = Output(exchange, [node.create_publisher("std_msgs/msg/String", topic, 10) for topic in topics])
+    recordings = [Recording(graph, node, topic) for topic in topics]
+
+    def text(number: int, word: str):
+        made.append(get_message("std_msgs/msg/String")(data=f"{number} {word}"))
+        return made[-1]
+
+    send = output.making(text)
+    send(1, "one")
+    assert not made
+    exchange.deliver()
+    await graph.settle()
+    assert [each.data for each in made] == ["1 one"]
+    assert [recording.last.data for recording in recordings] == ["1 one", "1 one"]
+    await graph.close()
 
 
 async def test_the_second_of_two_nodes_of_one_name_is_not_loaded():

@@ -23,6 +23,22 @@ _NO_TOPIC = re.compile(r"[^A-Za-z0-9_/~]")
 _FIRST_DIGIT = re.compile(r"(?<=/)(?=[0-9])")
 
 
+class _Making:
+    """An outlet that makes messages of the values that it is sent."""
+
+    __slots__ = ("_make", "_publishers")
+
+    def __init__(self, publishers: list[Publisher[Any]], make: Callable[..., Any]) -> None:
+        self._publishers = publishers
+        self._make = make
+
+    def publish(self, message: tuple[Any, ...]) -> None:
+        """Make a message of values, and publish it."""
+        made = self._make(*message)
+        for publisher in self._publishers:
+            publisher.publish(made)
+
+
 class Output:
     """A topic that a plugin publishes, under one name or two."""
 
@@ -42,6 +58,21 @@ class Output:
         """Publish a message, which nobody changes any more."""
         for publisher in self._publishers:
             self._exchange.send(publisher, message)
+
+    def making(self, make: Callable[..., Any]) -> Callable[..., None]:
+        """A function that publishes the message which another one makes of its arguments.
+
+        The message is made where it is published: a simulation with a thread of its own computes on meanwhile.
+
+        Args:
+            make: makes a message of values that nobody changes any more.
+        """
+        outlet = _Making(self._publishers, make)
+
+        def send(*values: Any) -> None:
+            self._exchange.send(outlet, values)
+
+        return send
 
 
 class PluginNode:

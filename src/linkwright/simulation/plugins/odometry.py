@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cache
 from math import atan2, cos, sin
@@ -87,33 +88,39 @@ class OdometryTopics:
     variances: Variances = _NONE
     velocity_variances: Variances | None = None
     _covariances: tuple[Array, Array] = field(init=False)
-    _outputs: tuple[Output, ...] = field(init=False)
+    _outputs: tuple[tuple[Output, Callable[..., None]], ...] = field(init=False)
 
     def __post_init__(self) -> None:
-        self._outputs = tuple(each for each in (self.odometry, self.transforms) if each is not None)
         velocity = self.variances if self.velocity_variances is None else self.velocity_variances
         self._covariances = (_diagonal(self.variances), _diagonal(velocity))
+        made = ((self.odometry, self._odometry_message), (self.transforms, self._transform_message))
+        self._outputs = tuple((output, output.making(make)) for output, make in made if output is not None)
 
     @property
     def is_wanted(self) -> bool:
         """Whether anybody listens."""
-        for each in self._outputs:  # noqa: SIM110 - see Output.is_wanted
-            if each.is_wanted:
+        for output, _ in self._outputs:  # noqa: SIM110 - see Output.is_wanted
+            if output.is_wanted:
                 return True
         return False
 
     def publish(self, stamp: Time, pose: Transform, forward: float, sideways: float, turning: float) -> None:
         """Publish where the robot is, and its velocities in its own axes in m/s and rad/s."""
-        if self.odometry is not None and self.odometry.is_wanted:
-            make = _classes()
-            x, y, z, qx, qy, qz, qw = pose
-            place = make.pose(make.point(x, y, z), Quaternion(qx, qy, qz, qw))
-            speed = make.twist(Vector3(forward, sideways, 0.0), Vector3(0.0, 0.0, turning))
-            of_pose, of_velocity = self._covariances
-            places, speeds = make.pose_covariance(place, of_pose), make.twist_covariance(speed, of_velocity)
-            self.odometry.publish(make.odometry(Header(stamp, self.frame), self.child, places, speeds))
-        if self.transforms is not None and self.transforms.is_wanted:
-            self.transforms.publish(transform_message(Header(stamp, self.frame), self.child, pose))
+        for output, send in self._outputs:
+            if output.is_wanted:
+                send(stamp, pose, forward, sideways, turning)
+
+    def _odometry_message(self, stamp: Time, pose: Transform, forward: float, sideways: float, turning: float) -> Any:
+        make = _classes()
+        x, y, z, qx, qy, qz, qw = pose
+        place = make.pose(make.point(x, y, z), Quaternion(qx, qy, qz, qw))
+        speed = make.twist(Vector3(forward, sideways, 0.0), Vector3(0.0, 0.0, turning))
+        of_pose, of_velocity = self._covariances
+        places, speeds = make.pose_covariance(place, of_pose), make.twist_covariance(speed, of_velocity)
+        return make.odometry(Header(stamp, self.frame), self.child, places, speeds)
+
+    def _transform_message(self, stamp: Time, pose: Transform, *_velocity: float) -> Any:
+        return transform_message(Header(stamp, self.frame), self.child, pose)
 
 
 def _diagonal(variances: Variances) -> Array:
