@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any
+from math import cos, sin
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +11,9 @@ from numpy.typing import NDArray
 from linkwright.navigation.grids.grid import Grid
 
 Cells = NDArray[np.int64]
+
+_OUTSIDE: Final = -1.0
+"""What the rim around a distance field holds."""
 
 
 def cells_on_lines(starts: NDArray[np.integer[Any]], ends: NDArray[np.integer[Any]]) -> tuple[Cells, Cells]:
@@ -51,22 +55,36 @@ def ranges(distances: Grid, points: NDArray[np.float64], angles: NDArray[np.floa
         Metres, of shape (...), exact to about half a cell.
     """
     shape = np.broadcast_shapes(points.shape[:-1], angles.shape)
-    origins = np.broadcast_to(points, (*shape, 2)).reshape(-1, 2)
-    turned = np.broadcast_to(angles, shape).reshape(-1)
-    along = np.stack((np.cos(turned), np.sin(turned)), axis=-1)
-    travelled = np.zeros(len(origins))
-    under_way: Cells = np.arange(len(origins))
+    c, s, size = cos(distances.yaw), sin(distances.yaw), distances.resolution
+    x, y, turned = points[..., 0] - distances.x, points[..., 1] - distances.y, angles - distances.yaw
+    # In cells of the grid with a rim around it, in which rays leave; single precision does for half a cell.
+    column, row = _flat((c * x + s * y) / size + 1.0, shape), _flat((c * y - s * x) / size + 1.0, shape)
+    along, across = _flat(np.cos(turned), shape), _flat(np.sin(turned), shape)
+    field = np.pad((distances.cells / size).astype(np.float32), 1, constant_values=_OUTSIDE)
     # No farther than the rim of the cell that the distance is to, and never less than half a cell, or nothing moves.
-    rim, least = distances.resolution * 0.75, distances.resolution * 0.5
+    ways = np.where(field > 0.0, np.maximum(field - np.float32(0.75), np.float32(0.5)), field).ravel()
+    most = np.float32(limit / size)
+    travelled, so_far = np.full(row.size, most), np.zeros(row.size, np.float32)
+    under_way = np.arange(row.size)
     while under_way.size:
-        at = origins[under_way] + travelled[under_way, None] * along[under_way]
-        cells = distances.cells_of(at)
-        inside = distances.has(cells)
-        travelled[under_way[~inside]] = limit
-        under_way, cells = under_way[inside], cells[inside]
-        free = distances.cells[cells[:, 0], cells[:, 1]]
-        going = free > 0
-        under_way = under_way[going]
-        travelled[under_way] += np.maximum(free[going] - rim, least)
-        under_way = under_way[travelled[under_way] < limit]
-    return np.minimum(travelled, limit).reshape(shape)
+        cells = _index(row + across * so_far, distances.rows + 1).astype(np.int64)
+        cells *= distances.columns + 2
+        cells += _index(column + along * so_far, distances.columns + 1)
+        way = ways.take(cells)
+        met = way == 0.0
+        travelled[under_way[met]] = so_far[met]
+        so_far += way
+        going = np.flatnonzero((way > 0.0) & (so_far < most))
+        row, column, along, across = row.take(going), column.take(going), along.take(going), across.take(going)
+        so_far, under_way = so_far.take(going), under_way.take(going)
+    return np.minimum(travelled.astype(np.float64) * size, limit).reshape(shape)
+
+
+def _flat(values: NDArray[np.float64], shape: tuple[int, ...]) -> NDArray[np.float32]:
+    return np.broadcast_to(values.astype(np.float32), shape).ravel()
+
+
+def _index(values: NDArray[np.float32], last: int) -> NDArray[np.int32]:
+    """The rows or columns of places in cells; those beyond the rim are in it."""
+    np.minimum(np.maximum(values, np.float32(0.0), out=values), np.float32(last), out=values)
+    return values.astype(np.int32)
