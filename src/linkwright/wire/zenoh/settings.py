@@ -25,6 +25,14 @@ ATTEMPTS = "ZENOH_ROUTER_CHECK_ATTEMPTS"
 _WITHOUT_HASHES = "humble"
 _QUERY_TIMEOUT_MS = 600_000
 _LEASE_MS = 60_000
+_WAITS_US = 50_000
+"""How long a publisher waits for room where it may drop, microseconds: Zenoh's 1 ms is shorter than a busy machine
+takes to give the other side its turn."""
+
+_WAITS_AT_MOST_US = 200_000
+"""The same for a large message, whose parts each wait."""
+
+_DROPPING = "transport/link/tx/queue/congestion_control/drop"
 _LOOPBACK = {"linux": "lo", "darwin": "lo0"}
 
 Entries = tuple[tuple[str, str], ...]
@@ -118,6 +126,8 @@ def _session(domain_id: int) -> Entries:
         ("scouting/multicast/address", f'"239.255.74.{domain_id}:{ROUTER_PORT - 1}"'),
         ("scouting/multicast/ttl", "0"),
         ("scouting/gossip/enabled", "true"),
+        (f"{_DROPPING}/wait_before_drop", str(_WAITS_US)),
+        (f"{_DROPPING}/max_wait_before_drop_fragments", str(_WAITS_AT_MOST_US)),
         *_SHARED,
     )
 
