@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import threading
 from io import BytesIO
 
 import numpy as np
 import pytest
 from PIL import Image
 
-from linkwright.diagnostics import LinkwrightError
-from linkwright.graph import Parameter
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+from linkwright.graph import LogLevel, Parameter
 from linkwright.messages import Time, get_message, get_service
 from linkwright.nodes import NodeOptions
+from linkwright.nodes.vision import detector
 from linkwright.nodes.vision.detector import (
     DarknetRosNode,
     DetectorNode,
@@ -20,8 +22,9 @@ from linkwright.nodes.vision.detector import (
     Yolov5RosNode,
 )
 from linkwright.testing.stepped import AsyncSteppedGraph
+from linkwright.vision.detector import Detector
 from tests.vision.detectors.networks import columns
-from tests.waiting import eventually
+from tests.waiting import SECONDS, eventually, is_waiting, wait_until
 
 
 @pytest.fixture
@@ -34,9 +37,11 @@ async def test():
 def start(test):
     running = []
 
-    def begin(kind=DetectorNode, remappings=(), namespace="/yolo", **parameters):
+    async def begin(kind=DetectorNode, remappings=(), namespace="/yolo", loads=True, **parameters):
         options = NodeOptions(namespace=namespace, parameters=parameters, remappings=list(remappings))
         running.append(kind(test.graph, options))
+        if loads:
+            await eventually(lambda: running[-1].loaded.done() or running[-1].finished.done())
         return running[-1]
 
     yield begin
@@ -86,7 +91,7 @@ def classes(message):
 
 @pytest.mark.parametrize("encoding", ["rgb8", "bgr8"])
 async def test_detections_have_names_centres_sizes_and_the_header_of_the_picture(test, start, encoding):
-    start(model="colours")
+    await start(model="colours")
     recording = test.record("/yolo/detections")
     await test.settle()
     message = await seen(test, recording, "/yolo/image_raw", image(encoding))
@@ -100,7 +105,7 @@ async def test_detections_have_names_centres_sizes_and_the_header_of_the_picture
 
 
 async def test_compressed_pictures(test, start):
-    start(model="colours", input_image_topic="/camera/image_raw/compressed")
+    await start(model="colours", input_image_topic="/camera/image_raw/compressed")
     recording = test.record("/yolo/detections")
     await test.settle()
     message = await seen(test, recording, "/camera/image_raw/compressed", compressed())
@@ -109,7 +114,7 @@ async def test_compressed_pictures(test, start):
 
 async def test_a_network(test, start, tmp_path):
     names = {"names": "{0: 'ball', 1: 'box', 2: 'cat'}"}
-    start(model=str(columns(tmp_path / "v8.onnx", metadata=names)), threshold=0.6, max_det=5)
+    await start(model=str(columns(tmp_path / "v8.onnx", metadata=names)), threshold=0.6, max_det=5)
     recording = test.record("/yolo/detections")
     await test.settle()
     message = await seen(test, recording, "/yolo/image_raw", image())
@@ -118,7 +123,7 @@ async def test_a_network(test, start, tmp_path):
 
 
 async def test_the_picture_with_boxes_is_made_when_somebody_wants_it(test, start):
-    start(model="colours")
+    await start(model="colours")
     recording = test.record("/yolo/debug_image")
     await test.settle()
     message = await seen(test, recording, "/yolo/image_raw", image())
@@ -128,7 +133,7 @@ async def test_the_picture_with_boxes_is_made_when_somebody_wants_it(test, start
 
 
 async def test_pictures_are_taken_only_while_somebody_listens(test, start):
-    start(model="colours")
+    await start(model="colours")
     await test.settle()
     assert test.graph.count_subscribers("/yolo/image_raw") == 0
     test.record("/yolo/detections")
@@ -137,7 +142,7 @@ async def test_pictures_are_taken_only_while_somebody_listens(test, start):
 
 
 async def test_limits_change_while_it_runs(test, start):
-    node = start(model="colours").node
+    node = (await start(model="colours")).node
     recording = test.record("/yolo/detections")
     await test.settle()
     for name, value, expected in [
@@ -160,14 +165,14 @@ async def test_limits_change_while_it_runs(test, start):
     ],
 )
 async def test_values_that_cannot_be_are_refused(test, start, name, value, words):
-    node = start(model="colours").node
+    node = (await start(model="colours")).node
     (result,) = node.set_parameters([Parameter(name, value=value)])
     assert not result.successful
     assert words in result.reason
 
 
 async def test_services_enable_and_set_classes(test, start):
-    start(model="colours")
+    await start(model="colours")
     recording = test.record("/yolo/detections")
     await test.settle()
     switch, choose = get_service("std_srvs/srv/SetBool"), get_service("yolo_msgs/srv/SetClasses")
@@ -185,7 +190,7 @@ async def test_services_enable_and_set_classes(test, start):
 
 
 async def test_no_more_pictures_a_second_than_wanted(test, start):
-    start(model="colours", max_rate=10.0)
+    await start(model="colours", max_rate=10.0)
     recording = test.record("/yolo/detections")
     await test.settle()
     await seen(test, recording, "/yolo/image_raw", image(seconds=1))
@@ -198,7 +203,7 @@ async def test_no_more_pictures_a_second_than_wanted(test, start):
 
 
 async def test_a_broken_picture_is_told_of_and_the_next_one_looked_at(test, start):
-    start(model="colours")
+    await start(model="colours")
     recording = test.record("/yolo/detections")
     await test.settle()
     broken = image()
@@ -210,14 +215,14 @@ async def test_a_broken_picture_is_told_of_and_the_next_one_looked_at(test, star
 
 
 async def test_colours_of_ones_own(test, start):
-    start(model="colours", colours={"sky": [95, 110, 50, 130, 255, 255]}, least_area=10.0)
+    await start(model="colours", colours={"sky": [95, 110, 50, 130, 255, 255]}, least_area=10.0)
     recording = test.record("/yolo/detections")
     await test.settle()
     assert classes(await seen(test, recording, "/yolo/image_raw", image())) == ["sky"]
 
 
 async def test_as_yolo_ros_with_its_messages_and_its_older_topic(test, start):
-    start(YoloRosNode, model="colours", remappings=[("image_raw", "/camera/rgb/image_raw")])
+    await start(YoloRosNode, model="colours", remappings=[("image_raw", "/camera/rgb/image_raw")])
     recording, picture = test.record("/yolo/detections"), test.record("/yolo/dbg_image")
     await test.settle()
     message = await seen(test, recording, "/camera/rgb/image_raw", image())
@@ -246,7 +251,7 @@ async def test_as_yolo_ros_with_its_messages_and_its_older_topic(test, start):
     ],
 )
 async def test_as_other_packages_name_things(test, start, kind, parameters, topic, output):
-    start(kind, namespace="/", **parameters)
+    await start(kind, namespace="/", **parameters)
     recording = test.record(output)
     await test.settle()
     assert classes(await seen(test, recording, topic, image())) == ["blue", "red"]
@@ -256,20 +261,134 @@ async def test_as_other_packages_name_things(test, start, kind, parameters, topi
 @pytest.mark.parametrize(
     ("parameters", "code"),
     [
-        ({"model": "gone.onnx"}, "VISION102"),
-        ({"model": "yolov8n.pt"}, "VISION104"),
-        ({"model": "aruco", "dictionary": "5X"}, "VISION109"),
         ({"model": "colours", "image_transport": "theora"}, "NODE433"),
         ({"model": "colours", "image_reliability": 9}, "NODE433"),
-        ({"model": "colours", "classes": ["blu"]}, "NODE433"),
+        ({"model": "colours", "max_det": 0}, "NODE433"),
         ({"model": "colours", "threshold": 2.0}, "GRAPH204"),
         ({"model": "colours", "max_rate": -5.0}, "GRAPH204"),
         ({"model": "things", "imgsz_height": -3, "imgsz_width": 320}, "GRAPH204"),
         ({"model": "things", "imgsz_width": 320}, "VISION109"),
-        ({"model": "things", "device": "gpu"}, "VISION109"),
     ],
 )
-async def test_what_it_cannot_start_with(test, start, parameters, code):
+async def test_parameters_that_it_cannot_start_with(test, start, parameters, code):
     with pytest.raises(LinkwrightError) as caught:
-        start(**parameters)
+        await start(**parameters)
     assert [each.code for each in caught.value.diagnostics] == [code]
+
+
+@pytest.mark.parametrize(
+    ("parameters", "words"),
+    [
+        ({"model": "gone.onnx"}, "there is neither a file nor a detector 'gone.onnx'"),
+        ({"model": "yolov8n.pt"}, "'yolov8n.pt' is no ONNX file"),
+        ({"model": "aruco", "dictionary": "5X"}, "'dictionary' of the detector cannot be '5X'"),
+        ({"model": "things", "device": "gpu"}, "'device' of the detector cannot be 'gpu'"),
+        ({"model": "colours", "classes": ["blu"]}, "parameter 'classes' of 'yolo_node' cannot be 'blu'"),
+    ],
+)
+async def test_detectors_that_cannot_be_loaded_end_the_node_with_one_error_and_what_to_do(
+    test, start, parameters, words
+):
+    running = await start(**parameters)
+    assert running.finished.result() == 1
+    said = [record.text for record in test.log if record.level is LogLevel.FATAL]
+    assert len(said) == 2, "the error, and the hint"
+    assert words in said[0]
+
+
+# --- while the detector is loaded -----------------------------------------------------------------------------------
+
+
+class Slow:
+    """Has detectors loaded when it is told to."""
+
+    def __init__(self, make):
+        self._make, self.go_on, self.begun = make, threading.Event(), threading.Event()
+
+    def __call__(self, model, options):
+        self.begun.set()
+        assert self.go_on.wait(SECONDS)
+        return self._make(model, options)
+
+
+@pytest.fixture
+def slow(monkeypatch):
+    made = Slow(detector.make_detector)
+    monkeypatch.setattr(detector, "make_detector", made)
+    yield made
+    made.go_on.set()
+
+
+async def test_the_node_answers_while_its_detector_is_loaded(test, start, slow):
+    running = await start(model="colours", loads=False)
+    recording = test.record("/yolo/detections")
+    await eventually(slow.begun.is_set)
+    switch = get_service("std_srvs/srv/SetBool")
+    assert (await test.call("/yolo/enable", switch.Request(data=False))).success
+    assert (await test.call("/yolo/enable", switch.Request(data=True))).success
+    (result,) = running.node.set_parameters([Parameter("threshold", value=0.2)])
+    assert result.successful
+    (result,) = running.node.set_parameters([Parameter("classes", value=["red"])])
+    assert (result.successful, "is being loaded" in result.reason) == (False, True)
+    assert test.graph.count_subscribers("/yolo/image_raw") == 0
+    slow.go_on.set()
+    await eventually(running.loaded.done)
+    await test.settle()
+    assert classes(await seen(test, recording, "/yolo/image_raw", image())) == ["blue", "red"]
+
+
+async def test_classes_that_are_chosen_while_the_detector_is_loaded_count_when_it_is_there(test, start, slow):
+    await start(model="colours", loads=False)
+    recording = test.record("/yolo/detections")
+    await eventually(slow.begun.is_set)
+    choose = get_service("yolo_msgs/srv/SetClasses")
+    client = test.node.create_client(choose, "/yolo/set_classes")
+    answers = [client.call_async(choose.Request(classes=[name])) for name in ("rd", "red")]
+    await test.settle()
+    assert not any(answer.done() for answer in answers)
+    slow.go_on.set()
+    await eventually(lambda: all(answer.done() for answer in answers))
+    assert [answer.result().success for answer in answers] == [False, True]
+    assert "did you mean 'red'?" in answers[0].result().message
+    assert classes(await seen(test, recording, "/yolo/image_raw", image())) == ["red"]
+
+
+async def test_a_node_that_ends_while_its_detector_is_loaded_waits_for_it_and_says_nothing(test, start, monkeypatch):
+    main, begun = threading.current_thread(), threading.Event()
+
+    def load(model, options):
+        begun.set()
+        wait_until(lambda: is_waiting(main))
+        raise LinkwrightError(Diagnostic("VISION102", phrase("gone")))
+
+    monkeypatch.setattr(detector, "make_detector", load)
+    running = await start(model="colours", loads=False)
+    await eventually(begun.is_set)
+    running.close()
+    await test.settle()
+    assert not running.finished.done()
+    assert [record.text for record in test.log if record.level >= LogLevel.ERROR] == []
+
+
+class Odd(Detector):
+    """A user's own, which fails as it should not."""
+
+    @property
+    def names(self):
+        return ("red",)
+
+    def detect(self, picture, limits):
+        raise KeyError("odd")
+
+
+async def test_what_a_detector_of_others_raises_is_told_of(test, start, monkeypatch):
+    monkeypatch.setattr(detector, "make_detector", lambda model, options: Odd())
+    await start(model="odd")
+    test.record("/yolo/detections")
+    await test.settle()
+    test.publish("/yolo/image_raw", image())
+    await eventually(lambda: any("the detector failed: KeyError: 'odd'" in record.text for record in test.log))
+    monkeypatch.setattr(detector, "make_detector", lambda model, options: {}["odder"])
+    running = await start(model="odder", namespace="/other")
+    assert running.finished.result() == 1
+    assert any("the detector failed: KeyError: 'odder'" in record.text for record in test.log)

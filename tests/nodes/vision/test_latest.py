@@ -17,7 +17,7 @@ def test_what_comes_while_it_works_waits_and_only_the_latest_of_it():
         assert go_on.wait(SECONDS)
         done.append(item)
 
-    worker = LatestWorker(work, "slow")
+    worker = LatestWorker(lambda: work, "slow")
     worker.offer(0)
     assert begun.wait(SECONDS)
     for item in range(1, 50):
@@ -37,7 +37,7 @@ def test_at_its_end_the_work_at_hand_is_waited_for_and_the_rest_left():
         assert go_on.wait(SECONDS)
         done.append(item)
 
-    worker = LatestWorker(work, "slow")
+    worker = LatestWorker(lambda: work, "slow")
     worker.offer(0)
     assert begun.wait(SECONDS)
     worker.offer(1)

@@ -1,7 +1,8 @@
 """The node that finds things in a camera's pictures, and the names that users of other packages know it by.
 
 Pictures are taken only while somebody listens to what is found in them; a thread looks at the latest one, so that a
-slow network never makes a queue. What others differ in is in `dialects`.
+slow network never makes a queue. The same thread loads the detector, which may take seconds: until then no pictures are
+taken, `set_classes` waits with its answer, and all else is answered. What others differ in is in `dialects`.
 
 Parameters, by the names of yolo_ros:
 
@@ -24,14 +25,20 @@ Parameters, by the names of yolo_ros:
 
 from __future__ import annotations
 
+import asyncio
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any, ClassVar
 
-from linkwright.diagnostics import LinkwrightError, phrase
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.graph import (
+    Future,
     Graph,
     Parameter,
     ParameterDescriptor,
@@ -40,6 +47,7 @@ from linkwright.graph import (
     SetParametersResult,
     Subscription,
 )
+from linkwright.graph.loop.callback_groups import MutuallyExclusiveCallbackGroup
 from linkwright.graph.parameters.parameter import Range
 from linkwright.images import BadImageError, ImageSource, RangeFinder, Unpacker, picture_of
 from linkwright.messages import get_message, get_service
@@ -49,6 +57,7 @@ from linkwright.nodes.settings import bad_value, tell_unknown
 from linkwright.nodes.vision.detection_messages import MESSAGES, picture_message
 from linkwright.nodes.vision.dialects import DARKNET_ROS, OURS, YOLO_ROS, YOLOV5_ROS, YOLOV5_ROS2, Dialect
 from linkwright.nodes.vision.latest import LatestWorker
+from linkwright.vision.detections import Detections
 from linkwright.vision.detector import Detector, Limits
 from linkwright.vision.detectors.drawing import drawn
 from linkwright.vision.detectors.options import LARGEST_SIZE, DetectorOptions
@@ -64,13 +73,14 @@ _FOR_GOOD = ParameterDescriptor(read_only=True)
 _ANY = ParameterDescriptor(dynamic_typing=True)
 _SETTINGS = ("dictionary", "least_area", "part", "colour")
 _COLOURS = "colours"
+_CLASSES = "classes"
 _RATE_SLACK = 0.9
 """Of a period: a picture that comes a little early is not left out."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Task:
-    """A picture to be looked at, and what for."""
+    """A picture to be looked at, with which limits, and whether its boxes are to be drawn."""
 
     message: Any
     limits: Limits
@@ -78,45 +88,53 @@ class _Task:
 
 
 class DetectorNode(SingleNode):
-    """The running node.
+    """The running node. It ends by itself where there is no such detector, or none with such classes.
+
+    Attributes:
+        loaded: is done when the detector is there.
 
     Raises:
-        LinkwrightError: a parameter cannot have its value (NODE433), or there is no such detector (VISION1xx).
+        LinkwrightError: a parameter cannot have its value (NODE433, VISION109).
     """
 
     DEFAULT_NAME = "yolo_node"
     DIALECT: ClassVar[Dialect] = OURS
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
+        self._graph = graph
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         node, dialect = self._node, self.DIALECT
         with starting(node):
             self._declare(dialect)
-            self._detector = self._make_detector(dialect)
-            self._limits = self._limits_of({})
+            settings = self._detector_options(dialect)
+            self._limits = self._limits_of({}, None)
             self._source = self._image_source(dialect)
             self._qos = self._image_qos()
             tell_unknown(node)
-        for note in self._detector.notes:
-            node.get_logger().info(str(note))
+        self.finished: asyncio.Future[int] = asyncio.get_running_loop().create_future()
+        self.loaded: Future[None] = Future()
+        self._names: tuple[str, ...] | None = None
         self._unpacker, self._ranges = Unpacker(), RangeFinder()
         self._last_ns: int | None = None
-        self._done: deque[tuple[str, Any]] = deque()
+        self._done: deque[Callable[[], None]] = deque()
         output = node.get_parameter(dialect.output_topic).value if dialect.output_topic else dialect.detections
         self._detections = node.create_publisher(get_message(dialect.message), output, _DEPTH)
         image = get_message("sensor_msgs/msg/Image")
         self._pictures = [node.create_publisher(image, topic, _DEPTH) for topic in dialect.debug_images]
         node.create_service(get_service("std_srvs/srv/SetBool"), "enable", self._on_enable)
-        node.create_service(get_service("yolo_msgs/srv/SetClasses"), "set_classes", self._on_set_classes)
+        choose, waiting = get_service("yolo_msgs/srv/SetClasses"), MutuallyExclusiveCallbackGroup()
+        node.create_service(choose, "set_classes", self._on_set_classes, callback_group=waiting)
         node.add_on_set_parameters_callback(self._check)
         node.add_post_set_parameters_callback(lambda _: self._follow())
-        self._finished = node.create_guard_condition(self._publish)
-        self._worker = LatestWorker(self._look, f"{node.get_name()} looks at pictures")
-        self._lazy = LazySubscriptions(graph, node, [self._detections, *self._pictures], self._subscribe)
+        self._finished = node.create_guard_condition(self._tell)
+        self._lazy: LazySubscriptions | None = None
+        load = partial(self._load, self._value(dialect.model), settings)
+        self._worker = LatestWorker(load, f"{node.get_name()} looks at pictures")
 
     def close(self) -> None:
         """End it."""
-        self._lazy.close()
+        if self._lazy is not None:
+            self._lazy.close()
         self._worker.close()
         super().close()
 
@@ -130,7 +148,7 @@ class DetectorNode(SingleNode):
         node.declare_parameter(dialect.threshold, dialect.least_score, _SHARE)
         node.declare_parameter(dialect.iou, dialect.overlap, _SHARE)
         node.declare_parameter(dialect.most, dialect.largest_number)
-        node.declare_parameter("classes", [""], _ANY)
+        node.declare_parameter(_CLASSES, [""], _ANY)
         node.declare_parameter("enable", True)
         node.declare_parameter("max_rate", 0.0, _RATE)
         node.declare_parameter("image_transport", "raw", _FOR_GOOD)
@@ -146,7 +164,7 @@ class DetectorNode(SingleNode):
     def _value(self, name: str) -> Any:
         return self._node.get_parameter(name).value
 
-    def _make_detector(self, dialect: Dialect) -> Detector:
+    def _detector_options(self, dialect: Dialect) -> DetectorOptions:
         names = self._node.parameter_names()
         settings: dict[str, object] = {name: self._value(name) for name in _SETTINGS if name in names}
         colours = {name.partition(".")[2]: self._value(name) for name in names if name.startswith(f"{_COLOURS}.")}
@@ -157,14 +175,11 @@ class DetectorNode(SingleNode):
             missing = "imgsz_width" if size[0] else "imgsz_height"
             raise bad_setting(missing, 0, phrase("an input has a height and a width: give both, or none"))
         labels = self._value(dialect.labels)
-        return make_detector(
-            self._value(dialect.model),
-            DetectorOptions(
-                labels=Path(labels).expanduser() if labels else None,
-                device=self._value("device"),
-                size=size if all(size) else None,
-                settings=settings,
-            ),
+        return DetectorOptions(
+            labels=Path(labels).expanduser() if labels else None,
+            device=self._value("device"),
+            size=size if all(size) else None,
+            settings=settings,
         )
 
     def _image_source(self, dialect: Dialect) -> ImageSource:
@@ -182,23 +197,26 @@ class DetectorNode(SingleNode):
             raise bad_value("image_reliability", reliability, self._node.get_name(), ("1", "2"))
         return QoSProfile(depth=1, reliability=known[reliability])
 
-    def _limits_of(self, changed: dict[str, Any]) -> Limits:
+    def _limits_of(self, changed: dict[str, Any], known: Sequence[str] | None) -> Limits:
         """What the parameters say, with others in the place of some.
+
+        Args:
+            changed: the others, by name.
+            known: the classes of the detector; None while it is loaded, when all count.
 
         Raises:
             LinkwrightError: NODE433, `max_det` is less than 1, or a class is none that the detector knows.
         """
         dialect = self.DIALECT
         threshold, iou, most, classes = (
-            changed.get(name, self._value(name)) for name in (dialect.threshold, dialect.iou, dialect.most, "classes")
+            changed.get(name, self._value(name)) for name in (dialect.threshold, dialect.iou, dialect.most, _CLASSES)
         )
         if most < 1:
             raise bad_value(dialect.most, most, self._node.get_name())
-        return Limits(threshold, iou, most, self._wanted(classes))
+        return Limits(threshold, iou, most, None if known is None else self._wanted(classes, known))
 
-    def _wanted(self, classes: Any) -> frozenset[str] | None:
+    def _wanted(self, classes: Any, known: Sequence[str]) -> frozenset[str] | None:
         given = classes if isinstance(classes, Sequence) and not isinstance(classes, str) else [classes]
-        known = self._detector.names
         wanted = []
         for each in given:
             numbered = isinstance(each, int) and not isinstance(each, bool) and 0 <= each < len(known)
@@ -206,13 +224,18 @@ class DetectorNode(SingleNode):
             if each is None or name == "":
                 continue
             if known and name not in known:
-                raise bad_value("classes", name, self._node.get_name(), known)
+                raise bad_value(_CLASSES, name, self._node.get_name(), known)
             wanted.append(name)
         return frozenset(wanted) if wanted else None
 
     def _check(self, parameters: Sequence[Parameter]) -> SetParametersResult:
+        changed = {each.name: each.value for each in parameters}
+        if self._names is None and _CLASSES in changed:
+            return SetParametersResult(
+                False, str(phrase("the detector is being loaded: its classes are not known yet"))
+            )
         try:
-            self._limits_of({each.name: each.value for each in parameters})
+            self._limits_of(changed, self._names)
         except LinkwrightError as error:
             finding = error.diagnostics[0]
             return SetParametersResult(
@@ -221,15 +244,16 @@ class DetectorNode(SingleNode):
         return SetParametersResult(True)
 
     def _follow(self) -> None:
-        self._limits = self._limits_of({})
+        self._limits = self._limits_of({}, self._names)
 
     def _on_enable(self, request: Any, response: Any) -> Any:
         self._node.set_parameters([Parameter("enable", value=request.data)])
         response.success, response.message = True, "enabled" if request.data else "disabled"
         return response
 
-    def _on_set_classes(self, request: Any, response: Any) -> Any:
-        (result,) = self._node.set_parameters([Parameter("classes", value=list(request.classes) or [""])])
+    async def _on_set_classes(self, request: Any, response: Any) -> Any:
+        await self.loaded
+        (result,) = self._node.set_parameters([Parameter(_CLASSES, value=list(request.classes) or [""])])
         response.success, response.message = result.successful, result.reason
         return response
 
@@ -250,33 +274,83 @@ class DetectorNode(SingleNode):
         self._last_ns = now
         return False
 
-    def _look(self, task: _Task) -> None:
-        """Find what is in a picture; in the worker's thread."""
+    # --- in the worker's thread ----------------------------------------------------------------------------------
+
+    def _load(self, model: str, options: DetectorOptions) -> Callable[[_Task], None] | None:
+        """Load the detector; what looks at a picture with it."""
+        try:
+            detector = make_detector(model, options)
+        except LinkwrightError as error:
+            self._hand_over(partial(self._fail, error))
+            return None
+        except Exception as error:  # noqa: BLE001 - of a detector that others may bring
+            self._hand_over(partial(self._fail, _failure(error)))
+            return None
+        self._hand_over(partial(self._begin, detector))
+        return partial(self._look, detector)
+
+    def _look(self, detector: Detector, task: _Task) -> None:
+        """Find what is in a picture."""
         try:
             image = self._unpacker.image(task.message, self._source.transport)
             picture = picture_of(image, self._ranges).rgb()
-            found = self._detector.detect(picture, task.limits)
+            found = detector.detect(picture, task.limits)
             picture_with_boxes = drawn(picture, found) if task.draws else None
         except (BadImageError, LinkwrightError) as error:
-            self._done.append(("error", str(error)))
+            self._hand_over(partial(self._complain, str(error)))
+        except Exception as error:  # noqa: BLE001 - of a detector that others may bring
+            self._hand_over(partial(self._complain, str(_failure(error))))
         else:
-            self._done.append(("found", (task.message.header, found, picture_with_boxes)))
+            self._hand_over(partial(self._publish, task.message.header, found, picture_with_boxes))
+
+    def _hand_over(self, result: Callable[[], None]) -> None:
+        self._done.append(result)
         self._finished.trigger()
 
-    def _publish(self) -> None:
+    # --- what comes of it, in the node's callbacks ---------------------------------------------------------------
+
+    def _tell(self) -> None:
         while self._done:
-            kind, result = self._done.popleft()
-            if kind == "error":
-                self._node.get_logger().error(result, throttle_duration_sec=_SECONDS_BETWEEN_COMPLAINTS)
-                continue
-            header, found, picture = result
-            self._detections.publish(MESSAGES[self.DIALECT.message](header, found))
-            if picture is None:
-                continue
-            message = picture_message(header, picture)
-            for publisher in self._pictures:
-                if publisher.get_subscription_count():
-                    publisher.publish(message)
+            self._done.popleft()()
+
+    def _begin(self, detector: Detector) -> None:
+        """Take pictures from now on."""
+        for note in detector.notes:
+            self._node.get_logger().info(str(note))
+        try:
+            self._limits = self._limits_of({}, detector.names)
+        except LinkwrightError as error:
+            self._fail(error)
+            return
+        self._names = detector.names
+        self._lazy = LazySubscriptions(self._graph, self._node, [self._detections, *self._pictures], self._subscribe)
+        self.loaded.set_result(None)
+
+    def _fail(self, error: LinkwrightError) -> None:
+        finding = error.diagnostics[0]
+        logger = self._node.get_logger()
+        logger.fatal(finding.message)
+        if finding.hint:
+            logger.fatal(finding.hint)
+        if not self.finished.done():
+            self.finished.set_result(1)
+
+    def _complain(self, problem: str) -> None:
+        self._node.get_logger().error(problem, throttle_duration_sec=_SECONDS_BETWEEN_COMPLAINTS)
+
+    def _publish(self, header: Any, found: Detections, picture: NDArray[np.uint8] | None) -> None:
+        self._detections.publish(MESSAGES[self.DIALECT.message](header, found))
+        if picture is None:
+            return
+        message = picture_message(header, picture)
+        for publisher in self._pictures:
+            if publisher.get_subscription_count():
+                publisher.publish(message)
+
+
+def _failure(error: Exception) -> LinkwrightError:
+    message = phrase("the detector failed: {problem}", problem=foreign(f"{type(error).__name__}: {error}"))
+    return LinkwrightError(Diagnostic("VISION112", message))
 
 
 class YoloRosNode(DetectorNode):

@@ -15,12 +15,13 @@ class LatestWorker(Generic[T]):
     """Calls a function in a thread, with what was offered last when the call before it is done.
 
     Args:
-        work: is called with each item that is taken; it raises nothing.
+        prepare: makes that function, in the thread, which may take seconds; None where nothing is to be done. Neither
+            raises anything.
         name: of the thread.
     """
 
-    def __init__(self, work: Callable[[T], None], name: str) -> None:
-        self._work = work
+    def __init__(self, prepare: Callable[[], Callable[[T], None] | None], name: str) -> None:
+        self._prepare = prepare
         self._changed = threading.Condition()
         self._waiting: list[T] = []
         self._ended = False
@@ -40,7 +41,7 @@ class LatestWorker(Generic[T]):
         return bool(self._waiting)
 
     def close(self) -> None:
-        """Call the function no more; one that runs is waited for."""
+        """Call the function no more; a call that runs is waited for."""
         with self._changed:
             self._ended = True
             self._waiting.clear()
@@ -48,10 +49,11 @@ class LatestWorker(Generic[T]):
         self._thread.join(_SECONDS_FOR_THE_LAST)
 
     def _run(self) -> None:
-        while True:
+        work = self._prepare()
+        while work is not None:
             with self._changed:
                 self._changed.wait_for(lambda: self._waiting or self._ended)
                 if self._ended:
                     return
                 item = self._waiting.pop()
-            self._work(item)
+            work(item)

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, foreign, missing_extra, phrase
+from linkwright.model_files.onnx_sessions import UnloadableNetworkError, load_session
 from linkwright.speech.engine import EngineOptions, Heard, SpeechEngine
 from linkwright.speech.sound.activity import VoiceActivity
 from linkwright.speech.sound.samples import RATE, Samples
@@ -109,16 +110,11 @@ def _probabilities(scores: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def _session(path: Path) -> Any:
     try:
-        import onnxruntime  # type: ignore[import-untyped, import-not-found, unused-ignore]
+        return load_session(path, threads=1)
     except ModuleNotFoundError as error:
         raise missing_extra("VOICE102", error) from None
-    settings = onnxruntime.SessionOptions()
-    settings.intra_op_num_threads = 1
-    settings.log_severity_level = 4
-    try:
-        return onnxruntime.InferenceSession(str(path), settings, providers=["CPUExecutionProvider"])
-    except Exception as error:  # noqa: BLE001 - onnxruntime has an exception for each kind of damage
-        raise _unfit(path, foreign(str(error).partition("\n")[0])) from None
+    except UnloadableNetworkError as error:
+        raise _unfit(path, error.reason) from None
 
 
 def _form(session: Any, path: Path) -> tuple[str, int, tuple[str, ...]]:

@@ -1,4 +1,4 @@
-"""The libraries that look at pictures, onnxruntime and OpenCV, which the extra ``vision`` brings."""
+"""The libraries that look at pictures beside onnxruntime: OpenCV, which the extra ``vision`` brings, and LiteRT."""
 
 from __future__ import annotations
 
@@ -7,23 +7,7 @@ from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, missing_extra, phrase
 
-_ERRORS_ONLY = 3
 _LITERT = "ai-edge-litert"
-
-
-@cache
-def load_onnxruntime() -> Any:
-    """The module ``onnxruntime``; it has no types.
-
-    Raises:
-        LinkwrightError: VISION101 it is not installed.
-    """
-    try:
-        import onnxruntime  # type: ignore[import-untyped, unused-ignore]
-    except ModuleNotFoundError as error:
-        raise missing_extra("VISION101", error) from None
-    onnxruntime.set_default_logger_severity(_ERRORS_ONLY)  # it warns of every piece of hardware that it has no use for
-    return onnxruntime
 
 
 @cache

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, phrase
+from linkwright.model_files.onnx_sessions import reason_of
 from linkwright.vision.detections import Detections
 from linkwright.vision.detector import Detector, Limits
 from linkwright.vision.detectors.class_names import read_labels
@@ -17,7 +18,7 @@ from linkwright.vision.detectors.layouts import Candidates, Form, find_layout, w
 from linkwright.vision.detectors.letterbox import letterboxed, tensor_of
 from linkwright.vision.detectors.metadata import Metadata
 from linkwright.vision.detectors.options import LARGEST_SIZE, DetectorOptions
-from linkwright.vision.detectors.sessions import load_session, reason_of
+from linkwright.vision.detectors.sessions import session_on
 from linkwright.vision.detectors.settings import bad_setting
 from linkwright.vision.detectors.suppression import suppressed
 
@@ -45,7 +46,7 @@ class NetworkDetector(Detector):
             raise bad_setting(
                 "imgsz", max(options.size), phrase("it is at most {largest} pixels", largest=LARGEST_SIZE)
             )
-        self._session, self._notes = load_session(file, options.device)
+        self._session, self._notes = session_on(file, options.device)
         metadata = Metadata.of(self._session.get_modelmeta().custom_metadata_map)
         self._input, self._kind, fixed = _picture_input(file, self._session.get_inputs())
         self._stride = None if fixed else metadata.stride
@@ -108,7 +109,7 @@ class NetworkDetector(Detector):
     def _run(self, tensor: NDArray[np.floating]) -> Sequence[NDArray[Any]]:
         try:
             outputs: Sequence[NDArray[Any]] = self._session.run(None, {self._input: tensor})
-        except Exception as error:  # noqa: BLE001 - see above
+        except Exception as error:  # noqa: BLE001 - of many classes, which onnxruntime does not document
             shape = list(tensor.shape)
             reason = reason_of(error)
             message = phrase(

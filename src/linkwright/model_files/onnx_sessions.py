@@ -1,0 +1,115 @@
+"""Networks in ONNX files, loaded by onnxruntime, and what is wrong with a file that it does not load.
+
+Speech and vision run networks alike; each says what went wrong by findings of its own.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+from linkwright.diagnostics import Phrase, foreign, phrase
+
+CPU, CUDA = "CPUExecutionProvider", "CUDAExecutionProvider"
+
+_ERRORS_ONLY = 3
+_OF_THE_LIBRARY = re.compile(r"^.* failed:\s*|/onnxruntime_src/\S+ (?:.*?\) (?=[A-Z]))?")
+"""Where in onnxruntime's own code something failed, which stands before the reason."""
+_TOO_NEW = re.compile(r"IR version|[Oo]pset \d+")
+_START = 512
+_TEXT = frozenset(range(0x20, 0x7F)) | set(b"\t\r\n")
+
+
+class UnloadableNetworkError(Exception):
+    """A file is not loaded.
+
+    Attributes:
+        reason: why.
+        hint: what to do; None where nobody knows.
+    """
+
+    def __init__(self, reason: Phrase, hint: Phrase | None) -> None:
+        super().__init__(str(reason))
+        self.reason, self.hint = reason, hint
+
+
+def load_onnxruntime() -> Any:
+    """The module ``onnxruntime``; it has no types.
+
+    Raises:
+        ModuleNotFoundError: it is not installed.
+    """
+    import onnxruntime  # type: ignore[import-untyped, import-not-found, unused-ignore]
+
+    onnxruntime.set_default_logger_severity(_ERRORS_ONLY)  # it warns of every piece of hardware that it has no use for
+    return onnxruntime
+
+
+def load_session(file: Path, gpu: str | None = None, threads: int = 0) -> Any:
+    """An ``onnxruntime.InferenceSession``.
+
+    Args:
+        file: the ONNX file.
+        gpu: the number of a GPU that CUDA knows, which `has_cuda` says is of use; None for the processor.
+        threads: of the processor; 0 for one a core.
+
+    Raises:
+        ModuleNotFoundError: onnxruntime is not installed.
+        UnloadableNetworkError: the file cannot be loaded.
+    """
+    onnxruntime = load_onnxruntime()
+    providers: list[Any] = [CPU] if gpu is None else [(CUDA, {"device_id": gpu}), CPU]
+    how = onnxruntime.SessionOptions()
+    how.intra_op_num_threads = threads
+    how.log_severity_level = _ERRORS_ONLY
+    how.add_session_config_entry("session.intra_op.allow_spinning", "0")  # others need the processor, too
+    try:
+        return onnxruntime.InferenceSession(str(file), how, providers=providers)
+    except Exception as error:  # noqa: BLE001 - of many classes, which onnxruntime does not document
+        raise _unloadable(file, error) from None
+
+
+def has_cuda() -> bool:
+    """Whether the onnxruntime that is installed was built for CUDA; a GPU may still be missing.
+
+    Raises:
+        ModuleNotFoundError: onnxruntime is not installed.
+    """
+    return CUDA in load_onnxruntime().get_available_providers()
+
+
+def reason_of(error: Exception) -> Phrase:
+    """Of what onnxruntime says the part that is the reason."""
+    lines = str(error).strip().splitlines() or [type(error).__name__]
+    said = _OF_THE_LIBRARY.sub("", lines[0].rpartition(" : ")[2]).strip()
+    return foreign(said or type(error).__name__)
+
+
+def _unloadable(file: Path, error: Exception) -> UnloadableNetworkError:
+    try:
+        with file.open("rb") as opened:
+            start = opened.read(_START)
+    except OSError as unread:
+        return UnloadableNetworkError(foreign(unread.strerror or unread), None)
+    export = phrase("the file is broken or not whole: export or fetch it anew")
+    if not start:
+        return UnloadableNetworkError(phrase("the file is empty"), export)
+    if start.startswith(b"version https://git-lfs"):
+        pull = phrase("run `git lfs pull`")
+        return UnloadableNetworkError(phrase("it is a pointer of Git LFS, not the file itself"), pull)
+    if start.lstrip()[:1] == b"<":
+        address = phrase("the address that it was fetched from is not that of the file")
+        return UnloadableNetworkError(phrase("it is a web page"), address)
+    if set(start) <= _TEXT:
+        return UnloadableNetworkError(phrase("it is a text, not an ONNX file"), export)
+    reason = reason_of(error)
+    if "Protobuf parsing failed" in str(reason):
+        return UnloadableNetworkError(phrase("it is no ONNX file, or not whole"), export)
+    if _TOO_NEW.search(str(reason)):
+        newer = phrase("it is made for a newer onnxruntime: update onnxruntime, or export it with a lower opset")
+        return UnloadableNetworkError(reason, newer)
+    if "external" in str(reason):
+        beside = phrase("its weights are in a second file, which has to stand beside it")
+        return UnloadableNetworkError(reason, beside)
+    return UnloadableNetworkError(reason, export)
