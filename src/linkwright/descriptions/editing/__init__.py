@@ -1,0 +1,17 @@
+"""Editing a robot: from where something shall stand to the smallest edit of the text that makes it."""
+
+from linkwright.descriptions.editing.errors import EditRefusedError
+from linkwright.descriptions.editing.files import EditHistory, Workspace
+from linkwright.descriptions.editing.planning import Allowed, EditPlan, plan_edit
+from linkwright.descriptions.editing.request import EditRequest, Part
+
+__all__ = [
+    "Allowed",
+    "EditHistory",
+    "EditPlan",
+    "EditRefusedError",
+    "EditRequest",
+    "Part",
+    "Workspace",
+    "plan_edit",
+]

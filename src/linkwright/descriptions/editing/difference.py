@@ -1,0 +1,113 @@
+"""In what two expansions of one description differ."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import islice, zip_longest
+
+from linkwright.xmltree import Element
+
+
+@dataclass(frozen=True, slots=True)
+class Target:
+    """An attribute of an expanded document that is edited.
+
+    Attributes:
+        path: from the root to the joint, visual or collision: which of the elements inside, again and again.
+        tag: the element in it: ``origin`` or ``axis``.
+        attribute: of that.
+    """
+
+    path: tuple[int, ...]
+    tag: str
+    attribute: str
+
+    def owner(self, root: Element) -> Element | None:
+        """The joint, visual or collision in a document; None where there is none any more."""
+        element: Element | None = root
+        for index in self.path:
+            element = next(islice(element.elements(), index, None), None) if element is not None else None
+        return element
+
+    def element(self, root: Element) -> Element | None:
+        """The element with the attribute."""
+        owner = self.owner(root)
+        return None if owner is None else owner.first(self.tag)
+
+
+def path_to(root: Element, element: Element) -> tuple[int, ...] | None:
+    """The path of an element in a document; None where it is not in it."""
+    pending: list[tuple[Element, tuple[int, ...]]] = [(root, ())]
+    while pending:
+        found, path = pending.pop()
+        if found is element:
+            return path
+        pending.extend((child, (*path, index)) for index, child in enumerate(found.elements()))
+    return None
+
+
+def others(before: Element, after: Element, target: Target) -> Iterator[tuple[Element, ...]]:
+    """What differs besides the attribute that is edited.
+
+    Args:
+        before: the root of a document.
+        after: the root of the other.
+        target: the attribute that may differ, and may be new with its element.
+
+    Yields:
+        The elements of the first document from below its root down to one that differs; empty for the root.
+    """
+    pending: list[tuple[Element, Element, tuple[Element, ...], tuple[int, ...]]] = [(before, after, (), ())]
+    while pending:
+        old, new, trail, path = pending.pop()
+        inside_old, inside_new = list(old.elements()), list(new.elements())
+        if path == target.path:
+            pair = _taken(inside_old, target.tag), _taken(inside_new, target.tag)
+            if _is_changed(*pair, target.attribute):
+                yield trail
+        if old.tag != new.tag or old.attributes != new.attributes or _text(old) != _text(new):
+            yield trail
+            continue
+        for index, (some, other) in enumerate(zip_longest(inside_old, inside_new)):
+            if some is None or other is None:
+                yield trail
+                break
+            pending.append((some, other, (*trail, some), (*path, _place(old, some, index, path == target.path))))
+
+
+def described(trail: tuple[Element, ...]) -> str:
+    """What a trail leads to, in the words of a description, such as ``joint 'wheel_joint'``."""
+    named = [element for element in trail if element.attributes.get("name") or element.attributes.get("reference")]
+    if not trail:
+        return "robot"
+    top = trail[0]
+    name = top.attributes.get("name") or top.attributes.get("reference") or ""
+    inner = next((each.tag for each in trail[1:2] if top.tag == "link"), None)
+    what = f"{top.tag} '{name}'" if named and name else top.tag
+    return what if inner is None else f"{what} ({inner})"
+
+
+def _place(old: Element, child: Element, index: int, is_owner: bool) -> int:
+    """Which of the elements inside a child is; in the owner one of them was taken out before."""
+    return next(i for i, each in enumerate(old.elements()) if each is child) if is_owner else index
+
+
+def _taken(elements: list[Element], tag: str) -> Element | None:
+    """The first of a tag, taken out of the list."""
+    found = next((each for each in elements if each.tag == tag), None)
+    if found is not None:
+        elements.remove(found)
+    return found
+
+
+def _is_changed(old: Element | None, new: Element | None, attribute: str) -> bool:
+    if new is None:
+        return old is not None
+    rest = {name: value for name, value in new.attributes.items() if name != attribute}
+    known = {} if old is None else {name: value for name, value in old.attributes.items() if name != attribute}
+    return rest != known or any(new.elements()) != any(old.elements() if old is not None else ())
+
+
+def _text(element: Element) -> str:
+    return " ".join(element.text().split())

@@ -1,0 +1,17 @@
+"""Why a robot cannot be edited."""
+
+from __future__ import annotations
+
+from linkwright.diagnostics import Diagnostic
+
+
+class EditRefusedError(Exception):
+    """A description cannot be edited so; nothing was written.
+
+    Attributes:
+        diagnostic: which text, where, why, and what to do.
+    """
+
+    def __init__(self, diagnostic: Diagnostic) -> None:
+        super().__init__(diagnostic.message)
+        self.diagnostic = diagnostic

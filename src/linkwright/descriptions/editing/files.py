@@ -1,0 +1,172 @@
+"""The files of edited robots: which may be written, writing them, and taking that back."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from linkwright.descriptions.editing.errors import EditRefusedError
+from linkwright.descriptions.editing.planning import EditPlan
+from linkwright.descriptions.editing.refusals import forbidden_file
+from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, phrase
+from linkwright.whole_files import write_whole_file
+from linkwright.xmltree.decoding import decoded
+from linkwright.xmltree.reader import read_bytes
+
+_OURS = Path(__file__).resolve().parents[2]
+"""What is in here comes with the program, and is not the user's to write."""
+_MOST_STEPS = 200
+"""Of undo."""
+
+
+class Workspace:
+    """What may be written for a description: files of its own workspace, which nobody installed.
+
+    The workspace is the largest of these folders around the main file: that of its package, that of its git
+    repository, and the one whose ``src`` it lies in.
+
+    Args:
+        main: the file that was opened.
+    """
+
+    def __init__(self, main: Path) -> None:
+        real = Path(os.path.realpath(main))
+        self.folder = _workspace_of(real)
+
+    def refusal(self, path: str) -> Diagnostic | None:
+        """Why a file may not be written (EDIT106); None where it may.
+
+        Args:
+            path: its real path.
+        """
+        file = Path(path)
+        if file.is_relative_to(_OURS):
+            return forbidden_file(path, phrase("it comes with this program"))
+        if any((parent / "share" / "ament_index").is_dir() for parent in file.parents):
+            return forbidden_file(path, phrase("it is installed, and the next build would undo the change"))
+        if not file.is_relative_to(self.folder):
+            why = phrase("it lies outside the workspace '{folder}'", folder=display_path(str(self.folder)))
+            return forbidden_file(path, why)
+        if not os.access(path, os.W_OK):
+            return forbidden_file(path, phrase("it may only be read"))
+        return None
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """What an edit did: real path of a file -> its bytes before and after."""
+
+    files: Mapping[str, tuple[bytes, bytes]]
+
+
+class EditHistory:
+    """Edits that were written, the last of which can be taken back."""
+
+    def __init__(self) -> None:
+        self._done: list[Step] = []
+        self._undone: list[Step] = []
+
+    @property
+    def can_undo(self) -> bool:
+        """Whether there is an edit to be taken back."""
+        return bool(self._done)
+
+    @property
+    def can_redo(self) -> bool:
+        """Whether an edit was taken back."""
+        return bool(self._undone)
+
+    def apply(self, plan: EditPlan) -> list[str]:
+        """Write an edit into its files, all or none.
+
+        Returns:
+            The files that were written.
+
+        Raises:
+            EditRefusedError: EDIT107, a file is not what it was; EDIT108, one cannot be written.
+        """
+        files: dict[str, tuple[bytes, bytes]] = {}
+        for path, text in plan.texts.items():
+            before = _bytes_of(path)
+            known = decoded(before, path)
+            if known.text != plan.before[path]:
+                raise EditRefusedError(_changed(path))
+            mark = before[: len(before) - len(known.text.encode(known.encoding))]
+            files[path] = before, mark + text.encode(known.encoding, "xmlcharrefreplace")
+        _write({path: after for path, (_, after) in files.items()}, {path: old for path, (old, _) in files.items()})
+        if files:
+            self._done = [*self._done[1 - _MOST_STEPS :], Step(files)]
+            self._undone.clear()
+        return list(files)
+
+    def undo(self) -> list[str]:
+        """Take the last edit back; nothing where there is none.
+
+        Returns:
+            The files that were written.
+
+        Raises:
+            EditRefusedError: as for `apply`.
+        """
+        if not self._done:
+            return []
+        step = self._done[-1]
+        _write(
+            {path: old for path, (old, _) in step.files.items()}, {path: new for path, (_, new) in step.files.items()}
+        )
+        self._undone.append(self._done.pop())
+        return list(step.files)
+
+    def redo(self) -> list[str]:
+        """Make the edit again that was taken back last; as `undo`."""
+        if not self._undone:
+            return []
+        step = self._undone[-1]
+        _write(
+            {path: new for path, (_, new) in step.files.items()}, {path: old for path, (old, _) in step.files.items()}
+        )
+        self._done.append(self._undone.pop())
+        return list(step.files)
+
+
+def _workspace_of(file: Path) -> Path:
+    found = file.parent
+    for folder in file.parents:
+        if (folder / "package.xml").is_file() or (folder / ".git").exists():
+            found = folder
+        if folder.name == "src" and folder.parent != folder.parent.parent:
+            found = folder.parent
+    return found
+
+
+def _write(new: Mapping[str, bytes], known: Mapping[str, bytes]) -> None:
+    """Write files that hold what is known; where one cannot be written, those before it get back what they held."""
+    for path, content in known.items():
+        if _bytes_of(path) != content:
+            raise EditRefusedError(_changed(path))
+    written: list[str] = []
+    for path, content in new.items():
+        try:
+            write_whole_file(path, content)
+        except OSError as error:
+            for each in written:
+                write_whole_file(each, known[each])
+            message = phrase(
+                "cannot write '{path}': {reason}", path=display_path(path), reason=foreign(error.strerror or error)
+            )
+            raise EditRefusedError(Diagnostic("EDIT108", message, hint=phrase("make the file writable"))) from None
+        written.append(path)
+
+
+def _bytes_of(path: str) -> bytes:
+    try:
+        return read_bytes(path)
+    except LinkwrightError as error:
+        raise EditRefusedError(error.diagnostics[0]) from None
+
+
+def _changed(path: str) -> Diagnostic:
+    message = phrase("'{path}' was changed by another program meanwhile, and is left as it is", path=display_path(path))
+    return Diagnostic("EDIT107", message, hint=phrase("look at the robot as it is now, and edit it again"))

@@ -1,0 +1,56 @@
+"""Numbers as they are written."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import degrees, isfinite, pi
+
+EXACT = 1e-9
+"""Metres and radians: what is less is no difference."""
+_EXACT_DEGREES = 5e-8
+_MOST_DIGITS = 15
+_PARTS_OF_PI = (1, 2, 3, 4, 6, 12)
+
+
+def shortest(value: float, tolerance: float = EXACT) -> str:
+    """A number with as few digits as there can be, without an exponent.
+
+    Args:
+        value: finite.
+        tolerance: how far off it may be.
+    """
+    for digits in range(_MOST_DIGITS):
+        text = f"{value:.{digits}f}"
+        if abs(float(text) - value) <= tolerance:
+            return "0" if float(text) == 0 else text
+    return repr(value)
+
+
+def same(some: float, other: float) -> bool:
+    """Whether two numbers are the same, as far as it is asked for."""
+    return abs(some - other) <= EXACT
+
+
+def numbers_of(text: str, count: int) -> list[float] | None:
+    """The numbers of an attribute; None where it does not have as many, all finite."""
+    try:
+        found = [float(word) for word in text.split()]
+    except ValueError:
+        return None
+    return found if len(found) == count and all(map(isfinite, found)) else None
+
+
+def part_of_pi(angle: float) -> str | None:
+    """An angle as an expression such as ``-pi/2`` or ``3*pi/4``; None where it is no such part."""
+    for parts in _PARTS_OF_PI:
+        whole = round(angle / pi * parts)
+        if whole and same(whole * pi / parts, angle) and Fraction(whole, parts).denominator == parts:
+            factor = {1: "", -1: "-"}.get(whole, f"{whole}*")
+            return f"{factor}pi" if parts == 1 else f"{factor}pi/{parts}"
+    return None
+
+
+def in_degrees(angle: float) -> str | None:
+    """An angle in degrees where that is short, as for ``radians()``; None for others."""
+    text = shortest(degrees(angle), _EXACT_DEGREES)
+    return text if len(text.lstrip("-").replace(".", "")) <= 5 else None

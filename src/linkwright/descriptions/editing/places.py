@@ -1,0 +1,199 @@
+"""Places of texts that decide numbers, and the candidates for editing them."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+from linkwright.descriptions.editing.numbers import in_degrees, part_of_pi, shortest
+from linkwright.diagnostics import SourceText, Span
+
+_WORD = re.compile(r"(?:\$\{[^}]*\}|\$\([^)]*\)|\S)+")
+_ONE_EXPRESSION = re.compile(r"\$\{([^{}]*)\}\Z|(\$\([^()]*\))\Z")
+_OF_PI = frozenset({"pi", "radians", "degrees", "math"})
+_LOOSE = (ast.IfExp, ast.BoolOp, ast.Compare, ast.Lambda, ast.NamedExpr)
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Characters `start` to `end` (exclusive) of a source text."""
+
+    source: SourceText
+    start: int
+    end: int
+
+    @property
+    def text(self) -> str:
+        """What is written there."""
+        return self.source.text[self.start : self.end]
+
+    @property
+    def span(self) -> Span:
+        """The place as lines and columns."""
+        return self.source.span(self.start, self.end)
+
+    def part(self, start: int, end: int) -> Place:
+        """Characters of this place, counted from its start."""
+        return Place(self.source, self.start + start, self.start + end)
+
+
+@dataclass(frozen=True, slots=True)
+class Candidate:
+    """A text that may decide a number.
+
+    Attributes:
+        place: what is replaced.
+        value: what the text stands for now.
+        write: the text for another value, given with the tolerance that it may have.
+        is_choice: whether it is 1 or -1, which as a factor says which side or direction is meant.
+    """
+
+    place: Place
+    value: float
+    write: Callable[[float, float], str]
+    is_choice: bool = False
+
+
+def words(place: Place) -> list[Place]:
+    """What stands between blanks, expressions in one piece."""
+    return [place.part(*found.span()) for found in _WORD.finditer(place.text)]
+
+
+def literal(place: Place) -> Candidate | None:
+    """A number that is written as it is; None where something else is."""
+    try:
+        value = float(place.text)
+    except ValueError:
+        return None
+    return Candidate(place, value, shortest, value in (1.0, -1.0))
+
+
+def added_constants(word: Place) -> Iterator[Candidate]:
+    """Numbers in an expression on which its value depends evenly: terms of a sum, alone or in ``radians()``."""
+    found = _ONE_EXPRESSION.match(word.text)
+    inside = None if found is None else found[1]
+    if inside is None or not inside.isascii():
+        return
+    body = inside.strip()
+    inner = word.part(2, len(word.text) - 1)
+    start = len(inside) - len(inside.lstrip())
+    inner = inner.part(start, start + len(body))
+    tree = _tree(body)
+    if tree is not None:
+        yield from _terms(tree, inner)
+
+
+def is_constant(word: Place) -> bool:
+    """Whether a word is an expression without names other than pi and what turns degrees into radians."""
+    found = _ONE_EXPRESSION.match(word.text)
+    tree = _tree(found[1].strip()) if found is not None and found[1] else None
+    return tree is not None and _names(tree) <= _OF_PI
+
+
+def exchanged(word: Place, value: float) -> Candidate:
+    """A word that is an expression, or anything else, replaced by a number: as a part of pi where it was one."""
+
+    def write(number: float, tolerance: float) -> str:
+        if "pi" in word.text or "radians" in word.text:
+            part = part_of_pi(number)
+            if part is not None:
+                return f"${{{part}}}"
+            angle = in_degrees(number)
+            if angle is not None and angle != "0":
+                return f"${{radians({angle})}}"
+        return shortest(number, tolerance)
+
+    return Candidate(word, value, write)
+
+
+def summed(word: Place, *, is_angle: bool) -> Candidate | None:
+    """An expression with a number added to it; None for what is no single expression."""
+    found = _ONE_EXPRESSION.match(word.text)
+    if found is None:
+        return None
+    body = (found[1] or found[2]).strip()
+    tree = _tree(body) if found[1] else None
+    if found[1] and tree is None:
+        return None
+    base = f"({body})" if isinstance(tree, _LOOSE) else body
+
+    def write(number: float, tolerance: float) -> str:
+        size = shortest(abs(number), tolerance)
+        angle = in_degrees(abs(number)) if is_angle else None
+        if angle is not None and len(angle) + len("radians()") < len(size):
+            size = f"radians({angle})"
+        return word.text if size == "0" else f"${{{base} {'-' if number < 0 else '+'} {size}}}"
+
+    return Candidate(word, 0.0, write)
+
+
+def _tree(body: str) -> ast.expr | None:
+    try:
+        return ast.parse(body, mode="eval").body
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return None
+
+
+def _names(tree: ast.AST) -> set[str]:
+    return {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
+
+
+def _terms(node: ast.expr, inner: Place) -> Iterator[Candidate]:
+    value = _number(node)
+    if value is not None:
+        yield _candidate(inner, node, value)
+    elif isinstance(node, ast.BinOp) and isinstance(node.op, (ast.Add, ast.Sub)):
+        signed = _signed_term(node, inner)
+        yield from _terms(node.right, inner) if signed is None else (signed,)
+        yield from _terms(node.left, inner)
+    elif isinstance(node, ast.BinOp) and _is_angle_of_degrees(node):
+        while isinstance(node, ast.BinOp):
+            node = node.left
+        yield from _terms(node, inner)
+    elif isinstance(node, ast.UnaryOp) and isinstance(node.op, (ast.UAdd, ast.USub)):
+        yield from _terms(node.operand, inner)
+    elif isinstance(node, ast.Call) and len(node.args) == 1 and isinstance(node.func, (ast.Name, ast.Attribute)):
+        name = node.func.id if isinstance(node.func, ast.Name) else node.func.attr
+        if name == "radians":
+            yield from _terms(node.args[0], inner)
+
+
+def _is_angle_of_degrees(node: ast.expr) -> bool:
+    """Whether an expression is something like ``30*pi/180``, a product with the degrees in front."""
+    return _names(node) <= _OF_PI and "pi" in _names(node) and any(_number(each) == 180 for each in ast.walk(node))
+
+
+def _signed_term(node: ast.BinOp, inner: Place) -> Candidate | None:
+    """The last number of a sum with its sign, which may turn; None where brackets are in the way."""
+    value = _number(node.right)
+    if value is None:
+        return None
+    end, text = node.right.end_col_offset or 0, inner.text
+    before = text[: node.right.col_offset].rstrip()
+    sign = "+" if isinstance(node.op, ast.Add) else "-"
+    if not before.endswith(sign):
+        return None
+    blanks = text[len(before) : node.right.col_offset]
+    term = inner.part(len(before) - 1, end)
+
+    def write(number: float, tolerance: float) -> str:
+        return f"{'-' if number < 0 else '+'}{blanks}{shortest(abs(number), tolerance)}"
+
+    return Candidate(term, value if sign == "+" else -value, write)
+
+
+def _number(node: ast.AST) -> float | None:
+    """The value of a number, with its sign; None for anything else."""
+    if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub) and isinstance(node.operand, ast.Constant):
+        value = _number(node.operand)
+        return None if value is None else -value
+    if isinstance(node, ast.Constant) and isinstance(node.value, (int, float)) and not isinstance(node.value, bool):
+        return float(node.value)
+    return None
+
+
+def _candidate(inner: Place, node: ast.expr, value: float) -> Candidate:
+    place = inner.part(node.col_offset, node.end_col_offset or node.col_offset)
+    return Candidate(place, value, shortest, value in (1.0, -1.0))

@@ -1,0 +1,319 @@
+"""From an edit of a robot to the smallest edit of its text, or to the reason why there is none.
+
+The texts that may have made a number are tried one after the other, and the first is taken after which the expanded
+document differs in exactly what was asked for.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from itertools import islice
+from math import isfinite
+from typing import NamedTuple
+
+from linkwright.descriptions.description import Description
+from linkwright.descriptions.editing.definitions import attribute
+from linkwright.descriptions.editing.difference import Target, described, others, path_to
+from linkwright.descriptions.editing.errors import EditRefusedError
+from linkwright.descriptions.editing.numbers import EXACT, numbers_of, same, shortest
+from linkwright.descriptions.editing.places import Candidate, Place, literal, words
+from linkwright.descriptions.editing.proposals import proposals
+from linkwright.descriptions.editing.refusals import Attempt, refusal
+from linkwright.descriptions.editing.request import EditRequest
+from linkwright.descriptions.editing.snapshot import Snapshot
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+from linkwright.geometry.single import quaternion_from_rpy
+from linkwright.xacro.origin import Frame
+from linkwright.xmltree import Document, Element, Overlay, parse
+from linkwright.xmltree.patches import inserted, start_tag_of
+
+Allowed = Callable[[str], "Diagnostic | None"]
+"""Why a file may not be written, by its real path; None where it may."""
+
+_MOST_TRIALS = 60
+_LEAST_SLOPE = 1e-6
+_PLAIN_SLOPES = (1.0, 2.0, 0.5, 0.25)
+"""With another one, 1 and -1 are factors that say which side is meant, not lengths."""
+_LARGEST = 1e6
+"""Metres."""
+_FEWEST = {"origin": [0.0, 0.0, 0.0], "axis": [1.0, 0.0, 0.0]}
+"""What holds where nothing is written."""
+
+
+@dataclass(frozen=True, slots=True)
+class EditPlan:
+    """What an edit comes to.
+
+    Attributes:
+        texts: real path of a file -> its text afterwards, without a byte order mark; empty where nothing changes.
+        before: the same files -> their texts before.
+        also: what else changes, where that was allowed.
+    """
+
+    texts: dict[str, str]
+    before: dict[str, str]
+    also: tuple[str, ...] = ()
+
+
+def plan_edit(description: Description, request: EditRequest, allowed: Allowed = lambda _: None) -> EditPlan:
+    """The smallest edit of text that does what is asked for, and nothing else.
+
+    Args:
+        description: read from a file a moment ago.
+        request: what shall be different.
+        allowed: which files may be written.
+
+    Raises:
+        EditRefusedError: there is none, with a diagnostic EDIT101 to EDIT106.
+    """
+    planner = _Planner(description, request, allowed)
+    for name, wanted in planner.wanted():
+        planner.set(name, wanted)
+    return planner.plan()
+
+
+class _Found(NamedTuple):
+    """A description with a number that does what is wanted, and what else differs."""
+
+    snapshot: Snapshot
+    also: tuple[str, ...]
+
+
+class _Planner:
+    """Makes one plan, attribute by attribute and number by number; `_now` is the description as far as it has come."""
+
+    def __init__(self, description: Description, request: EditRequest, allowed: Allowed) -> None:
+        self._request, self._allowed = request, allowed
+        self._now = self._first = Snapshot.of(description)
+        robot = description.robot
+        owner = None if robot is None else request.owner(robot)
+        path = None if owner is None else path_to(self._now.root, owner)
+        if owner is None or path is None or description.name.startswith("<"):
+            message = phrase("there is no {part} of '{name}' to be edited", part=request.part, name=request.name)
+            raise EditRefusedError(Diagnostic("EDIT101", message, hint=phrase("the description may have changed")))
+        self._path, self._owner = path, owner
+        self._also_changed: dict[str, None] = {}
+
+    def wanted(self) -> Iterator[tuple[str, list[float]]]:
+        """The attributes to be edited, and their numbers."""
+        request = self._request
+        for given in (request.xyz, request.rpy):
+            if given is not None and not all(isfinite(each) and abs(each) <= _LARGEST for each in given):
+                raise EditRefusedError(Diagnostic("EDIT102", phrase("these are no numbers that a robot can have")))
+        if request.xyz is not None:
+            if request.tag == "axis" and not any(abs(each) > EXACT for each in request.xyz):
+                message = phrase("an axis needs a direction: 0 0 0 is none")
+                raise EditRefusedError(Diagnostic("EDIT102", message))
+            yield "xyz", list(request.xyz)
+        element = self._owner.first(request.tag)
+        if request.rpy is not None and element is not None and "quat_xyzw" in element.attributes:
+            roll, pitch, yaw = request.rpy
+            yield "quat_xyzw", list(quaternion_from_rpy((roll, pitch, yaw)))
+        elif request.rpy is not None:
+            yield "rpy", list(request.rpy)
+
+    def set(self, name: str, wanted: list[float]) -> None:
+        """Give an attribute other numbers."""
+        present = self._values(name)
+        changed = [i for i, (old, new) in enumerate(zip(present, wanted, strict=True)) if not same(old, new)]
+        if not changed:
+            return
+        target = Target(self._path, self._request.tag, name)
+        element = target.element(self._now.root)
+        if element is None or name not in element.attributes:
+            self._add(target, wanted)
+            return
+        place = self._written(element, name)
+        parts = words(place)
+        if len(parts) == len(wanted) and all(literal(parts[i]) for i in changed) and len(changed) > 1:
+            together = self._together(target, place, parts, {i: wanted[i] for i in changed})
+            if together is not None:
+                self._now = together
+                return
+        for i in changed:
+            self._set_one(target, i, wanted[i])
+
+    def plan(self) -> EditPlan:
+        """What the edits come to."""
+        texts = {str(path): text for path, text in self._now.texts.items()}
+        before = {path: Overlay().read(path).text for path in texts}
+        return EditPlan(texts, before, tuple(self._also_changed))
+
+    # one number
+
+    def _set_one(self, target: Target, index: int, wanted: float) -> None:
+        element = target.element(self._now.root)
+        assert element is not None, "it has the attribute"
+        place = self._written(element, target.attribute)
+        present = self._values(target.attribute)
+        frame = element.origin if isinstance(element.origin, Frame) else None
+        attempts: list[Attempt] = []
+        offered = proposals(
+            place, index, frame, self._now.definitions, present=present, is_angle=target.attribute == "rpy"
+        )
+        best: _Found | None = None
+        for candidate in islice(offered, _MOST_TRIALS):
+            found = self._tried(candidate, target, index, wanted, attempts)
+            if found is not None and (best is None or len(found.also) < len(best.also)):
+                best = found
+                if not found.also:
+                    break
+        if best is not None:
+            self._now = best.snapshot
+            self._also_changed.update(dict.fromkeys(best.also))
+            return
+        raise EditRefusedError(refusal(place, index, attempts))
+
+    def _tried(
+        self, candidate: Candidate, target: Target, index: int, wanted: float, attempts: list[Attempt]
+    ) -> _Found | None:
+        """The description with a candidate that does what is wanted; None for one that does not."""
+        why_not = self._allowed(os.path.realpath(candidate.place.source.name))
+        if why_not is not None:
+            attempts.append(Attempt(candidate.place, forbidden=why_not))
+            return None
+        present = self._values(target.attribute)[index]
+        guess, tolerance = candidate.value + wanted - present, EXACT
+        for _ in range(2):
+            guess = float(shortest(guess, tolerance))
+            trial = self._trial(candidate.place, candidate.write(guess, tolerance))
+            values = None if trial is None else self._values_in(trial, target)
+            if trial is None or values is None:
+                attempts.append(Attempt(candidate.place, error=True))
+                return None
+            change = values[index] - present
+            slope = change / (guess - candidate.value) if guess != candidate.value else 0.0
+            if abs(slope) < _LEAST_SLOPE:
+                return None  # it does not make this number
+            if candidate.is_choice and not any(same(abs(slope), plain) for plain in _PLAIN_SLOPES):
+                attempts.append(Attempt(candidate.place, choice=True))
+                return None
+            also = self._also(trial, target, index, values)
+            if also and not self._request.together:
+                attempts.append(Attempt(candidate.place, also=also))
+                return None
+            if same(values[index], wanted):
+                return _Found(trial, also)
+            guess, tolerance = candidate.value + (wanted - present) / slope, EXACT / abs(slope) / 2
+        attempts.append(Attempt(candidate.place))
+        return None
+
+    def _together(self, target: Target, place: Place, parts: list[Place], new: dict[int, float]) -> Snapshot | None:
+        """Several literal numbers of an attribute at once; None where more would come of it."""
+        if self._allowed(os.path.realpath(place.source.name)) is not None:
+            return None
+        text, at = "", place.start
+        for i, part in enumerate(parts):
+            text += place.source.text[at : part.start] + (shortest(new[i]) if i in new else part.text)
+            at = part.end
+        text += place.source.text[at : place.end]
+        trial = self._trial(place, text)
+        values = None if trial is None else self._values_in(trial, target)
+        if trial is None or values is None:
+            return None
+        wanted = [new.get(i, value) for i, value in enumerate(self._values(target.attribute))]
+        exact = all(map(same, values, wanted)) and not self._differences(trial, target)
+        return trial if exact else None
+
+    def _trial(self, place: Place, text: str) -> Snapshot | None:
+        try:
+            return self._now.with_text(place, text)
+        except LinkwrightError:
+            return None
+
+    def _also(self, trial: Snapshot, target: Target, index: int, values: list[float]) -> tuple[str, ...]:
+        """What else a trial changes."""
+        found = self._differences(trial, target)
+        present = self._values(target.attribute)
+        if any(values[i] != present[i] for i in range(len(values)) if i != index):
+            found.append(phrase("another number of the same attribute"))
+        return tuple(dict.fromkeys(found))
+
+    def _differences(self, trial: Snapshot, target: Target) -> list[str]:
+        return [described(trail) for trail in others(self._now.root, trial.root, target)]
+
+    # what is not written yet
+
+    def _add(self, target: Target, wanted: list[float]) -> None:
+        """Write an attribute, or an element, that is not there."""
+        element = target.element(self._now.root)
+        place, text = self._new_text(target, element, " ".join(map(shortest, wanted)))
+        why_not = self._allowed(os.path.realpath(place.source.name))
+        if why_not is not None:
+            raise EditRefusedError(why_not)
+        trial = self._trial(place, text)
+        values = None if trial is None else self._values_in(trial, target)
+        also = () if trial is None else tuple(dict.fromkeys(self._differences(trial, target)))
+        if also and self._request.together:
+            self._also_changed.update(dict.fromkeys(also))
+            also = ()
+        if trial is None or values is None or not all(map(same, values, wanted)) or also:
+            raise EditRefusedError(refusal(place, None, [Attempt(place, also=also, error=not also)], tag=target.tag))
+        self._now = trial
+
+    def _new_text(self, target: Target, element: Element | None, text: str) -> tuple[Place, str]:
+        if element is not None:
+            written = self._twin(element)
+            tag = start_tag_of(written)
+            if tag is not None and written.source is not None:
+                return Place(written.source, tag.room, tag.room), f' {target.attribute}="{text}"'
+            raise EditRefusedError(_not_written(element))
+        owner = target.owner(self._now.root)
+        assert owner is not None, "it was found before"
+        written = self._twin(owner)
+        new = Element(target.tag, {target.attribute: text})
+        after = None
+        if target.tag == "axis":
+            after = next((each for tag in ("child", "parent", "origin") for each in written.elements(tag)), None)
+        edit = inserted(written, [new], after=after, first=after is None)
+        if edit is None or written.source is None:
+            raise EditRefusedError(_not_written(owner))
+        return Place(written.source, edit.start, edit.end), edit.text
+
+    def _twin(self, element: Element) -> Element:
+        """An element as it stands in its file, before any expansion."""
+        if element.source is None:
+            raise EditRefusedError(_not_written(element))
+        document: Document = parse(element.source.text, element.source.name)
+        found = next((each for each in document.root.walk() if each.offset == element.offset), None)
+        if found is None:
+            raise EditRefusedError(_not_written(element))
+        return found
+
+    # what is there
+
+    def _values(self, name: str) -> list[float]:
+        """The numbers of an attribute as it is now."""
+        found = self._values_in(self._now, Target(self._path, self._request.tag, name))
+        if found is None:
+            message = phrase("'{name}' of <{tag}> has other than numbers", name=name, tag=self._request.tag)
+            raise EditRefusedError(Diagnostic("EDIT102", message, self._owner.span(), source=self._owner.source))
+        return found
+
+    def _values_in(self, snapshot: Snapshot, target: Target) -> list[float] | None:
+        element = target.element(snapshot.root)
+        if element is None or target.attribute not in element.attributes:
+            if target.owner(snapshot.root) is None:
+                return None
+            missing = [0.0, 0.0, 0.0] if target.attribute == "rpy" else _FEWEST[target.tag]
+            return list(missing)
+        return numbers_of(element.attributes[target.attribute], 4 if target.attribute == "quat_xyzw" else 3)
+
+    def _written(self, element: Element, name: str) -> Place:
+        """Where the text of an attribute stands: on its element, or in an ``<xacro:attribute>``."""
+        place = attribute(element, name)
+        if place is not None:
+            return place
+        provenance = self._now.description.provenance(element) if self._now is self._first else None
+        told = next((each for each in provenance.attributes if each.name == name), None) if provenance else None
+        if told is None or told.span is None or element.source is None or told.span.file != element.source.name:
+            raise EditRefusedError(_not_written(element))
+        source, span = element.source, told.span
+        return Place(source, source.offset(span.line, span.column), source.offset(span.end_line, span.end_column))
+
+
+def _not_written(element: Element) -> Diagnostic:
+    message = phrase("<{tag}> is not written in a file as an element of its own", tag=element.tag)
+    return Diagnostic("EDIT103", message, element.span(), source=element.source)

@@ -1,0 +1,97 @@
+"""The texts that may have made a number of an attribute, the most telling first."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from linkwright.descriptions.editing.definitions import Definitions
+from linkwright.descriptions.editing.numbers import shortest
+from linkwright.descriptions.editing.places import (
+    Candidate,
+    Place,
+    added_constants,
+    exchanged,
+    is_constant,
+    literal,
+    summed,
+    words,
+)
+from linkwright.xacro.origin import Frame
+
+_DEEPEST = 8
+
+
+def proposals(
+    place: Place,
+    index: int,
+    frame: Frame | None,
+    definitions: Definitions,
+    *,
+    present: Sequence[float],
+    is_angle: bool,
+) -> Iterator[Candidate]:
+    """Candidates for one number of an attribute.
+
+    Args:
+        place: the attribute as it is written.
+        index: which of its numbers.
+        frame: the macro call that it is evaluated in.
+        definitions: where names get their values.
+        present: the numbers of the attribute.
+        is_angle: whether they are angles.
+    """
+    reached = list(_reached(place, index, frame, definitions))
+    for word in reached:
+        yield from _numbers_in(word, present[index])
+    for word in reached:
+        yield from definitions.given(word.text, index, frame)
+    for word in reached:
+        found = summed(word, is_angle=is_angle)
+        if found is not None:
+            yield found
+    own = words(place)
+    if len(own) == len(present):
+        yield exchanged(own[index], present[index])
+    elif len(own) == 1:
+        yield _whole(place, index, present)
+
+
+def _reached(place: Place, index: int, frame: Frame | None, definitions: Definitions) -> Iterator[Place]:
+    """The words behind a number: that of the attribute, then those that its names stand for, and so on."""
+    seen: set[tuple[str, int]] = set()
+    pending: list[tuple[Place, int]] = [(place, 0)]
+    while pending:
+        text, depth = pending.pop(0)
+        if (text.source.name, text.start) in seen:
+            continue
+        seen.add((text.source.name, text.start))
+        found = words(text)
+        if len(found) > 1:
+            found = found[index : index + 1] if len(found) in (3, 4) else []
+        for word in found:
+            yield word
+            if "$" in word.text and depth < _DEEPEST:
+                pending.extend((each, depth + 1) for each in definitions.of_names(word.text, frame))
+
+
+def _numbers_in(word: Place, value: float) -> Iterator[Candidate]:
+    """The numbers that are written in a word."""
+    known = literal(word)
+    if known is not None:
+        yield known
+        return
+    found = list(added_constants(word))
+    if is_constant(word) and (not found or ("pi" in word.text and "180" not in word.text)):
+        found = [exchanged(word, value)]
+    yield from found
+
+
+def _whole(place: Place, index: int, present: Sequence[float]) -> Candidate:
+    """All numbers of an attribute that is one expression."""
+
+    def write(number: float, tolerance: float) -> str:
+        return " ".join(
+            shortest(number, tolerance) if i == index else shortest(each, 0.0) for i, each in enumerate(present)
+        )
+
+    return Candidate(place, present[index], write)

@@ -1,0 +1,83 @@
+"""Why no edit of text does what is asked for, and nothing else."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from linkwright.descriptions.editing.places import Place
+from linkwright.diagnostics import Diagnostic, Note, display_path, joined, phrase
+
+_MOST_NAMED = 6
+
+
+@dataclass(frozen=True, slots=True)
+class Attempt:
+    """A candidate that was no good.
+
+    Attributes:
+        place: its text.
+        also: what else it would change.
+        forbidden: why its file may not be written.
+        choice: whether it is a factor that says which side is meant.
+        error: whether the description could not be expanded with it.
+    """
+
+    place: Place
+    also: tuple[str, ...] = ()
+    forbidden: Diagnostic | None = None
+    choice: bool = False
+    error: bool = False
+
+
+def refusal(place: Place, index: int | None, attempts: Sequence[Attempt], tag: str = "") -> Diagnostic:
+    """What to tell.
+
+    Args:
+        place: the attribute as it is written, or where one would be.
+        index: which of its numbers cannot be changed; None for one that is not written.
+        attempts: what was tried, the first first.
+        tag: the element that would be written.
+    """
+    written = " ".join(place.text.split())
+    told = {each.place.span: each for each in attempts if each.place != place and (each.also or each.choice)}
+    notes = tuple(map(_note, told.values()))[:_MOST_NAMED]
+    also = next((each for each in attempts if each.also), None)
+    forbidden = next((each.forbidden for each in attempts if each.forbidden is not None), None)
+    if also is not None:
+        what = _named(also.also)
+        hint = phrase(
+            "give the macro or expression here a parameter or property of its own for this part, "
+            "or change the text and with it all of these"
+        )
+        if index is None:
+            message = phrase("an <{tag}> written here would also change {what}", tag=tag, what=what)
+        else:
+            message = phrase("another number in '{written}' would also change {what}", written=written, what=what)
+        return Diagnostic("EDIT104", message, place.span, notes=notes, hint=hint, source=place.source)
+    if forbidden is not None:
+        return forbidden
+    message = phrase("no number can be found for which '{written}' becomes what is asked for", written=written)
+    hint = phrase("write a number, or a sum with one, in place of the expression")
+    return Diagnostic("EDIT105", message, place.span, notes=notes, hint=hint, source=place.source)
+
+
+def _note(attempt: Attempt) -> Note:
+    text = " ".join(attempt.place.text.split())
+    if attempt.choice:
+        return Note(phrase("'{text}' says which side is meant, and stays", text=text), attempt.place.span)
+    return Note(phrase("'{text}' also makes {what}", text=text, what=_named(attempt.also)), attempt.place.span)
+
+
+def _named(also: Sequence[str]) -> object:
+    named = list(also[:_MOST_NAMED])
+    if len(also) > len(named):
+        named.append(str(phrase("{count} more", count=len(also) - len(named))))
+    return joined(named)
+
+
+def forbidden_file(path: str, why: object) -> Diagnostic:
+    """That a file may not be written."""
+    message = phrase("'{path}' is not written: {why}", path=display_path(path), why=why)
+    hint = phrase("open the description from your own workspace, or change a copy of the file")
+    return Diagnostic("EDIT106", message, hint=hint)

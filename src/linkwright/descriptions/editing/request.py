@@ -1,0 +1,50 @@
+"""What is asked for when a robot is edited."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from linkwright.urdf import Robot
+from linkwright.xmltree import Element
+
+Part = Literal["joint", "axis", "visual", "collision"]
+
+
+@dataclass(frozen=True, slots=True)
+class EditRequest:
+    """One edit: where something stands, or the axis of a joint.
+
+    Attributes:
+        part: what is edited: the origin of a joint, visual or collision, or the axis of a joint.
+        name: of the joint, or of the link that the visual or collision is of.
+        index: which of the link's visuals or collisions, from 0.
+        xyz: where it shall be in metres, in the frame of the parent link or of the link; the axis for `axis`, in the
+            joint's frame. None for what it is.
+        rpy: roll, pitch and yaw in rad; None for what they are.
+        together: whether others that the same text makes may change with it.
+    """
+
+    part: Part
+    name: str
+    index: int = 0
+    xyz: Sequence[float] | None = None
+    rpy: Sequence[float] | None = None
+    together: bool = False
+
+    @property
+    def tag(self) -> str:
+        """The element that is edited."""
+        return "axis" if self.part == "axis" else "origin"
+
+    def owner(self, robot: Robot) -> Element | None:
+        """The joint, visual or collision in a robot; None where there is none."""
+        if self.part in ("joint", "axis"):
+            joint = robot.joints.get(self.name)
+            return None if joint is None else joint.element
+        link = robot.links.get(self.name)
+        if link is None:
+            return None
+        parts = link.visuals if self.part == "visual" else link.collisions
+        return parts[self.index].element if 0 <= self.index < len(parts) else None

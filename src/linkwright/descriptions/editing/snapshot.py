@@ -1,0 +1,89 @@
+"""A description as its files say it, with the changes that are tried."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+from linkwright.descriptions.description import Description
+from linkwright.descriptions.editing.definitions import Definitions
+from linkwright.descriptions.editing.places import Place
+from linkwright.diagnostics import LinkwrightError
+from linkwright.urdf.plaintext import parse_as_urdfdom
+from linkwright.xmltree import Document, Element, Overlay
+from linkwright.xmltree.reader import read_bytes
+
+_YAML = (".yaml", ".yml")
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """An expansion of a description.
+
+    Attributes:
+        description: what was read first; tells how it is expanded.
+        texts: real path of a file -> its changed text.
+        document: what it expands to with these.
+        files: what was read for that.
+    """
+
+    description: Description
+    texts: Mapping[str | os.PathLike[str], str]
+    document: Document
+    files: tuple[Path, ...]
+
+    @classmethod
+    def of(cls, description: Description) -> Snapshot:
+        """That of a description that was just read."""
+        return cls(description, {}, description.document, description.files)
+
+    @property
+    def root(self) -> Element:
+        """The root of the expanded document."""
+        return self.document.root
+
+    @cached_property
+    def definitions(self) -> Definitions:
+        """Where names get their values."""
+        from linkwright.xacro import sources
+
+        if self.description.expansion is None:
+            return Definitions((), (), Overlay())
+        overlay = Overlay(self.texts)
+        documents: list[Document] = []
+        others: list[Path] = []
+        for path in self.files:
+            if path.suffix in _YAML:
+                others.append(path)
+            else:
+                with suppress(LinkwrightError):  # an optional file that is not there
+                    documents.append(sources.read(str(path), overlay))
+        return Definitions(documents, others, overlay)
+
+    def with_text(self, place: Place, text: str) -> Snapshot:
+        """The description with another text in one place.
+
+        Raises:
+            LinkwrightError: it cannot be expanded any more.
+        """
+        whole = place.source.text
+        changed = whole[: place.start] + text + whole[place.end :]
+        texts = {**self.texts, os.path.realpath(place.source.name): changed}
+        return self._with(texts)
+
+    def _with(self, texts: Mapping[str | os.PathLike[str], str]) -> Snapshot:
+        name, expansion, overlay = self.description.name, self.description.expansion, Overlay(texts)
+        text = overlay.text(name)
+        if expansion is None:
+            document = parse_as_urdfdom(read_bytes(name) if text is None else text, name)
+            return Snapshot(self.description, texts, document, self.files)
+        from linkwright.xacro import expand
+
+        inputs = expansion.inputs
+        assert inputs is not None, "it was expanded from a file"
+        again = expand(name, inputs.arguments, packages=inputs.packages, text=text, overlay=overlay)
+        return Snapshot(self.description, texts, again.document, again.dependencies)

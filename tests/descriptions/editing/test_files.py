@@ -1,0 +1,129 @@
+"""Writing edits of robots, and taking them back."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from linkwright import descriptions
+from linkwright.descriptions import examine
+from linkwright.descriptions.editing import EditHistory, EditPlan, EditRefusedError, EditRequest, Workspace, plan_edit
+
+ROBOT = (
+    '<robot name="r"><link name="a"/><link name="b"/>\r\n'
+    '\t<joint name="j" type="fixed"><origin xyz="0 0 1"/><parent link="a"/><child link="b"/></joint>'
+    "<!-- é -->\r\n</robot>"
+)
+
+
+def raised(path: Path, z: float) -> EditPlan:
+    return plan_edit(examine(path), EditRequest("joint", "j", xyz=(0, 0, z)))
+
+
+@pytest.mark.parametrize(
+    "bytes_of",
+    [
+        lambda text: text.encode(),
+        lambda text: b"\xef\xbb\xbf" + text.encode(),
+        lambda text: ('<?xml version="1.0" encoding="iso-8859-1"?>\r\n' + text).encode("latin-1"),
+        lambda text: b"\xff\xfe" + text.encode("utf-16-le"),
+    ],
+    ids=["utf-8", "byte order mark", "latin-1", "utf-16"],
+)
+def test_bytes_around_an_edit_stay_and_come_back(tmp_path: Path, bytes_of: Callable[[str], bytes]) -> None:
+    path = tmp_path / "robot.urdf"
+    path.write_bytes(bytes_of(ROBOT))
+    history = EditHistory()
+    history.apply(raised(path, 2))
+    after = bytes_of(ROBOT.replace("0 0 1", "0 0 2"))
+    assert path.read_bytes() == after
+    assert (history.can_undo, history.can_redo) == (True, False)
+    history.undo()
+    assert path.read_bytes() == bytes_of(ROBOT)
+    assert (history.can_undo, history.can_redo) == (False, True)
+    history.redo()
+    assert path.read_bytes() == after
+
+
+def test_a_file_that_changed_meanwhile_is_left_as_it_is(tmp_path: Path) -> None:
+    path = tmp_path / "robot.urdf"
+    path.write_bytes(ROBOT.encode())
+    plan, history = raised(path, 2), EditHistory()
+    path.write_text(ROBOT.replace("é", "e"))
+    with pytest.raises(EditRefusedError) as caught:
+        history.apply(plan)
+    assert caught.value.diagnostic.code == "EDIT107"
+    assert path.read_text() == ROBOT.replace("é", "e").replace("\r\n", "\n")
+
+    history.apply(raised(path, 2))
+    path.write_text("mine")
+    with pytest.raises(EditRefusedError):
+        history.undo()
+    assert path.read_text() == "mine"
+    assert history.can_undo
+
+
+def test_of_several_files_all_are_written_or_none(tmp_path: Path) -> None:
+    first, second = tmp_path / "one.xacro", tmp_path / "two.xacro"
+    first.write_text("1")
+    second.write_text("2")
+    history = EditHistory()
+    plan = EditPlan({str(first): "one", str(second): "two"}, {str(first): "1", str(second): "2"})
+    second.unlink()
+    with pytest.raises(EditRefusedError):
+        history.apply(plan)
+    assert first.read_text() == "1"
+    second.write_text("2")
+    history.apply(plan)
+    assert (first.read_text(), second.read_text()) == ("one", "two")
+    first.write_text("other")
+    with pytest.raises(EditRefusedError):
+        history.undo()
+    assert second.read_text() == "two"
+
+
+def test_a_link_to_a_file_stays_a_link(tmp_path: Path) -> None:
+    real, link = tmp_path / "real.urdf", tmp_path / "robot.urdf"
+    real.write_bytes(ROBOT.encode())
+    link.symlink_to(real)
+    EditHistory().apply(raised(link, 2))
+    assert link.is_symlink()
+    assert "0 0 2" in real.read_text()
+
+
+def test_the_workspace_is_that_of_the_package_the_repository_or_the_src_folder(tmp_path: Path) -> None:
+    folder = tmp_path / "ws" / "src" / "robot" / "urdf"
+    folder.mkdir(parents=True)
+    main = folder / "robot.urdf"
+    main.write_text("")
+    assert Workspace(main).folder == (tmp_path / "ws").resolve()
+    lone = tmp_path / "lone" / "urdf"
+    lone.mkdir(parents=True)
+    assert Workspace(lone / "robot.urdf").folder == lone.resolve()
+    (tmp_path / "lone" / "package.xml").write_text("")
+    assert Workspace(lone / "robot.urdf").folder == (tmp_path / "lone").resolve()
+
+
+def test_files_that_are_not_the_users_to_write_are_refused_with_their_path(tmp_path: Path) -> None:
+    main = tmp_path / "mine" / "robot.urdf"
+    main.parent.mkdir()
+    main.write_text("")
+    workspace = Workspace(main)
+    assert workspace.refusal(os.path.realpath(main)) is None
+
+    other = tmp_path / "other.xacro"
+    other.write_text("")
+    ours = Path(descriptions.__file__).resolve()
+    installed = tmp_path / "mine" / "install" / "share" / "robot" / "robot.urdf"
+    installed.parent.mkdir(parents=True)
+    installed.write_text("")
+    (installed.parents[1] / "ament_index").mkdir()
+    for path, why in ((other, "outside the workspace"), (ours, "this program"), (installed, "installed")):
+        found = workspace.refusal(os.path.realpath(path))
+        assert found is not None
+        assert found.code == "EDIT106"
+        assert path.name in found.message
+        assert why in found.message

@@ -1,0 +1,33 @@
+"""Numbers as they are written."""
+
+from __future__ import annotations
+
+from math import pi
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from linkwright.descriptions.editing.numbers import part_of_pi, shortest
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(0.1 + 0.2, "0.3"), (2.0, "2"), (-0.0, "0"), (1e-12, "0"), (0.2617993877991494, "0.261799388"), (-1.5, "-1.5")],
+)
+def test_a_number_has_as_few_digits_as_can_be(value: float, text: str) -> None:
+    assert shortest(value) == text
+
+
+@given(st.floats(-1e5, 1e5))
+def test_a_number_says_what_was_asked_for(value: float) -> None:
+    assert abs(float(shortest(value)) - value) <= 1e-9
+    assert float(shortest(value, 0.0)) == value
+
+
+@pytest.mark.parametrize(
+    ("angle", "text"),
+    [(pi, "pi"), (-pi / 2, "-pi/2"), (2 * pi / 3, "2*pi/3"), (5 * pi / 12, "5*pi/12"), (0.1, None), (0.0, None)],
+)
+def test_a_part_of_pi_is_written_as_one(angle: float, text: str | None) -> None:
+    assert part_of_pi(angle) == text

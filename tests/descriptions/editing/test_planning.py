@@ -1,0 +1,383 @@
+"""From an edit of a robot to the smallest edit of its text."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from linkwright.descriptions import Description, examine
+from linkwright.descriptions.editing import EditPlan, EditRefusedError, EditRequest, plan_edit
+from linkwright.diagnostics import Diagnostic
+from linkwright.geometry.single import Pose
+from linkwright.urdf import Robot
+from linkwright.xmltree import Element, Overlay
+from tests.corpora import OWN, Model
+
+XACRO = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
+
+
+def edited(folder: Path, text: str, request: EditRequest, **files: str) -> str:
+    """What a file says after an edit, which is the only one that changes."""
+    path = folder / "robot.urdf.xacro"
+    path.write_bytes(text.encode())
+    for name, content in files.items():
+        (folder / name.replace("_", ".")).write_text(content)
+    plan = plan_edit(examine(path), request)
+    (changed,) = plan.texts.values()
+    return changed
+
+
+def refused(folder: Path, text: str, request: EditRequest) -> Diagnostic:
+    path = folder / "robot.urdf.xacro"
+    path.write_text(text)
+    with pytest.raises(EditRefusedError) as caught:
+        plan_edit(examine(path), request)
+    return caught.value.diagnostic
+
+
+def robot(body: str, joint: str = '<origin xyz="0 0 0.250"/>') -> str:
+    return (
+        f'<robot name="r" {XACRO}>\n  {body}\n  <link name="a"/>\n  <link name="b"/>\n'
+        f'  <joint name="j" type="revolute">\n    {joint}\n    <parent link="a"/>\n    <child link="b"/>\n'
+        f'    <limit lower="-1" upper="1" effort="1" velocity="1"/>\n  </joint>\n</robot>\n'
+    )
+
+
+def changed_lines(before: str, after: str) -> list[str]:
+    """The lines that an edit makes anew."""
+    old = before.splitlines()
+    return [line.strip() for line in after.splitlines() if line not in old]
+
+
+@pytest.mark.parametrize(
+    ("body", "joint", "asked", "line"),
+    [
+        ("", '<origin xyz="0  0 0.250"/>', (0, 0, 0.3), '<origin xyz="0  0 0.3"/>'),
+        ("", '<origin xyz="0 0 0.250"/>', (0.1, 0, 0.25), '<origin xyz="0.1 0 0.250"/>'),
+        ("", "<origin xyz='1e-1 0 0'/>", (0.2, 0.5, 0), "<origin xyz='0.2 0.5 0'/>"),
+        ("", '<origin rpy="0 0 1"/>', (0.2, 0, 0), '<origin rpy="0 0 1" xyz="0.2 0 0"/>'),
+        ("", '<origin xyz="0 0 ${0.25}"/>', (0, 0, 0.3), '<origin xyz="0 0 ${0.3}"/>'),
+        (
+            '<xacro:property name="h" value="0.25"/>',
+            '<origin xyz="0 0 ${h}"/>',
+            (0, 0, 0.3),
+            '<xacro:property name="h" value="0.3"/>',
+        ),
+        (
+            '<xacro:property name="h" value="0.5"/>',
+            '<origin xyz="0 0 ${h/2 - 0}"/>',
+            (0, 0, 0.3),
+            '<origin xyz="0 0 ${h/2 + 0.05}"/>',
+        ),
+        (
+            '<xacro:property name="h" value="0.5"/>',
+            '<origin xyz="0 0 ${-h/2}"/>',
+            (0, 0, -0.3),
+            '<xacro:property name="h" value="0.6"/>',
+        ),
+        (
+            '<xacro:property name="h" value="0.5"/>',
+            '<origin xyz="0 ${h} ${h/2}"/>',
+            (0, 0.5, 0.3),
+            '<origin xyz="0 ${h} ${h/2 + 0.05}"/>',
+        ),
+        (
+            '<xacro:property name="h" value="0.5"/><xacro:property name="k" value="${h}"/>',
+            '<origin xyz="0 0 ${k}"/>',
+            (0, 0, 0.3),
+            '<xacro:property name="h" value="0.3"/><xacro:property name="k" value="${h}"/>',
+        ),
+        (
+            '<xacro:property name="at" value="1 2 3"/>',
+            '<origin xyz="${at}"/>',
+            (1, 2.5, 3),
+            '<xacro:property name="at" value="1 2.5 3"/>',
+        ),
+        (
+            '<xacro:arg name="h" default="0.5"/>',
+            '<origin xyz="0 0 $(arg h)"/>',
+            (0, 0, 0.3),
+            '<xacro:arg name="h" default="0.3"/>',
+        ),
+        (
+            '<xacro:property name="h" value="0.5"/><gazebo><x>${h}</x></gazebo>',
+            '<origin xyz="0 0 ${h if h > 0 else 1}"/>',
+            (0, 0, 0.6),
+            '<origin xyz="0 0 ${(h if h > 0 else 1) + 0.1}"/>',
+        ),
+        (
+            '<xacro:property name="h" value="0.5"/><gazebo><x>${h}</x></gazebo>',
+            '<origin xyz="0 0 -${h}"/>',
+            (0, 0, -0.6),
+            '<origin xyz="0 0 -0.6"/>',
+        ),
+    ],
+)
+def test_a_position_goes_into_the_text_that_made_it(
+    tmp_path: Path, body: str, joint: str, asked: tuple[float, ...], line: str
+) -> None:
+    text = robot(body, joint)
+    after = edited(tmp_path, text, EditRequest("joint", "j", xyz=asked))
+    assert changed_lines(text, after) == [line]
+
+
+@pytest.mark.parametrize(
+    ("joint", "rpy", "line"),
+    [
+        ('<origin rpy="0 0 ${pi/2}"/>', (0, 0, math.pi / 4), '<origin rpy="0 0 ${pi/4}"/>'),
+        ('<origin rpy="0 0 ${pi/2}"/>', (0, 0, -2 * math.pi / 3), '<origin rpy="0 0 ${-2*pi/3}"/>'),
+        ('<origin rpy="0 0 ${pi/2}"/>', (0, 0, math.radians(33)), '<origin rpy="0 0 ${radians(33)}"/>'),
+        ('<origin rpy="0 0 ${pi/2}"/>', (0, 0, 0.7), '<origin rpy="0 0 0.7"/>'),
+        ('<origin rpy="0 0 ${radians(30)}"/>', (0, 0, math.radians(12.5)), '<origin rpy="0 0 ${radians(12.5)}"/>'),
+        ('<origin rpy="0 0 ${-90*pi/180}"/>', (0, 0, math.radians(45)), '<origin rpy="0 0 ${45*pi/180}"/>'),
+        ('<origin rpy="0 0 1.5708"/>', (0, 0, math.radians(45)), '<origin rpy="0 0 0.785398163"/>'),
+        ('<origin xyz="0 0 1"/>', (0, 0, 0.5), '<origin xyz="0 0 1" rpy="0 0 0.5"/>'),
+    ],
+)
+def test_angles_are_written_as_angles_were(tmp_path: Path, joint: str, rpy: tuple[float, ...], line: str) -> None:
+    text = robot("", joint)
+    assert changed_lines(text, edited(tmp_path, text, EditRequest("joint", "j", rpy=rpy))) == [line]
+
+
+def test_a_quaternion_stays_one(tmp_path: Path) -> None:
+    text = robot("", '<origin quat_xyzw="0 0 0 1"/>')
+    after = edited(tmp_path, text, EditRequest("joint", "j", rpy=(0, 0, math.pi / 2)))
+    assert changed_lines(text, after) == ['<origin quat_xyzw="0 0 0.707106781 0.707106781"/>']
+
+
+def test_what_is_asked_for_and_is_so_changes_nothing(tmp_path: Path) -> None:
+    path = tmp_path / "robot.urdf"
+    path.write_text(robot(""))
+    assert plan_edit(examine(path), EditRequest("joint", "j", xyz=(0, 0, 0.25), rpy=(0, 0, 0))).texts == {}
+
+
+def test_an_origin_and_an_axis_that_are_not_there_are_written_with_the_indentation_around(tmp_path: Path) -> None:
+    text = robot("", "").replace("\n", "\r\n").replace("    ", "\t\t")
+    after = edited(tmp_path, text, EditRequest("joint", "j", xyz=(0, 0, 0.5)))
+    assert '\r\n\t\t<origin xyz="0 0 0.5"/>\r\n\t\t<parent' in after
+    assert "\n" not in after.replace("\r\n", "")
+    after = edited(tmp_path, text, EditRequest("axis", "j", xyz=(0, 0, 1)))
+    assert '<child link="b"/>\r\n\t\t<axis xyz="0 0 1"/>\r\n' in after
+
+
+def test_an_axis_is_not_made_of_zeros(tmp_path: Path) -> None:
+    assert refused(tmp_path, robot(""), EditRequest("axis", "j", xyz=(0, 0, 0))).code == "EDIT102"
+
+
+WHEELS = f"""<robot name="r" {XACRO}>
+  <xacro:macro name="wheel" params="side y at:='0 0 0'">
+    <link name="${{side}}"><visual><origin xyz="${{at}}"/><geometry><sphere radius="0.1"/></geometry></visual></link>
+    <joint name="${{side}}_joint" type="fixed">
+      <origin xyz="0.1 ${{y}} ${{lift * 2}}"/><parent link="base"/><child link="${{side}}"/>
+    </joint>
+  </xacro:macro>
+  <xacro:property name="lift" value="0.05"/>
+  <link name="base"/>
+  <xacro:wheel side="left" y="0.2"/>
+  <xacro:wheel side="right" y="${{-0.2}}"/>
+</robot>
+"""
+
+
+def test_an_argument_of_a_macro_is_edited_where_the_call_gives_it(tmp_path: Path) -> None:
+    after = edited(tmp_path, WHEELS, EditRequest("joint", "left_joint", xyz=(0.1, 0.3, 0.1)))
+    assert changed_lines(WHEELS, after) == ['<xacro:wheel side="left" y="0.3"/>']
+    after = edited(tmp_path, WHEELS, EditRequest("joint", "right_joint", xyz=(0.1, 0.05, 0.1)))
+    assert changed_lines(WHEELS, after) == ['<xacro:wheel side="right" y="${0.05}"/>']
+
+
+def test_a_call_that_relies_on_a_default_is_given_the_argument(tmp_path: Path) -> None:
+    after = edited(tmp_path, WHEELS, EditRequest("visual", "left", xyz=(0, 0, 0.4)))
+    assert changed_lines(WHEELS, after) == ['<xacro:wheel side="left" y="0.2" at="0 0 0.4"/>']
+
+
+def test_what_a_macro_makes_several_times_is_refused_with_what_else_would_change(tmp_path: Path) -> None:
+    found = refused(tmp_path, WHEELS, EditRequest("joint", "left_joint", xyz=(0.1, 0.2, 0.3)))
+    assert found.code == "EDIT104"
+    assert "joint 'right_joint'" in found.message
+    assert found.span is not None
+    assert found.span.line == 5
+    assert [note.span.line for note in found.notes if note.span] == [8, 5]
+    assert "'0.05'" in found.notes[0].message
+
+
+def test_all_of_them_are_changed_where_that_is_asked_for(tmp_path: Path) -> None:
+    path = tmp_path / "robot.urdf.xacro"
+    path.write_text(WHEELS)
+    plan = plan_edit(examine(path), EditRequest("joint", "left_joint", xyz=(0.1, 0.2, 0.3), together=True))
+    assert plan.also == ("joint 'right_joint'",)
+    assert changed_lines(WHEELS, *plan.texts.values()) == ['<xacro:property name="lift" value="0.15"/>']
+
+
+def test_a_factor_that_says_which_side_is_meant_stays(tmp_path: Path) -> None:
+    text = WHEELS.replace('side="left" y="0.2"', 'side="left" y="1"').replace('y="${{-0.2}}"', 'y="-1"')
+    text = text.replace("0.1 ${y}", "0.1 ${y * 0.3}").replace('y="${-0.2}"', 'y="-1"')
+    found = refused(tmp_path, text, EditRequest("joint", "left_joint", xyz=(0.1, 0.25, 0.1)))
+    assert any("says which side is meant" in note.message for note in found.notes)
+
+
+def test_a_property_that_a_plugin_reads_too_is_left_alone(tmp_path: Path) -> None:
+    body = '<xacro:property name="h" value="0.5"/>\n  <gazebo><plugin name="p"><height>${h}</height></plugin></gazebo>'
+    text = robot(body, '<origin xyz="0 0 ${h}"/>')
+    after = edited(tmp_path, text, EditRequest("joint", "j", xyz=(0, 0, 0.6)))
+    assert changed_lines(text, after) == ['<origin xyz="0 0 ${h + 0.1}"/>']
+
+
+def test_a_value_of_a_yaml_file_is_edited_there(tmp_path: Path) -> None:
+    body = '<xacro:property name="c" value="${xacro.load_yaml(\'sizes.yaml\')}"/>'
+    text = robot(body, "<origin xyz=\"0 0 ${c['mast']['height']}\" rpy=\"${c['mast']['tilt']} 0 0\"/>")
+    sizes = "base: {height: 1}  # wide\nmast:\n  height: 0.250  # high\n  tilt: !degrees 10\n"
+    assert edited(tmp_path, text, EditRequest("joint", "j", xyz=(0, 0, 0.3)), sizes_yaml=sizes) == sizes.replace(
+        "0.250", "0.3"
+    )
+    turned = EditRequest("joint", "j", rpy=(math.radians(20), 0, 0))
+    assert edited(tmp_path, text, turned, sizes_yaml=sizes) == sizes.replace("10", "20")
+
+
+def test_a_block_is_edited_where_the_call_has_it(tmp_path: Path) -> None:
+    text = f"""<robot name="r" {XACRO}>
+  <xacro:macro name="mount" params="name *origin"><link name="${{name}}"/>
+    <joint name="${{name}}_joint" type="fixed"><xacro:insert_block name="origin"/>
+      <parent link="base"/><child link="${{name}}"/></joint></xacro:macro>
+  <link name="base"/>
+  <xacro:mount name="one"><origin xyz="0 0 1"/></xacro:mount>
+  <xacro:mount name="two"><origin xyz="0 0 1"/></xacro:mount>
+</robot>
+"""
+    after = edited(tmp_path, text, EditRequest("joint", "two_joint", xyz=(0, 0, 2)))
+    assert changed_lines(text, after) == ['<xacro:mount name="two"><origin xyz="0 0 2"/></xacro:mount>']
+
+
+def test_an_included_file_is_edited_where_it_may_be_written_and_named_where_not(tmp_path: Path) -> None:
+    (tmp_path / "part.xacro").write_text(f'<robot {XACRO}><xacro:property name="h" value="0.5"/></robot>')
+    text = robot('<xacro:include filename="part.xacro"/>', '<origin xyz="0 0 ${h}"/>')
+    path = tmp_path / "robot.urdf.xacro"
+    path.write_text(text)
+    request = EditRequest("joint", "j", xyz=(0, 0, 0.6))
+    part = os.path.realpath(tmp_path / "part.xacro")
+    assert list(plan_edit(examine(path), request).texts) == [part]
+
+    why = Diagnostic("EDIT106", "no")
+    plan = plan_edit(examine(path), request, lambda file: why if file == part else None)
+    assert changed_lines(text, *plan.texts.values()) == ['<origin xyz="0 0 ${h + 0.1}"/>']
+    with pytest.raises(EditRefusedError) as caught:
+        plan_edit(examine(path), request, lambda _: why)
+    assert caught.value.diagnostic is why
+
+
+def test_what_is_not_there_is_refused(tmp_path: Path) -> None:
+    assert refused(tmp_path, robot(""), EditRequest("joint", "k", xyz=(0, 0, 1))).code == "EDIT101"
+    assert refused(tmp_path, robot(""), EditRequest("visual", "a", 0, xyz=(0, 0, 1))).code == "EDIT101"
+    assert refused(tmp_path, robot(""), EditRequest("joint", "j", xyz=(0, 0, math.inf))).code == "EDIT102"
+    with pytest.raises(EditRefusedError):
+        plan_edit(examine(robot("")), EditRequest("joint", "j", xyz=(0, 0, 1)))
+
+
+# --- every robot of the corpus ----------------------------------------------------------------------------------------
+
+
+def parts_of(found: Robot) -> list[tuple[Any, str, int]]:
+    parts: list[tuple[Any, str, int]] = [("joint", name, 0) for name in found.joints]
+    parts += [("axis", name, 0) for name, joint in found.joints.items() if joint.type != "fixed"]
+    for link in found.links.values():
+        parts += [("visual", link.name, i) for i in range(len(link.visuals))]
+        parts += [("collision", link.name, i) for i in range(len(link.collisions))]
+    return parts
+
+
+def with_edit(found: Robot, request: EditRequest) -> Robot:
+    """The robot that is asked for."""
+    assert request.xyz is not None
+    x, y, z = request.xyz
+    name, i = request.name, request.index
+    if request.part == "axis":
+        joint = replace(found.joints[name], axis=(x, y, z))
+        return replace(found, joints={**found.joints, name: joint})
+    if request.part == "joint":
+        joint = replace(found.joints[name], origin=moved(found.joints[name].origin, request))
+        return replace(found, joints={**found.joints, name: joint})
+    link = found.links[name]
+    field = f"{request.part}s"
+    shapes = list(getattr(link, field))
+    shapes[i] = replace(shapes[i], origin=moved(shapes[i].origin, request))
+    return replace(found, links={**found.links, name: replace(link, **{field: tuple(shapes)})})
+
+
+def moved(origin: Pose, request: EditRequest) -> Pose:
+    assert request.xyz is not None
+    x, y, z = request.xyz
+    rpy = origin.rpy if request.rpy is None else (request.rpy[0], request.rpy[1], request.rpy[2])
+    return Pose((x, y, z), rpy)
+
+
+def rounded(value: Any) -> Any:
+    """Poses and axes to the nanometre, so that robots can be compared."""
+    if isinstance(value, float):
+        return round(value, 7) + 0.0
+    if isinstance(value, dict):
+        return {key: rounded(each) for key, each in value.items()}
+    return tuple(map(rounded, value)) if isinstance(value, (tuple, list)) else value
+
+
+def facts(found: Robot) -> Any:
+    joints = {name: (j.type, j.parent, j.child, j.origin.xyz, j.origin.rpy, j.axis) for name, j in found.joints.items()}
+    links = {
+        name: [[(s.name, s.origin.xyz, s.origin.rpy, repr(s.geometry)) for s in (*link.visuals, *link.collisions)]]
+        for name, link in found.links.items()
+    }
+    return rounded(joints), rounded(links)
+
+
+def unedited(root: Element) -> Iterator[tuple[str, dict[str, str], str]]:
+    """A document without origins and axes."""
+    for element in root.walk():
+        if element.tag not in ("origin", "axis"):
+            yield element.tag, element.attributes, " ".join(element.text().split())
+
+
+def described(model: Model) -> Description:
+    return examine(model.path, arguments=model.arguments, packages=model.packages)
+
+
+def planned(before: Description, request: EditRequest) -> EditPlan | Diagnostic:
+    try:
+        return plan_edit(before, request)
+    except EditRefusedError as refusal:
+        return refusal.diagnostic
+
+
+ROBOTS = [model for model in OWN.models if model.data["links"]]
+NUMBERS = st.integers(-2000, 2000).map(lambda number: number / 1000)
+
+
+@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@given(st.data())
+def test_expansions_differ_in_exactly_what_was_edited(data: st.DataObject) -> None:
+    model = data.draw(st.sampled_from(ROBOTS))
+    before = described(model)
+    assert before.robot is not None
+    parts = parts_of(before.robot)
+    if not parts:
+        return
+    part, name, index = data.draw(st.sampled_from(parts))
+    xyz = data.draw(st.tuples(NUMBERS, NUMBERS, NUMBERS).filter(any))
+    rpy = None if part == "axis" else data.draw(st.none() | st.tuples(NUMBERS, NUMBERS, NUMBERS))
+    request = EditRequest(part, name, index, xyz=xyz, rpy=rpy)
+    plan = planned(before, request)
+    if isinstance(plan, Diagnostic):
+        assert plan.code in ("EDIT104", "EDIT105")
+        assert plan.span is not None
+        return
+    after = examine(model.path, arguments=model.arguments, packages=model.packages, overlay=Overlay({**plan.texts}))
+    assert after.robot is not None
+    assert facts(after.robot) == facts(with_edit(before.robot, request))
+    assert list(unedited(after.document.root)) == list(unedited(before.document.root))
+    assert [each for path, each in plan.before.items() if each == plan.texts[path]] == []
