@@ -124,3 +124,18 @@ def test_what_mujoco_refuses_is_said(folder, capsys, monkeypatch):
     monkeypatch.setattr("linkwright.simulation.scene.scene.Scene", Refused)
     assert main(["convert", "arm.xacro", "--to", "mjcf"]) == 1
     assert "MuJoCo refuses it: mesh volume is too small: mesh0" in capsys.readouterr().err
+
+
+def test_a_model_becomes_urdf(folder, capsys):
+    assert main(["convert", "models/ball/model.sdf", "--to", "urdf", "-o", "ball.urdf"]) == 0
+    written = (folder / "ball.urdf").read_text()
+    assert '<robot name="ball"' in written
+    assert 'filename="models/ball/meshes/ball.stl"' in written
+    assert capsys.readouterr().err == ""
+
+
+def test_what_is_no_model_does_not_become_urdf(folder, capsys):
+    assert main(["convert", "w.world", "--to", "urdf"]) == 1
+    assert "error[SDF180]" in capsys.readouterr().err
+    assert main(["convert", "arm.xacro", "--to", "urdf"]) == 1
+    assert "error[CLI322]" in capsys.readouterr().err

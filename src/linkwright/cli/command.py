@@ -33,7 +33,7 @@ GROUPS = {
         "world": "list the worlds and models that there are, begin a new world, or check one",
         "diagram": "draw the links and joints of a model as urdf_to_graphviz does (.gv and PDF or SVG)",
         "export": "write a model as one HTML file that opens in any browser, or as glTF (.glb)",
-        "convert": "write a robot or world as one SDF file, as gz makes it of a URDF, or as MJCF for MuJoCo",
+        "convert": "write a robot or world as one SDF file, as gz makes it of a URDF, as URDF, or as MJCF for MuJoCo",
     },
     "packages and running them": {
         "pkg": "create ROS packages, and tell where they are and what is in them",

@@ -1,9 +1,10 @@
-"""``linkwright convert``: a robot or world as one SDF or MJCF file."""
+"""``linkwright convert``: a robot or world as one SDF, URDF or MJCF file."""
 
 from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from linkwright.packages import PackageFinder
     from linkwright.sdf.worlds import Sdf
 
-_FORMATS = ("sdf", "mjcf")
+_FORMATS = ("sdf", "urdf", "mjcf")
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -30,8 +31,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--to",
         choices=_FORMATS,
         default="sdf",
-        help="sdf: SDF 1.11 as gz makes it of a URDF, or of a world with all that it includes in it (default); mjcf: "
-        "what MuJoCo simulates, meshes in it",
+        help="sdf: SDF 1.11 as gz makes it of a URDF, or of a world with all that it includes in it (default); urdf: "
+        "the robot of an SDF model, as sdformat_urdf makes it; mjcf: what MuJoCo simulates, meshes in it",
     )
     fixed = parser.add_mutually_exclusive_group()
     fixed.add_argument(
@@ -51,9 +52,13 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Write the file, or print it; findings go to standard error."""
     from linkwright.descriptions.conversion import as_sdf
+    from linkwright.descriptions.worlds import is_world
     from linkwright.packages import PackageFinder
 
     path = Path(arguments.file).absolute()
+    if arguments.to == "urdf" and not is_world(path.name):
+        hint = phrase("linkwright xacro expands a file with xacro in it")
+        raise LinkwrightError(Diagnostic("CLI322", phrase("'{file}' is no SDF", file=arguments.file), hint=hint))
     finder = PackageFinder(start=[path.parent, Path.cwd()])
     out = None if arguments.output is None else Path(arguments.output)
     converted = as_sdf(
@@ -64,10 +69,12 @@ def run(arguments: argparse.Namespace) -> int:
         folder=None if out is None else out.absolute().parent,
     )
     print_diagnostics(converted.diagnostics, sys.stderr)
-    if converted.sdf is None or (arguments.to == "mjcf" and has_errors(converted.diagnostics)):
-        return 1  # MuJoCo takes a model as a whole or not at all
-    text, remarks = _sdf(converted.sdf) if arguments.to == "sdf" else _mjcf(converted.sdf, finder)
+    if converted.sdf is None or (arguments.to != "sdf" and has_errors(converted.diagnostics)):
+        return 1  # a robot, and what MuJoCo takes, is a whole or nothing
+    text, remarks = _WRITERS[arguments.to](converted.sdf, finder)
     print_diagnostics(remarks, sys.stderr)
+    if text is None:
+        return 1
     if out is None:
         sys.stdout.write(text)
     else:
@@ -76,13 +83,23 @@ def run(arguments: argparse.Namespace) -> int:
     return 1 if has_errors((*converted.diagnostics, *remarks)) else 0
 
 
-def _sdf(sdf: Sdf) -> tuple[str, list[Diagnostic]]:
+def _sdf(sdf: Sdf, _finder: PackageFinder) -> tuple[str, Sequence[Diagnostic]]:
     from linkwright.sdf.writer import save
 
-    return save(sdf), []
+    return save(sdf), ()
 
 
-def _mjcf(sdf: Sdf, finder: PackageFinder) -> tuple[str, list[Diagnostic]]:
+def _urdf(sdf: Sdf, _finder: PackageFinder) -> tuple[str | None, Sequence[Diagnostic]]:
+    from linkwright.sdf.to_urdf import robot_from_sdf
+    from linkwright.urdf import save
+    from linkwright.xmltree import Element
+
+    element = sdf.worlds[0].element if sdf.worlds else sdf.models[0].element if sdf.models else None
+    reading = robot_from_sdf(sdf, element or Element("sdf"))
+    return None if reading.robot is None else save(reading.robot), reading.diagnostics
+
+
+def _mjcf(sdf: Sdf, finder: PackageFinder) -> tuple[str, Sequence[Diagnostic]]:
     from linkwright.sdf.resources import ResourceFinder
     from linkwright.sdf.worlds import World
     from linkwright.simulation.scene.meshes import MeshLibrary
@@ -98,3 +115,10 @@ def _mjcf(sdf: Sdf, finder: PackageFinder) -> tuple[str, list[Diagnostic]]:
             Diagnostic("CLI321", phrase("MuJoCo refuses it: {reason}", reason=foreign(reason)))
         ) from None
     return scene.spec.to_xml(), scene.diagnostics
+
+
+_WRITERS: dict[str, Callable[[Sdf, PackageFinder], tuple[str | None, Sequence[Diagnostic]]]] = {
+    "sdf": _sdf,
+    "urdf": _urdf,
+    "mjcf": _mjcf,
+}

@@ -69,7 +69,7 @@ class DescriptionLibrary:
         return None if known is None else known.provenance(element)
 
     def read(self, text: str) -> Reading:
-        """The reading of a description text, which is plain URDF; one that is not XML has no robot and says why."""
+        """The reading of a description text, plain URDF or SDF; one that is not XML has no robot and says why."""
         known = self._descriptions.get(text)
         if known is None:
             known = _read(text)
@@ -84,4 +84,8 @@ def _read(text: str) -> Description:
         document = parse_as_urdfdom(text, TEXT_NAME)
     except LinkwrightError as error:
         return Description(TEXT_NAME, Document(Element("robot")), Reading(None, error.diagnostics))
+    if document.root.tag == "sdf":
+        from linkwright.descriptions.worlds import robot_of_text
+
+        return Description(TEXT_NAME, document, robot_of_text(text, TEXT_NAME))
     return Description(TEXT_NAME, document, read(document))

@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linkwright.diagnostics import Diagnostic
+from linkwright.diagnostics import Diagnostic, has_errors
 from linkwright.packages import PackageFinder
+from linkwright.urdf import Reading
 from linkwright.xmltree import Document, Overlay
 from linkwright.xmltree.reader import read_bytes
 
@@ -85,6 +86,27 @@ def examine_world(
     found += [*included.diagnostics, *check_references(included.sdf)]
     sdf = with_scripts(replace(included.sdf, worlds=tuple(map(populated, included.sdf.worlds))), resources)
     return WorldDescription(path, sdf, tuple(_each_once(found)), (*files, *included.files))
+
+
+def robot_of_text(text: str, name: str) -> Reading:
+    """The robot of a text in SDF; what gz would warn of is not among the findings of one that has a robot.
+
+    Args:
+        text: the text.
+        name: what stands in messages for its file.
+    """
+    from linkwright.sdf.includes import resolve_includes
+    from linkwright.sdf.reader import read
+    from linkwright.sdf.resources import ResourceFinder
+    from linkwright.sdf.text import parse_as_gazebo
+    from linkwright.sdf.to_urdf import robot_from_sdf
+
+    document, _ = parse_as_gazebo(text, name)
+    reading = read(document)
+    if reading.sdf is None or has_errors(reading.diagnostics):
+        return Reading(None, reading.diagnostics)
+    resources = ResourceFinder(PackageFinder(start=[Path.cwd()]))
+    return robot_from_sdf(resolve_includes(reading.sdf, Path(name), resources).sdf, document.root)
 
 
 def _each_once(found: Iterable[Diagnostic]) -> Iterator[Diagnostic]:

@@ -1,0 +1,260 @@
+"""A model of SDF as a robot of URDF, as ROS takes it where a robot description is SDF.
+
+Source: the package sdformat_urdf, which is urdfdom's reader of SDF.
+"""
+
+from __future__ import annotations
+
+from math import isinf
+
+from linkwright.diagnostics import Phrase, phrase, term
+from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere
+from linkwright.geometry.single import IDENTITY, Transform, compose, invert
+from linkwright.sdf.frames import FrameError, Frames, pose_of
+from linkwright.sdf.joints import Axis, Joint
+from linkwright.sdf.links import Collision, Inertial, Link, Visual
+from linkwright.sdf.materials import Material
+from linkwright.sdf.models import Model
+from linkwright.sdf.poses import AT_ORIGIN, WORLD
+from linkwright.sdf.report import SdfReport, described
+from linkwright.sdf.shapes import Mesh, Shape
+from linkwright.sdf.worlds import Sdf
+from linkwright.urdf import Reading
+from linkwright.urdf import model as urdf
+from linkwright.xmltree import Element
+
+_TYPES: dict[str, urdf.JointType] = {
+    "revolute": "revolute",
+    "hinge": "revolute",
+    "continuous": "continuous",
+    "prismatic": "prismatic",
+    "fixed": "fixed",
+}
+"""Types of joints in SDF, and what they are in URDF; all others need a transform of their own: they float."""
+_UNBOUNDED = 1e16
+"""What stands for no bound in SDF and, as URDF knows none, there too."""
+_AMBIENT, _DIFFUSE = 0.4, 0.8
+"""The light of Gazebo's usual world, in which sdformat_urdf looks at a material to find the colour that it has."""
+
+
+class _NoRobotError(Exception):
+    """A model that is no robot, with the element that says so."""
+
+    def __init__(self, reason: Phrase, element: Element | None, hint: Phrase | None = None) -> None:
+        super().__init__(reason)
+        self.reason = reason
+        self.element = element
+        self.hint = hint
+
+
+def robot_from_sdf(sdf: Sdf, root: Element) -> Reading:
+    """The robot of an SDF text.
+
+    The frame of a link of URDF is that of the joint above it: what is in a link moves with it. Addresses of meshes stay
+    as they are written. Sensors, lights and plugins have no place in the robot.
+
+    Args:
+        sdf: what it says, with its includes resolved.
+        root: its element.
+
+    Returns:
+        The robot and no findings, or no robot and why (SDF180): it is not one model by itself, links and joints are no
+        tree from the canonical link on, or there are shapes that URDF has not.
+    """
+    report = SdfReport()
+    try:
+        return Reading(_Converter(_only_model(sdf, root)).robot(), ())
+    except _NoRobotError as error:
+        said = phrase("this SDF cannot be a robot description: {reason}", reason=error.reason)
+        report.reject("SDF180", said, error.element or root, hint=error.hint)
+    except FrameError as error:
+        said = phrase("this SDF cannot be a robot description: there is no frame '{name}'", name=error.name)
+        report.reject("SDF180", said, root)
+    return Reading(None, report.in_order())
+
+
+def _only_model(sdf: Sdf, root: Element) -> Model:
+    if sdf.worlds:
+        hint = phrase("give the <model> of the robot alone")
+        raise _NoRobotError(phrase("it has a world; a robot description is one model"), sdf.worlds[0].element, hint)
+    if len(sdf.models) != 1:
+        reason = phrase("it has {count} models; a robot description is one model", count=len(sdf.models))
+        raise _NoRobotError(reason, root)
+    return sdf.models[0]
+
+
+class _Converter:
+    def __init__(self, model: Model) -> None:
+        self._model = model
+        self._frames = Frames(model)
+
+    def robot(self) -> urdf.Robot:
+        model = self._model
+        if model.pose != AT_ORIGIN:
+            hint = phrase("say where it stands where it is spawned, or move its links")
+            raise _NoRobotError(phrase("the model has a <pose>"), model.element, hint)
+        if model.models or model.includes:
+            inner = model.models[0].element if model.models else model.includes[0].element
+            hint = phrase("include it with merge='true', or write its links into the model")
+            raise _NoRobotError(phrase("there is a model in the model"), inner, hint)
+        if not model.links:
+            raise _NoRobotError(phrase("the model has no link"), model.element)
+        above = self._joints_above()
+        root = self._frames.link("")
+        self._check_tree(root, above)
+        joints = [self._joint(joint, above) for joint in model.joints]
+        links = {each.name: self._link(each, above.get(each.name)) for each in model.links}
+        looks = [visual.material for link in links.values() for visual in link.visuals if visual.material is not None]
+        return urdf.Robot(
+            model.name,
+            root,
+            links,
+            {joint.name: joint for joint in joints},
+            {look.name: look for look in looks},
+            element=model.element,
+        )
+
+    def _joints_above(self) -> dict[str, Joint]:
+        above: dict[str, Joint] = {}
+        for joint in self._model.joints:
+            child = self._frames.link(joint.child)
+            if WORLD in (child, self._frames.link(joint.parent)):
+                reason = phrase("{joint} hangs from the world", joint=_named(joint))
+                raise _NoRobotError(reason, joint.element, phrase("a fixed base is said where the robot is spawned"))
+            if child in above:
+                told = {"link": child, "one": above[child].name, "other": joint.name}
+                reason = phrase("link '{link}' is the child of two joints, '{one}' and '{other}'", **told)
+                raise _NoRobotError(reason, joint.element, phrase("URDF knows trees only; leave one of them out"))
+            above[child] = joint
+        return above
+
+    def _check_tree(self, root: str, above: dict[str, Joint]) -> None:
+        if root in above:
+            told = {"link": root, "joint": above[root].name}
+            reason = phrase("the canonical link '{link}' is the child of joint '{joint}'", **told)
+            hint = phrase("name the link that all others hang from: <model canonical_link='...'>")
+            raise _NoRobotError(reason, above[root].element, hint)
+        for link in self._model.links:
+            chain = {link.name: None}
+            name = link.name
+            while name in above:
+                name = self._frames.link(above[name].parent)
+                if name in chain:
+                    reason = phrase("link '{link}' hangs from itself", link=name)
+                    raise _NoRobotError(reason, above[name].element)
+                chain[name] = None
+            if name != root:
+                told = {"link": name, "root": root}
+                reason = phrase("link '{link}' is joined to nothing above it, as is '{root}'", **told)
+                hint = phrase("join them with a fixed joint")
+                raise _NoRobotError(reason, next(each.element for each in self._model.links if each.name == name), hint)
+
+    def _joint(self, joint: Joint, above: dict[str, Joint]) -> urdf.Joint:
+        parent = self._frames.link(joint.parent)
+        origin = compose(invert(self._frame(parent, above)), self._frames.pose(joint.name))
+        kind = _TYPES.get(joint.type, "floating")
+        axis = joint.axis
+        moves = axis is not None and kind in ("revolute", "continuous", "prismatic")
+        if kind == "revolute" and axis is not None and isinf(axis.limit.lower) and isinf(axis.limit.upper):
+            kind = "continuous"
+        if not moves and kind in ("revolute", "continuous", "prismatic"):
+            raise _NoRobotError(phrase("{joint} has no <axis>", joint=_named(joint)), joint.element)
+        return urdf.Joint(
+            joint.name,
+            kind,
+            parent,
+            self._frames.link(joint.child),
+            pose_of(origin),
+            self._frames.axis(joint, axis) if moves and axis is not None else (1.0, 0.0, 0.0),
+            _limit(axis) if moves and axis is not None and kind != "continuous" else None,
+            _mimic(axis) if moves and axis is not None else None,
+            dynamics=urdf.Dynamics(axis.dynamics.damping, axis.dynamics.friction) if moves and axis else None,
+            element=joint.element,
+        )
+
+    def _frame(self, link: str, above: dict[str, Joint]) -> Transform:
+        """Where the frame that URDF gives a link stands in the model: that of its joint, or its own."""
+        return self._frames.pose(above[link].name if link in above else link)
+
+    def _link(self, link: Link, above: Joint | None) -> urdf.Link:
+        in_joint = IDENTITY
+        if above is not None:
+            in_joint = compose(invert(self._frames.pose(above.name)), self._frames.pose(link.name))
+        return urdf.Link(
+            link.name,
+            self._inertial(link, in_joint),
+            tuple(self._visual(visual, link, in_joint) for visual in link.visuals),
+            tuple(self._collision(collision, link, in_joint) for collision in link.collisions),
+            link.element,
+        )
+
+    def _inertial(self, link: Link, in_joint: Transform) -> urdf.Inertial:
+        said = link.inertial or Inertial()
+        tensor = said.inertia
+        origin = pose_of(compose(in_joint, self._frames.in_link(said.pose, link.name)))
+        return urdf.Inertial(
+            said.mass,
+            tensor.ixx,
+            tensor.ixy,
+            tensor.ixz,
+            tensor.iyy,
+            tensor.iyz,
+            tensor.izz,
+            origin,
+            said.element,
+        )
+
+    def _visual(self, visual: Visual, link: Link, in_joint: Transform) -> urdf.Visual:
+        look = _material(visual.material, f"{link.name}{visual.name}")
+        return urdf.Visual(
+            _geometry(visual),
+            pose_of(compose(in_joint, self._frames.in_link(visual.pose, link.name))),
+            visual.name,
+            look.name if look is not None else "",
+            look,
+            visual.element,
+        )
+
+    def _collision(self, collision: Collision, link: Link, in_joint: Transform) -> urdf.Collision:
+        origin = pose_of(compose(in_joint, self._frames.in_link(collision.pose, link.name)))
+        return urdf.Collision(_geometry(collision), origin, collision.name, collision.element)
+
+
+def _named(joint: Joint) -> Phrase:
+    return described(joint.element) if joint.element is not None else phrase("joint '{name}'", name=joint.name)
+
+
+def _limit(axis: Axis) -> urdf.Limit:
+    said = axis.limit
+    lower, upper = max(said.lower, -_UNBOUNDED), min(said.upper, _UNBOUNDED)
+    return urdf.Limit(lower, upper, min(said.effort, _UNBOUNDED), min(said.velocity, _UNBOUNDED))
+
+
+def _mimic(axis: Axis) -> urdf.Mimic | None:
+    said = axis.mimic
+    if said is None:
+        return None
+    return urdf.Mimic(said.joint, said.multiplier, said.offset - said.multiplier * said.reference)
+
+
+def _geometry(part: Visual | Collision) -> urdf.Geometry:
+    shape: Shape = part.geometry
+    if isinstance(shape, Mesh):
+        return urdf.Mesh(shape.uri, shape.scale)
+    if isinstance(shape, Box | Cylinder | Capsule | Sphere):
+        return shape
+    told = {"shape": term(type(shape).__name__.lower()), "name": part.name}
+    reason = phrase("'{name}' has the shape <{shape}>, which URDF has not", **told)
+    raise _NoRobotError(reason, part.element, phrase("use a box, a cylinder, a sphere or a mesh"))
+
+
+def _material(material: Material | None, name: str) -> urdf.Material | None:
+    if material is None or (material.ambient is None and material.diffuse is None):
+        return None
+    ambient, diffuse = material.ambient or material.diffuse, material.diffuse or material.ambient
+    assert ambient is not None
+    assert diffuse is not None
+    red, green, blue, alpha = (
+        min(_AMBIENT * shade + _DIFFUSE * light, 1.0) for shade, light in zip(ambient, diffuse, strict=True)
+    )
+    return urdf.Material(name, (red, green, blue, alpha))

@@ -1,0 +1,199 @@
+"""A model of SDF as the robot that ROS makes of a robot description in SDF."""
+
+from __future__ import annotations
+
+from math import pi
+from pathlib import Path
+
+import pytest
+
+from linkwright.descriptions import load
+from linkwright.descriptions.library import DescriptionLibrary
+from linkwright.descriptions.worlds import examine_world
+from linkwright.geometry.shapes import Box
+from linkwright.geometry.single import IDENTITY, Transform, compose
+from linkwright.sdf.frames import Frames, transform_of
+from linkwright.sdf.from_urdf import model_from_robot
+from linkwright.sdf.reader import read
+from linkwright.sdf.text import parse_as_gazebo
+from linkwright.sdf.to_urdf import robot_from_sdf
+from linkwright.sdf.worlds import Sdf
+from linkwright.urdf import Mesh, Mimic, Robot
+from linkwright.urdf import read as read_urdf
+from linkwright.urdf.plaintext import parse_as_urdfdom
+from linkwright.urdf.writer import save
+
+REPOSITORY = Path(__file__).parents[2]
+ROBOTS = REPOSITORY / "robots"
+PACKAGES = {"my_robot_description": ROBOTS / "my_robot_description"}
+SHARED = REPOSITORY.parent / "shared" / "worlds"
+BOX = "<geometry><box><size>1 2 3</size></box></geometry>"
+
+
+def reading_of(inside: str, start: str = "<model name='m'>"):
+    text = f"<sdf version='1.11'>{start}{inside}</model></sdf>"
+    document, _ = parse_as_gazebo(text.encode(), "robot.sdf")
+    reading = read(document)
+    assert reading.sdf is not None
+    return robot_from_sdf(reading.sdf, document.root)
+
+
+def robot_of(inside: str, start: str = "<model name='m'>") -> Robot:
+    reading = reading_of(inside, start)
+    assert reading.diagnostics == ()
+    assert reading.robot is not None
+    return reading.robot
+
+
+def test_the_frame_of_a_link_is_that_of_its_joint():
+    robot = robot_of(
+        "<link name='base'/>"
+        f"<link name='arm'><pose>1 0 0 0 0 0</pose><visual name='v'>{BOX}<pose>0 0 0.5 0 0 0</pose></visual></link>"
+        f"<joint name='j' type='prismatic'><pose>0 0 2 0 0 {pi / 2}</pose><parent>base</parent><child>arm</child>"
+        "<axis><xyz expressed_in='__model__'>0 1 0</xyz><limit><lower>-1</lower><upper>2</upper></limit></axis></joint>"
+    )
+    joint, visual = robot.joints["j"], robot.links["arm"].visuals[0]
+    assert joint.origin.xyz == pytest.approx((1.0, 0.0, 2.0))
+    assert joint.axis == pytest.approx((1.0, 0.0, 0.0))
+    assert (joint.limit.lower, joint.limit.upper) == (-1.0, 2.0)
+    assert visual.origin.xyz == pytest.approx((0.0, 0.0, -1.5))
+    assert visual.origin.rpy == pytest.approx((0.0, 0.0, -pi / 2))
+    assert visual.geometry == Box((1.0, 2.0, 3.0))
+    assert robot.links["arm"].inertial.origin.xyz == pytest.approx((0.0, 0.0, -2.0))
+
+
+def test_joints_hang_from_frames_and_keep_what_urdf_knows_of_them():
+    robot = robot_of(
+        "<link name='a'/><link name='b'/><link name='c'/><frame name='hand' attached_to='a'/>"
+        "<joint name='j' type='revolute'><parent>hand</parent><child>b</child><axis><xyz>0 0 1</xyz>"
+        "<dynamics><damping>0.5</damping><friction>0.25</friction></dynamics></axis></joint>"
+        "<joint name='k' type='revolute'><parent>b</parent><child>c</child><axis><xyz>0 0 1</xyz>"
+        "<limit><lower>0</lower><upper>1</upper></limit>"
+        "<mimic joint='j'><multiplier>2</multiplier><offset>1</offset>"
+        "<reference>0.25</reference></mimic></axis></joint>"
+    )
+    first, second = robot.joints.values()
+    assert (first.parent, first.type, first.limit) == ("a", "continuous", None)
+    assert (first.dynamics.damping, first.dynamics.friction) == (0.5, 0.25)
+    assert (second.type, second.mimic) == ("revolute", Mimic("j", 2.0, 0.5))
+
+
+def test_joints_that_urdf_has_not_float_and_addresses_stay():
+    robot = robot_of(
+        "<link name='a'><visual name='v'><geometry><mesh><uri>model://m/a.dae</uri><scale>2 2 2</scale></mesh>"
+        "</geometry>"
+        "<material><ambient>1 0 0 1</ambient><diffuse>0.5 0 0 1</diffuse></material></visual></link><link name='b'/>"
+        "<joint name='j' type='ball'><parent>a</parent><child>b</child></joint>"
+    )
+    visual = robot.links["a"].visuals[0]
+    assert robot.joints["j"].type == "floating"
+    assert visual.geometry == Mesh("model://m/a.dae", (2.0, 2.0, 2.0))
+    assert visual.material.rgba == pytest.approx((0.8, 0.0, 0.0, 1.0))
+    assert list(robot.materials) == [visual.material_name] == ["av"]
+
+
+TWO = "<link name='a'/><link name='b'/>"
+
+
+def joint(parent: str, child: str, name: str = "j") -> str:
+    return f"<joint name='{name}' type='fixed'><parent>{parent}</parent><child>{child}</child></joint>"
+
+
+@pytest.mark.parametrize(
+    ("inside", "start", "words"),
+    [
+        (TWO, "<model name='m'>", "link 'b' is joined to nothing above it, as is 'a'"),
+        (TWO + joint("b", "a"), "<model name='m'>", "the canonical link 'a' is the child of joint 'j'"),
+        (TWO + joint("a", "b") + joint("a", "b", "k"), "<model name='m'>", "link 'b' is the child of two joints"),
+        (TWO + joint("world", "a"), "<model name='m'>", "joint 'j' hangs from the world"),
+        (
+            TWO + "<link name='c'/>" + joint("b", "c") + joint("c", "b", "k"),
+            "<model name='m'>",
+            "hangs from itself",
+        ),
+        ("<pose>1 0 0 0 0 0</pose><link name='a'/>", "<model name='m'>", "the model has a <pose>"),
+        ("<link name='a'/><model name='in'><link name='x'/></model>", "<model name='m'>", "a model in the model"),
+        ("", "<model name='m'>", "the model has no link"),
+        (
+            "<link name='a'><collision name='floor'><geometry><plane/></geometry></collision></link>",
+            "<model name='m'>",
+            "'floor' has the shape <plane>",
+        ),
+        (
+            TWO + "<joint name='j' type='revolute'><parent>a</parent><child>b</child></joint>",
+            "<model name='m'>",
+            "joint 'j' has no <axis>",
+        ),
+        ("<link name='a'/></model><model name='n'><link name='a'/>", "<model name='m'>", "it has 2 models"),
+        (TWO + joint("a", "nowhere"), "<model name='m'>", "there is no frame 'nowhere'"),
+    ],
+)
+def test_what_is_no_robot_is_refused_once_with_its_place(inside, start, words):
+    reading = reading_of(inside, start)
+    assert reading.robot is None
+    (found,) = reading.diagnostics
+    assert found.code == "SDF180"
+    assert words in str(found.message)
+    assert found.span is not None
+
+
+def test_another_canonical_link_is_the_root():
+    robot = robot_of(TWO + joint("b", "a"), "<model name='m' canonical_link='b'>")
+    assert robot.root == "b"
+
+
+def test_a_description_on_a_topic_may_be_sdf():
+    library = DescriptionLibrary()
+    text = f"<?xml version='1.0'?>\n<sdf version='1.9'><model name='m'>{TWO}{joint('a', 'b')}</model></sdf>"
+    reading = library.read(text)
+    assert reading.robot is not None
+    assert list(reading.robot.links) == ["a", "b"]
+    assert library.read("<sdf version='1.9'><model name='m'/></sdf>").robot is None
+
+
+def _placed(robot: Robot, root: Transform) -> dict[str, Transform]:
+    """Where the frames of links stand, with all joints at zero."""
+    places, left = {robot.root: root}, list(robot.joints.values())
+    while left:
+        each = next(each for each in left if each.parent in places)
+        left.remove(each)
+        places[each.child] = compose(places[each.parent], transform_of(each.origin))
+    return places
+
+
+def test_a_robot_that_became_sdf_is_itself_again():
+    before = load(ROBOTS / "my_robot_description/urdf/mbot_gazebo.xacro", packages=PACKAGES)
+    model = model_from_robot(before, lump_fixed_joints=False).model
+    after = robot_from_sdf(Sdf("1.11", models=(model,)), before.element).robot
+    assert (set(after.links), set(after.joints)) == (set(before.links), set(before.joints))
+    first, second = _placed(before, IDENTITY), _placed(after, IDENTITY)
+    for name, place in first.items():
+        assert second[name] == pytest.approx(place, abs=1e-9)
+    assert {each.name: each.type for each in before.joints.values()} == {
+        each.name: each.type for each in after.joints.values()
+    }
+    written = read_urdf(parse_as_urdfdom(save(after), "robot.urdf")).robot
+    assert (list(written.links), list(written.joints)) == (list(after.links), list(after.joints))
+
+
+@pytest.mark.skipif(not SHARED.is_dir(), reason="needs the models beside the repository")
+def test_everything_in_models_of_others_stands_where_it_stood():
+    robots = 0
+    for path in sorted(SHARED.rglob("model*.sdf")):
+        sdf = examine_world(path).sdf
+        if not sdf.models:
+            continue
+        reading, model = robot_from_sdf(sdf, sdf.models[0].element), sdf.models[0]
+        if reading.robot is None:
+            assert [each.code for each in reading.diagnostics] == ["SDF180"]
+            continue
+        robots += 1
+        frames = Frames(model)
+        places = _placed(reading.robot, frames.pose(reading.robot.root))
+        for link in model.links:
+            for before, after in zip(link.visuals, reading.robot.links[link.name].visuals, strict=True):
+                wanted = compose(frames.pose(link.name), frames.in_link(before.pose, link.name))
+                found = compose(places[link.name], transform_of(after.origin))
+                assert found[:3] == pytest.approx(wanted[:3], abs=1e-9)
+                assert abs(sum(a * b for a, b in zip(found[3:], wanted[3:], strict=True))) == pytest.approx(1.0)
+    assert robots > 0
