@@ -9,6 +9,7 @@
 #   make soak    an hour of processes over DDS: does anything grow, get lost or hang?
 #   make docs    the documentation site in site/
 #   make reference  record anew what ros/xacro and urdfdom make of the descriptions in the tests
+#   make release  wheel, source distribution, bill of materials and changelog in dist/, built twice and tried
 #   make fuzz    a million hostile inputs for everything that reads files; see fuzz/README.md
 
 PYTHON ?= python3
@@ -42,9 +43,10 @@ WORKERS = -n 2 --dist loadfile --no-loadscope-reorder
 
 MBOT := robots/my_robot_description/urdf/mbot_gazebo.xacro
 LOCKED := .build/constraints.txt
+RELEASE_TOOLS := .build/release-tools$(if $(VERSION),-$(VERSION))
 PAGE_SOURCES := $(shell find frontend -path frontend/node_modules -prune -o -type f -print)
 
-.PHONY: demo test test-quick coverage test-browser test-ros test-train check bench soak fuzz reference docs page lock format clean
+.PHONY: demo test test-quick coverage test-browser test-ros test-train check bench soak fuzz reference release docs page lock format clean
 
 # Ctrl-C is how the demo ends (status 130), which is no error; the shell has to outlive it to say so.
 demo: $(VENV)/.ready
@@ -123,6 +125,15 @@ reference: $(VENV)/.dev .build/reference/.ready
 .build/reference/.ready: | $(UV)
 	$(UV) venv --quiet --clear --python '>=3.10,<3.13' .build/reference
 	$(UV) pip install --quiet --python .build/reference/bin/python xacro==2.1.1 cmeel-urdfdom==6.0.0
+	touch $@
+
+# What it builds and tries, tools/release.py says; the programs that look at the results have an environment of their own.
+release: $(RELEASE_TOOLS)/.ready
+	$(RELEASE_TOOLS)/bin/python tools/release.py
+
+$(RELEASE_TOOLS)/.ready: | $(UV)
+	$(UV) venv --quiet --clear --python $(or $(VERSION),$(PYTHON)) $(RELEASE_TOOLS)
+	$(UV) pip install --quiet --python $(RELEASE_TOOLS)/bin/python cyclonedx-bom==7.5.0 twine==7.0.0
 	touch $@
 
 docs: $(VENV)/.dev

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import gzip
 import hashlib
+import json
 import os
 import re
 import shutil
@@ -21,6 +22,8 @@ PAGE = ROOT / "src" / "linkwright" / "viewer" / "page"
 _STAMP = ".inputs.sha256"
 _OLDEST_NODE = 20
 _PACKED = (".js", ".css")
+_INSTALLED = "node_modules/"
+LICENCES = "LICENCES.txt"
 _INPUTS = (
     "src",
     "public",
@@ -69,6 +72,7 @@ def build() -> None:
     npm("ci", "--no-fund", "--no-audit")
     npm("run", "build")
     pack()
+    (PAGE / LICENCES).write_text(licences(), encoding="utf-8")
     (PAGE / _STAMP).write_text(digest, encoding="ascii")
 
 
@@ -78,6 +82,32 @@ def pack() -> None:
         if file.suffix in _PACKED:
             packed = gzip.compress(file.read_bytes(), compresslevel=9, mtime=0)
             file.with_name(f"{file.name}.gz").write_bytes(packed)
+
+
+def bundled() -> dict[str, dict[str, str]]:
+    """What the lock says of each npm package in the page, by name: its ``version``, ``license``, ``integrity``."""
+    packages = json.loads((FRONTEND / "package-lock.json").read_text(encoding="utf-8"))["packages"]
+    return {
+        path.removeprefix(_INSTALLED): said
+        for path, said in sorted(packages.items())
+        if path.startswith(_INSTALLED) and not said.get("dev")
+    }
+
+
+def licences() -> str:
+    """The licences of the npm packages in the page, which ask to go wherever their code goes.
+
+    Raises:
+        SystemExit: when a package comes without one.
+    """
+    texts = []
+    for name, said in bundled().items():
+        files = sorted((FRONTEND / _INSTALLED / name).glob("LICEN[CS]E*"))
+        if not files:
+            raise SystemExit(f"the npm package {name} comes without the text of its licence ({said['license']})")
+        text = files[0].read_text(encoding="utf-8").strip()
+        texts.append(f"{name} {said['version']} ({said['license']})\n\n{text}\n")
+    return "\n\n".join(texts)
 
 
 def npm(*arguments: str) -> None:

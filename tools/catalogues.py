@@ -16,6 +16,7 @@ import re
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from datetime import datetime, timezone
 from functools import partial
 from inspect import cleandoc
 from io import BytesIO
@@ -38,6 +39,7 @@ TITLES = "rule"
 _PAGE = re.compile(r"^## [A-Z]+[0-9]{3}: (.+)$", re.MULTILINE)
 _HEADER = "# What Linkwright says, in {}.\n# Entries are kept by `python tools/catalogues.py update`."
 _DATED = ('"POT-', '"PO-Rev', '"Last-', '"Language-Team', '"Generated', '"Report', '"Project', "# FIRST", "#,")
+_NO_DATE = datetime(1970, 1, 1, tzinfo=timezone.utc)
 
 
 @dataclass
@@ -223,13 +225,15 @@ def written(path: Path, catalogue: Catalog) -> None:
 
 
 def compile_catalogues() -> None:
-    """Write ``.mo`` files beside the catalogues that are newer."""
+    """Write ``.mo`` files beside the catalogues that are newer, the same bytes whenever that is."""
     for path in sorted(FOLDER.glob("*.po")):
         target = path.with_suffix(".mo")
         if not target.exists() or target.stat().st_mtime_ns < path.stat().st_mtime_ns:
             part = target.with_suffix(f".{os.getpid()}")  # whole or not at all: tests run side by side
+            catalogue = read(path)
+            catalogue.creation_date = _NO_DATE
             with part.open("wb") as file:
-                write_mo(file, read(path))
+                write_mo(file, catalogue)
             part.replace(target)
 
 

@@ -1,0 +1,157 @@
+"""What `make release` puts together: the changelog of a version, the bill of materials, and files without a date."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from tests.places import REPOSITORY
+from tests.repository_tools import load_tool
+
+CHANGELOG = """# Changelog
+
+## [Unreleased]
+
+### Added
+
+- Wings.
+
+## [0.2.0] - 2026-05-01
+
+### Changed
+
+- Legs are longer.
+"""
+
+
+@pytest.fixture(scope="module")
+def notes():
+    return load_tool("release_notes")
+
+
+@pytest.fixture(scope="module")
+def bill():
+    return load_tool("bill_of_materials")
+
+
+@pytest.fixture(scope="module")
+def release():
+    return load_tool("release")
+
+
+def test_notes_are_those_of_the_version(notes):
+    assert notes.section(CHANGELOG, "0.2.0") == ("0.2.0", "# Linkwright 0.2.0\n\n### Changed\n\n- Legs are longer.\n")
+
+
+def test_notes_of_a_version_without_a_section_are_what_is_unreleased(notes):
+    assert notes.section(CHANGELOG, "0.3.0") == ("Unreleased", "# Linkwright 0.3.0\n\n### Added\n\n- Wings.\n")
+
+
+def test_there_are_no_notes_about_nothing(notes):
+    with pytest.raises(SystemExit, match="nothing unreleased"):
+        notes.section("# Changelog\n\n## [Unreleased]\n\n## [0.2.0] - 2026-05-01\n\n- Legs.\n", "0.3.0")
+
+
+def test_what_is_unreleased_becomes_the_section_of_a_version(notes):
+    begun = notes.begun(CHANGELOG, "0.3.0", "2026-11-22", "0.2.0")
+    assert "## [Unreleased]\n\n## [0.3.0] - 2026-11-22\n\n### Added\n\n- Wings.\n\n## [0.2.0]" in begun
+    assert notes.sections(begun) == {
+        "Unreleased": "",
+        "0.3.0": "### Added\n\n- Wings.",
+        "0.2.0": "### Changed\n\n- Legs are longer.",
+    }
+
+
+@pytest.mark.parametrize(
+    ("version", "reason"),
+    [
+        ("0.2", "is not a version"),
+        ("v0.3.0", "is not a version"),
+        ("0.1.9", "is older than 0.2.0"),
+        ("0.2.0", "has a section about 0.2.0 already"),
+    ],
+)
+def test_versions_that_cannot_be_begun_are_refused(notes, version, reason):
+    with pytest.raises(SystemExit, match=reason):
+        notes.begun(CHANGELOG, version, "2026-11-22", "0.2.0")
+
+
+def test_a_version_is_begun_in_both_files(release, tmp_path):
+    (tmp_path / "CHANGELOG.md").write_text(CHANGELOG, encoding="utf-8")
+    (tmp_path / release.VERSION).parent.mkdir(parents=True)
+    (tmp_path / release.VERSION).write_text('__version__ = "0.2.0"\n', encoding="utf-8")
+    release.begin("0.3.0", tmp_path)
+    assert release.read_version(tmp_path) == "0.3.0"
+    assert "\n## [0.3.0] - 20" in (tmp_path / "CHANGELOG.md").read_text(encoding="utf-8")
+
+
+def test_the_changelog_of_this_version_can_be_taken_out(release, notes):
+    text = (REPOSITORY / "CHANGELOG.md").read_text(encoding="utf-8")
+    _, section = notes.section(text, release.read_version())
+    assert section.startswith(f"# Linkwright {release.read_version()}\n\n### ")
+    assert "\n## " not in section
+
+
+def listed() -> str:
+    """What cyclonedx-py says of an environment with one package beside ours, installed from a folder."""
+    local = {"type": "distribution", "url": "file:///home/somebody/linkwright.whl"}
+    website = {"type": "website", "url": "https://example.org"}
+    components = [
+        {"bom-ref": "numpy==2.0", "name": "numpy", "type": "library", "externalReferences": [website]},
+        {"bom-ref": "linkwright==0.1.0", "name": "linkwright", "type": "library", "externalReferences": [local]},
+    ]
+    dependencies = [{"ref": "linkwright==0.1.0", "dependsOn": ["numpy==2.0"]}, {"ref": "numpy==2.0"}]
+    return json.dumps({"metadata": {}, "components": components, "dependencies": dependencies})
+
+
+def test_the_bill_has_packages_of_python_and_of_the_page(bill):
+    whole = json.loads(bill.complete(listed()))
+    assert whole["metadata"]["component"] == {
+        "bom-ref": "linkwright==0.1.0",
+        "name": "linkwright",
+        "type": "application",
+    }
+    components = {component["name"]: component for component in whole["components"]}
+    wanted = json.loads((REPOSITORY / "frontend" / "package.json").read_text(encoding="utf-8"))["dependencies"]
+    assert set(components) == {"numpy", "dockview-core", *wanted}
+    for name, version in wanted.items():
+        assert components[name]["purl"] == f"pkg:npm/{name}@{version}"
+        assert components[name]["licenses"][0]["license"]["id"] == "MIT"
+        (digest,) = components[name]["hashes"]
+        assert digest["alg"] == "SHA-512"
+        assert len(digest["content"]) == 128
+    depending = {each["ref"]: each.get("dependsOn", []) for each in whole["dependencies"]}
+    assert set(depending["linkwright==0.1.0"]) == {each["bom-ref"] for each in whole["components"]}
+    assert set(depending) == {"linkwright==0.1.0", *depending["linkwright==0.1.0"]}
+
+
+def test_the_bill_tells_nothing_of_the_machine(bill):
+    whole = bill.complete(listed())
+    assert "file:" not in whole
+    assert "https://example.org" in whole
+
+
+def test_an_environment_without_linkwright_has_no_bill(bill):
+    with pytest.raises(SystemExit, match="without Linkwright"):
+        bill.complete(listed().replace("linkwright", "another"))
+
+
+def test_licences_of_the_page_go_with_it(monkeypatch, tmp_path):
+    page = load_tool("build_page")
+    monkeypatch.setattr(page, "FRONTEND", tmp_path)
+    monkeypatch.setattr(page, "bundled", lambda: {"wings": {"version": "1.0.0", "license": "MIT", "integrity": ""}})
+    with pytest.raises(SystemExit, match="wings comes without the text of its licence"):
+        page.licences()
+    folder = tmp_path / "node_modules" / "wings"
+    folder.mkdir(parents=True)
+    (folder / "LICENCE.md").write_text("Do what you like.\n", encoding="utf-8")
+    assert page.licences() == "wings 1.0.0 (MIT)\n\nDo what you like.\n"
+
+
+def test_compiled_catalogues_do_not_say_when_they_were_compiled(monkeypatch, tmp_path):
+    catalogues = load_tool("catalogues")
+    (tmp_path / "zh.po").write_bytes((catalogues.FOLDER / "zh.po").read_bytes())
+    monkeypatch.setattr(catalogues, "FOLDER", tmp_path)
+    catalogues.compile_catalogues()
+    assert b"POT-Creation-Date: 1970-01-01 00:00+0000\n" in (tmp_path / "zh.mo").read_bytes()

@@ -1,0 +1,210 @@
+"""Build what a release consists of, twice, and try it: wheel, source distribution, bill of materials, changelog, sums.
+
+Everything is made of the last commit, below ``.build/release``, and ends up in ``dist/``. Wheel and source distribution
+are built in two folders, in other time zones, languages, umasks and seconds, and the wheel once more of the unpacked
+source distribution: all bytes have to be the same. See "Making a release" in CONTRIBUTING.md.
+
+Usage:
+    python tools/release.py                  make it (`make release`, which has the programs that this needs)
+    python tools/release.py version 0.2.0    begin that version: in _version.py, and in CHANGELOG.md with today's date
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tarfile
+from datetime import datetime, timezone
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+
+import bill_of_materials
+import lock
+import release_notes
+
+ROOT = Path(__file__).resolve().parent.parent
+SCRATCH = ROOT / ".build" / "release"
+RESULTS = ROOT / "dist"
+VERSION = Path("src", "linkwright", "_version.py")
+_GENERATED = ("src/linkwright/viewer/page", "src/linkwright/standins/stubs")
+_DIFFERENT = (
+    {"TZ": "UTC", "LC_ALL": "C", "PYTHONHASHSEED": "1"},
+    {"TZ": "Asia/Tokyo", "LC_ALL": "C.UTF-8", "PYTHONHASHSEED": "2"},
+)
+"""What two builds may differ in without a difference in what they make; so may their folders, umasks and seconds."""
+
+
+def run(*words: str | Path, cwd: Path = ROOT, umask: int = 0o022, **environment: str) -> str:
+    """What a program prints.
+
+    Raises:
+        SystemExit: when it fails; what it said is on the terminal.
+    """
+    done = subprocess.run(
+        words, cwd=cwd, env={**os.environ, **environment}, stdout=subprocess.PIPE, text=True, check=False, umask=umask
+    )
+    if done.returncode:
+        raise SystemExit(f"{done.stdout}release: `{' '.join(map(str, words))}` failed with status {done.returncode}")
+    return done.stdout
+
+
+def committed() -> str:
+    """When the last commit was made, in seconds since 1970: the time of every file in a release.
+
+    Raises:
+        SystemExit: when there are changes that are in no commit, and would not be in the release.
+    """
+    if changed := run("git", "status", "--porcelain"):
+        raise SystemExit(f"{changed}release: this is in no commit, and a release is made of the last one: commit first")
+    return run("git", "log", "-1", "--format=%ct").strip()
+
+
+def sources(folder: Path) -> Path:
+    """The files of the last commit in a folder of their own."""
+    run("git", "checkout-index", "--all", f"--prefix={folder}/")
+    return folder
+
+
+def built(folder: Path, time: str, *kinds: str, umask: int = 0o022, **environment: str) -> dict[str, Path]:
+    """Build a folder's wheel (``--wheel``) or source distribution (``--sdist``); what came of it, by name."""
+    results = folder.with_name(f"{folder.name} dist")
+    constraints = SCRATCH / "constraints.txt"
+    words = ("build", "--quiet", "--no-create-gitignore", "--build-constraints", constraints, *kinds)
+    run(_uv(), *words, "--out-dir", results, folder, umask=umask, SOURCE_DATE_EPOCH=time, **environment)
+    return {path.name: path for path in sorted(results.iterdir())}
+
+
+def unpacked(sdist: Path, folder: Path) -> Path:
+    """The sources in a source distribution, without what was generated from them."""
+    with tarfile.open(sdist) as archive:
+        archive.extractall(folder, filter="data")
+    (root,) = folder.iterdir()
+    for generated in _GENERATED:
+        shutil.rmtree(root / generated)
+    for catalogue in root.rglob("*.mo"):
+        catalogue.unlink()
+    return root
+
+
+def same(first: dict[str, Path], second: dict[str, Path]) -> None:
+    """Compare what two builds made.
+
+    Raises:
+        SystemExit: when the bytes of a file of the second differ from those in the first.
+    """
+    for name, path in second.items():
+        if digest(path) != digest(first[name]):
+            raise SystemExit(f"release: {name} is not the same twice: compare {first[name]} with {path}")
+
+
+def digest(path: Path) -> str:
+    """The SHA-256 of a file, as ``sha256sum`` prints it."""
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def installed(wheel: Path, name: str, extras: str = "") -> Path:
+    """Install a wheel with the locked packages into an empty environment, and return that one's Python."""
+    environment = SCRATCH / name
+    python = environment / ("Scripts" if os.name == "nt" else "bin") / "python"
+    run(_uv(), "venv", "--quiet", "--clear", "--python", sys.executable, environment)
+    wanted = ("--constraints", SCRATCH / "constraints.txt", f"linkwright{extras} @ {wheel.resolve().as_uri()}")
+    run(_uv(), "pip", "install", "--quiet", "--python", python, *wanted)
+    return python
+
+
+def make() -> None:
+    """Make the release in ``dist/``, and say what was done on the way.
+
+    Raises:
+        SystemExit: when a step fails; ``dist/`` is then empty.
+    """
+    time = committed()
+    for folder in (SCRATCH, RESULTS):
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir(parents=True)
+    (SCRATCH / "constraints.txt").write_text(lock.constraints(lock.LOCK.read_text(encoding="utf-8")), encoding="utf-8")
+    _say("building wheel and source distribution")
+    first = built(sources(SCRATCH / "first"), time, "--sdist", "--wheel", **_DIFFERENT[0])
+    _say("building them in another folder")
+    again = sources(SCRATCH / "a longer name" / "of a folder" / "second")
+    same(first, built(again, time, "--sdist", "--wheel", umask=0o077, **_DIFFERENT[1]))
+    _say("building the wheel of the source distribution")
+    wheel, sdist = sorted(first.values(), key=lambda path: path.suffix, reverse=True)
+    same(first, built(unpacked(sdist, SCRATCH / "unpacked"), time, "--wheel"))
+    _say(run(_beside("twine"), "check", "--strict", wheel, sdist).strip())
+
+    version = read_version()
+    tried = Path(__file__).with_name("try_installation.py")
+    _say(run(installed(wheel, "alone"), "-I", tried, version, cwd=SCRATCH).strip())
+    everything = installed(wheel, "with everything", "[all]")
+    _say(run(everything, "-I", tried, version, cwd=SCRATCH).strip())
+    _say(run(installed(sdist, "of source"), "-I", tried, version, cwd=SCRATCH).strip())
+
+    title, notes = release_notes.section(release_notes.CHANGELOG.read_text(encoding="utf-8"), version)
+    _say(f"the changelog is that of [{title}]")
+    results = [Path(shutil.copy(path, RESULTS)) for path in (sdist, wheel)]
+    results += [RESULTS / f"linkwright-{version}.changelog.md", RESULTS / f"linkwright-{version}.cdx.json"]
+    results[2].write_text(notes, encoding="utf-8")
+    listing = (_beside("cyclonedx-py"), "environment", "--output-reproducible", "--gather-license-texts", everything)
+    results[3].write_text(bill_of_materials.complete(run(*listing, SOURCE_DATE_EPOCH=time)), encoding="utf-8")
+    if silent := bill_of_materials.check(results[3]):
+        _say(f"packages that tell no licence: {', '.join(silent)}")
+    sums = "".join(f"{digest(path)}  {path.name}\n" for path in results)
+    (RESULTS / "SHA256SUMS").write_text(sums, encoding="utf-8")
+    _say(f"in {RESULTS.name}/:\n{sums.strip()}")
+
+
+def read_version(root: Path = ROOT) -> str:
+    """The version that a checkout says it has."""
+    return re.findall(r'__version__ = "(.+)"', (root / VERSION).read_text(encoding="utf-8"))[0]
+
+
+def begin(version: str, root: Path = ROOT) -> None:
+    """Write a new version into the checkout: what is unreleased in the changelog becomes its section.
+
+    Raises:
+        SystemExit: when that is no version, or not a newer one, or nothing is unreleased.
+    """
+    today = datetime.now(timezone.utc).strftime("%Y-%m-%d")
+    changelog = root / release_notes.CHANGELOG.name
+    text = release_notes.begun(changelog.read_text(encoding="utf-8"), version, today, read_version(root))
+    changelog.write_text(text, encoding="utf-8")
+    source = (root / VERSION).read_text(encoding="utf-8")
+    (root / VERSION).write_text(source.replace(read_version(root), version), encoding="utf-8")
+
+
+def _uv() -> str:
+    uv = shutil.which(os.environ.get("UV") or "uv")
+    if not uv:
+        raise SystemExit("uv is not on the PATH; run `make release`")
+    return str(Path(uv).absolute())
+
+
+def _beside(program: str) -> Path:
+    """A program of the environment that this runs in."""
+    return Path(sys.executable).parent / program
+
+
+def _say(text: str) -> None:
+    print(text, flush=True)
+
+
+def main(words: list[str]) -> int:
+    """Do what is asked for; returns the exit status."""
+    if not words:
+        make()
+    elif len(words) == 2 and words[0] == "version":
+        begin(words[1])
+    else:
+        print(__doc__, file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main(sys.argv[1:]))

@@ -1,0 +1,89 @@
+"""Try an installed Linkwright as a newcomer would: its version, a check of a robot, and whether the page answers.
+
+Run by the Python of the environment to be tried, which needs nothing but Linkwright.
+
+Usage: PYTHON -I tools/try_installation.py VERSION
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import re
+import signal
+import subprocess
+import sys
+import sysconfig
+import tempfile
+from http.cookiejar import CookieJar
+from pathlib import Path
+from urllib.parse import urljoin
+from urllib.request import HTTPCookieProcessor, ProxyHandler, build_opener
+
+_PROGRAM = Path(sysconfig.get_path("scripts"), "linkwright")
+_ROBOT = Path("robots", "my_robot_description", "urdf", "mbot_with_laser.urdf")
+_SECONDS = 120
+"""More than enough on any machine; nothing is measured here."""
+
+
+def try_it(version: str) -> str:
+    """What was seen, in a line.
+
+    Raises:
+        AssertionError: when something is not as it should be.
+    """
+    with tempfile.TemporaryDirectory() as home:
+        environment = {**os.environ, "HOME": home, "XDG_CONFIG_HOME": home, "XDG_CACHE_HOME": home}
+        said = _run(environment, "--version")
+        assert said.strip() == f"linkwright {version}", said
+        specification = importlib.util.find_spec("linkwright")
+        assert specification is not None
+        assert specification.origin is not None
+        robot = Path(specification.origin).parent / _ROBOT
+        checked = _run(environment, "check", str(robot))
+        fetched = _page(environment, robot)
+    python = f"{sys.version_info[0]}.{sys.version_info[1]}"
+    tree = checked.count("\n")
+    return (
+        f"installed for Python {python}: {said.strip()}, check ({tree} lines), the page with {fetched} files of its own"
+    )
+
+
+def _run(environment: dict[str, str], *words: str) -> str:
+    done = subprocess.run(
+        [_PROGRAM, *words], env=environment, capture_output=True, text=True, timeout=_SECONDS, check=False
+    )
+    assert done.returncode == 0, f"linkwright {' '.join(words)}: status {done.returncode}\n{done.stdout}{done.stderr}"
+    return done.stdout
+
+
+def _page(environment: dict[str, str], robot: Path) -> int:
+    """How many files the page of a robot names and the server has."""
+    words = [_PROGRAM, "view", str(robot), "--no-open"]
+    with subprocess.Popen(
+        words, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+    ) as viewer:
+        assert viewer.stdout is not None
+        try:
+            lines = []
+            for line in viewer.stdout:
+                lines.append(line)
+                if found := re.search(r"Viewer: (http://\S+)", line):
+                    break
+            else:
+                raise AssertionError("linkwright view ended by itself:\n" + "".join(lines))
+            opener = build_opener(ProxyHandler({}), HTTPCookieProcessor(CookieJar()))
+            with opener.open(found[1], timeout=_SECONDS) as answer:
+                page, address = answer.read().decode("utf-8"), answer.geturl()
+            files = re.findall(r'(?:src|href)="(\./[^"]+)"', page)
+            assert any(file.endswith(".js") for file in files), page
+            for file in files:
+                with opener.open(urljoin(address, file), timeout=_SECONDS) as answer:
+                    assert answer.read(), file
+        finally:
+            viewer.send_signal(signal.SIGTERM if os.name == "nt" else signal.SIGINT)
+    return len(files)
+
+
+if __name__ == "__main__":
+    print(try_it(sys.argv[1]))
