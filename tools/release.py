@@ -6,7 +6,7 @@ source distribution: all bytes have to be the same. See "Making a release" in CO
 
 Usage:
     python tools/release.py                  make it (`make release`, which has the programs that this needs)
-    python tools/release.py version 0.2.0    begin that version: in _version.py, and in CHANGELOG.md with today's date
+    python tools/release.py version 0.2.0    begin that version, in CHANGELOG.md and where else it is named
 """
 
 from __future__ import annotations
@@ -31,6 +31,7 @@ ROOT = Path(__file__).resolve().parent.parent
 SCRATCH = ROOT / ".build" / "release"
 RESULTS = ROOT / "dist"
 VERSION = Path("src", "linkwright", "_version.py")
+RECIPE = Path("packaging", "conda", "recipe.yaml")
 _GENERATED = ("src/linkwright/viewer/page", "src/linkwright/standins/stubs")
 _DIFFERENT = (
     {"TZ": "UTC", "LC_ALL": "C", "PYTHONHASHSEED": "1"},
@@ -174,8 +175,10 @@ def begin(version: str, root: Path = ROOT) -> None:
     changelog = root / release_notes.CHANGELOG.name
     text = release_notes.begun(changelog.read_text(encoding="utf-8"), version, today, read_version(root))
     changelog.write_text(text, encoding="utf-8")
-    source = (root / VERSION).read_text(encoding="utf-8")
-    (root / VERSION).write_text(source.replace(read_version(root), version), encoding="utf-8")
+    before = read_version(root)
+    for file in (VERSION, RECIPE):
+        source = (root / file).read_text(encoding="utf-8")
+        (root / file).write_text(source.replace(f'"{before}"', f'"{version}"'), encoding="utf-8")
 
 
 def _uv() -> str:
