@@ -48,6 +48,8 @@ interface Inspection {
   readonly selection: SelectedItem[];
   /** The recording or the last minutes that are shown: times in s since their start; bytes that are kept. */
   readonly timeline: { name: string; position: number; length: number; playing: boolean; problem: string; live: boolean; kept: number } | null;
+  /** What is recorded for pages, the part of the last minutes that is marked (s since their start), and why it failed. */
+  readonly recording: { path: string; length: number; saved: number | null; problem: string; files: string[]; mark: number[] | null };
   readonly time: { paused: boolean; mode: string; source: string; sources: string[] };
   /** Joint positions of the Joints panel, rad or m. */
   readonly joints: Record<string, number>;
@@ -145,6 +147,12 @@ export function publishInspection(
       if (!timeline) return null;
       const { name, start, end } = timeline;
       return { name, position: position - start, length: end - start, playing, problem, live, kept: kept?.size ?? 0 };
+    },
+    get recording() {
+      const { path, length, saved, problem, files } = session.recording;
+      const { mark, timeline } = session.timeline;
+      const start = timeline?.start ?? 0;
+      return { path, length, saved, problem, files: files.map((file) => file.path), mark: mark && [mark.start - start, mark.end - start] };
     },
     get time() {
       const { paused, mode, source, sources } = session.time;

@@ -125,7 +125,7 @@ function start(app: HTMLElement): void {
   const files = new FileCommands(session.configuration);
   app.prepend(new TitleBar(session, dock, files, theme, new ShareMenu(session, stage, tokens)).element);
   takeFileKeys(session, files);
-  app.append(new TimelineBar(session.timeline).element, new StatusBar(session, stage).element);
+  app.append(new TimelineBar(session).element, new StatusBar(session, stage).element);
   document.body.append(door.element);
   fullScreenOnF11(scene.box);
   document.addEventListener("keydown", (event) => {

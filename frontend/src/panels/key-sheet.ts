@@ -61,6 +61,7 @@ export class KeySheet {
           [`Shift ${words.arrows}`, words.move],
           ["+ -", words.zoom],
           [`${words.space} ← →`, strings.timeline.keys],
+          ["[ ]", strings.recording.key],
           [strings.simulation.dragKeys, strings.simulation.dragModel],
           [strings.simulation.pushKeys, strings.simulation.pushModel],
         ],

@@ -1,8 +1,10 @@
 import { button, coalesced, h } from "../dom";
 import { icon } from "../icons";
 import { TAKES_LETTERS } from "../scene/keyboard";
+import type { Session } from "../state/session";
 import { SPEEDS, type TimelineState } from "../state/timeline";
 import { strings } from "../strings";
+import { RecordButton } from "./record-button";
 import { agoText, clockText, densities, keptText, passedText } from "./timeline-text";
 
 /** Parts of the whole that Page Up and Page Down go. */
@@ -17,13 +19,20 @@ export class TimelineBar {
   private readonly time = h("output", { class: "timeline-time" });
   private readonly marks = h("canvas", { class: "timeline-marks" });
   private readonly head = h("div", { class: "timeline-head" });
+  private readonly part = h("div", { class: "timeline-part" });
+  /** Where the user has begun to mark a part, s since the epoch; null while none is being marked. */
+  private markFrom: number | null = null;
   private readonly track: HTMLElement;
   private readonly live: HTMLButtonElement;
   private readonly back: HTMLButtonElement;
   private readonly forward: HTMLButtonElement;
   private readonly problem = h("span", { class: "timeline-problem", role: "alert" });
 
-  constructor(private readonly timeline: TimelineState) {
+  private readonly timeline: TimelineState;
+
+  constructor(session: Session) {
+    const { timeline } = session;
+    this.timeline = timeline;
     const words = strings.timeline;
     this.play = button(words.play, () => timeline.play(!timeline.playing), "tool bare", icon("play"));
     this.loop = button(words.loop, () => timeline.setLoop(!timeline.loop), "tool bare", icon("loop"));
@@ -33,10 +42,12 @@ export class TimelineBar {
     this.forward = button(words.forward, () => timeline.step(true), "tool bare", icon("step"));
     this.speed.append(...SPEEDS.map((speed) => new Option(`${speed}×`, String(speed))));
     this.speed.addEventListener("change", () => timeline.setSpeed(Number(this.speed.value)));
-    this.track = h("div", { class: "timeline-track", role: "slider", tabIndex: 0, aria: { label: words.position } }, this.marks, this.head);
+    this.track = h("div", { class: "timeline-track", role: "slider", tabIndex: 0, aria: { label: words.position } }, this.marks, this.part, this.head);
     this.track.addEventListener("pointerdown", (event) => this.drag(event));
     this.track.addEventListener("pointermove", (event) => {
-      if (this.track.hasPointerCapture(event.pointerId)) this.goTo(event);
+      if (!this.track.hasPointerCapture(event.pointerId)) return;
+      if (this.markFrom === null) this.goTo(event);
+      else timeline.setMark({ start: this.markFrom, end: this.timeAt(event) });
     });
     this.track.addEventListener("keydown", (event) => this.key(event));
     this.element = h(
@@ -50,6 +61,7 @@ export class TimelineBar {
       this.time,
       this.speed,
       this.loop,
+      new RecordButton(session).element,
       this.live,
     );
     timeline.changed.on(() => this.show());
@@ -94,6 +106,7 @@ export class TimelineBar {
     const passed = kept ? (live ? keptText(kept) : agoText(end - position)) : passedText(position - start, end - start);
     this.time.textContent = passed;
     this.time.title = kept ? `${clockText(position)}\n${strings.timeline.kept(keptText(kept), (kept.most / 1e6).toFixed(0))}` : clockText(position);
+    this.showMark(start, end);
     this.track.setAttribute("aria-valuemin", "0");
     this.track.setAttribute("aria-valuemax", String(end - start));
     this.track.setAttribute("aria-valuenow", (position - start).toFixed(3));
@@ -103,13 +116,28 @@ export class TimelineBar {
   private drag(event: PointerEvent): void {
     if (event.button !== 0) return;
     this.track.setPointerCapture(event.pointerId);
-    this.goTo(event);
+    this.markFrom = event.shiftKey && this.timeline.timeline?.live === true ? this.timeAt(event) : null;
+    if (this.markFrom === null) this.goTo(event);
+    else this.timeline.setMark(null);
   }
 
   private goTo(event: PointerEvent): void {
-    const { timeline } = this.timeline;
+    this.timeline.seek(this.timeAt(event));
+  }
+
+  /** The time under the pointer, s since the epoch. */
+  private timeAt(event: PointerEvent): number {
+    const { start, end } = this.timeline.timeline ?? { start: 0, end: 0 };
     const box = this.track.getBoundingClientRect();
-    if (timeline) this.timeline.seek(timeline.start + ((event.clientX - box.left) / box.width) * (timeline.end - timeline.start));
+    return Math.min(end, Math.max(start, start + ((event.clientX - box.left) / box.width) * (end - start)));
+  }
+
+  private showMark(start: number, end: number): void {
+    const { mark } = this.timeline;
+    this.part.hidden = mark === null;
+    if (!mark || end <= start) return;
+    this.part.style.left = `${((100 * (mark.start - start)) / (end - start)).toFixed(3)}%`;
+    this.part.style.width = `${((100 * (mark.end - mark.start)) / (end - start)).toFixed(3)}%`;
   }
 
   private key(event: KeyboardEvent): void {
@@ -137,6 +165,8 @@ export class TimelineBar {
       if (event.key === " " && !target.closest("button, input, summary, a")) this.timeline.play(!this.timeline.playing);
       else if (event.key === "ArrowLeft" && this.isFree(target)) this.timeline.step(false);
       else if (event.key === "ArrowRight" && this.isFree(target)) this.timeline.step(true);
+      else if (event.key === "[" && this.timeline.timeline.live) this.timeline.markHere("start");
+      else if (event.key === "]" && this.timeline.timeline.live) this.timeline.markHere("end");
       else return;
       event.preventDefault();
     });

@@ -11,7 +11,23 @@ export function passedText(passed: number, whole: number): string {
 
 /** `1:30 · 45 MB`: how long a time is kept, and what it takes. */
 export function keptText({ start, end, size }: Kept): string {
-  return `${minutes(end - start, 0)} · ${(size / 1e6).toFixed(size < 1e7 ? 1 : 0)} MB`;
+  return amountText(end - start, size);
+}
+
+/** `1:30 · 45 MB`: seconds and bytes. */
+export function amountText(seconds: number, bytes: number): string {
+  return `${lengthText(seconds)} · ${sizeText(bytes)}`;
+}
+
+/** `1:30`: seconds. */
+export function lengthText(seconds: number): string {
+  return minutes(seconds, 0);
+}
+
+/** `45 kB`, `4.5 MB`, `1.20 GB`. */
+export function sizeText(bytes: number): string {
+  if (bytes < 1e6) return `${(bytes / 1e3).toFixed(0)} kB`;
+  return bytes < 1e9 ? `${(bytes / 1e6).toFixed(bytes < 1e7 ? 1 : 0)} MB` : `${(bytes / 1e9).toFixed(2)} GB`;
 }
 
 /** `−0:07.250`: how long ago what is shown was. */

@@ -85,6 +85,7 @@ import type {
   WatchTopics,
 } from "./monitor";
 import type { AskPoint, CellGrid, CloudPoints, PointFields } from "./points";
+import type { RecordTopics, RecordingState, SaveMinutes, StopRecording } from "./recording";
 import type { AskProvenance, LinkProvenance, MeshStatus, RobotScene } from "./robot";
 import type { Hello, Received } from "./session";
 import type {
@@ -143,6 +144,7 @@ export * from "./markers";
 export * from "./modelling";
 export * from "./monitor";
 export * from "./points";
+export * from "./recording";
 export * from "./robot";
 export * from "./session";
 export * from "./simulation";
@@ -190,6 +192,7 @@ export type ServerMessage =
   | Playhead
   | PointFields
   | PropertyChanged
+  | RecordingState
   | RobotScene
   | SavedViews
   | SeriesStates
@@ -261,6 +264,7 @@ export type PageMessage =
   | PushLink
   | RandomizeJoints
   | Received
+  | RecordTopics
   | Redo
   | RedoWorld
   | RemoveDisplays
@@ -272,6 +276,7 @@ export type PageMessage =
   | ResetTime
   | RevertConfiguration
   | SaveConfiguration
+  | SaveMinutes
   | SaveView
   | SaveWorld
   | SayCommand
@@ -287,6 +292,7 @@ export type PageMessage =
   | ShowPanels
   | SpawnModel
   | StepTime
+  | StopRecording
   | Talk
   | Undo
   | UndoWorld

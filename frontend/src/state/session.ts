@@ -16,6 +16,7 @@ import { Modelling } from "./modelling/modelling";
 import { MonitorState } from "./monitor/monitor";
 import { PoseStore } from "./named-poses";
 import type { SceneMenu } from "./scene-menu";
+import { RecordingControl } from "./recording";
 import { SelectionState } from "./selection";
 import { Signal } from "./signal";
 import { SimulationState } from "./simulation";
@@ -42,6 +43,7 @@ export class Session {
   readonly tools: ToolsState;
   readonly time: TimeControlState;
   readonly timeline: TimelineState;
+  readonly recording: RecordingControl;
   readonly comparison: ComparisonState;
   readonly data: DisplayDataStore;
   readonly slowLine: SlowLine;
@@ -71,6 +73,7 @@ export class Session {
     this.tools = new ToolsState(connection);
     this.time = new TimeControlState(connection);
     this.timeline = new TimelineState(connection);
+    this.recording = new RecordingControl(connection);
     this.comparison = new ComparisonState(connection);
     this.data = new DisplayDataStore(connection);
     this.slowLine = new SlowLine(this.data);

@@ -4,6 +4,12 @@ import { Signal } from "./signal";
 
 export const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 5, 10] as const;
 
+/** Two times, s since the epoch. */
+export interface Span {
+  start: number;
+  end: number;
+}
+
 /** A recording that the server plays, or what came in the last minutes: its times, and where it is. */
 export class TimelineState {
   readonly changed = new Signal();
@@ -15,11 +21,12 @@ export class TimelineState {
   private target: number | null = null;
   private asked = false;
   private wanted = 0;
+  private marked: Span | null = null;
 
   constructor(private readonly connection: Connection) {
     connection.on("hello", () => {
       // A new connection knows nothing of what was asked for; a program without a recording tells of none.
-      this.recording = this.playhead = this.keptNow = this.target = null;
+      this.recording = this.playhead = this.keptNow = this.target = this.marked = null;
       this.asked = false;
       this.changed.emit();
     });
@@ -71,6 +78,28 @@ export class TimelineState {
   get position(): number {
     if (this.live && this.target === null) return this.recording?.end ?? 0;
     return this.target ?? this.playhead?.position ?? this.recording?.start ?? 0;
+  }
+
+  /** The part of the last minutes that the user has marked, as far as it is still kept. */
+  get mark(): Span | null {
+    const { recording, marked } = this;
+    if (!recording?.live || !marked || marked.end <= recording.start) return null;
+    return { start: Math.max(marked.start, recording.start), end: Math.min(marked.end, recording.end) };
+  }
+
+  /** Marks the part between two times, whichever is the earlier; null for none. */
+  setMark(mark: Span | null): void {
+    this.marked = mark && { start: Math.min(mark.start, mark.end), end: Math.max(mark.start, mark.end) };
+    this.changed.emit();
+  }
+
+  /** Has the mark begin, or end, at the time that is shown. */
+  markHere(which: "start" | "end"): void {
+    const { recording, position } = this;
+    if (!recording?.live) return;
+    const other = this.mark ?? { start: recording.start, end: recording.end };
+    if (which === "start") this.setMark({ start: position, end: other.end > position ? other.end : recording.end });
+    else this.setMark({ start: other.start < position ? other.start : recording.start, end: position });
   }
 
   play(playing: boolean): void {

@@ -9,6 +9,7 @@ import { monitor } from "./en/monitor";
 import { tools } from "./en/tools";
 import { sharing } from "./en/sharing";
 import { simulation } from "./en/simulation";
+import { recording } from "./en/recording";
 import { timeline } from "./en/timeline";
 import { voice } from "./en/voice";
 
@@ -32,6 +33,7 @@ export const en = {
   simulation,
   meshes,
   timeline,
+  recording,
   comparison,
   modelling,
   voice,

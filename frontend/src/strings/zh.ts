@@ -10,6 +10,7 @@ import { monitor } from "./zh/monitor";
 import { tools } from "./zh/tools";
 import { sharing } from "./zh/sharing";
 import { simulation } from "./zh/simulation";
+import { recording } from "./zh/recording";
 import { timeline } from "./zh/timeline";
 import { voice } from "./zh/voice";
 
@@ -22,6 +23,7 @@ export const zh: Strings = {
   simulation,
   meshes,
   timeline,
+  recording,
   comparison,
   modelling,
   voice,

@@ -147,6 +147,20 @@ class History:
             last = [self._tracks[name].until(at_ns - 1, 1) for name in topics if name in self._tracks]
             return max((each[0][0] for each in last if each), default=None)
 
+    def part(self, start_ns: int, end_ns: int) -> list[Recorded]:
+        """What came from one time to another, both included, in its order.
+
+        Before it stands what is needed to show its beginning, see `state_at`, as if that had come then.
+        """
+        with self.lock:
+            before = self.state_at(list(self._tracks), start_ns - 1)
+            came = [(name, *each) for name, track in self._tracks.items() for each in track.between(start_ns, end_ns)]
+        came.sort(key=lambda each: each[2])
+        return [
+            *((name, start_ns, data) for name, _, data in before),
+            *((name, at, data) for name, at, _, data in came),
+        ]
+
     def after(self, topics: Collection[str], start_ns: int, number: int) -> tuple[int, Recorded] | None:
         """The first message of some topics from a time on that is not among the first `number`, and its number."""
         best: tuple[_Kept, str] | None = None

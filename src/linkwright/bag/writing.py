@@ -73,6 +73,11 @@ class BagWriter:
         """The topics added so far."""
         return self._connections.keys()
 
+    @property
+    def size(self) -> int:
+        """Bytes of its files, as far as they are written."""
+        return sum(each.stat().st_size for each in self.path.iterdir())
+
     def add_topic(self, name: str, type_name: str, offered_qos: Collection[QoSProfile] = ()) -> None:
         """Make room for a topic; its messages may follow.
 

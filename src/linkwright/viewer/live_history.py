@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from linkwright.bag.history import History
+from linkwright.bag.moments import Recorded
 from linkwright.bag.playback import Playback
 from linkwright.bag.publishing import CLOCK_TOPIC
-from linkwright.graph import MessageInfo
+from linkwright.bag.saving import KeptTopic, in_simulated_time, last_reset_ns
+from linkwright.graph import DurabilityPolicy, MessageInfo
 from linkwright.graph.endpoints.subscription import Detailed
 from linkwright.messages import serialize
 
@@ -74,6 +76,35 @@ class LiveHistory:
         self._context.held_time.release(self._context.node.get_clock())
         # A turn of the loop later: whoever is told of jumps of time forgets what was, then comes what is.
         asyncio.get_running_loop().call_soon(self._show_present)
+
+    def topics(self) -> dict[str, KeptTopic]:
+        """The topics whose messages are kept, with the profiles of those who publish them now."""
+        graph = self._context.node.graph
+        found = {}
+        for name, keeper in list(self._keepers.items()):
+            offered = [each.qos_profile for each in graph.get_publishers_info_by_topic(name)]
+            found[name] = KeptTopic(keeper.type_name, tuple(offered or [keeper.qos_profile]))
+        return found
+
+    def part(self, topics: Mapping[str, KeptTopic], start_ns: int, end_ns: int, *, simulated: bool) -> list[Recorded]:
+        """What is kept of some time, with what is needed to show its beginning, as a recording has it.
+
+        Args:
+            topics: see `topics`.
+            start_ns: the earlier time, nanoseconds since the epoch.
+            end_ns: the later time.
+            simulated: whether messages get the times that ``/clock`` told; then those from before the last reset of
+                the simulation are left out, because time begins anew there.
+        """
+        messages = self.history.part(max(start_ns, self.history.start_ns), end_ns)
+        if not simulated:
+            return messages
+        reset = last_reset_ns(messages)
+        if reset is not None:
+            lasting = [name for name, each in topics.items() if _is_latched(each)]
+            before = [(name, reset, data) for name, _, data in self.history.state_at(lasting, reset - 1)]
+            messages = [*before, *(each for each in messages if each[1] >= reset)]
+        return in_simulated_time(messages)
 
     def close(self) -> None:
         """Keep nothing more."""
@@ -154,3 +185,7 @@ class LiveHistory:
                 self._give(subscriptions, *message)
             self.live = True
         self.changed()
+
+
+def _is_latched(topic: KeptTopic) -> bool:
+    return all(each.durability is DurabilityPolicy.TRANSIENT_LOCAL for each in topic.offered)

@@ -18,6 +18,7 @@ from linkwright.viewer.displays.base.display import ViewerDisplay
 from linkwright.viewer.features.comparison.feature import ComparisonFeature
 from linkwright.viewer.features.joints import JointsFeature
 from linkwright.viewer.features.page_feature import PageFeature, make_features
+from linkwright.viewer.features.recording import RecordingFeature
 from linkwright.viewer.features.timeline import TimelineFeature
 from linkwright.viewer.frames.history import FrameHistory
 from linkwright.viewer.protocol.message import PageMessage, ServerMessage, encode
@@ -122,7 +123,7 @@ class Viewer:
                 f"Listening on '{self._host}': whoever reaches it and knows the token can see and move the robot"
             )
         if self._history:
-            self._timeline.keep(self._history)
+            self._recording.use(self._timeline.keep(self._history))
         self.managers.shared.start()
         for feature in self._features:
             feature.start()
@@ -171,6 +172,7 @@ class Viewer:
     def attach_recording(self, playback: Playback, bag: BagReader) -> None:
         """Have pages show a recording's timeline."""
         self._timeline.attach(playback, bag)
+        self._recording.withdraw()
 
     def playback_failed(self, error: LinkwrightError) -> None:
         """Tell pages that the recording cannot be read on."""
@@ -183,6 +185,10 @@ class Viewer:
     @property
     def _timeline(self) -> TimelineFeature:
         return next(each for each in self._features if isinstance(each, TimelineFeature))
+
+    @property
+    def _recording(self) -> RecordingFeature:
+        return next(each for each in self._features if isinstance(each, RecordingFeature))
 
     def show_diagnostics(self, diagnostics: Sequence[Diagnostic]) -> None:
         """Show what is wrong with the description; none clears the list."""

@@ -9,6 +9,7 @@ from typing import ClassVar
 from linkwright.bag.playback import FASTEST, SLOWEST, Playback
 from linkwright.bag.reading import BagReader
 from linkwright.diagnostics import LinkwrightError
+from linkwright.diagnostics.translation import translated
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
 from linkwright.viewer.live_history import LiveHistory
 from linkwright.viewer.protocol.message import ServerMessage
@@ -77,17 +78,18 @@ class TimelineFeature(PageFeature):
         self.context.pages.publish(self._timeline)
         self._changed()
 
-    def keep(self, most_bytes: int) -> None:
-        """Keep what comes in the last minutes, so many bytes of it, and have pages see it."""
+    def keep(self, most_bytes: int) -> LiveHistory:
+        """Keep what comes in the last minutes, so many bytes of it, and have pages see it; returns what keeps it."""
         self._live = LiveHistory(self.context, most_bytes, self.failed)
         self._live.begin_anew = self._begin_anew
         self._live.changed = self._changed
         self._playback = self._live.playback
         self._playback.changed.append(self._changed)
+        return self._live
 
     def failed(self, error: LinkwrightError) -> None:
         """The recording cannot be read on."""
-        self._problem = str(error.diagnostics[0].message)
+        self._problem = "; ".join(each.message for each in translated(error.diagnostics))
         for diagnostic in error.diagnostics:
             self.context.report(diagnostic)
 

@@ -2,7 +2,7 @@
 
 A description may come from a stranger, and so may a request. A page is served only meshes and images, only from
 folders that a description shown now names, and only where the real path, links followed, is still inside. A file that
-was made for a page can be fetched once, and soon.
+was made for a page can be fetched once, and soon; recordings that pages made, as long as the program runs.
 """
 
 from __future__ import annotations
@@ -257,6 +257,17 @@ class Downloads:
 
     def __init__(self) -> None:
         self._files: dict[str, Download] = {}
+        self._kept: dict[str, Path] = {}
+
+    def keep(self, path: Path) -> str:
+        """Let a file be fetched as often as pages like; its address."""
+        key = secrets.token_urlsafe(16)
+        self._kept[key] = path
+        return f"/export/{key}/{quote(path.name)}"
+
+    def path(self, key: str) -> Path | None:
+        """The file with a key that `keep` has made."""
+        return self._kept.get(key)
 
     def put(self, file: Download) -> str:
         """Keep a file; its address."""

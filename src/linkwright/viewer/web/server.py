@@ -39,6 +39,9 @@ _IDLE = 30.0
 """Seconds that a connection may wait for its next request."""
 
 _BACKLOG = 128
+_BLOCK = 256 * 1024
+"""Bytes of a long file that are read at once."""
+
 _GOODBYE = 0.5
 """Seconds a page has to answer a closing handshake, and a request to end."""
 
@@ -248,12 +251,15 @@ class WebServer:
 
     async def _export(self, request: web.Request) -> web.StreamResponse:
         file = self._downloads.take(request.match_info["key"])
+        kept = self._downloads.path(request.match_info["key"])
+        if kept is not None:
+            self._admit(request)
+            return await _streamed(request, kept)
         if file is None:
             raise web.HTTPNotFound(text="There is no such file; it can be fetched once.\n")
         self._admit(request)
-        attached = f"attachment; filename*=UTF-8''{quote(file.name)}"
         return web.Response(
-            body=file.data, headers={"Content-Type": file.content_type, "Content-Disposition": attached}
+            body=file.data, headers={"Content-Type": file.content_type, "Content-Disposition": _attached(file.name)}
         )
 
     async def _socket(self, request: web.Request) -> web.StreamResponse:
@@ -312,6 +318,29 @@ async def _file_response(request: web.Request, path: Path, content_type: str, ca
         return web.Response(status=304, headers=headers)
     response = web.Response(body=read.body, headers={**headers, "Content-Type": content_type})
     response.last_modified = read.modified
+    return response
+
+
+def _attached(name: str) -> str:
+    return f"attachment; filename*=UTF-8''{quote(name)}"
+
+
+async def _streamed(request: web.Request, path: Path) -> web.StreamResponse:
+    """A file to be saved, however long it is: a block of it is in memory at a time."""
+    try:
+        file = await asyncio.to_thread(path.open, "rb")
+    except OSError:
+        raise _no_file() from None
+    with file:
+        response = web.StreamResponse(
+            headers={"Content-Type": "application/octet-stream", "Content-Disposition": _attached(path.name)}
+        )
+        response.content_length = left = os.fstat(file.fileno()).st_size
+        await response.prepare(request)
+        while left and (block := await asyncio.to_thread(file.read, min(left, _BLOCK))):
+            left -= len(block)
+            await response.write(block)
+    await response.write_eof()
     return response
 
 

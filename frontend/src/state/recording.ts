@@ -1,0 +1,93 @@
+import type { Connection } from "../connection/connection";
+import type { RecordedFile, RecordingState } from "../protocol";
+import { Signal } from "./signal";
+
+/** What the server records for pages: one recording at a time, which all of them see. */
+export class RecordingControl {
+  readonly changed = new Signal();
+  /** What this page had recorded or saved is a file now. */
+  readonly made = new Signal<RecordedFile>();
+  /** What this page asked for could not be done, or ended early; why. */
+  readonly refused = new Signal<string>();
+  private told: RecordingState | null = null;
+  private asked = false;
+
+  constructor(private readonly connection: Connection) {
+    connection.on("hello", () => {
+      this.told = null;
+      this.asked = false;
+      this.changed.emit();
+    });
+    connection.on("recording_state", (state) => this.take(state));
+  }
+
+  /** Whether topics can be recorded; not beside a recording that is shown. */
+  get possible(): boolean {
+    return this.told?.possible ?? false;
+  }
+
+  get isRecording(): boolean {
+    return (this.told?.path ?? "") !== "";
+  }
+
+  /** The folder that is written, on the machine of the server. */
+  get path(): string {
+    return this.told?.path ?? "";
+  }
+
+  /** How long it is, s. */
+  get length(): number {
+    return this.told?.length ?? 0;
+  }
+
+  /** Bytes that are written. */
+  get size(): number {
+    return this.told?.size ?? 0;
+  }
+
+  /** The part of the last minutes that is saved, 0 to 1; null while none is. */
+  get saved(): number | null {
+    return this.told?.saved ?? null;
+  }
+
+  get problem(): string {
+    return this.told?.problem ?? "";
+  }
+
+  /** Those made since the program runs, the last first. */
+  get files(): readonly RecordedFile[] {
+    return this.told?.files ?? [];
+  }
+
+  /** Records some topics; none for all that there are and those to come. */
+  record(topics: readonly string[]): void {
+    this.asked = true;
+    this.connection.send({ type: "record_topics", topics: [...topics] });
+  }
+
+  stop(): void {
+    this.asked = true;
+    this.connection.send({ type: "stop_recording" });
+  }
+
+  /** Saves what came in the last minutes between two times, s since the epoch; null for their ends. */
+  save(start: number | null, end: number | null): void {
+    this.asked = true;
+    this.connection.send({ type: "save_minutes", start, end });
+  }
+
+  private take(state: RecordingState): void {
+    const before = this.told;
+    this.told = state;
+    this.changed.emit();
+    if (!this.asked || before === null) return;
+    const [newest] = state.files;
+    if (state.problem !== "" && state.problem !== before.problem) {
+      this.asked = this.isRecording;
+      this.refused.emit(state.problem);
+    } else if (newest && newest.url !== before.files[0]?.url) {
+      this.asked = this.isRecording;
+      this.made.emit(newest);
+    }
+  }
+}

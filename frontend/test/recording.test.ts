@@ -1,0 +1,96 @@
+import { beforeEach, describe, expect, it, vi } from "vitest";
+import { Connection } from "../src/connection/connection";
+import { amountText, sizeText } from "../src/panels/timeline-text";
+import type { PageMessage, RecordedFile, RecordingState } from "../src/protocol";
+import { RecordingControl } from "../src/state/recording";
+import { TimelineState } from "../src/state/timeline";
+
+function told(part: Partial<RecordingState> = {}): RecordingState {
+  return { type: "recording_state", possible: true, path: "", length: 0, size: 0, saved: null, problem: "", files: [], ...part };
+}
+
+const FILE: RecordedFile = { name: "rosbag2_1", path: "/home/me/rosbag2_1", size: 1e6, length: 3, url: "/export/a/b.mcap" };
+
+describe("recording", () => {
+  let sent: PageMessage[];
+  let connection: Connection;
+  let recording: RecordingControl;
+
+  beforeEach(() => {
+    sent = [];
+    connection = new Connection("ws://localhost/ws");
+    vi.spyOn(connection, "send").mockImplementation((message) => void sent.push(message));
+    recording = new RecordingControl(connection);
+    connection.message.emit(told());
+  });
+
+  it("offers the file to the page that asked for it, and to no other", () => {
+    const made: RecordedFile[] = [];
+    const others: RecordedFile[] = [];
+    const other = new RecordingControl(connection);
+    connection.message.emit(told());
+    recording.made.on((file) => made.push(file));
+    other.made.on((file) => others.push(file));
+    recording.record([]);
+    connection.message.emit(told({ path: FILE.path, length: 1, size: 10 }));
+    expect([recording.isRecording, other.isRecording, other.size]).toEqual([true, true, 10]);
+    recording.stop();
+    connection.message.emit(told({ files: [FILE] }));
+    expect(made).toEqual([FILE]);
+    expect(others).toEqual([]);
+    expect(sent.map(({ type }) => type)).toEqual(["record_topics", "stop_recording"]);
+  });
+
+  it("says once why it ended early", () => {
+    const why: string[] = [];
+    recording.refused.on((text) => why.push(text));
+    recording.record(["/tf"]);
+    connection.message.emit(told({ path: FILE.path }));
+    connection.message.emit(told({ problem: "the disk is full", files: [FILE] }));
+    connection.message.emit(told({ problem: "the disk is full", files: [FILE] }));
+    expect(why).toEqual(["the disk is full"]);
+    expect(recording.files).toEqual([FILE]);
+  });
+
+  it("is not possible before the program says so, nor beside a recording", () => {
+    connection.message.emit({ type: "hello", protocol: 0, version: "", title: "" });
+    expect(recording.possible).toBe(false);
+    connection.message.emit(told({ possible: false }));
+    expect(recording.possible).toBe(false);
+  });
+
+  it("tells bytes and seconds", () => {
+    expect(amountText(75, 4.5e6)).toBe("1:15 · 4.5 MB");
+    expect(sizeText(2.345e9)).toBe("2.35 GB");
+    expect(sizeText(45_100)).toBe("45 kB");
+  });
+});
+
+describe("the marked part of the last minutes", () => {
+  let connection: Connection;
+  let timeline: TimelineState;
+
+  beforeEach(() => {
+    connection = new Connection("ws://localhost/ws");
+    timeline = new TimelineState(connection);
+    connection.message.emit({ type: "timeline", name: "", start: 100, end: 110, topics: [], live: true });
+    connection.message.emit({ type: "playhead", position: 104, playing: false, speed: 1, loop: false, seeks: 0, problem: "", live: false });
+  });
+
+  it("begins and ends where the user says, in whichever order", () => {
+    timeline.markHere("start");
+    expect(timeline.mark).toEqual({ start: 104, end: 110 });
+    timeline.setMark({ start: 108, end: 103 });
+    expect(timeline.mark).toEqual({ start: 103, end: 108 });
+    timeline.markHere("end");
+    expect(timeline.mark).toEqual({ start: 103, end: 104 });
+  });
+
+  it("goes with what is no longer kept", () => {
+    timeline.setMark({ start: 103, end: 108 });
+    connection.message.emit({ type: "kept", start: 105, end: 120, size: 1, most: 2 });
+    expect(timeline.mark).toEqual({ start: 105, end: 108 });
+    connection.message.emit({ type: "kept", start: 109, end: 130, size: 1, most: 2 });
+    expect(timeline.mark).toBeNull();
+  });
+});

@@ -1,0 +1,85 @@
+"""Saving messages that are in memory as a recording."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from linkwright.bag.moments import Recorded
+from linkwright.bag.publishing import CLOCK_TOPIC
+from linkwright.bag.writing import BagWriter
+from linkwright.graph import QoSProfile
+from linkwright.messages import deserialize, get_message
+
+_TOLD_EVERY = 1000
+"""Messages between two calls that tell how much is written."""
+
+
+@dataclass(frozen=True, slots=True)
+class KeptTopic:
+    """What is known of a topic whose messages are kept.
+
+    Attributes:
+        type_name: such as ``std_msgs/msg/String``.
+        offered: the profiles of its publishers.
+    """
+
+    type_name: str
+    offered: tuple[QoSProfile, ...]
+
+
+def save_messages(
+    path: Path, topics: Mapping[str, KeptTopic], messages: Sequence[Recorded], tell: Callable[[float], object]
+) -> None:
+    """Write messages into a new recording.
+
+    Args:
+        path: the folder to make.
+        topics: all that messages are of.
+        messages: in the order of their times.
+        tell: called now and then with the part that is written, 0 to 1.
+
+    Raises:
+        LinkwrightError: BAG105, BAG107, BAG108; see `BagWriter`.
+    """
+    with BagWriter(path) as writer:
+        for number, (name, stamp_ns, data) in enumerate(messages):
+            if name not in writer.topics:
+                writer.add_topic(name, topics[name].type_name, topics[name].offered)
+            writer.write(name, stamp_ns, data)
+            if number % _TOLD_EVERY == 0:
+                tell(number / len(messages))
+
+
+def last_reset_ns(messages: Sequence[Recorded]) -> int | None:
+    """When ``/clock`` told an earlier time than before, for the last time; None where it never did."""
+    found, now = None, None
+    for name, stamp_ns, data in messages:
+        if name == CLOCK_TOPIC:
+            told = _told_ns(data)
+            if now is not None and told < now:
+                found = stamp_ns
+            now = told
+    return found
+
+
+def in_simulated_time(messages: Sequence[Recorded]) -> list[Recorded]:
+    """The messages with the times that ``/clock`` told when they came, in place of those of the system.
+
+    What came before the first of ``/clock`` has its time; where there is none, all stay as they are.
+    """
+    now = next((_told_ns(data) for name, _, data in messages if name == CLOCK_TOPIC), None)
+    if now is None:
+        return list(messages)
+    found = []
+    for name, _, data in messages:
+        if name == CLOCK_TOPIC:
+            now = _told_ns(data)
+        found.append((name, now, data))
+    return found
+
+
+def _told_ns(data: bytes) -> int:
+    clock = deserialize(data, get_message("rosgraph_msgs/msg/Clock")).clock
+    return int(clock.sec) * 1_000_000_000 + int(clock.nanosec)

@@ -1,0 +1,153 @@
+"""Recording from the page, used in a real browser: topics and the last minutes become files that open again."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from linkwright.bag import BagReader
+from tests.browser.conftest import Program, becomes, state, until
+
+pytestmark = pytest.mark.browser
+
+MODEL = (
+    '<robot name="arm"><link name="base"/><link name="tip"/><joint name="turn" type="continuous">'
+    '<parent link="base"/><child link="tip"/><axis xyz="0 0 1"/></joint></robot>'
+)
+
+
+@pytest.fixture
+def program(start, tmp_path: Path) -> Program:
+    (tmp_path / "arm.urdf").write_text(MODEL)
+    shown: Program = start("view", "arm.urdf")
+    return shown
+
+
+@pytest.fixture
+def page(program: Program, open_page) -> Page:
+    """A page that shows a robot, whose transforms come all the time."""
+    shown: Page = open_page(program, wait=False)
+    until(shown, "lw.timeline?.live && lw.timeline.kept > 1000 && lw.timeline.length > 2 && lw.frames.tip")
+    return shown
+
+
+def choose(page: Page, entry: str) -> None:
+    """Take an entry of the menu of Record."""
+    page.get_by_role("button", name="Record", exact=True).click()
+    page.get_by_role("menuitem", name=entry).click()
+
+
+def stop(page: Page) -> None:
+    page.get_by_role("button", name="Stop recording").click()
+
+
+def is_stopped(page: Page, count: int) -> None:
+    until(page, f"lw.recording.path === '' && lw.recording.files.length === {count}")
+
+
+def topics(page: Page) -> dict[str, int]:
+    """The topics of the newest file, and how many messages they have."""
+    with BagReader(state(page, "recording")["files"][0]) as bag:
+        assert bag.finding is None
+        return {each.name: each.count for each in bag.topics}
+
+
+def test_all_topics_are_recorded_fetched_and_open_again(page: Page, open_page, start, tmp_path: Path):
+    choose(page, "Record all topics")
+    until(page, "lw.recording.path !== ''")
+    folder = Path(state(page, "recording")["path"])
+    assert folder.parent == tmp_path
+    until(page, "lw.recording.length >= 2")
+    stop(page)
+    is_stopped(page, 1)
+    dialog = page.get_by_role("dialog")
+    expect(dialog).to_contain_text(str(folder))
+    with page.expect_download() as fetched:
+        dialog.get_by_role("button", name="Download").click()
+    taken = tmp_path / "taken.mcap"
+    fetched.value.save_as(taken)
+    (file,) = folder.glob("*.mcap")
+    assert taken.read_bytes() == file.read_bytes()
+    assert {"/tf", "/robot_description", "/joint_states"} <= topics(page).keys()
+    again = open_page(start("view", str(taken)), wait=False)
+    until(again, "lw.timeline?.live === false && lw.timeline.length > 1 && lw.frames.tip")
+    assert again.get_by_role("button", name="Record", exact=True).count() == 0
+
+
+def test_chosen_topics_are_recorded(page: Page):
+    choose(page, "Record chosen topics…")
+    dialog = page.get_by_role("dialog")
+    expect(dialog.get_by_role("button", name="Record", exact=True)).to_be_disabled()
+    dialog.get_by_role("checkbox", name="/joint_states").check()
+    dialog.get_by_role("button", name="Record", exact=True).click()
+    until(page, "lw.recording.length >= 2")
+    stop(page)
+    is_stopped(page, 1)
+    assert topics(page).keys() == {"/joint_states"}
+
+
+def test_all_pages_see_a_recording_that_goes_on_without_its_page(program: Program, page: Page, open_page):
+    other = open_page(program, wait=False)
+    choose(page, "Record all topics")
+    until(other, "lw.recording?.path !== ''")
+    page.close()
+    until(other, "lw.recording.length >= 3")
+    stop(other)
+    is_stopped(other, 1)
+    other.get_by_role("dialog").get_by_role("button", name="OK").click()
+    other.get_by_role("button", name="Record", exact=True).click()
+    name = Path(state(other, "recording")["files"][0]).name
+    assert other.get_by_role("menuitem", name=f"Download {name}").count() == 1
+
+
+def test_the_last_minutes_are_saved_and_a_part_that_is_marked(page: Page):
+    choose(page, "Save the last minutes")
+    is_stopped(page, 1)
+    whole = topics(page)
+    assert whole["/robot_description"] == 1
+    page.get_by_role("dialog").get_by_role("button", name="OK").click()
+    page.get_by_role("button", name="Pause (Space)").click()
+    until(page, "!lw.timeline.live")
+    box = page.get_by_role("slider", name="Time in the last minutes").bounding_box()
+    assert box is not None
+    middle = box["y"] + box["height"] / 2
+    page.keyboard.down("Shift")
+    page.mouse.move(box["x"] + 0.2 * box["width"], middle)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 0.5 * box["width"], middle, steps=4)
+    page.mouse.up()
+    page.keyboard.up("Shift")
+    until(page, "lw.recording.mark && lw.recording.mark[1] > lw.recording.mark[0]")
+    begin, end = state(page, "recording")["mark"]
+    choose(page, "Save the marked part")
+    is_stopped(page, 2)
+    part = topics(page)
+    assert 0 < part["/tf"] < whole["/tf"]
+    assert part["/robot_description"] == 1, "it is older, and needed"
+    with BagReader(state(page, "recording")["files"][0]) as bag:
+        assert (bag.end_ns - bag.start_ns) / 1e9 == pytest.approx(end - begin, abs=0.1)
+
+
+def test_a_part_is_marked_by_keys_and_unmarked(page: Page):
+    page.get_by_role("button", name="Pause (Space)").click()
+    until(page, "!lw.timeline.live")
+    page.locator("body").focus()
+    page.keyboard.press("]")
+    until(page, "lw.recording.mark?.[0] === 0")
+    choose(page, "Mark nothing")
+    becomes(lambda: state(page, "recording")["mark"], None)
+
+
+def test_a_folder_that_is_gone_is_said_on_the_page(start, open_page, tmp_path: Path):
+    folder = tmp_path / "here"
+    folder.mkdir()
+    (folder / "arm.urdf").write_text(MODEL)
+    page = open_page(start("view", "arm.urdf", cwd=folder), wait=False)
+    until(page, "lw.timeline?.live && lw.frames.tip")
+    folder.rename(tmp_path / "away")
+    folder.write_text("a file in its place")
+    choose(page, "Record all topics")
+    expect(page.get_by_role("dialog")).to_contain_text("cannot be made")
+    assert state(page, "recording")["path"] == ""
