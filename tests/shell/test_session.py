@@ -180,6 +180,44 @@ def test_ctrl_c_is_for_the_command(tmp_path: Path) -> None:
         assert process.wait(timeout=60) == 4
 
 
+def test_an_interrupt_of_the_shell_alone_reaches_the_command(tmp_path: Path) -> None:
+    """As from ``kill -INT``, or a program that started the shell. What is sent to all comes once."""
+    command = "trap 'echo heard' INT; echo ready; while :; do sleep 0.05; done"
+    process = subprocess.Popen(
+        [sys.executable, "-m", "linkwright", "shell", "--", "sh", "-c", command],
+        stdout=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+        cwd=tmp_path,
+    )
+    with process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "ready\n"
+        process.send_signal(signal.SIGINT)
+        assert process.stdout.readline() == "heard\n"
+        os.killpg(process.pid, signal.SIGINT)
+        assert process.stdout.readline() == "heard\n"
+        process.terminate()
+        assert process.wait(timeout=60) == 128 + signal.SIGTERM
+        assert process.stdout.read() == ""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux tells a process that its parent was killed")
+def test_the_command_ends_when_the_shell_is_killed(tmp_path: Path) -> None:
+    process = subprocess.Popen(
+        [sys.executable, "-m", "linkwright", "shell", "--", "sh", "-c", "echo ready; exec sleep 600"],
+        stdout=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+        cwd=tmp_path,
+    )
+    with process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "ready\n"
+        process.kill()
+        assert process.stdout.read() == ""  # ends when nobody holds it any more
+
+
 def test_ctrl_c_at_the_very_end_of_the_command_leaves_its_status(monkeypatch: pytest.MonkeyPatch) -> None:
     wait = os.waitpid
 

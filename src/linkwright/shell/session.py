@@ -21,6 +21,8 @@ from linkwright.shell.instead import no_such_command
 from linkwright.shell.programs import PROGRAMS, write_programs
 from linkwright.standins import process
 
+_PR_SET_PDEATHSIG = 1
+"""Of prctl(2): the signal that comes when the parent ends."""
 MARK = "LINKWRIGHT_SHELL"
 """Set in the environment of the shell, to the folder of its programs."""
 
@@ -131,25 +133,29 @@ PS1="(linkwright) $PS1"
 
 
 def _run(words: Sequence[str], variables: Mapping[str, str]) -> int:
-    """Run it to its end. Ctrl-C reaches it as it reaches us, and is for it; other signals are passed on.
+    """Run it to its end. Signals are passed on, but Ctrl-C in a terminal, which reaches it as it reaches us.
 
-    Ctrl-C must not become a KeyboardInterrupt here: one that is raised when the wait for the command has just ended
-    loses its exit status, and `subprocess` gives 0 for that.
+    Where there is no terminal the command is in a process group of its own, so that what is sent to ours does not come
+    twice. Ctrl-C must not become a KeyboardInterrupt here: one that is raised when the wait for the command has just
+    ended loses its exit status, and `subprocess` gives 0 for that.
     """
     import signal
 
     child: subprocess.Popen[bytes] | None = None
     early: list[int] = []  # what came while it was being started
+    alone = os.name == "posix" and not _has_terminal()
 
     def pass_on(number: int, _frame: object) -> None:
         if child is None:
             early.append(number)
-        elif number != signal.SIGINT:
+        elif alone or number != signal.SIGINT:
             child.send_signal(number)
 
     previous = {number: signal.signal(number, pass_on) for number in _heard_signals()}
     try:
-        with subprocess.Popen(words, env=dict(variables)) as child:  # noqa: S603 - the user's own command
+        first = _standing_alone() if alone else None
+        # The user's own command (S603); there is one thread only, and `first` imports nothing (PLW1509).
+        with subprocess.Popen(words, env=dict(variables), preexec_fn=first) as child:  # noqa: S603, PLW1509
             for number in early:
                 child.send_signal(number)
             status = child.wait()
@@ -157,6 +163,30 @@ def _run(words: Sequence[str], variables: Mapping[str, str]) -> int:
         for number, handler in previous.items():
             signal.signal(number, handler)
     return status if status >= 0 else 128 - status
+
+
+def _has_terminal() -> bool:
+    """Whether a terminal controls this process: its Ctrl-C is sent to the command too."""
+    try:
+        os.close(os.open("/dev/tty", os.O_RDWR | os.O_NOCTTY))
+    except OSError:
+        return False
+    return True
+
+
+def _standing_alone() -> Callable[[], None]:
+    """What the process of the command does first: it leaves our process group, and on Linux ends when we are killed."""
+    import ctypes
+    import signal
+
+    prctl = ctypes.CDLL(None).prctl if sys.platform == "linux" else None
+
+    def stand_alone() -> None:
+        os.setpgid(0, 0)
+        if prctl is not None:
+            prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)
+
+    return stand_alone
 
 
 def _heard_signals() -> list[int]:
