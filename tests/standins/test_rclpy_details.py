@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import functools
+import subprocess
+import sys
 from unittest import mock
 
 import pytest
 import rclpy
+import rclpy.exceptions
+import rclpy.executors
 from rcl_interfaces.msg import ParameterEvent, SetParametersResult
 from rclpy.action import ActionClient, ActionServer
 from rclpy.clock import Clock, ClockChange, ClockType, JumpThreshold, ROSClock
@@ -42,6 +46,8 @@ from rosgraph_msgs.msg import Clock as ClockMessage
 from std_msgs.msg import String
 from std_srvs.srv import Empty
 from test_msgs.action import Fibonacci
+
+from linkwright.standins import process
 
 
 @pytest.fixture(autouse=True)
@@ -345,3 +351,16 @@ class TestServiceIntrospection:
         service = node.create_service(Empty, "empty", lambda _request, response: response)
         service.configure_introspection(node.get_clock(), QoSProfile(depth=10), ServiceIntrospectionState.METADATA)
         assert len(list(node.publishers)) == before
+
+
+def test_exceptions_are_called_as_those_of_rclpy():
+    said = subprocess.run(
+        [sys.executable, "-c", "import rclpy\nrclpy.init()\nrclpy.create_node('a b')"],
+        env=process.environment() | {"ROS_DOMAIN_ID": "142"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert said.stderr.splitlines()[-1].startswith("rclpy.exceptions.InvalidNodeNameException: 'a b' is not a valid")
+    assert repr(rclpy.executors.ExternalShutdownException) == "<class 'rclpy.executors.ExternalShutdownException'>"
+    assert repr(rclpy.exceptions.InvalidHandle) == "<class 'rclpy._rclpy_pybind11.InvalidHandle'>"
