@@ -1,0 +1,121 @@
+"""From the microphone to the wheels: words are enrolled in a real browser and said to it, and mbot obeys.
+
+The browser's microphone is a file that another word is written to before each opening of the microphone.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from playwright.sync_api import Browser, Locator, Page
+
+from linkwright.speech.sound.wav import write_wav
+from tests.browser.conftest import Start, launched, state, until
+from tests.speech.voices import WORDS, say
+from tests.waiting import wait_until
+
+pytestmark = pytest.mark.browser
+
+SILENCE = 0.7
+AFTER = 1.2
+"""Seconds that the button is held before and after the word; the sound of the file goes on long after."""
+
+_KEPT = """
+const get = navigator.mediaDevices.getUserMedia.bind(navigator.mediaDevices);
+navigator.mediaDevices.getUserMedia = async (wanted) => (window.heard = await get(wanted));
+"""
+_UNPLUGGED = "window.heard?.getTracks().forEach((track) => { track.stop(); track.dispatchEvent(new Event('ended')); })"
+
+
+class Microphone:
+    """The file that the browser hears when it opens the microphone anew."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self.put(np.zeros(16_000, np.int16))
+
+    def put(self, samples: np.ndarray) -> None:
+        rest = np.zeros(5 * 16_000, np.int16)
+        beside = self._path.with_suffix(".new")
+        write_wav(beside, np.concatenate((samples, rest)))
+        beside.replace(self._path)
+
+
+@pytest.fixture(scope="module")
+def microphone(tmp_path_factory: pytest.TempPathFactory) -> Microphone:
+    return Microphone(tmp_path_factory.mktemp("sound") / "said.wav")
+
+
+@pytest.fixture(scope="module")
+def browser(microphone: Microphone) -> Iterator[Browser]:
+    """A browser that says yes to the question for the microphone, and hears its file."""
+    fake = ("--use-fake-ui-for-media-stream", "--use-fake-device-for-media-stream")
+    with launched(*fake, f"--use-file-for-fake-audio-capture={microphone._path}") as started:
+        yield started
+
+
+def speak(page: Page, button: Locator, microphone: Microphone, word: str, *, seed: int, **how: float) -> None:
+    """Hold a button and say a word."""
+    said = say(WORDS[word], silence=SILENCE, seed=seed, **how)
+    page.evaluate(_UNPLUGGED)
+    until(page, "lw.panels.voice.isOpen === false")
+    microphone.put(said)
+    button.focus()
+    page.keyboard.down("Space")
+    until(page, "lw.panels.voice.isOpen")
+    # The sound is the browser's own: it takes its time whatever the test does.
+    page.wait_for_timeout(1000 * (len(said) / 16_000 - SILENCE + AFTER))
+    page.keyboard.up("Space")
+
+
+def place(page: Page) -> tuple[float, float]:
+    x, y, *_ = state(page, "frames")["base_footprint"]["position"]
+    return x, y
+
+
+def test_words_enrolled_with_the_microphone_drive_mbot_and_stop_it(
+    start: Start,
+    open_page: Callable[..., Page],
+    microphone: Microphone,
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+) -> None:
+    pytest.importorskip("mujoco")
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
+    program = start("launch", "my_robot_voice", "voice.launch.py")
+    page = open_page(program, wait=False)
+    page.add_init_script(_KEPT)
+    page.reload()
+    until(page, "lw.ready && 'base_footprint' in lw.frames")
+    page.get_by_role("button", name="Panels").click()
+    page.get_by_role("menuitemcheckbox", name="Voice").click()
+    page.locator(".word-box summary").click()
+    for word in ("forward", "stop"):
+        page.get_by_label("Word or phrase of a command").fill(word)
+        page.keyboard.press("Enter")
+        button = page.get_by_role("button", name=f"Hold and say: {word}", exact=True)
+        row = page.locator(".word", has=button)
+        for take, speed in enumerate((1.0, 0.93, 1.07), 1):
+            speak(page, button, microphone, word, seed=take, speed=speed)
+            row.locator(f".word-takes:text-is('{take}/3')").wait_for()
+
+    talk = page.locator(".voice-talk")
+    x, y = place(page)
+    speak(page, talk, microphone, "forward", seed=7, speed=0.97)
+    page.wait_for_selector(".voice-said:has-text('understood') >> text=forward")
+    wait_until(lambda: math.hypot(place(page)[0] - x, place(page)[1] - y) > 0.2, what=lambda: place(page))
+    speak(page, talk, microphone, "stop", seed=8, speed=1.03)
+    page.wait_for_selector(".voice-said:has-text('understood') >> text=stop")
+    stood = [place(page)]
+
+    def stands() -> bool:
+        page.wait_for_timeout(300)
+        stood.append(place(page))
+        return math.dist(stood[-1], stood[-2]) < 1e-3
+
+    wait_until(stands, what=lambda: stood)
+    assert program.process.poll() is None
