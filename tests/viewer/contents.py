@@ -45,3 +45,10 @@ def unpack(frame: bytes) -> Content:
 def contents(display: Any) -> list[Content]:
     """What a page that opens now would be sent of a display."""
     return [unpack(getattr(frame, "whole", frame)) for frame in display.data()]
+
+
+def shown_markers(display: Any) -> dict[str, dict[str, Any]]:
+    """The markers of a display that is drawn as markers, by their ids, as a page that opens now would be sent them."""
+    (store,) = display.data()
+    frame, _ = store.since(0)
+    return {} if frame is None else {each["id"]: each for each in unpack(frame).fields["markers"]}

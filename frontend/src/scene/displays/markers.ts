@@ -152,8 +152,13 @@ export class MarkersDrawing implements Drawing {
   }
 
   private show(marker: MarkerShape): void {
-    this.remove(marker.id);
     const pose = poseMatrix(marker.pose, new Matrix4());
+    const before = this.shown.get(marker.id);
+    if (before?.object && looksSame(before.marker, marker)) {
+      this.shown.set(marker.id, { marker, pose, object: before.object, surfaces: null });
+      return;
+    }
+    this.remove(marker.id);
     const object = isSolid(marker.shape) ? null : this.makeObject(marker);
     this.shown.set(marker.id, { marker, pose, object, surfaces: null });
   }
@@ -199,4 +204,17 @@ export class MarkersDrawing implements Drawing {
     }
     this.solids.end();
   }
+}
+
+/** Whether a mesh has only moved: it need not be made, and loaded, again. */
+function looksSame(one: MarkerShape, other: MarkerShape): boolean {
+  const file = one.mesh?.url ?? null;
+  return (
+    file !== null &&
+    one.shape === "mesh" &&
+    other.shape === "mesh" &&
+    file === other.mesh?.url &&
+    one.mesh?.embedded === other.mesh.embedded &&
+    String([one.scale, one.color]) === String([other.scale, other.color])
+  );
 }

@@ -10,12 +10,10 @@ from linkwright.graph import TransformException
 from linkwright.viewer.config.rviz_config import DisplayConfig
 from linkwright.viewer.config.schema import Path, PropertySpec, Schema, topic_spec
 from linkwright.viewer.displays.base.display import DisplayHost, Pose
-from linkwright.viewer.displays.base.topic_display import TopicDisplay
-from linkwright.viewer.markers import BadMarkerError, MarkerReading, MarkerStore, read_marker
+from linkwright.viewer.displays.base.stored_markers import StoredMarkersDisplay
+from linkwright.viewer.markers import BadMarkerError, MarkerReading, read_marker
 from linkwright.viewer.markers.shapes import ADD, DELETE, DELETE_ALL, marker_id, placed_in
-from linkwright.viewer.protocol.robot import MeshStatus
 from linkwright.viewer.web.files import MeshIndex
-from linkwright.viewer.web.outbox import Payload
 
 _NAMESPACES = "Namespaces"
 _SHORTEST_LIFE_NS = 100_000
@@ -38,7 +36,7 @@ class _Marker:
         self.expires_ns = expires_ns
 
 
-class MarkerDisplay(TopicDisplay):
+class MarkerDisplay(StoredMarkersDisplay):
     """Markers of one topic.
 
     A marker whose frame cannot be placed yet appears as soon as it can; of those that wait since they came, the last
@@ -48,18 +46,15 @@ class MarkerDisplay(TopicDisplay):
     CLASS = "rviz_default_plugins/Marker"
     MESSAGE = "visualization_msgs/msg/Marker"
     SCHEMA = (topic_spec(default="visualization_marker", description="visualization_msgs/msg/Marker", filter_size=10),)
-    TRANSFORMED = False
     FOLLOWS_TRANSFORMS = True
 
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
         self._namespaces: list[str] = []
         super().__init__(host, identity, config)
-        self._store = MarkerStore(identity)
         self._markers: dict[str, _Marker] = {}
         self._unplaced: set[str] = set()
         self._arriving: dict[str, None] = {}  # those that could not be placed yet, oldest first
         self._frame_poses: dict[tuple[str, int], Transform] = {}  # computed once: an array has thousands of a kind
-        self._meshes = MeshIndex(host.context.finder)
         self._expiry: asyncio.TimerHandle | None = None
         self._clock = host.context.node.get_clock()
 
@@ -101,14 +96,9 @@ class MarkerDisplay(TopicDisplay):
     def stop(self) -> None:
         """Stop listening, and withdraw the files that markers named from pages."""
         super().stop()
-        self.context.meshes.replace(self.id, {})
         if self._expiry is not None:
             self._expiry.cancel()
             self._expiry = None
-
-    def data(self) -> list[Payload]:
-        """The markers."""
-        return [self._store]
 
     def frames_changed(self) -> None:
         """Place the markers in the other Fixed Frame."""
@@ -123,11 +113,6 @@ class MarkerDisplay(TopicDisplay):
             for identity in list(self._unplaced):
                 self._place_marker(identity, self._markers[identity])
             self._show()
-
-    def receive(self, message: Any) -> None:
-        """Take what a page says of a marker's mesh or texture."""
-        if isinstance(message, MeshStatus) and message.error is not None and message.link in self._markers:
-            self.say(message.link, "error", f"Mesh resource marker [{message.link}]: {message.error[:500]}")
 
     # --- actions -----------------------------------------------------------------------------------------------
 
@@ -207,8 +192,7 @@ class MarkerDisplay(TopicDisplay):
     def _show(self) -> None:
         """Send what has changed: all of a message at once."""
         self._frame_poses.clear()
-        self.context.meshes.replace(self.id, self._meshes.folders)
-        self.pages.send_data(self._store.key, self._store)
+        self.show_markers()
 
     # --- lifetimes ---------------------------------------------------------------------------------------------
 

@@ -6,7 +6,7 @@ The rules and their texts are RViz's.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, get_args
 
@@ -44,6 +44,50 @@ class MarkerReading:
     shape: MarkerShape
     pose: Transform
     warning: str | None = None
+
+
+def made_marker(
+    namespace: str,
+    name: str,
+    kind: MarkerKind,
+    pose: Sequence[float],
+    scale: Sequence[float],
+    color: Sequence[float],
+    *,
+    frame: str = "",
+    points: NDArray[np.float32] = _NO_POINTS,
+    colors: NDArray[np.float32] = _NO_COLORS,
+    mesh: MarkerMesh | None = None,
+) -> MarkerShape:
+    """A marker that no message brought.
+
+    Args:
+        namespace: with the name, what it is known by.
+        name: within the namespace.
+        kind: of its shape.
+        pose: x, y, z, qx, qy, qz, qw in `frame`.
+        scale: x, y, z, as visualization_msgs/msg/Marker has it for the kind.
+        color: red, green, blue, alpha, from 0 to 1.
+        frame: that it follows; the Fixed Frame where empty.
+        points: shape (N, 3), metres.
+        colors: one for each point, shape (N, 4); or none.
+        mesh: the file of a ``mesh``.
+    """
+    return MarkerShape(
+        id=f"{namespace}/{name}",
+        namespace=namespace,
+        shape=kind,
+        frame=frame,
+        pose=list(pose),
+        scale=list(scale),
+        color=list(color),
+        points=points,
+        colors=colors,
+        uvs=_NO_UVS,
+        text="",
+        mesh=mesh,
+        texture=None,
+    )
 
 
 def marker_id(message: Any) -> str:

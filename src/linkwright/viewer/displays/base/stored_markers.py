@@ -1,0 +1,43 @@
+"""Displays that are drawn as markers: pages are sent those that are new or others now, and which have gone."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from linkwright.viewer.config.rviz_config import DisplayConfig
+from linkwright.viewer.displays.base.display import DisplayHost
+from linkwright.viewer.displays.base.topic_display import TopicDisplay
+from linkwright.viewer.markers import MarkerStore
+from linkwright.viewer.protocol.robot import MeshStatus
+from linkwright.viewer.web.files import MeshIndex
+from linkwright.viewer.web.outbox import Payload
+
+
+class StoredMarkersDisplay(TopicDisplay):
+    """A display with a `MarkerStore`, which a subclass fills; `show_markers` sends what has changed."""
+
+    TRANSFORMED = False
+
+    def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
+        super().__init__(host, identity, config)
+        self._store = MarkerStore(identity)
+        self._meshes = MeshIndex(host.context.finder)
+
+    def stop(self) -> None:
+        """Stop listening, and withdraw the files that markers named from pages."""
+        super().stop()
+        self.context.meshes.replace(self.id, {})
+
+    def data(self) -> list[Payload]:
+        """The markers."""
+        return [self._store]
+
+    def receive(self, message: Any) -> None:
+        """Take what a page says of a marker's mesh or texture."""
+        if isinstance(message, MeshStatus) and message.error is not None and message.link in self._store:
+            self.say(message.link, "error", f"Mesh resource marker [{message.link}]: {message.error[:500]}")
+
+    def show_markers(self) -> None:
+        """Send what has changed: all of a message at once."""
+        self.context.meshes.replace(self.id, self._meshes.folders)
+        self.pages.send_data(self._store.key, self._store)

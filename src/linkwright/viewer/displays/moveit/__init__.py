@@ -1,0 +1,1 @@
+"""The displays of MoveIt (moveit_rviz_plugin)."""

@@ -1,0 +1,185 @@
+"""What displays of MoveIt share: a robot that can be drawn in any state, and markers in groups."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+
+from linkwright.graph import DESCRIPTION_QOS, QoSProfile
+from linkwright.urdf import Robot
+from linkwright.viewer.config.rviz_config import DisplayConfig
+from linkwright.viewer.config.schema import Path
+from linkwright.viewer.displays.base.display import DisplayHost
+from linkwright.viewer.displays.base.stored_markers import StoredMarkersDisplay
+from linkwright.viewer.displays.base.topic_display import TRANSFORM, SideTopic
+from linkwright.viewer.displays.moveit.properties import ALL_LINKS, DESCRIPTION
+from linkwright.viewer.displays.moveit.robot import PosableRobot
+from linkwright.viewer.protocol.markers import MarkerShape
+from linkwright.viewer.web.files import MeshIndex
+
+_URDF = "URDF"
+_JOINTS = "Joints"
+STATE = "State"
+"""The status row of what is wrong with a state of the robot."""
+
+
+class MoveItDisplay(StoredMarkersDisplay):
+    """A display of MoveIt. A subclass draws in `draw`, which is called when the robot or a property is another."""
+
+    DRAWN_AS = "rviz_default_plugins/MarkerArray"
+
+    def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
+        self.robot: PosableRobot | None = None
+        self.link_names: tuple[str, ...] = ()
+        super().__init__(host, identity, config)
+        self._descriptions = SideTopic(host, "std_msgs/msg/String", self._described)
+        self._groups: dict[str, dict[str, MarkerShape]] = {}
+
+    # --- what subclasses override ------------------------------------------------------------------------------
+
+    def draw(self) -> None:
+        """Draw all anew with `put`, and call `drawn`."""
+
+    def description_topic(self) -> str:
+        """The topic of the robot's description."""
+        return self.properties.text(DESCRIPTION).strip()
+
+    # --- what subclasses call ----------------------------------------------------------------------------------
+
+    def put(self, group: str, shapes: Iterable[MarkerShape]) -> None:
+        """Make these the markers of a group; those of before that are missing now go."""
+        before = self._groups.get(group, {})
+        now = {shape.id: shape for shape in shapes}
+        for identity in before.keys() - now.keys():
+            self._store.remove(identity)
+        for identity, shape in now.items():
+            if identity not in before or not _is_same(before[identity], shape):
+                self._store.put(shape)
+        self._groups[group] = now
+
+    def drawn(self) -> None:
+        """Send what `put` has changed, and say which frames have no place."""
+        self.show_markers()
+        self._tell_frames()
+
+    def say_unknown(self, joints: list[str]) -> None:
+        """Say which joints of a state the robot does not have."""
+        if joints:
+            names = ", ".join(f"'{name}'" for name in joints[:5])
+            more = f" and {len(joints) - 5} more" if len(joints) > 5 else ""
+            self.say(_JOINTS, "warn", f"The robot has no joint {names}{more}")
+        else:
+            self.unsay(_JOINTS)
+
+    # --- life --------------------------------------------------------------------------------------------------
+
+    def subscription(self) -> tuple[str, str, QoSProfile]:
+        """Type and topic of what it listens to."""
+        return self.MESSAGE, self.properties.text(*self.TOPIC).strip(), QoSProfile(depth=10)
+
+    def start(self) -> None:
+        """Listen to the description, too."""
+        super().start()
+        self._follow()
+
+    def stop(self) -> None:
+        """Stop listening."""
+        self._descriptions.close()
+        super().stop()
+
+    def enabled_changed(self) -> None:
+        """Listen only while it is enabled."""
+        super().enabled_changed()
+        self._follow()
+
+    def changed(self, path: Path) -> None:
+        """Listen to another topic, follow another description, or draw anew."""
+        if path == self.TOPIC:
+            self._restart()
+            self._follow()
+        elif path == (DESCRIPTION,):
+            self._follow()
+        elif path[-1] == ALL_LINKS:
+            for name in self.link_names:
+                if name != ALL_LINKS:
+                    self.properties.set((*path[:-1], name), self.properties.flag(*path))
+            self.publish_properties()
+        self.draw()
+
+    def frames_changed(self) -> None:
+        """Say which frames have no place."""
+        self._tell_frames()
+
+    def time_changed(self) -> None:
+        """Show what came while time stood still."""
+        self._descriptions.go_on()
+        super().time_changed()
+
+    def reset(self) -> None:
+        """Forget what is drawn."""
+        self._groups.clear()
+        self._store.clear()
+        self.show_markers()
+
+    def _follow(self) -> None:
+        self._descriptions.close()
+        topic = self.description_topic()
+        if not self.enabled:
+            return
+        if not topic:
+            self.say(_URDF, "error", "Error subscribing: Empty topic name")
+            return
+        problem = self._descriptions.listen(topic, DESCRIPTION_QOS)
+        if problem is not None:
+            self.say(_URDF, "error", problem)
+        elif self.robot is None:
+            self.say(_URDF, "warn", f"No description on topic '{topic}' yet")
+
+    def _described(self, message: Any) -> None:
+        robot = self.context.library.read(message.data).robot
+        if robot is None or not robot.links:
+            self.say(_URDF, "error", "URDF is empty" if not message.data.strip() else "URDF failed Model parse")
+            return
+        self.say(_URDF, "ok", "URDF parsed OK")
+        self._take_robot(robot, message.data)
+
+    def _take_robot(self, robot: Robot, text: str) -> None:
+        self._meshes = MeshIndex(self.context.library.packages(text) or self.context.finder)
+        self.robot = PosableRobot(robot, self._meshes)
+        links = tuple(self.robot.shaped_links)
+        if links != self.link_names:
+            self.link_names = links
+            self.publish_properties()
+        for link, problems in self.robot.problems.items():
+            self.say(link, "error", "; ".join(problems))
+        self.robot_changed()
+        self.draw()
+
+    def robot_changed(self) -> None:
+        """There is another robot; `draw` is called after."""
+
+    def _tell_frames(self) -> None:
+        frames = {shape.frame for shapes in self._groups.values() for shape in shapes.values()}
+        problems = [problem for frame in sorted(frames) if (problem := self.host.frames.problem(frame))]
+        if problems:
+            self.say(TRANSFORM, "error", "; ".join(problems))
+        elif frames:
+            self.say(TRANSFORM, "ok", "Transform OK")
+        else:
+            self.unsay(TRANSFORM)
+
+
+def _is_same(one: MarkerShape, other: MarkerShape) -> bool:
+    return (
+        (one.shape, one.frame, one.pose, one.scale, one.color)
+        == (other.shape, other.frame, other.pose, other.scale, other.color)
+        and _mesh_of(one) == _mesh_of(other)
+        and np.array_equal(one.points, other.points)
+        and np.array_equal(one.colors, other.colors)
+    )
+
+
+def _mesh_of(shape: MarkerShape) -> tuple[str | None, bool] | None:
+    return (shape.mesh.url, shape.mesh.embedded) if shape.mesh else None

@@ -1,0 +1,124 @@
+"""moveit_rviz_plugin/MotionPlanning, as far as it shows."""
+
+from __future__ import annotations
+
+from linkwright.graph import QoSProfile
+from linkwright.viewer.config.rviz_config import DisplayConfig
+from linkwright.viewer.config.schema import Path, PropertySpec, Schema
+from linkwright.viewer.displays.base.display import DisplayHost
+from linkwright.viewer.displays.base.topic_display import SideTopic
+from linkwright.viewer.displays.moveit.planning_scene import PlanningSceneDisplay
+from linkwright.viewer.displays.moveit.properties import PATH, TRAJECTORY_TOPIC, fraction, path_specs, rgb
+from linkwright.viewer.displays.moveit.robot import Look
+from linkwright.viewer.displays.moveit.trajectory import MotionPlayer
+
+_REQUEST = "Planning Request"
+
+_REQUEST_SPEC = PropertySpec(
+    _REQUEST,
+    "group",
+    description="The first and the last state of the last motion that was planned, of the links that it moves.",
+    children=(
+        PropertySpec("Query Start State", "bool", False, "Draw the first state."),
+        PropertySpec("Query Goal State", "bool", True, "Draw the last state."),
+        PropertySpec("Start State Color", "color", "#00ff00", "Colour of the first state."),
+        fraction("Start State Alpha", 1.0, "Opacity of the first state."),
+        PropertySpec("Goal State Color", "color", "#fa8000", "Colour of the last state."),
+        fraction("Goal State Alpha", 1.0, "Opacity of the last state."),
+    ),
+)
+
+
+class MotionPlanningDisplay(PlanningSceneDisplay):
+    """The planning scene, the motions that are planned in it, and where the last one begins and ends.
+
+    Nothing is planned: what asks for plans in RViz's panel is kept in the file and has no rows.
+    """
+
+    CLASS = "moveit_rviz_plugin/MotionPlanning"
+
+    def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
+        super().__init__(host, identity, config)
+        self._player = MotionPlayer(self, (PATH,), self._draw_motion)
+        self._motions = SideTopic(host, "moveit_msgs/msg/DisplayTrajectory", self._player.play)
+
+    def schema(self) -> Schema:
+        """Those of the scene and of motions."""
+        path = PropertySpec(PATH, "group", description="The motions.", children=path_specs(self.link_names))
+        return (*super().schema(), _REQUEST_SPEC, path)
+
+    def start(self) -> None:
+        """Listen to motions, too."""
+        super().start()
+        self._follow_motions()
+
+    def stop(self) -> None:
+        """Stop listening and playing."""
+        self._motions.close()
+        self._player.forget()
+        super().stop()
+
+    def enabled_changed(self) -> None:
+        """Listen only while it is enabled."""
+        super().enabled_changed()
+        self._follow_motions()
+
+    def changed(self, path: Path) -> None:
+        """Listen to other motions; begin again when the motion is to be repeated from now on."""
+        if path == (PATH, TRAJECTORY_TOPIC):
+            self._player.forget()
+            self._follow_motions()
+        super().changed(path)
+        if path == (PATH, "Loop Animation") and self.properties.flag(*path) and not self._player.is_playing:
+            self._player.begin_again()
+
+    def time_changed(self) -> None:
+        """Show what came while time stood still."""
+        super().time_changed()
+        self._motions.go_on()
+
+    def robot_changed(self) -> None:
+        """Play the motion of this robot."""
+        super().robot_changed()
+        self._player.begin_again()
+
+    def reset(self) -> None:
+        """Forget the scene and the motion."""
+        self._player.forget()
+        super().reset()
+
+    def draw(self) -> None:
+        """Draw the scene and the motion."""
+        super().draw()
+        if self.enabled:
+            self._draw_motion()
+
+    def _draw_motion(self) -> None:
+        self._player.draw(PATH)
+        self._draw_end("Start", 0)
+        self._draw_end("Goal", -1)
+        self.drawn()
+
+    def _draw_end(self, which: str, place: int) -> None:
+        group, motion, robot = f"{which} State", self._player.motion, self.robot
+        if robot is None or motion is None or not self.properties.flag(_REQUEST, f"Query {which} State"):
+            self.put(group, ())
+            return
+        look = Look(
+            group,
+            alpha=self.properties.number(_REQUEST, f"{which} State Alpha"),
+            color=rgb(self.properties.text(_REQUEST, f"{which} State Color")),
+            only=robot.links_moved_by(motion.joints),
+        )
+        self.put(group, robot.markers(motion.states[place], look))
+
+    def _follow_motions(self) -> None:
+        self._motions.close()
+        topic = self.properties.text(PATH, TRAJECTORY_TOPIC).strip()
+        if not self.enabled:
+            return
+        problem = self._motions.listen(topic, QoSProfile(depth=10)) if topic else "Error subscribing: Empty topic name"
+        if problem is None:
+            self.unsay(TRAJECTORY_TOPIC)
+        else:
+            self.say(TRAJECTORY_TOPIC, "error", problem)

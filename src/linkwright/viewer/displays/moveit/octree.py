@@ -1,0 +1,151 @@
+"""Octrees as the library OctoMap writes them into octomap_msgs/msg/Octomap.
+
+Both forms go down from the root, a node before its children, and the first child first. The binary form has two bits
+for each child of an inner node: free, occupied, or an inner node itself. The full form has a float with the logarithm
+of the odds that a node is occupied, whatever else the class of the tree keeps of a node, and a byte that says which
+children there are.
+"""
+
+from __future__ import annotations
+
+import math
+import struct
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+_DEPTH = 16
+"""Levels below the root; cells of the last have the resolution."""
+
+_FREE, _OCCUPIED, _INNER = 1, 2, 3
+
+_FULL_NODES = {"OcTree": 4, "ColorOcTree": 7}
+"""Bytes of a node, by the class of the tree."""
+
+_CLAMPED = {_FREE: 0.1192, _OCCUPIED: 0.971}
+"""The probabilities that the binary form stands for: OctoMap's clamping thresholds."""
+
+MOST_CELLS = 1_000_000
+"""More cells than these are not drawn."""
+
+
+class BadOctreeError(ValueError):
+    """The data is no octree; the text says why."""
+
+
+@dataclass(frozen=True, slots=True)
+class Cells:
+    """The leaves of a tree.
+
+    Attributes:
+        centers: metres, shape (N, 3).
+        sizes: edge lengths, metres, shape (N,).
+        probabilities: that they are occupied, shape (N,).
+    """
+
+    centers: NDArray[np.float64]
+    sizes: NDArray[np.float64]
+    probabilities: NDArray[np.float64]
+
+    def chosen(self, mask: NDArray[np.bool_]) -> Cells:
+        """Those where the mask is set."""
+        return Cells(self.centers[mask], self.sizes[mask], self.probabilities[mask])
+
+
+def read_octree(*, data: bytes, binary: bool, kind: str, resolution: float) -> Cells:
+    """The leaves of an octomap_msgs/msg/Octomap, free ones too.
+
+    Args:
+        data: of the message.
+        binary: whether it is in the binary form.
+        kind: the class of the tree; its `id` in the message.
+        resolution: metres.
+
+    Raises:
+        BadOctreeError: the data ends too early or too late, or the class is not known.
+    """
+    if not (math.isfinite(resolution) and resolution > 0.0):
+        raise BadOctreeError(f"Invalid resolution of the octomap: {resolution}")
+    if not data:
+        return _Leaves().cells(resolution, 0, data)
+    try:
+        return _read_binary(data, resolution) if binary else _read_full(data, kind, resolution)
+    except (IndexError, struct.error):
+        raise BadOctreeError(f"The data of the octomap ends too early, after {len(data)} bytes") from None
+
+
+def _read_binary(data: bytes, resolution: float) -> Cells:
+    leaves = _Leaves()
+    pending = [_ROOT]
+    at = 0
+    while pending:
+        node = pending.pop()
+        bits = data[at] | data[at + 1] << 8
+        at += 2
+        for child in reversed(range(8)):
+            state = bits >> 2 * child & 3
+            if state == _INNER:
+                pending.append(_child(node, child))
+            elif state:
+                leaves.add(_child(node, child), _CLAMPED[state])
+    return leaves.cells(resolution, at, data)
+
+
+def _read_full(data: bytes, kind: str, resolution: float) -> Cells:
+    size = _FULL_NODES.get(kind)
+    if size is None:
+        known = ", ".join(_FULL_NODES)
+        raise BadOctreeError(f"Unknown octomap type: '{kind}'; known are {known}")
+    leaves = _Leaves()
+    pending = [_ROOT]
+    at = 0
+    while pending:
+        node = pending.pop()
+        (logarithm,) = struct.unpack_from("<f", data, at)
+        children = data[at + size]
+        at += size + 1
+        if not children:
+            leaves.add(node, 1.0 / (1.0 + math.exp(-max(-50.0, min(50.0, logarithm)))))
+        else:
+            pending += [_child(node, child) for child in reversed(range(8)) if children >> child & 1]
+    return leaves.cells(resolution, at, data)
+
+
+_Node = tuple[int, int, int, int]
+"""The centre of a node and its edge, both in halves of the smallest cells."""
+
+_ROOT: _Node = (0, 0, 0, 2 << _DEPTH)
+
+
+def _child(node: _Node, child: int) -> _Node:
+    x, y, z, edge = node
+    if edge <= 2:
+        raise BadOctreeError(f"The octomap is deeper than {_DEPTH} levels")
+    away = edge // 4
+    return (
+        x + (away if child & 1 else -away),
+        y + (away if child & 2 else -away),
+        z + (away if child & 4 else -away),
+        edge // 2,
+    )
+
+
+class _Leaves:
+    """The leaves of a tree while it is read."""
+
+    def __init__(self) -> None:
+        self._nodes: list[_Node] = []
+        self._probabilities: list[float] = []
+
+    def add(self, node: _Node, probability: float) -> None:
+        if len(self._nodes) == MOST_CELLS:
+            raise BadOctreeError(f"The octomap has more than {MOST_CELLS} cells")
+        self._nodes.append(node)
+        self._probabilities.append(probability)
+
+    def cells(self, resolution: float, at: int, data: bytes) -> Cells:
+        if at != len(data):
+            raise BadOctreeError(f"The octomap ends after {at} of {len(data)} bytes")
+        nodes = np.array(self._nodes, dtype=np.float64).reshape(-1, 4) * (resolution / 2.0)
+        return Cells(nodes[:, :3], nodes[:, 3], np.array(self._probabilities, dtype=np.float64))

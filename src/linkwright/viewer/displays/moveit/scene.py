@@ -1,0 +1,210 @@
+"""A planning scene, kept up to date with what changes in it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from linkwright.geometry.single import IDENTITY, Transform
+from linkwright.viewer.displays.moveit.octree import BadOctreeError, Cells, read_octree
+from linkwright.viewer.displays.moveit.properties import rgba
+from linkwright.viewer.displays.moveit.robot import JointPositions, PosableRobot
+from linkwright.viewer.displays.moveit.solids import BadObjectError, Color, object_markers
+from linkwright.viewer.markers.shapes import pose_of
+from linkwright.viewer.protocol.markers import MarkerShape
+
+_REMOVE, _APPEND, _MOVE = b"\x01", b"\x02", b"\x03"
+
+OCTOMAP = "<octomap>"
+"""The name that MoveIt gives the octomap among the objects."""
+
+
+@dataclass(frozen=True, slots=True)
+class SceneObject:
+    """What a moveit_msgs/msg/CollisionObject says of an object, with the names that it has there."""
+
+    id: str
+    frame: str
+    pose: Any
+    primitives: tuple[Any, ...]
+    primitive_poses: tuple[Any, ...]
+    meshes: tuple[Any, ...]
+    mesh_poses: tuple[Any, ...]
+    planes: tuple[Any, ...]
+    plane_poses: tuple[Any, ...]
+
+    @classmethod
+    def of(cls, message: Any) -> SceneObject:
+        """That of a message."""
+        shapes: dict[str, Any] = {name: tuple(getattr(message, name)) for name in _SHAPES}
+        return cls(message.id, message.header.frame_id.removeprefix("/"), message.pose, **shapes)
+
+    def with_more(self, message: Any) -> SceneObject:
+        """With the shapes of a message, too."""
+        shapes: dict[str, Any] = {name: (*getattr(self, name), *getattr(message, name)) for name in _SHAPES}
+        return replace(self, **shapes)
+
+    def moved(self, message: Any) -> SceneObject:
+        """Where a message says."""
+        poses: dict[str, Any] = {name: tuple(found) for name in _POSES if (found := getattr(message, name))}
+        return replace(self, frame=message.header.frame_id.removeprefix("/"), pose=message.pose, **poses)
+
+    @property
+    def has_shapes(self) -> bool:
+        """Whether there is something to draw."""
+        return bool(self.primitives or self.meshes or self.planes)
+
+
+_POSES = ("primitive_poses", "mesh_poses", "plane_poses")
+_SHAPES = ("primitives", "meshes", "planes", *_POSES)
+
+
+@dataclass(frozen=True, slots=True)
+class PlacedCells:
+    """The cells of an octomap, and where it is."""
+
+    cells: Cells
+    frame: str
+    base: Transform
+
+
+class Scene:
+    """What is around a robot, what it holds, and where its joints are.
+
+    Attributes:
+        name: that the scene was given.
+        is_whole: whether all of it is known, and not only what changed since somebody listened.
+        state: of the robot.
+        octomap: its cells, if there is one.
+        problems: what is wrong, by what it is about.
+    """
+
+    def __init__(self) -> None:
+        self.name = ""
+        self.is_whole = False
+        self.state = JointPositions()
+        self.octomap: PlacedCells | None = None
+        self.problems: dict[str, str] = {}
+        self._objects: dict[str, SceneObject] = {}
+        self._held: dict[str, tuple[str, SceneObject]] = {}
+        self._colors: dict[str, Color] = {}
+
+    def apply(self, message: Any) -> None:
+        """Take a moveit_msgs/msg/PlanningScene, all of a scene or what has changed, without the joints of the robot."""
+        if not message.is_diff:
+            self._objects.clear()
+            self._held.clear()
+            self._colors.clear()
+            self.problems.clear()
+            self.octomap = None
+            self.is_whole = True
+        if message.name:
+            self.name = message.name
+        for each in message.object_colors:
+            self._colors[each.id] = rgba(each.color)
+        if not message.robot_state.is_diff and not message.is_diff:
+            self._held.clear()
+        for each in message.world.collision_objects:
+            self._change(each)
+        self.attach(message.robot_state.attached_collision_objects)
+        octomap = message.world.octomap
+        if octomap.octomap.id or octomap.octomap.data:
+            self._map(octomap)
+
+    def attach(self, messages: Iterable[Any]) -> None:
+        """Take moveit_msgs/msg/AttachedCollisionObject: what the robot holds, or lets go."""
+        for each in messages:
+            self._attach(each)
+
+    def object_markers(self, namespace: str, color: Color) -> list[MarkerShape]:
+        """The objects around the robot."""
+        made: list[MarkerShape] = []
+        for each in self._objects.values():
+            chosen = self._colors.get(each.id, color)
+            made += self._markers(each, namespace, chosen, each.frame, IDENTITY)
+        return made
+
+    def held_markers(
+        self, robot: PosableRobot, state: JointPositions, namespace: str, color: Color
+    ) -> list[MarkerShape]:
+        """The objects that the robot holds, in a state of it."""
+        links = robot.link_poses(state)
+        made: list[MarkerShape] = []
+        for link, each in self._held.values():
+            at = each.frame or link
+            if at not in links:
+                self.problems[each.id] = f"The robot has no link '{at}' for the attached object '{each.id}'"
+                continue
+            chosen = self._colors.get(each.id, color)
+            made += self._markers(each, namespace, chosen, robot.frame_of(state), links[at])
+        return made
+
+    def _markers(
+        self, each: SceneObject, namespace: str, color: Color, frame: str, base: Transform
+    ) -> list[MarkerShape]:
+        try:
+            made = object_markers(each, namespace, color, frame=frame, base=base)
+        except BadObjectError as error:
+            self.problems[each.id] = str(error)
+            return []
+        self.problems.pop(each.id, None)
+        return made
+
+    def _change(self, message: Any) -> None:
+        name, operation = message.id, message.operation
+        known = self._objects.get(name)
+        if operation == _REMOVE:
+            if not name:
+                self._objects.clear()
+            self._objects.pop(name, None)
+            self.problems.pop(name, None)
+        elif operation == _MOVE:
+            if known is None:
+                self.problems[name] = f"Object '{name}' is to be moved and is not there"
+            else:
+                self._objects[name] = known.moved(message)
+        elif operation == _APPEND and known is not None:
+            self._objects[name] = known.with_more(message)
+        else:
+            self._objects[name] = SceneObject.of(message)
+
+    def _attach(self, message: Any) -> None:
+        name, link = message.object.id, message.link_name
+        if message.object.operation == _REMOVE:
+            gone = [each for each, (at, _) in self._held.items() if each == name or (not name and link in ("", at))]
+            for each in gone:
+                del self._held[each]
+                self.problems.pop(each, None)
+            return
+        held = SceneObject.of(message.object)
+        before = self._held.get(name)
+        if message.object.operation == _APPEND and before is not None:
+            held = before[1].with_more(message.object)
+        if not held.has_shapes:
+            self.problems[name] = f"The attached object '{name}' has no shapes"
+            return
+        self._objects.pop(name, None)
+        self.problems.pop(name, None)
+        self._held[name] = (link, held)
+
+    def _map(self, message: Any) -> None:
+        octomap = message.octomap
+        self.octomap = None
+        try:
+            cells = read_octree(
+                data=np.asarray(octomap.data, dtype=np.int8).tobytes(),
+                binary=octomap.binary,
+                kind=octomap.id,
+                resolution=octomap.resolution,
+            )
+        except BadOctreeError as error:
+            self.problems[OCTOMAP] = str(error)
+            return
+        self.problems.pop(OCTOMAP, None)
+        if len(cells.sizes):
+            x, y, z, qx, qy, qz, qw = pose_of(message.origin)
+            frame = message.header.frame_id or octomap.header.frame_id
+            self.octomap = PlacedCells(cells, frame.removeprefix("/"), (x, y, z, qx, qy, qz, qw))

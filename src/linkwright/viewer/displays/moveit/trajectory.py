@@ -1,0 +1,265 @@
+"""moveit_rviz_plugin/Trajectory, and what plays motions."""
+
+from __future__ import annotations
+
+import asyncio
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+from linkwright.viewer.config.rviz_config import DisplayConfig
+from linkwright.viewer.config.schema import Path, Schema
+from linkwright.viewer.displays.base.display import DisplayHost, Pose
+from linkwright.viewer.displays.moveit.base import STATE, MoveItDisplay
+from linkwright.viewer.displays.moveit.properties import DESCRIPTION_SPEC, TRAJECTORY_TOPIC, look, path_specs
+from linkwright.viewer.displays.moveit.robot import JointPositions, PosableRobot, UnusableStateError
+
+_SECONDS = re.compile(r"([0-9]*\.?[0-9]+)\s*s?")
+_FACTOR = re.compile(r"([0-9]*\.?[0-9]+)\s*x")
+_LEAST_WAIT = 0.005
+_MOST_WAYPOINTS = 100_000
+_MOST_IN_TRAIL = 200
+"""More states than these are not drawn at once; the steps of a trail grow until it has no more."""
+
+READ_AS = "3x"
+"""How a State Display Time that cannot be read is read."""
+
+
+@dataclass(frozen=True, slots=True)
+class Motion:
+    """States that a robot goes through.
+
+    Attributes:
+        states: the first of them is that of the start.
+        durations: seconds from each state to the next.
+        joints: those that move.
+        unknown: joints that the robot does not have.
+    """
+
+    states: list[JointPositions]
+    durations: list[float]
+    joints: frozenset[str]
+    unknown: list[str]
+
+
+def read_motion(robot: PosableRobot, message: Any) -> Motion:
+    """What a moveit_msgs/msg/DisplayTrajectory says.
+
+    Raises:
+        UnusableStateError: it has no states, too many, or some that cannot be shown.
+    """
+    state = JointPositions()
+    unknown = robot.set_state(state, message.trajectory_start)
+    states, durations = [state.copy()], []
+    joints: set[str] = set()
+    for part in message.trajectory:
+        one, many = part.joint_trajectory, part.multi_dof_joint_trajectory
+        count = max(len(one.points), len(many.points))
+        if len(states) + count > _MOST_WAYPOINTS:
+            raise UnusableStateError(f"The motion has more than {_MOST_WAYPOINTS} states")
+        joints.update(one.joint_names)
+        times = []
+        for place in range(count):
+            if place < len(one.points):
+                point = one.points[place]
+                missing = robot.set_joints(state, one.joint_names, point.positions)
+                unknown += [name for name in missing if name not in unknown]
+                times.append(_seconds(point.time_from_start))
+            if place < len(many.points):
+                point = many.points[place]
+                for name, transform in zip(many.joint_names, point.transforms, strict=False):
+                    if not robot.has_joint(name):
+                        robot.set_root(state, many.header.frame_id, transform)
+                if place >= len(one.points):
+                    times.append(_seconds(point.time_from_start))
+            states.append(state.copy())
+        durations += [max(0.0, after - before) for before, after in pairwise([0.0, *times])]
+    if len(states) < 2:
+        raise UnusableStateError("The motion has no states")
+    return Motion(states, durations, frozenset(joints), unknown)
+
+
+def _seconds(duration: Any) -> float:
+    return float(duration.sec) + float(duration.nanosec) * 1e-9
+
+
+def shown_for(text: str, duration: float) -> float:
+    """Seconds that a state is shown for.
+
+    Args:
+        text: the State Display Time.
+        duration: seconds from this state to the next in the motion.
+    """
+    text = text.strip().lower()
+    if text == "realtime":
+        return duration
+    factor = _FACTOR.fullmatch(text)
+    if factor and float(factor[1]) > 0.0:
+        return duration / float(factor[1])
+    fixed = _SECONDS.fullmatch(text)
+    return float(fixed[1]) if fixed else shown_for(READ_AS, duration)
+
+
+class MotionPlayer:
+    """Shows the states of a motion one after the other.
+
+    Args:
+        display: whose properties say how.
+        above: the path of the group that has these properties.
+        show: called when another state is to be drawn, or none.
+    """
+
+    def __init__(self, display: MoveItDisplay, above: Path, show: Callable[[], None]) -> None:
+        self._display = display
+        self._above = above
+        self._show = show
+        self._message: Any = None
+        self._next: Any = None
+        self._place = 0
+        self._timer: asyncio.TimerHandle | None = None
+        self.motion: Motion | None = None
+
+    @property
+    def is_playing(self) -> bool:
+        """Whether a state will follow."""
+        return self._timer is not None
+
+    @property
+    def state(self) -> JointPositions | None:
+        """The state to be drawn, if the motion is not over."""
+        return self.motion.states[self._place] if self.motion and self.is_playing else None
+
+    def play(self, message: Any) -> None:
+        """Play a moveit_msgs/msg/DisplayTrajectory, after what is being played unless that is to be interrupted."""
+        if self.is_playing and not self._flag("Interrupt Display") and not self._flag("Loop Animation"):
+            self._next = message
+            return
+        self._message = message
+        self._begin()
+
+    def begin_again(self) -> None:
+        """Play the last motion from its start: the robot is another, or it is to be repeated."""
+        if self._message is not None:
+            self._begin()
+
+    def forget(self) -> None:
+        """Play nothing."""
+        self._stop()
+        self._message = self._next = self.motion = None
+
+    def draw(self, group: str) -> None:
+        """Put what is to be seen now into groups of markers of the display."""
+        robot, motion = self._display.robot, self.motion
+        now, trail = [], []
+        if robot is not None and motion is not None:
+            properties = self._display.properties
+            color = properties.text(*self._above, "Robot Color") if self._flag("Color Enabled") else None
+            if self.state is not None:
+                now = robot.markers(self.state, look(properties, robot, group, self._above, color))
+            if self._flag("Show Trail"):
+                step = int(properties.number(*self._above, "Trail Step Size"))
+                step = max(step, -(-len(motion.states) // _MOST_IN_TRAIL))
+                for place in range(0, len(motion.states), step):
+                    of = look(properties, robot, f"{group} {place}", self._above, color)
+                    trail += robot.markers(motion.states[place], of)
+        self._display.put(group, now)
+        self._display.put(f"{group} trail", trail)
+
+    def _begin(self) -> None:
+        self._stop()
+        robot = self._display.robot
+        if robot is None:
+            return
+        try:
+            self.motion = read_motion(robot, self._message)
+        except UnusableStateError as error:
+            self.motion = None
+            self._display.say(STATE, "error", str(error))
+            self._show()
+            return
+        self._display.unsay(STATE)
+        self._display.say_unknown(self.motion.unknown)
+        self._place = 0
+        self._wait()
+        self._show()
+
+    def _wait(self) -> None:
+        assert self.motion is not None
+        text = self._display.properties.text(*self._above, "State Display Time")
+        durations = self.motion.durations
+        seconds = shown_for(text, durations[min(self._place, len(durations) - 1)])
+        self._timer = asyncio.get_running_loop().call_later(max(_LEAST_WAIT, seconds), self._step)
+
+    def _step(self) -> None:
+        self._timer = None
+        if self.motion is None:
+            return
+        if self._display.host.time.paused:
+            self._wait()
+            return
+        if self._place + 1 < len(self.motion.states):
+            self._place += 1
+            self._wait()
+        elif self._next is not None:
+            self._message, self._next = self._next, None
+            self._begin()
+            return
+        elif self._flag("Loop Animation"):
+            self._place = 0
+            self._wait()
+        self._show()
+
+    def _stop(self) -> None:
+        if self._timer is not None:
+            self._timer.cancel()
+            self._timer = None
+
+    def _flag(self, name: str) -> bool:
+        return self._display.properties.flag(*self._above, name)
+
+
+class TrajectoryDisplay(MoveItDisplay):
+    """The motions of a topic, played."""
+
+    CLASS = "moveit_rviz_plugin/Trajectory"
+    MESSAGE = "moveit_msgs/msg/DisplayTrajectory"
+    TOPIC = (TRAJECTORY_TOPIC,)
+
+    def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
+        super().__init__(host, identity, config)
+        self._player = MotionPlayer(self, (), self.draw)
+
+    def schema(self) -> Schema:
+        """The properties, with a box for each link."""
+        return (DESCRIPTION_SPEC, *path_specs(self.link_names))
+
+    def take(self, message: Any, pose: Pose | None) -> None:
+        """Play a motion."""
+        self._player.play(message)
+
+    def changed(self, path: Path) -> None:
+        """Draw anew; begin again when the motion is to be repeated from now on."""
+        super().changed(path)
+        if path == ("Loop Animation",) and self.properties.flag(*path) and not self._player.is_playing:
+            self._player.begin_again()
+
+    def robot_changed(self) -> None:
+        """Play the motion of this robot."""
+        self._player.begin_again()
+
+    def reset(self) -> None:
+        """Forget the motion."""
+        self._player.forget()
+        super().reset()
+
+    def stop(self) -> None:
+        """Stop listening and playing."""
+        self._player.forget()
+        super().stop()
+
+    def draw(self) -> None:
+        """Draw the state that is shown now, and the trail."""
+        self._player.draw("Planned Path")
+        self.drawn()

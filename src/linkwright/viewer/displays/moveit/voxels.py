@@ -1,0 +1,88 @@
+"""The cells of octrees as markers."""
+
+from __future__ import annotations
+
+import colorsys
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.geometry.single import Transform
+from linkwright.viewer.displays.moveit.octree import Cells
+from linkwright.viewer.markers.shapes import made_marker
+from linkwright.viewer.protocol.markers import MarkerShape
+
+
+def octomap_markers(
+    cells: Cells, namespace: str, *, frame: str, base: Transform, alpha: float, by_probability: bool
+) -> list[MarkerShape]:
+    """Boxes for the cells of an octree, a marker for each of their sizes; those that others hide are left out.
+
+    Args:
+        cells: in the frame of the tree.
+        namespace: of the markers.
+        frame: that they follow.
+        base: the pose of the tree in it.
+        alpha: opacity of all.
+        by_probability: colours tell how probable it is that a cell is occupied, and not how high it is.
+    """
+    cells = cells.chosen(_is_seen(cells))
+    if not len(cells.sizes):
+        return []
+    colors = np.empty((len(cells.sizes), 4), dtype=np.float32)
+    colors[:, 3] = alpha
+    if by_probability:
+        colors[:, 0] = 1.0 - cells.probabilities
+        colors[:, 1] = cells.probabilities
+        colors[:, 2] = 0.0
+    else:
+        height = cells.centers[:, 2]
+        least, span = float(height.min()), float(np.ptp(height))
+        share = np.zeros_like(height) if span == 0.0 else (height - least) / span
+        colors[:, :3] = _RAINBOW[(share * (len(_RAINBOW) - 1)).astype(np.intp)]
+    made = []
+    for size in np.unique(cells.sizes):
+        mask = cells.sizes == size
+        points = np.ascontiguousarray(cells.centers[mask], dtype=np.float32)
+        edges = [float(size)] * 3
+        name = f"octomap {size:g}"
+        made.append(
+            made_marker(
+                namespace,
+                name,
+                "cube_list",
+                base,
+                edges,
+                (0.0, 0.0, 0.0, alpha),
+                frame=frame,
+                points=points,
+                colors=np.ascontiguousarray(colors[mask]),
+            )
+        )
+    return made
+
+
+_RAINBOW = np.array([colorsys.hsv_to_rgb(0.8 * (1.0 - step / 63.0), 1.0, 1.0) for step in range(64)], dtype=np.float32)
+
+
+def _is_seen(cells: Cells) -> NDArray[np.bool_]:
+    """Which cells have a side without a neighbour of their own size."""
+    seen = np.ones(len(cells.sizes), dtype=np.bool_)
+    for size in np.unique(cells.sizes):
+        mask = cells.sizes == size
+        places = np.floor(cells.centers[mask] / size).astype(np.int64)
+        codes = _codes(places)
+        around = np.ones(len(codes), dtype=np.bool_)
+        for axis in range(3):
+            for step in (-1, 1):
+                moved = places.copy()
+                moved[:, axis] += step
+                around &= np.isin(_codes(moved), codes)
+        seen[mask] = ~around
+    return seen
+
+
+def _codes(places: NDArray[np.int64]) -> NDArray[np.int64]:
+    shifted = places + (1 << 17)
+    codes: NDArray[np.int64] = shifted[:, 0] << 40 | shifted[:, 1] << 20 | shifted[:, 2]
+    return codes

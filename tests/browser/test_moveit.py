@@ -1,0 +1,112 @@
+"""Displays of MoveIt, drawn in a real browser."""
+
+from __future__ import annotations
+
+import math
+import struct
+
+import pytest
+
+from linkwright.graph import DESCRIPTION_QOS
+from linkwright.messages import get_message
+from tests.browser.conftest import until
+from tests.browser.live import configuration
+from tests.browser.test_markers import CUBE_STL
+from tests.viewer.displays.moveit.arm import (
+    ARM,
+    SolidPrimitive,
+    attached,
+    pose,
+    primitive,
+    scene,
+    signed,
+    state,
+    thing,
+    trajectory,
+)
+
+pytestmark = pytest.mark.browser
+
+String = get_message("std_msgs/msg/String")
+MOTION_PLANNING = configuration(
+    """
+- {Class: rviz_default_plugins/Grid, Enabled: true, Name: Grid}
+- Class: moveit_rviz_plugin/MotionPlanning
+  Enabled: true
+  Name: MotionPlanning
+  Planned Path:
+    State Display Time: {time}
+    Loop Animation: {loop}
+    Show Trail: true
+""".replace("{time}", "0.05s").replace("{loop}", "true"),
+    distance=7,
+)
+
+
+def kitchen(*, wrist: float = 0.2):
+    """A scene with a table, a ball, a cone, an octomap, and a cup in the hand."""
+    robot = state(shoulder=0.3, wrist=wrist)
+    robot.attached_collision_objects = [
+        attached("hand", thing("cup", primitive(SolidPrimitive.CYLINDER, 0.3, 0.08), frame="hand", at=pose(z=0.25)))
+    ]
+    made = scene(
+        thing("table", primitive(SolidPrimitive.BOX, 1.0, 2.0, 0.05), at=pose(x=1.6, z=0.4)),
+        thing("ball", primitive(SolidPrimitive.SPHERE, 0.2), at=pose(x=1.6, y=0.5, z=0.63)),
+        thing("cone", primitive(SolidPrimitive.CONE, 0.5, 0.2), at=pose(x=1.6, y=-0.5, z=0.68)),
+        robot=robot,
+    )
+    octomap = made.world.octomap
+    octomap.header.frame_id, octomap.origin = "base", pose(x=-1.0, y=-1.0)
+    octomap.octomap.id, octomap.octomap.binary, octomap.octomap.resolution = "OcTree", True, 0.1
+    inner, leaves = struct.pack("<H", 0xFFFF), struct.pack("<H", 0xAAAA)
+    down = struct.pack("<H", 3 << 14) + struct.pack("<H", 3) * 12
+    octomap.octomap.data = signed(down + inner + (inner + leaves * 8) * 8)
+    return made
+
+
+def test_a_scene_and_a_motion_are_drawn(live, open_page, tmp_path):
+    (tmp_path / "hand.stl").write_bytes(CUBE_STL)
+    mesh = f'<mesh filename="{(tmp_path / "hand.stl").as_uri()}" scale="0.2 0.2 0.2"/>'
+    viewer = live(MOTION_PLANNING)
+    viewer.publish("/robot_description", String(data=ARM.replace('<sphere radius="0.1"/>', mesh)), DESCRIPTION_QOS)
+    page = open_page(viewer, wait=False)
+    viewer.publish("/monitored_planning_scene", kitchen())
+    shown = "lw.displays[1].drawn.markers"
+    until(page, f"{shown}['Scene Geometry/table'] === 'cube' && {shown}['Scene Geometry/octomap 0.1'] === 'cube_list'")
+    until(page, f"{shown}['Scene Robot/hand'] === 'mesh' && {shown}['Scene Robot holds/cup'] === 'cylinder'")
+    viewer.publish("/display_planned_path", trajectory(*(0.1 * step for step in range(15))))
+    until(page, f"{shown}['Planned Path/hand'] === 'mesh' && {shown}['Goal State/upper'] === 'cylinder'")
+    until(page, f"{shown}['Planned Path 15/upper'] === 'cylinder'")
+    viewer.settle(page)
+    page.screenshot(path=tmp_path / "moveit.png")
+    assert viewer.run(lambda: [row.text for row in viewer.viewer.displays[1].status if row.level != "ok"]) == []
+
+
+def test_a_mesh_that_only_moves_is_not_loaded_again(live, open_page, tmp_path):
+    (tmp_path / "hand.stl").write_bytes(CUBE_STL)
+    mesh = f'<mesh filename="{(tmp_path / "hand.stl").as_uri()}"/>'
+    viewer = live(configuration("- {Class: moveit_rviz_plugin/PlanningScene, Enabled: true, Name: Scene}"))
+    viewer.publish("/robot_description", String(data=ARM.replace('<sphere radius="0.1"/>', mesh)), DESCRIPTION_QOS)
+    page = open_page(viewer, wait=False)
+    viewer.publish("/monitored_planning_scene", scene(robot=state(shoulder=0.0)))
+    until(
+        page, "lw.displays[0].drawn.markers['Scene Robot/hand'] === 'mesh' && lw.displays[0].drawn.bounds[1][2] > 0.9"
+    )
+    loads = page.evaluate(
+        "performance.getEntriesByType('resource').filter((each) => each.name.includes('.stl')).length"
+    )
+    viewer.publish("/monitored_planning_scene", scene(robot=state(shoulder=math.pi), diff=True))
+    until(page, "lw.displays[0].drawn.bounds[0][2] < -0.9")
+    assert loads == 1
+    again = "performance.getEntriesByType('resource').filter((each) => each.name.includes('.stl')).length"
+    assert page.evaluate(again) == 1
+
+
+def test_a_missing_mesh_is_said(live, open_page):
+    viewer = live(configuration("- {Class: moveit_rviz_plugin/PlanningScene, Enabled: true, Name: Scene}"))
+    text = ARM.replace('<sphere radius="0.1"/>', '<mesh filename="file:///nowhere/hand.stl"/>')
+    viewer.publish("/robot_description", String(data=text), DESCRIPTION_QOS)
+    page = open_page(viewer, wait=False)
+    viewer.publish("/monitored_planning_scene", scene(robot=state(shoulder=0.0)))
+    until(page, "lw.displays[0].drawn.markers['Scene Robot/upper'] === 'cylinder'")
+    until(page, "lw.displays[0].status.some((row) => row.name === 'hand' && row.text.includes('no file'))")
