@@ -1,8 +1,10 @@
-"""rviz_default_plugins/Marker and rviz_default_plugins/MarkerArray."""
+"""rviz_default_plugins/Marker and rviz_default_plugins/MarkerArray, and displays that are made of markers."""
 
 from __future__ import annotations
 
 import asyncio
+from abc import ABC, abstractmethod
+from collections.abc import Iterable
 from typing import Any
 
 from linkwright.geometry.single import Transform
@@ -11,6 +13,7 @@ from linkwright.viewer.config.rviz_config import DisplayConfig
 from linkwright.viewer.config.schema import Path, PropertySpec, Schema, topic_spec
 from linkwright.viewer.displays.base.display import DisplayHost, Pose
 from linkwright.viewer.displays.base.stored_markers import StoredMarkersDisplay
+from linkwright.viewer.displays.base.topic_display import TOPIC
 from linkwright.viewer.markers import BadMarkerError, MarkerReading, read_marker
 from linkwright.viewer.markers.shapes import ADD, DELETE, DELETE_ALL, marker_id, placed_in
 from linkwright.viewer.web.files import MeshIndex
@@ -237,3 +240,45 @@ class MarkerArrayDisplay(MarkerDisplay):
                 return
             seen.add(name)
         self.unsay(_DUPLICATES)
+
+
+class MessageMarkersDisplay(MarkerArrayDisplay, ABC):
+    """Messages of any type, drawn as the markers that `markers` makes of them: for displays that packages bring.
+
+    A subclass says `CLASS`, `MESSAGE` and `SCHEMA`, among it a `topic_spec`.
+    """
+
+    DRAWN_AS = MarkerArrayDisplay.CLASS
+    SCHEMA = (topic_spec(),)
+
+    @abstractmethod
+    def markers(self, message: Any) -> Iterable[Any]:
+        """What is drawn for a message, in place of that for the message before.
+
+        Args:
+            message: of the type `MESSAGE`; it must not be changed.
+
+        Returns:
+            visualization_msgs/msg/Marker, each with a namespace and a number of its own. One without a frame is in that
+            of the message's header, at its time.
+        """
+
+    def take(self, message: Any, pose: Pose | None) -> None:
+        """Draw a message."""
+        made = list(self.markers(message))
+        header = getattr(message, "header", None)
+        for marker in made:
+            if not marker.header.frame_id and header is not None:
+                marker.header = header
+        self._check_duplicates(made)
+        for identity in self._markers.keys() - {marker_id(marker) for marker in made}:
+            self._remove(identity)
+        for marker in made:
+            self._do(marker)
+        self._show()
+
+    def changed(self, path: Path) -> None:
+        """Draw the last message anew."""
+        super().changed(path)
+        if path[0] not in (TOPIC, _NAMESPACES):
+            self.show_again()

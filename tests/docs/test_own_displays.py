@@ -1,0 +1,135 @@
+"""The display that the page about displays of one's own puts together works as the page says."""
+
+from __future__ import annotations
+
+import math
+import sys
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from linkwright import extensions
+from linkwright.messages import get_message
+from linkwright.viewer import RvizConfig
+from linkwright.viewer.displays import catalogue
+from tests.docs.pages import DOCS, blocks
+from tests.viewer.contents import shown_markers
+from tests.viewer.scene import page, world
+
+tomllib: Any = import_module("tomllib" if sys.version_info >= (3, 11) else "tomli")
+
+PAGES = (DOCS / "own-displays.md", DOCS / "zh" / "own-displays.md")
+CLASS = "street_displays/TrackedObjects"
+CONFIG = f"""\
+Visualization Manager:
+  Global Options: {{Fixed Frame: base}}
+  Displays:
+    - Class: {CLASS}
+      Enabled: true
+      Name: Street
+      Topic: {{Value: /objects}}
+"""
+
+
+def files(of: Path) -> dict[str, str]:
+    return {block.title: block.text for block in blocks(of) if block.title}
+
+
+@pytest.fixture(params=PAGES, ids=["en", "zh"])
+def street(request, tmp_path, monkeypatch):
+    """The workspace of the page, with its package installed."""
+    made = files(request.param)
+    for name, text in made.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    project = tomllib.loads(made["street_displays/pyproject.toml"])["project"]
+    facts = tmp_path / "street_displays" / "street_displays-1.0.dist-info"
+    facts.mkdir()
+    points = project["entry-points"]["linkwright.displays"]
+    lines = ["[linkwright.displays]", *(f"{name} = {value}" for name, value in points.items()), ""]
+    (facts / "entry_points.txt").write_text("\n".join(lines))
+    monkeypatch.syspath_prepend(str(tmp_path / "street_displays"))
+    monkeypatch.chdir(tmp_path)
+    extensions._all_groups.cache_clear()
+    catalogue._display_class.cache_clear()
+    yield
+    monkeypatch.undo()
+    sys.modules.pop("street_displays", None)
+    extensions._all_groups.cache_clear()
+    catalogue._display_class.cache_clear()
+
+
+def car(number: int, x: float, *, label: str = "car", speed: float = 3.0, path: int = 0) -> Any:
+    made = get_message("street_msgs/msg/TrackedObject")(id=number, label=label, speed=speed)
+    made.pose.position.x = x
+    made.size.x, made.size.y, made.size.z = 4.0, 2.0, 1.5
+    made.path = [get_message("geometry_msgs/msg/Point")(x=x + step) for step in range(path)]
+    return made
+
+
+def seen(*objects: Any) -> Any:
+    made = get_message("street_msgs/msg/TrackedObjects")(objects=list(objects))
+    made.header.frame_id = "street"
+    return made
+
+
+def test_the_pages_have_the_same_example():
+    first, second = map(files, PAGES)
+    assert first == second
+
+
+def test_the_display_is_as_short_as_is_said_of_it():
+    lines = files(PAGES[0])["street_displays/street_displays.py"].splitlines()
+    assert len([line for line in lines if line.strip()]) <= 60
+
+
+async def test_what_is_seen_is_drawn_and_what_is_gone_goes(street):
+    async with world(RvizConfig.parse(CONFIG)) as w, page(w.viewer) as client:
+        await client.opened()
+        await client.send("ask_display_choices")
+        offered = (await client.until("display_choices"))["classes"]
+        assert {"cls": CLASS, "messages": ["street_msgs/msg/TrackedObjects"]} in offered
+        node = w.graph.create_node("perception")
+        publisher = node.create_publisher("street_msgs/msg/TrackedObjects", "/objects", 10)
+        await w.settle()
+        publisher.publish(seen(car(1, 5.0, path=3), car(2, -5.0, label="bicycle")))
+        await w.settle()
+        (display,) = w.viewer.displays
+        assert display.row().drawing == "rviz_default_plugins/MarkerArray"
+        assert shown_markers(display) == {}  # there is no frame 'street' yet
+        w.move({("base", "street"): (0, 0, 1, 0, 0, 0, 1)}, static=True)
+        await w.settle()
+        drawn = shown_markers(display)
+        assert {name: each["shape"] for name, each in drawn.items()} == {
+            "boxes/1": "cube",
+            "names/1": "text",
+            "paths/1": "line_strip",
+            "boxes/2": "cube",
+            "names/2": "text",
+        }
+        assert drawn["boxes/1"]["pose"][:3] == [5, 0, 1]
+        assert drawn["names/1"]["text"] == "car 3.0 m/s"
+        display.set_property(("Show Names",), False)
+        display.set_property(("Alpha",), 0.25)
+        drawn = shown_markers(display)
+        assert sorted(drawn) == ["boxes/1", "boxes/2", "paths/1"]
+        assert drawn["boxes/2"]["color"] == pytest.approx([1, 0.6, 0, 0.25])
+        publisher.publish(seen(car(2, -4.0, speed=math.inf)))
+        await w.settle()
+        assert list(shown_markers(display)) == ["boxes/2"]
+        assert w.status("TrackedObjects")["Speed"] == ("warn", "The speed of object 2 cannot be")
+        publisher.publish(seen(car(3, math.nan)))
+        await w.settle()
+        status = w.status("TrackedObjects")
+        assert status["boxes/3"] == ("error", "Contains invalid floating point values (nans or infs)")
+        assert "Speed" not in status
+        assert w.viewer.config.text() != CONFIG
+        display.set_property(("Show Names",), True)
+
+
+async def test_a_file_with_it_is_saved_as_it_was(street):
+    async with world(RvizConfig.parse(CONFIG)) as w:
+        assert w.viewer.displays[0].SUPPORTED
+        assert w.viewer.config.text() == CONFIG
