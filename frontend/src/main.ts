@@ -58,6 +58,7 @@ import type { ToolEvent } from "./scene/tools/tool";
 import { Toolbox } from "./scene/tools/toolbox";
 import { Door } from "./shell/door";
 import { FileCommands } from "./shell/file-commands";
+import { RecordingDrop } from "./shell/recording-drop";
 import { hasOwnDisplays, ownKey } from "./shell/own-displays";
 import { matches, SHORTCUTS } from "./shell/shortcuts";
 import { ThemeState } from "./shell/theme";
@@ -123,7 +124,7 @@ function start(app: HTMLElement): void {
   const toolbox = stage && takeTools(stage, session, (event) => (modeller ? modeller.pointer(event) : event));
   if (stage) whenModelling(stage, session, (made) => (modeller = made));
   const files = new FileCommands(session.configuration);
-  app.prepend(new TitleBar(session, dock, files, theme, new ShareMenu(session, stage, tokens)).element);
+  app.prepend(new TitleBar(session, dock, files, new RecordingDrop(session, tokens), theme, new ShareMenu(session, stage, tokens)).element);
   takeFileKeys(session, files);
   app.append(new TimelineBar(session).element, new StatusBar(session, stage).element);
   document.body.append(door.element);

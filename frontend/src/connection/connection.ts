@@ -3,6 +3,7 @@ import { Signal } from "../state/signal";
 import { browserStorage } from "../state/storage";
 import { unpackData, type DisplayData } from "./data";
 import { isPiece, Pieces } from "./pieces";
+import { recordingIn } from "./recording-address";
 import type { Tokens } from "./tokens";
 import { unpackSamples, type SeriesSamples } from "./samples";
 import { unpackTransforms, type Transforms } from "./transforms";
@@ -189,5 +190,7 @@ export function socketUrl(page: string, own: string | null = null): string {
   const url = new URL("ws", page);
   url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
   if (own !== null) url.searchParams.set("own", own);
+  const recording = recordingIn(page);
+  if (recording !== null) url.searchParams.set("recording", recording);
   return url.href;
 }

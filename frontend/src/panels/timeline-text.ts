@@ -19,6 +19,11 @@ export function amountText(seconds: number, bytes: number): string {
   return `${lengthText(seconds)} · ${sizeText(bytes)}`;
 }
 
+/** `45 MB / 1.20 GB`: bytes, of how many. */
+export function amountOf(bytes: number, whole: number): string {
+  return `${sizeText(bytes)} / ${sizeText(whole)}`;
+}
+
 /** `1:30`: seconds. */
 export function lengthText(seconds: number): string {
   return minutes(seconds, 0);

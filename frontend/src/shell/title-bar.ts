@@ -8,6 +8,7 @@ import type { Session } from "../state/session";
 import { chooseLanguage, language, strings } from "../strings";
 import { editText, type FileCommands } from "./file-commands";
 import { addressFor } from "./own-displays";
+import type { RecordingDrop } from "./recording-drop";
 import { keyText, SHORTCUTS } from "./shortcuts";
 import { THEME_CHOICES, type ThemeState } from "./theme";
 
@@ -24,6 +25,7 @@ export class TitleBar {
     private readonly session: Session,
     private readonly dock: Dock,
     private readonly files: FileCommands,
+    private readonly recordings: RecordingDrop,
     theme: ThemeState,
     share: ShareMenu,
   ) {
@@ -108,6 +110,7 @@ export class TitleBar {
       { label: words.newFile, icon: "file", run: () => files.begin() },
       { label: words.open, icon: "open", keys: keyText(SHORTCUTS.open), run: () => files.chooseFile() },
       { label: words.openLocal, icon: "upload", run: () => files.chooseLocal() },
+      { label: strings.recording.open, hint: strings.recording.openFileHint, icon: "play", run: () => this.recordings.choose() },
       { label: words.save, icon: "save", keys: keyText(SHORTCUTS.save), separate: true, run: () => files.save() },
       { label: words.saveAs, keys: keyText(SHORTCUTS.saveAs), run: () => files.saveAs() },
       { label: words.download, icon: "download", run: () => files.download() },

@@ -6,12 +6,12 @@ from collections.abc import Callable, Collection, Iterator
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from linkwright.bag.moments import Moments, Recorded
 from linkwright.bag.qos import from_bag
+from linkwright.bag.scratch import scratch_folder
 from linkwright.bag.unfinished import finished_copy, is_unfinished
 from linkwright.diagnostics import (
     Diagnostic,
@@ -105,7 +105,7 @@ class BagReader:
         if len(files) != 1 or files[0].suffix != ".mcap" or not is_unfinished(files[0]):
             return target
         self._is_cut_off = True
-        scratch = self._open.enter_context(TemporaryDirectory(prefix="linkwright_bag_"))
+        scratch = self._open.enter_context(scratch_folder())
         return finished_copy(files[0], Path(scratch))
 
     def _make_types_known(self) -> None:

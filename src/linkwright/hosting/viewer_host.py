@@ -68,6 +68,7 @@ class ViewerHost:
             LinkwrightError: why it cannot start.
         """
         from linkwright.viewer import Viewer, find_unsaved
+        from linkwright.viewer.guests import GuestRecordings
 
         session = self._session
         if plan.viewer_config is not None:
@@ -92,6 +93,7 @@ class ViewerHost:
             options=plan.node_options(session.descriptions.library),
             history=session.options.history,
         )
+        viewer.guests = GuestRecordings(viewer)
         await viewer.start()
         self._viewers[plan.process_name] = plan, viewer
         if plan.viewer_started is not None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from linkwright._version import __version__
 from linkwright.descriptions import DescriptionLibrary
@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from linkwright.graph import Node
     from linkwright.nodes.joint_panel import JointPanel
     from linkwright.viewer.web.server import WebServer
+    from linkwright.viewer.web.uploads import Guests
 
 _NAME = "rviz2"
 _FIXED_FRAME = "fixed_frame"
@@ -57,6 +58,10 @@ class Viewer:
         title: of the page.
         options: of the node: its name, remappings, parameters and ROS arguments.
         history: how many bytes of what comes are kept, for pages to go back to the last minutes; 0 for none.
+        beside: another viewer, on whose server this one's pages are; None for a server of its own.
+
+    Attributes:
+        guests: shows the recordings that pages give to this viewer; None where it takes none.
 
     Raises:
         LinkwrightError: a name, a remapping or a ROS argument is not valid.
@@ -74,8 +79,11 @@ class Viewer:
         title: str = "",
         options: NodeOptions | None = None,
         history: int = 0,
+        beside: Viewer | None = None,
     ) -> None:
         self._history = history
+        self._beside = beside
+        self.guests: Guests | None = None
         self._host, self._port, self._title = host, port, title
         self._url = ""
         self._node, _ = create_node(graph, options or NodeOptions(), _NAME)
@@ -86,13 +94,18 @@ class Viewer:
         )
         config.options.set(("Fixed Frame",), frame.value)
         self._audience = Audience(self._opening, self._receive, self._page_gone, self._node.get_logger())
-        self.context = ViewerContext(
+        shared: dict[str, Any] = {}
+        if beside is not None:  # what the server gives out, by names that none of its viewers has twice
+            served = beside.context
+            shared = {"meshes": served.meshes, "downloads": served.downloads, "display_ids": served.display_ids}
+        self.context: ViewerContext = ViewerContext(
             node=self._node,
             library=library,
             finder=finder,
             pages=self._audience,
             transforms=FrameHistory(self._node),
             graph_changes=GraphChanges(self._node.graph),
+            **shared,
         )
         self._features: list[PageFeature] = []
         self.managers = Managers(self.context, config, self)
@@ -109,11 +122,22 @@ class Viewer:
         Raises:
             LinkwrightError: VIEW101 to VIEW103, it cannot listen where it should.
         """
+        if self._beside is None:
+            await self._serve()
+        if self._history:
+            self._recording.use(self._timeline.keep(self._history))
+        self.managers.shared.start()
+        for feature in self._features:
+            feature.start()
+
+    async def _serve(self) -> None:
         from linkwright.viewer.web.server import WebServer, is_open_to_others, listen
 
         try:
             listener = listen(self._host, self._port)
-            self._server = WebServer(Gate(self._host), self._audience, self.context.meshes, self.context.downloads)
+            self._server = WebServer(
+                Gate(self._host), self._audience, self.context.meshes, self.context.downloads, guests=self.guests
+            )
             self._url = await self._server.start(listener)
         except BaseException:  # cancelled, too: whoever ends the program does not know this viewer yet
             self._node.destroy_node()
@@ -122,20 +146,19 @@ class Viewer:
             self._node.get_logger().warning(
                 f"Listening on '{self._host}': whoever reaches it and knows the token can see and move the robot"
             )
-        if self._history:
-            self._recording.use(self._timeline.keep(self._history))
-        self.managers.shared.start()
-        for feature in self._features:
-            feature.start()
 
     async def close(self) -> None:
         """Close the connections to pages, leave the graph and stop listening."""
+        if self.guests is not None:
+            await self.guests.close()
         for feature in self._features:
             feature.close()
         self.managers.close()
         if self._server is not None:
             await self._server.close()
             self._server = None
+        if self._beside is not None:
+            await self._audience.close()
         self._node.destroy_node()
 
     def keep_unsaved(self) -> list[Diagnostic]:
@@ -147,6 +170,11 @@ class Viewer:
     def url(self) -> str:
         """What to open in a browser, token included; empty before `start`."""
         return self._url
+
+    @property
+    def audience(self) -> Audience:
+        """The open pages."""
+        return self._audience
 
     @property
     def manager(self) -> VisualizationManager:

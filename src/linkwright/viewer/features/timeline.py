@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Iterable
 from math import isfinite
 from typing import ClassVar
 
 from linkwright.bag.playback import FASTEST, SLOWEST, Playback
 from linkwright.bag.reading import BagReader
-from linkwright.diagnostics import LinkwrightError
+from linkwright.diagnostics import Diagnostic, LinkwrightError
 from linkwright.diagnostics.translation import translated
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
 from linkwright.viewer.live_history import LiveHistory
@@ -71,6 +72,8 @@ class TimelineFeature(PageFeature):
             self._live.close()
             self._live = None
         self._timeline = Timeline(bag.path.name, bag.start_ns / _SECOND, bag.end_ns / _SECOND, topics, live=False)
+        if bag.finding is not None:
+            self._problem = _text([bag.finding])
         self._playback = playback
         playback.begin_anew = self._begin_anew
         playback.changed.append(self._changed)
@@ -89,7 +92,7 @@ class TimelineFeature(PageFeature):
 
     def failed(self, error: LinkwrightError) -> None:
         """The recording cannot be read on."""
-        self._problem = "; ".join(each.message for each in translated(error.diagnostics))
+        self._problem = _text(error.diagnostics)
         for diagnostic in error.diagnostics:
             self.context.report(diagnostic)
 
@@ -190,3 +193,7 @@ class TimelineFeature(PageFeature):
         if self._live is not None and len(self.context.pages):
             self.context.pages.publish(self._kept(self._live))
             self._tell_kept_later()
+
+
+def _text(diagnostics: Iterable[Diagnostic]) -> str:
+    return "; ".join(each.message for each in translated(diagnostics))

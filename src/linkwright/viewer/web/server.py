@@ -21,6 +21,7 @@ from aiohttp.http_exceptions import HttpProcessingError
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.viewer.web.access import TOKEN_PARAMETER, Admission, Gate, security_headers
 from linkwright.viewer.web.files import CONTENT_TYPES, Downloads, FileRefusedError, MeshFolders
+from linkwright.viewer.web.uploads import Guests, Uploads
 
 if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable, Mapping
@@ -100,6 +101,7 @@ class WebServer:
         meshes: the folders that may be read.
         downloads: files that were made for pages.
         page_folder: the built page.
+        guests: shows the recordings that pages give; None where none are taken.
     """
 
     def __init__(
@@ -109,12 +111,15 @@ class WebServer:
         meshes: MeshFolders,
         downloads: Downloads,
         page_folder: Path = PAGE_FOLDER,
+        guests: Guests | None = None,
     ) -> None:
         self._gate = gate
         self._audience = audience
         self._meshes = meshes
         self._downloads = downloads
         self._page_folder = page_folder
+        self._guests = guests
+        self._uploads = None if guests is None else Uploads(guests)
         self._runner: web.AppRunner | None = None
         self._listening: asyncio.Server | None = None
         self._admission: Admission | None = None
@@ -129,6 +134,8 @@ class WebServer:
         application.router.add_get("/ws", self._socket, allow_head=False)
         application.router.add_get("/mesh/{key}/{path:.+}", self._mesh)
         application.router.add_get("/export/{key}/{name}", self._export, allow_head=False)
+        if self._uploads is not None:
+            self._uploads.add_routes(application.router, self._shielded)
         application.router.add_get("/{path:.+}", self._page_file)
         self._runner = web.AppRunner(
             application,
@@ -158,6 +165,8 @@ class WebServer:
             self._listening.close()
             self._listening = None
         await self._audience.close()
+        if self._uploads is not None:
+            self._uploads.close()
         if self._runner is not None:
             await self._runner.cleanup()
             self._runner = None
@@ -262,12 +271,21 @@ class WebServer:
             body=file.data, headers={"Content-Type": file.content_type, "Content-Disposition": _attached(file.name)}
         )
 
+    def _shielded(
+        self, handler: Callable[[web.Request], Awaitable[web.Response]]
+    ) -> Callable[[web.Request], Awaitable[web.StreamResponse]]:
+        """Ask a handler only for those who show the token."""
+
+        async def asked(request: web.Request) -> web.StreamResponse:
+            return await handler(request) if self._gate.is_shown_token(request.query) else _without_token()
+
+        return asked
+
     async def _socket(self, request: web.Request) -> web.StreamResponse:
         if not self._gate.is_shown_token(request.query):
-            return _refused(
-                401, "the token is missing or wrong: open the address that linkwright printed, token included"
-            )
-        if self._audience.is_full:
+            return _without_token()
+        audience = self._audience_of(request)
+        if audience.is_full:
             return web.Response(status=503, text="Too many pages are open.\n")
         socket = web.WebSocketResponse(
             heartbeat=_HEARTBEAT,
@@ -278,12 +296,18 @@ class WebServer:
         )
         if not socket.can_prepare(request):
             return web.Response(status=400, text="This address is for the page's WebSocket.\n")
-        with self._audience.expecting():
+        with audience.expecting():
             await socket.prepare(request)
         if request.transport is not None:
             keep_short(request.transport)
-        await self._audience.attend(socket, _own_displays(request))
+        await audience.attend(socket, _own_displays(request))
         return socket
+
+    def _audience_of(self, request: web.Request) -> Audience:
+        """The pages of the recording that a page names; where that is no longer shown, those of the viewer itself."""
+        key = request.query.get("recording", "")
+        found = None if self._guests is None or not key else self._guests.audience(key)
+        return self._audience if found is None else found
 
 
 def _own_displays(request: web.Request) -> str:
@@ -295,6 +319,10 @@ def _own_displays(request: web.Request) -> str:
 def _takes_gzip(request: web.Request) -> bool:
     offered = request.headers.get("Accept-Encoding", "").split(",")
     return any(each.strip().lower() == "gzip" for each in offered)
+
+
+def _without_token() -> web.Response:
+    return _refused(401, "the token is missing or wrong: open the address that linkwright printed, token included")
 
 
 def _refused(status: int, reason: str) -> web.Response:

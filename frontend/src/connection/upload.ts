@@ -1,0 +1,86 @@
+import type { Tokens } from "./tokens";
+
+/** A file to be sent, by the name that it has on the server. */
+export interface NamedFile {
+  name: string;
+  file: Blob;
+}
+
+/** The server does not take it; the text says why. */
+export class RefusedError extends Error {}
+
+/** Sends the files of a recording to the server, one after the other, and has it shown. */
+export class Upload {
+  private request: XMLHttpRequest | null = null;
+  private key = "";
+  private cancelled = false;
+
+  /**
+   * @param base - the address of the page.
+   * @param progress - told how many bytes were sent.
+   */
+  constructor(
+    private readonly base: string,
+    private readonly tokens: Tokens,
+    private readonly progress: (sent: number) => void,
+  ) {}
+
+  /** What the server calls the recording; null where it was cancelled. */
+  async send(name: string, files: readonly NamedFile[]): Promise<string | null> {
+    const announced = { name, files: files.map((each) => ({ name: each.name, size: each.file.size })) };
+    this.key = (await this.ask("POST", "recordings", JSON.stringify(announced)))?.key ?? "";
+    let before = 0;
+    for (const [number, { file }] of files.entries()) {
+      await this.ask("PUT", `recordings/${this.key}/${number}`, file, (sent) => this.progress(before + sent));
+      before += file.size;
+    }
+    this.progress(before);
+    return (await this.ask("POST", `recordings/${this.key}`, null))?.recording ?? null;
+  }
+
+  cancel(): void {
+    this.cancelled = true;
+    this.request?.abort();
+    if (this.key !== "") void fetch(this.address(`recordings/${this.key}`), { method: "DELETE" }).catch(() => undefined);
+  }
+
+  /** An answer of the server; null once this is cancelled. */
+  private ask(method: string, path: string, body: Blob | string | null, sent?: (bytes: number) => void): Promise<Answer | null> {
+    if (this.cancelled) return Promise.resolve(null);
+    return new Promise((resolve, reject) => {
+      const request = new XMLHttpRequest();
+      this.request = request;
+      request.open(method, this.address(path));
+      if (sent) request.upload.addEventListener("progress", ({ loaded }) => sent(loaded));
+      request.addEventListener("load", () => {
+        const answer = parsed(request.responseText);
+        if (request.status < 300 && answer.problem === undefined) resolve(answer);
+        else reject(new RefusedError(answer.problem ?? request.responseText.trim()));
+      });
+      request.addEventListener("error", () => reject(new RefusedError("")));
+      request.addEventListener("abort", () => resolve(null));
+      request.send(body);
+    });
+  }
+
+  private address(path: string): string {
+    const url = new URL(path, new URL(".", this.base));
+    const { current } = this.tokens;
+    if (current !== null) url.searchParams.set("token", current);
+    return url.href;
+  }
+}
+
+interface Answer {
+  key?: string;
+  recording?: string;
+  problem?: string;
+}
+
+function parsed(text: string): Answer {
+  try {
+    return JSON.parse(text) as Answer;
+  } catch {
+    return {};
+  }
+}

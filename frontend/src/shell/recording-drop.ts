@@ -1,0 +1,103 @@
+import { addressOf, recordingIn } from "../connection/recording-address";
+import type { Tokens } from "../connection/tokens";
+import { RefusedError, Upload } from "../connection/upload";
+import { h } from "../dom";
+import { amountOf } from "../panels/timeline-text";
+import type { Session } from "../state/session";
+import { strings } from "../strings";
+import { Dialog, tell } from "./dialog";
+import { filesOf, recordingAmong, type Dropped } from "./recording-files";
+
+/** Recordings that the user drops on the page, or chooses: they go to the server, and a page with their timeline opens. */
+export class RecordingDrop {
+  private readonly veil = h("div", { class: "drop-veil" }, h("p", {}, strings.recording.dropHere));
+  private sending = false;
+
+  constructor(
+    session: Session,
+    private readonly tokens: Tokens,
+  ) {
+    this.veil.hidden = true;
+    document.body.append(this.veil);
+    document.addEventListener("dragover", (event) => {
+      if (!holdsFiles(event)) return;
+      event.preventDefault();
+      this.veil.hidden = false;
+    });
+    document.addEventListener("dragleave", (event) => {
+      if (event.relatedTarget === null) this.veil.hidden = true;
+    });
+    document.addEventListener("drop", (event) => {
+      this.veil.hidden = true;
+      if (!holdsFiles(event) || !event.dataTransfer) return;
+      event.preventDefault();
+      void filesOf(event.dataTransfer).then((dropped) => this.take(dropped));
+    });
+    session.connection.on("timeline", ({ live }) => this.check(live));
+  }
+
+  /** Lets the user choose a recording of the browser's machine: its file, or all files of its folder. */
+  choose(): void {
+    const input = document.createElement("input");
+    input.type = "file";
+    input.multiple = true;
+    input.accept = ".mcap,.db3,.yaml,.zstd";
+    input.addEventListener("change", () => {
+      const files = [...(input.files ?? [])].map((file) => ({ name: file.name, file }));
+      this.take(recordingAmong(strings.recording.folder, files));
+    });
+    input.click();
+  }
+
+  private take(dropped: Dropped): void {
+    const words = strings.recording;
+    if (this.sending) return;
+    if (dropped.files.length === 0) tell(words.noRecording, words.noRecordingHint(dropped.name));
+    else void this.send(dropped);
+  }
+
+  private async send({ name, files }: Dropped): Promise<void> {
+    const words = strings.recording;
+    const whole = files.reduce((sum, { file }) => sum + file.size, 0);
+    const bar = h("progress", { class: "wide", aria: { label: words.sending(name) } });
+    const text = h("p", { role: "status" });
+    const show = (sent: number): void => {
+      bar.max = Math.max(1, whole);
+      if (sent < whole) bar.value = sent;
+      else bar.removeAttribute("value");
+      text.textContent = sent < whole ? amountOf(sent, whole) : words.opening;
+    };
+    const upload = new Upload(document.baseURI, this.tokens, show);
+    let done = false;
+    const dialog = new Dialog(words.sending(name), [bar, text], [{ label: strings.shell.cancel, main: true }]);
+    dialog.element.addEventListener("close", () => {
+      if (!done) upload.cancel();
+    });
+    this.sending = true;
+    show(0);
+    dialog.open();
+    try {
+      const recording = await upload.send(name, files);
+      if (recording !== null) location.assign(addressOf(location.href, recording));
+    } catch (error) {
+      done = true;
+      dialog.close();
+      tell(words.notOpened(name), error instanceof RefusedError && error.message !== "" ? error.message : words.broken);
+    } finally {
+      done = true;
+      this.sending = false;
+      dialog.close();
+    }
+  }
+
+  /** A recording that nobody looked at for a while is shown no longer: the program's own page is. */
+  private check(live: boolean): void {
+    if (!live || recordingIn(location.href) === null) return;
+    history.replaceState(history.state, "", addressOf(location.href, null));
+    tell(strings.recording.gone, strings.recording.goneHint);
+  }
+}
+
+function holdsFiles(event: DragEvent): boolean {
+  return event.dataTransfer?.types.includes("Files") ?? false;
+}

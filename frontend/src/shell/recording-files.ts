@@ -1,0 +1,44 @@
+import type { NamedFile } from "../connection/upload";
+
+/** What of a recording is dropped: the name of its file or folder, and its files. */
+export interface Dropped {
+  name: string;
+  files: NamedFile[];
+}
+
+const OF_A_RECORDING = /(^metadata\.yaml|\.(mcap|db3)(\.zstd)?)$/;
+
+/** The files of a recording among several; with a name that tells where there is more than one. */
+export function recordingAmong(name: string, files: readonly NamedFile[]): Dropped {
+  const found = files.filter((each) => OF_A_RECORDING.test(each.name));
+  const messages = found.filter((each) => each.name !== "metadata.yaml");
+  // Of a single file the metadata say no more than it does itself.
+  if (messages.length === 1 && messages[0]) return { name: messages[0].name, files: messages };
+  return { name, files: messages.length > 0 ? found : [] };
+}
+
+/** The files that were dropped, those directly in a folder included. */
+export async function filesOf(transfer: DataTransfer): Promise<Dropped> {
+  const entries = [...transfer.items].map((item) => item.webkitGetAsEntry()).filter((entry) => entry !== null);
+  const files: NamedFile[] = [];
+  for (const entry of entries) {
+    if (entry.isFile) files.push(await fileOf(entry as FileSystemFileEntry));
+    else for (const inner of await entriesIn(entry as FileSystemDirectoryEntry)) if (inner.isFile) files.push(await fileOf(inner as FileSystemFileEntry));
+  }
+  return recordingAmong(entries[0]?.name ?? "", files);
+}
+
+function fileOf(entry: FileSystemFileEntry): Promise<NamedFile> {
+  return new Promise((resolve, reject) => entry.file((file) => resolve({ name: file.name, file }), reject));
+}
+
+/** All entries of a folder; browsers give some at a time. */
+async function entriesIn(folder: FileSystemDirectoryEntry): Promise<FileSystemEntry[]> {
+  const reader = folder.createReader();
+  const found: FileSystemEntry[] = [];
+  for (;;) {
+    const some = await new Promise<FileSystemEntry[]>((resolve, reject) => reader.readEntries(resolve, reject));
+    if (some.length === 0) return found;
+    found.push(...some);
+  }
+}

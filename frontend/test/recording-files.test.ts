@@ -1,0 +1,38 @@
+import { describe, expect, it, vi } from "vitest";
+import { socketUrl } from "../src/connection/connection";
+import { addressOf, recordingIn } from "../src/connection/recording-address";
+import { recordingAmong } from "../src/shell/recording-files";
+
+vi.mock("../src/strings", async () => ({ strings: (await import("../src/strings/en")).en, language: "en" }));
+
+function named(...names: string[]): { name: string; file: Blob }[] {
+  return names.map((name) => ({ name, file: new Blob(["x"]) }));
+}
+
+describe("what is dropped", () => {
+  it("is a recording by the names of its files", () => {
+    const { name, files } = recordingAmong("drive", named("notes.txt", "metadata.yaml", "drive_0.db3", "drive_1.db3.zstd", ".DS_Store"));
+    expect(name).toBe("drive");
+    expect(files.map((each) => each.name)).toEqual(["metadata.yaml", "drive_0.db3", "drive_1.db3.zstd"]);
+  });
+
+  it("is that file where there is but one with messages", () => {
+    const { name, files } = recordingAmong("drive", named("metadata.yaml", "drive_0.mcap"));
+    expect([name, files.length, files[0]?.name]).toEqual(["drive_0.mcap", 1, "drive_0.mcap"]);
+  });
+
+  it("is none without files with messages", () => {
+    expect(recordingAmong("pictures", named("a.png", "mcap")).files).toEqual([]);
+    expect(recordingAmong("drive", named("metadata.yaml")).files).toEqual([]);
+    expect(recordingAmong("robot.urdf", named("robot.urdf")).files).toEqual([]);
+  });
+});
+
+describe("the page of a recording", () => {
+  it("is named by its address, and its socket is", () => {
+    const address = addressOf("http://localhost:7448/?displays=own", "abc");
+    expect(recordingIn(address)).toBe("abc");
+    expect(socketUrl(address)).toBe("ws://localhost:7448/ws?recording=abc");
+    expect(addressOf(address, null)).toBe("http://localhost:7448/?displays=own");
+  });
+});

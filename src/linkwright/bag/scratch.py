@@ -1,0 +1,16 @@
+"""A folder for copies of recordings, which may be larger than the memory."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+_ON_DISK = Path("/var/tmp")  # noqa: S108 - the folder is made below it, under a name that nobody knows before
+"""Where the system keeps large files for a while; its ``/tmp`` may be memory (file-hierarchy(7))."""
+
+
+def scratch_folder() -> TemporaryDirectory[str]:
+    """A new folder that is gone when it is cleaned up, where TMPDIR says or on the disk."""
+    chosen = None if os.environ.get("TMPDIR") or not os.access(_ON_DISK, os.W_OK) else _ON_DISK
+    return TemporaryDirectory(prefix="linkwright_bag_", dir=chosen)

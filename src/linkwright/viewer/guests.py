@@ -1,0 +1,135 @@
+"""Recordings that pages gave: each in a graph and a viewer of its own, on the server of the viewer it was given to.
+
+Nothing of them comes to the graph of that viewer, nor to the network.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import secrets
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING
+
+from linkwright.bag import BagReader, Playback, PublishedRecording
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+from linkwright.graph import Graph
+from linkwright.nodes.options import NodeOptions
+from linkwright.viewer.recording_config import recording_config
+from linkwright.viewer.viewer import Viewer
+
+if TYPE_CHECKING:
+    from linkwright.viewer.web.audience import Audience
+
+PATIENCE = 60.0
+"""Seconds without a page after which a recording is no longer shown."""
+
+_MOST = 4
+_LOOK = 5.0
+
+
+@dataclass(slots=True)
+class _Guest:
+    bag: BagReader
+    graph: Graph
+    viewer: Viewer
+    scratch: TemporaryDirectory[str]
+    left: float
+
+
+class GuestRecordings:
+    """Shows the recordings that pages gave to a viewer.
+
+    Args:
+        host: the viewer, on whose server they are shown.
+    """
+
+    def __init__(self, host: Viewer) -> None:
+        self._host = host
+        self._guests: dict[str, _Guest] = {}
+        self._looking: asyncio.TimerHandle | None = None
+        self._closing: set[asyncio.Task[None]] = set()
+
+    async def open(self, path: Path, scratch: TemporaryDirectory[str]) -> str:
+        """Show a recording until a minute after its last page has gone; what pages name it by.
+
+        Args:
+            path: of its file or folder.
+            scratch: the folder that it is in, which is removed afterwards.
+
+        Raises:
+            LinkwrightError: BAG101, BAG102, BAG107, see `BagReader`; BAG111, as many are shown as may be.
+        """
+        if len(self._guests) >= _MOST:
+            raise LinkwrightError(
+                Diagnostic(
+                    "BAG111",
+                    phrase(
+                        "{count} recordings are open already: close the page of one, and wait a minute", count=_MOST
+                    ),
+                )
+            )
+        bag = await asyncio.to_thread(BagReader, path)
+        host = self._host.context
+        try:
+            config = recording_config(bag)
+            graph = Graph()
+            node = graph.create_node("rosbag2_player", start_parameter_services=False)
+            output = PublishedRecording(node, bag)
+            viewer = Viewer(
+                graph,
+                library=host.library,
+                finder=host.finder,
+                config=config,
+                title=path.name,
+                options=NodeOptions(name="viewer", parameters={"use_sim_time": True}, library=host.library),
+                beside=self._host,
+            )
+            await viewer.start()
+            viewer.attach_recording(Playback(node.handle, bag, output, viewer.playback_failed), bag)
+        except BaseException:
+            bag.close()
+            raise
+        key = secrets.token_urlsafe(16)
+        self._guests[key] = _Guest(bag, graph, viewer, scratch, asyncio.get_running_loop().time())
+        self._look_later()
+        return key
+
+    def audience(self, key: str) -> Audience | None:
+        """The pages of a recording that is shown; None where there is none of that name."""
+        guest = self._guests.get(key)
+        return None if guest is None else guest.viewer.audience
+
+    async def close(self) -> None:
+        """Show nothing more."""
+        if self._looking is not None:
+            self._looking.cancel()
+        guests, self._guests = self._guests, {}
+        await asyncio.gather(*(_end(each) for each in guests.values()), *self._closing)
+
+    def _look_later(self) -> None:
+        if self._looking is None:
+            self._looking = asyncio.get_running_loop().call_later(_LOOK, self._look)
+
+    def _look(self) -> None:
+        """End those that nobody looks at."""
+        self._looking = None
+        loop = asyncio.get_running_loop()
+        for key, guest in list(self._guests.items()):
+            if len(guest.viewer.audience):
+                guest.left = loop.time()
+            elif loop.time() - guest.left > PATIENCE:
+                del self._guests[key]
+                task = loop.create_task(_end(guest))
+                self._closing.add(task)
+                task.add_done_callback(self._closing.discard)
+        if self._guests:
+            self._look_later()
+
+
+async def _end(guest: _Guest) -> None:
+    await guest.viewer.close()
+    await guest.graph.close()
+    guest.bag.close()
+    guest.scratch.cleanup()

@@ -1,0 +1,265 @@
+"""Recordings that pages give to the server, to be shown: their files come in blocks and go into a folder for a while.
+
+A page says first what is to come and is told whether there is room. What it gives up, or what comes to a standstill, is
+removed. Whoever knows the token may give some; names are checked, and none leads out of the folder.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import re
+import secrets
+import shutil
+from dataclasses import dataclass, field
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Protocol
+
+import msgspec
+from aiohttp import web
+
+from linkwright.bag.scratch import scratch_folder
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, foreign, phrase
+from linkwright.diagnostics.translation import translated
+
+if TYPE_CHECKING:
+    from collections.abc import Awaitable, Callable
+
+    from linkwright.viewer.web.audience import Audience
+
+PATIENCE = 60.0
+"""Seconds after which files that nobody goes on with are removed."""
+
+LEFT_FREE = 256_000_000
+"""Bytes of the disk that are left to others."""
+
+_MOST_AT_ONCE = 4
+_MOST_FILES = 1000
+_BLOCK = 1 << 20
+_FILE = re.compile(r"metadata\.yaml|[^/\\\0]{1,200}\.(?:mcap|db3)(?:\.zstd)?")
+_NAME = re.compile(r"[^/\\\0]{1,200}")
+_DOTS = frozenset({".", ".."})
+
+
+class Guests(Protocol):
+    """Shows recordings to pages of this server."""
+
+    async def open(self, path: Path, scratch: TemporaryDirectory[str]) -> str:
+        """Show a recording; what pages name it by. `scratch` is removed when it is no longer shown.
+
+        Raises:
+            LinkwrightError: it cannot be shown; `scratch` is still there.
+        """
+
+    def audience(self, key: str) -> Audience | None:
+        """The pages of a recording that is shown; None where there is none of that name."""
+
+    async def close(self) -> None:
+        """Show nothing more."""
+
+
+class _File(msgspec.Struct, forbid_unknown_fields=True):
+    name: str
+    size: int
+
+
+class _Announcement(msgspec.Struct, forbid_unknown_fields=True):
+    """What a page is about to send: the name of the file or folder, and its files."""
+
+    name: str
+    files: list[_File]
+
+
+@dataclass(slots=True)
+class _Upload:
+    """Files that come."""
+
+    announced: _Announcement
+    scratch: TemporaryDirectory[str]
+    whole: set[int] = field(default_factory=set)
+    touched: float = field(default_factory=lambda: asyncio.get_running_loop().time())
+    busy: bool = False
+
+    @property
+    def folder(self) -> Path:
+        return Path(self.scratch.name) / self.announced.name
+
+    @property
+    def target(self) -> Path:
+        """What is to be opened."""
+        files = self.announced.files
+        return self.folder / files[0].name if len(files) == 1 else self.folder
+
+
+class Uploads:
+    """The addresses to which pages send recordings.
+
+    Args:
+        guests: shows them.
+        left_free: bytes of the disk that are left to others.
+    """
+
+    def __init__(self, guests: Guests, left_free: int = LEFT_FREE) -> None:
+        self._guests = guests
+        self._left_free = left_free
+        self._uploads: dict[str, _Upload] = {}
+        self._sweeping: asyncio.TimerHandle | None = None
+
+    def add_routes(
+        self,
+        router: web.UrlDispatcher,
+        shielded: Callable[
+            [Callable[[web.Request], Awaitable[web.Response]]], Callable[[web.Request], Awaitable[web.StreamResponse]]
+        ],
+    ) -> None:
+        """Take requests.
+
+        Args:
+            router: of the server.
+            shielded: has a handler asked only by those who show the token.
+        """
+        router.add_post("/recordings", shielded(self._announce))
+        router.add_put("/recordings/{key}/{number:[0-9]{1,4}}", shielded(self._take))
+        router.add_post("/recordings/{key}", shielded(self._open))
+        router.add_delete("/recordings/{key}", shielded(self._give_up))
+
+    def close(self) -> None:
+        """Remove what has come."""
+        if self._sweeping is not None:
+            self._sweeping.cancel()
+        for upload in self._uploads.values():
+            upload.scratch.cleanup()
+        self._uploads.clear()
+
+    # --- requests ----------------------------------------------------------------------------------------------
+
+    async def _announce(self, request: web.Request) -> web.Response:
+        try:
+            announced = msgspec.json.decode(await request.read(), type=_Announcement)
+        except msgspec.DecodeError as error:
+            return web.Response(status=400, text=f"{error}\n")
+        names = [each.name for each in announced.files]
+        wrong = next((each for each in names if not _FILE.fullmatch(each)), None)
+        if wrong is not None:
+            return _refused(phrase("'{name}' is no file of a recording: these are .mcap and .db3", name=wrong[:100]))
+        if not names or len(names) != len(set(names)) or len(names) > _MOST_FILES:
+            return _refused(phrase("there is no recording in what was dropped: its files are .mcap or .db3"))
+        if (
+            not _NAME.fullmatch(announced.name)
+            or announced.name in _DOTS
+            or any(each.size < 0 for each in announced.files)
+        ):
+            return web.Response(status=400, text="A name without slashes, and sizes.\n")
+        if len(self._uploads) >= _MOST_AT_ONCE:
+            return _refused(
+                phrase("{count} other recordings are being sent: wait for one of them", count=_MOST_AT_ONCE)
+            )
+        scratch = scratch_folder()
+        needed = sum(each.size for each in announced.files)
+        free = shutil.disk_usage(scratch.name).free
+        if needed + self._left_free > free:
+            scratch.cleanup()
+            return _refused(_no_room(needed, free))
+        key = secrets.token_urlsafe(16)
+        upload = self._uploads[key] = _Upload(announced, scratch)
+        await asyncio.to_thread(upload.folder.mkdir)
+        self._sweep_later()
+        return web.json_response({"key": key})
+
+    async def _take(self, request: web.Request) -> web.Response:
+        upload = self._uploads.get(request.match_info["key"])
+        number = int(request.match_info["number"])
+        if upload is None or number >= len(upload.announced.files) or number in upload.whole or upload.busy:
+            raise web.HTTPNotFound(text="Nothing of that name is expected.\n")
+        file = upload.announced.files[number]
+        upload.busy = True
+        try:
+            come = await self._write(request, upload, upload.folder / file.name, file.size)
+        except OSError as error:
+            self._remove(request.match_info["key"])
+            if request.transport is None:
+                return web.Response(status=400)  # the page has gone
+            return _refused(
+                phrase("the recording could not be taken: {reason}", reason=foreign(error.strerror or error))
+            )
+        finally:
+            upload.busy = False
+        if come != file.size:
+            return web.Response(status=400, text="That is not all of the file.\n")
+        upload.whole.add(number)
+        return web.Response(status=204)
+
+    async def _open(self, request: web.Request) -> web.Response:
+        upload = self._uploads.get(request.match_info["key"])
+        if upload is None or len(upload.whole) != len(upload.announced.files):
+            raise web.HTTPNotFound(text="Nothing of that name is there.\n")
+        upload.busy = True
+        try:
+            shown = await self._guests.open(upload.target, upload.scratch)
+        except LinkwrightError as error:
+            found = "; ".join(each.message for each in translated(error.diagnostics))
+            self._remove(request.match_info["key"])
+            # Where it lies for a moment says nothing to whoever has dropped it.
+            return _problem(found.replace(f"{upload.folder}/", ""))
+        self._uploads.pop(request.match_info["key"], None)
+        return web.json_response({"recording": shown})
+
+    async def _give_up(self, request: web.Request) -> web.Response:
+        self._remove(request.match_info["key"])
+        return web.Response(status=204)
+
+    # -----------------------------------------------------------------------------------------------------------
+
+    async def _write(self, request: web.Request, upload: _Upload, path: Path, size: int) -> int:
+        """Write what comes, a block at a time; returns how many bytes came."""
+        loop = asyncio.get_running_loop()
+        come = 0
+        with await asyncio.to_thread(path.open, "wb") as file:
+            while come <= size:
+                try:
+                    block = await request.content.readexactly(_BLOCK)
+                except asyncio.IncompleteReadError as rest:
+                    block = rest.partial
+                if not block:
+                    break
+                come += len(block)
+                await asyncio.to_thread(file.write, block)
+                upload.touched = loop.time()
+        return come
+
+    def _remove(self, key: str) -> None:
+        upload = self._uploads.pop(key, None)
+        if upload is not None:
+            upload.scratch.cleanup()
+
+    def _sweep_later(self) -> None:
+        if self._sweeping is None:
+            self._sweeping = asyncio.get_running_loop().call_later(PATIENCE / 4, self._sweep)
+
+    def _sweep(self) -> None:
+        """Remove what nobody goes on with."""
+        self._sweeping = None
+        now = asyncio.get_running_loop().time()
+        for key, upload in list(self._uploads.items()):
+            if not upload.busy and now - upload.touched > PATIENCE:
+                self._remove(key)
+        if self._uploads:
+            self._sweep_later()
+
+
+def _refused(message: Phrase) -> web.Response:
+    (diagnostic,) = translated([Diagnostic("BAG111", message)])
+    return _problem(diagnostic.message)
+
+
+def _problem(text: str) -> web.Response:
+    """What the user is told. It is no failure of the request: browsers would write one into the console, too."""
+    return web.json_response({"problem": text})
+
+
+def _no_room(needed: int, free: int) -> Phrase:
+    return phrase(
+        "there is too little room for a recording of {needed} MB where the program runs: {free} MB are free",
+        needed=needed // 1_000_000,
+        free=free // 1_000_000,
+    )

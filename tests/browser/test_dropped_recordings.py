@@ -1,0 +1,116 @@
+"""Recordings dropped on the page, used in a real browser: they open with their own timeline, or it is said why not."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from linkwright.bag import BagWriter
+from linkwright.graph import DEFAULT_QOS
+from linkwright.messages import get_message, serialize
+from tests.browser.conftest import Program, state, until
+from tests.browser.test_timeline import LENGTH, SECOND, START, recorded, seek, shows
+
+pytestmark = pytest.mark.browser
+
+MODEL = '<robot name="arm"><link name="base"/></robot>'
+
+
+@pytest.fixture
+def page(start, open_page, tmp_path: Path) -> Page:
+    """A page that shows a robot."""
+    (tmp_path / "arm.urdf").write_text(MODEL)
+    program: Program = start("view", "arm.urdf")
+    shown: Page = open_page(program, wait=False)
+    until(shown, "lw.timeline?.live && lw.robot")
+    return shown
+
+
+def drop(page: Page, *paths: Path) -> None:
+    """Drag files from the desktop onto the page, and let go."""
+    session = page.context.new_cdp_session(page)
+    data = {"items": [], "files": [str(each) for each in paths], "dragOperationsMask": 1}
+    for kind in ("dragEnter", "dragOver", "drop"):
+        session.send("Input.dispatchDragEvent", {"type": kind, "x": 500, "y": 400, "data": data})
+    session.detach()
+
+
+def plays(page: Page, name: str) -> None:
+    """Wait until a recording is shown, and have it stand still."""
+    until(
+        page,
+        f"lw.timeline?.name === {name!r} && lw.frames.tip && lw.displays.some(({{ drawn }}) => drawn?.width === 4)",
+    )
+    if state(page, "timeline")["playing"]:
+        page.get_by_role("button", name="Pause (Space)").click()
+    until(page, "!lw.timeline.playing")
+
+
+def test_a_file_that_is_dropped_plays_and_the_robot_is_one_step_back(page: Page, tmp_path: Path):
+    file = recorded(tmp_path)
+    drop(page, file)
+    plays(page, file.name)
+    assert state(page, "timeline")["length"] == LENGTH
+    for seconds in (20.55, 4.55):
+        seek(page, seconds)
+        shows(page, int(seconds))
+    page.reload()
+    plays(page, file.name)
+    page.go_back()
+    until(page, "lw.timeline?.live && lw.robot")
+
+
+def test_a_folder_with_sqlite_files_plays_and_another_takes_its_place(page: Page, tmp_path: Path):
+    folder = tmp_path / "numbers"
+    with BagWriter(folder, "sqlite3") as writer:
+        number = get_message("std_msgs/msg/Float64")
+        writer.add_topic("/number", "std_msgs/msg/Float64", [DEFAULT_QOS])
+        for second in range(5):
+            writer.write("/number", (START + second) * SECOND, serialize(number(data=float(second))))
+    drop(page, folder)
+    until(page, "lw.timeline?.name === 'numbers.db3' && lw.timeline.length === 4")
+    file = recorded(tmp_path)
+    drop(page, file)
+    plays(page, file.name)
+
+
+def test_a_recording_is_chosen_in_the_menu(page: Page, tmp_path: Path):
+    file = recorded(tmp_path)
+    page.get_by_role("button", name="File", exact=True).click()
+    with page.expect_file_chooser() as choosing:
+        page.get_by_role("menuitem", name="Open a recording…").click()
+    choosing.value.set_files(str(file))
+    plays(page, file.name)
+
+
+def test_what_is_no_recording_is_said_and_the_page_stays(page: Page, tmp_path: Path):
+    dialog = page.get_by_role("dialog")
+    drop(page, tmp_path / "arm.urdf")
+    expect(dialog).to_contain_text("There is no .mcap or .db3 file in 'arm.urdf'.")
+    dialog.get_by_role("button", name="OK").click()
+    false = tmp_path / "false.mcap"
+    false.write_bytes(b"no recording at all")
+    drop(page, false)
+    expect(dialog).to_contain_text("'false.mcap' cannot be read as a recording")
+    dialog.get_by_role("button", name="OK").click()
+    until(page, "lw.timeline?.live && lw.robot")
+
+
+def test_sending_is_cancelled(page: Page, tmp_path: Path):
+    def wait(route) -> None:
+        held.append(route)
+
+    held: list[object] = []
+    page.route("**/recordings/*/0*", wait)
+    drop(page, recorded(tmp_path))
+    dialog = page.get_by_role("dialog")
+    expect(dialog.get_by_role("progressbar")).to_be_visible()
+    dialog.get_by_role("button", name="Cancel").click()
+    expect(dialog).to_have_count(0)
+    page.unroute_all()
+    file = shutil.copy(recorded(tmp_path / "again"), tmp_path / "other.mcap")
+    drop(page, Path(file))
+    plays(page, "other.mcap")
