@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import math
+import os
+import subprocess
+from pathlib import Path
 
 import pytest
 
@@ -13,6 +16,8 @@ from linkwright.nodes.voice.voice_commander import VoiceCommander
 from linkwright.speech.commands.command_file import DEFAULT_FILE, read_command_file
 from linkwright.testing import AsyncSteppedSimulation
 from tests.places import GAZEBO_PACKAGE, VOICE_PACKAGE
+from tests.robots.workspaces import colcon_build, sourced
+from tests.waiting import SECONDS
 
 COMMANDS = VOICE_PACKAGE / "config" / "commands.yaml"
 WORLD = GAZEBO_PACKAGE / "worlds" / "playground.world"
@@ -69,3 +74,26 @@ async def test_mbot_is_driven_through_the_playground():
 
 def test_nothing_is_found_in_the_package(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["check", "--strict", str(VOICE_PACKAGE)]) == 0, capsys.readouterr().out
+
+
+@pytest.mark.slow
+def test_colcon_installs_everything_and_its_program_runs(tmp_path: Path) -> None:
+    (tmp_path / "src").mkdir()
+    (tmp_path / "src" / VOICE_PACKAGE.name).symlink_to(VOICE_PACKAGE)
+    colcon_build(tmp_path, VOICE_PACKAGE.name)
+    installed = tmp_path / "install" / VOICE_PACKAGE.name
+    for file in ("launch/voice.launch.py", "config/commands.yaml"):
+        assert (installed / "share" / VOICE_PACKAGE.name / file).is_file()
+    programs = installed / "lib" / VOICE_PACKAGE.name
+    assert (programs / "audio_capture").is_file()
+    ran = subprocess.run(
+        [programs / "voice_commander", "--ros-args", "-p", "commands_file:=gone.yaml"],
+        env={**os.environ, "PYTHONPATH": sourced(tmp_path, "PYTHONPATH"), "LINKWRIGHT_DDS": "0"},
+        capture_output=True,
+        text=True,
+        timeout=SECONDS,
+        check=False,
+    )
+    assert ran.returncode == 1
+    assert "gone.yaml" in ran.stderr
+    assert "Traceback" not in ran.stderr
