@@ -14,7 +14,17 @@ import time
 TYPE_CHECKING = False  # as that of `typing`, which takes longer to import than everything else here
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from typing import Any
+    from typing import Any, Protocol
+
+    class Interruptible(Protocol):
+        """A process of `subprocess` or `asyncio`."""
+
+        def send_signal(self, signal: int, /) -> None:
+            """Send it a signal."""
+
+        def terminate(self) -> None:
+            """End it."""
+
 
 INTERRUPTED = 130
 """The exit status of a program that Ctrl-C ended: 128 and the number of SIGINT, as shells say it."""
@@ -35,7 +45,7 @@ def raise_interrupts() -> None:
     """Let Ctrl-C raise KeyboardInterrupt again: somebody catches it from now on."""
     if _signal.getsignal(_signal.SIGINT) is _end:
         _signal.signal(_signal.SIGINT, _signal.default_int_handler)
-        when_lost(lambda: os.kill(os.getpid(), _signal.SIGINT))
+        when_lost(lambda: signal_again(_signal.SIGINT))
 
 
 def when_lost(deliver: Callable[[], None]) -> Callable[[Any], Any]:
@@ -63,6 +73,22 @@ def when_lost(deliver: Callable[[], None]) -> Callable[[Any], Any]:
 
     sys.unraisablehook = hook
     return before
+
+
+def signal_again(number: int) -> None:
+    """Send a signal to this process, whose handler runs in the main thread as if it came from outside."""
+    if sys.platform == "win32":
+        _thread.interrupt_main(number)  # ``os.kill`` would end the process there
+    else:
+        os.kill(os.getpid(), number)
+
+
+def interrupt(process: Interruptible) -> None:
+    """Ask another process to end, as Ctrl-C does; where processes cannot send that, it is ended."""
+    if sys.platform == "win32":
+        process.terminate()
+    else:
+        process.send_signal(_signal.SIGINT)
 
 
 def _end(_number: int, _frame: object) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import asyncio
 import os
-import signal
 import sys
 from collections.abc import AsyncIterator, Sequence
 from contextlib import asynccontextmanager
@@ -18,6 +17,7 @@ from linkwright.cli.nested import SubVerb, configure_nested, run_nested
 from linkwright.cli.remote_parameters import parameter_of
 from linkwright.cli.session import add_session_arguments, run_in_graph
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, foreign, joined, phrase
+from linkwright.interruption import interrupt
 
 if TYPE_CHECKING:
     from asyncio.subprocess import Process
@@ -158,9 +158,9 @@ async def _container_process(name: str) -> AsyncIterator[Process]:
     try:
         yield process
     finally:
-        for number in (signal.SIGINT, signal.SIGTERM):
+        for ask in (interrupt, type(process).terminate):
             if process.returncode is None:
-                process.send_signal(number)
+                ask(process)
                 try:
                     await asyncio.wait_for(process.wait(), _ENDS_WITHIN)
                 except asyncio.TimeoutError:

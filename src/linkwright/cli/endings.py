@@ -12,6 +12,7 @@ from linkwright._version import __version__
 from linkwright.cli.language import UnknownLanguageError
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase, print_diagnostics
 from linkwright.interruption import INTERRUPTED
+from linkwright.standard_streams import take_any_text
 from linkwright.whole_files import NO_SPACE
 
 FINE, FINDINGS, USAGE, BUG = 0, 1, 2, 3
@@ -37,6 +38,7 @@ def status_of(command: Callable[[], int]) -> int:
     """
     try:
         open_closed_streams()
+        take_any_text()
         try:
             status = command()
         except SystemExit as stop:  # argparse

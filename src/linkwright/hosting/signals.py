@@ -15,7 +15,7 @@ from typing import Any, Protocol, TypeVar
 
 from linkwright.event_loop import run_coroutine
 from linkwright.hosting.launch_log import LaunchLog
-from linkwright.interruption import when_lost
+from linkwright.interruption import signal_again, when_lost
 from linkwright.packages import PackageFinder, use_finder
 
 T = TypeVar("T")
@@ -145,7 +145,7 @@ class SignalWatch:
         if self._deadline is not None:
             self._deadline.cancel()
         if number is not None:
-            os.kill(os.getpid(), number)
+            signal_again(number)
 
     def _end_at_once(self) -> None:
         if self.session is not None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -9,6 +10,7 @@ from pathlib import Path
 from linkwright.diagnostics import phrase
 from linkwright.packages.errors import bad_uri
 
+_DRIVE = re.compile(r"/?([A-Za-z]:[\\/])")
 _SCHEME = re.compile(r"([A-Za-z][A-Za-z0-9+.-]+):")
 
 
@@ -46,16 +48,31 @@ def _package_path(address: str, rest: str, share: Callable[[str], Path]) -> Path
 
 
 def _file_path(address: str, rest: str) -> Path:
-    if rest.startswith("//localhost/"):
-        rest = rest.removeprefix("//localhost")
-    elif rest.startswith("//"):
-        rest = rest[2:]
-    if not rest.startswith("/"):
+    path = absolute_path(rest)
+    if path is None:
         raise bad_uri(
             phrase("'{uri}' has no absolute path", uri=address),
             phrase("write file:///ABSOLUTE/PATH, with three slashes"),
         )
-    return Path(_decoded(rest))
+    return Path(path)
+
+
+def absolute_path(rest: str, *, with_drives: bool = os.name == "nt") -> str | None:
+    """The path in an address, None where it is not absolute.
+
+    Args:
+        rest: what follows ``file:``.
+        with_drives: whether paths begin with the letter of a drive, as on Windows: ``///C:/robots``, as
+            `pathlib.Path.as_uri` writes it, and ``//C:/robots``, which ``file://$(find PACKAGE)`` comes to there.
+    """
+    if rest.startswith("//localhost/"):
+        rest = rest.removeprefix("//localhost")
+    elif rest.startswith("//"):
+        rest = rest[2:]
+    drive = _DRIVE.match(rest) if with_drives else None
+    if drive is not None:
+        return _decoded(rest[drive.start(1) :])
+    return _decoded(rest) if rest.startswith("/") else None
 
 
 def _decoded(text: str) -> str:

@@ -15,6 +15,7 @@ from linkwright.diagnostics import LinkwrightError, Phrase, did_you_mean, joined
 from linkwright.packages import PackageFinder
 from linkwright.packages.manifest import MANIFEST
 from linkwright.packages.readers.package_xml import Manifest
+from linkwright.packages.uri import absolute_path
 from linkwright.xmltree.reader import parse_file
 
 SEARCH_VARIABLES = (
@@ -89,7 +90,7 @@ class ResourceFinder:
             return self._in_folders(address, unquote(rest).lstrip("/"), beside)
         if scheme in ("http", "https"):
             return self._cached(address)
-        if scheme == "file" and not rest.startswith("/"):
+        if scheme == "file" and absolute_path(f"//{rest}") is None:
             return self._below(address, unquote(rest), beside)
         try:
             path = self._packages.resolve(address, beside)
@@ -135,7 +136,8 @@ class ResourceFinder:
 
     def world(self, name: str) -> Path | None:
         """The file of a world, by its path, its ``file://`` address or its name on the search path; None for none."""
-        path = Path(name.removeprefix("file://")).expanduser()
+        file = name.removeprefix("file://")
+        path = Path(file if file == name else absolute_path(f"//{file}") or file).expanduser()
         if path.is_file():
             return path
         known = {} if "/" in name else self.worlds()

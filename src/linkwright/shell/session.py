@@ -17,6 +17,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from linkwright.diagnostics import phrase
+from linkwright.interruption import interrupt
 from linkwright.shell.instead import no_such_command
 from linkwright.shell.programs import PROGRAMS, write_programs
 from linkwright.standins import process
@@ -157,7 +158,10 @@ def _run(words: Sequence[str], variables: Mapping[str, str]) -> int:
         # The user's own command (S603); there is one thread only, and `first` imports nothing (PLW1509).
         with subprocess.Popen(words, env=dict(variables), preexec_fn=first) as child:  # noqa: S603, PLW1509
             for number in early:
-                child.send_signal(number)
+                if number == signal.SIGINT:
+                    interrupt(child)
+                else:
+                    child.send_signal(number)
             status = child.wait()
     finally:
         for number, handler in previous.items():

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from linkwright.launch.engine.guardian import Guardian
 
 _HAS_GROUPS = hasattr(os, "killpg")
+_KILL = getattr(signal, "SIGKILL", signal.SIGTERM)
 _LAST_WORDS_SECONDS = 0.2
 """How long to read on after a process has ended: another that it left behind may hold its streams open for ever."""
 _LONGEST_LINE = 100_000
@@ -90,7 +91,7 @@ class RunningProcess:
         finally:
             # Whatever happens here, nothing of the process's group may outlive the launcher.
             if not self._ended.is_set():
-                self.signal_group(signal.SIGKILL)
+                self.signal_group(_KILL)
             transport.close()
         returncode = transport.get_returncode()
         assert returncode is not None
@@ -121,7 +122,7 @@ class RunningProcess:
                 f"process[{self.name}] failed to terminate '{waited:g}' seconds after receiving '{sent}', "
                 f"escalating to '{following}'",
             )
-            self.signal_group(getattr(signal, following, signal.SIGTERM))
+            self.signal_group(_KILL if following == "SIGKILL" else signal.SIGTERM)
 
     def hurry(self) -> None:
         """Escalate now: whoever waits for the process to end as it was asked does not want to wait any longer."""
@@ -273,7 +274,8 @@ class RunningProcess:
         self._log.process_line(self.name, number, shown, self.plan.destinations[number])
 
     def _report_end(self, pid: int, returncode: int) -> None:
-        if returncode == 0 or (self._stopping and returncode in (-signal.SIGINT, 128 + signal.SIGINT)):
+        as_asked = returncode in (-signal.SIGINT, 128 + signal.SIGINT) or not _HAS_GROUPS  # there it was ended
+        if returncode == 0 or (self._stopping and as_asked):
             self._log.say(self.name, f"process has finished cleanly [pid {pid}]")
             return
         command = " ".join(self.plan.command)

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from linkwright.lint.package import PackageContext
     from linkwright.packages.readers.launch_files import LaunchFile
 
-_FIXED_FRAME = re.compile(r"^( *)Fixed Frame:[ \t]*(?P<name>\S[^\n#]*?)[ \t]*$", re.MULTILINE)
+_FIXED_FRAME = re.compile(r"^( *)Fixed Frame:[ \t]*(?P<name>\S[^\n#]*?)[ \t]*\r?$", re.MULTILINE)
 _USUAL_FRAMES = frozenset({"map", "odom", "world", "earth", "base_link", "base_footprint"})
 
 

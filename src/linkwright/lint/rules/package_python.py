@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from linkwright.lint.package import PackageContext
 
 _MARKERS = "share/ament_index/resource_index/packages"
+_SCRIPT_FOLDERS = re.compile(r"^(script_dir|install_scripts)[ \t]*=[ \t]*(\S+)[ \t]*\r?$", re.MULTILINE)
 
 
 class SetupSyntaxError(PackageRule):
@@ -270,7 +271,7 @@ class SetupCfgDiffers(PackageRule):
             hint = phrase("write one with install_scripts={wanted} in [install]", wanted=wanted)
             yield self.report(message, span=setup.entry_points[0].span, source=setup.source, hint=hint)
             return
-        for match in re.finditer(r"^(script_dir|install_scripts)[ \t]*=[ \t]*(\S+)[ \t]*$", source.text, re.MULTILINE):
+        for match in _SCRIPT_FOLDERS.finditer(source.text):
             if match[2] != wanted:
                 span = source.span(*match.span(2))
                 message = phrase(

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import signal
 import subprocess
-import sys
 import threading
 from collections.abc import Callable
 from functools import partial
@@ -13,6 +11,7 @@ from typing import Any
 
 from linkwright.graph import ActionClient, Node, Publisher
 from linkwright.graph.actions.goal import GoalStatus
+from linkwright.interruption import interrupt
 from linkwright.messages import get_action, get_message, get_service, set_fields
 from linkwright.packages.programs.child_python import python_command
 from linkwright.speech.commands.actions import CallService, GoTo, Launch, Publish, SendGoal, Values, filled, shown
@@ -203,10 +202,7 @@ class Requests:
         launched, self._launched = self._launched, None
         if launched is None or launched.poll() is not None:
             return
-        if sys.platform == "win32":
-            launched.terminate()
-        else:
-            launched.send_signal(signal.SIGINT)
+        interrupt(launched)
         self._ending = threading.Thread(target=_see_end, args=(launched,), daemon=True)
         self._ending.start()
 

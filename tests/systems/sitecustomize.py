@@ -1,0 +1,122 @@
+"""A Python that lacks what another system lacks, for processes with this folder on ``PYTHONPATH``.
+
+``LINKWRIGHT_TESTS_SYSTEM=windows``: modules, functions, signals and sockets of POSIX are not there, event loops watch
+neither files nor signals, and ``sys.platform`` is ``win32``. ``macos``: what only Linux has is not there: ``/proc``,
+epoll and affinities. What cannot be told from here: paths with drives (`pathlib` has none here) and how processes end.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+
+MODULES = ("curses", "fcntl", "grp", "posix", "pty", "pwd", "readline", "resource", "syslog", "termios", "tty")
+FUNCTIONS = """
+    O_CLOEXEC O_DIRECTORY O_NOFOLLOW O_NONBLOCK chown ctermid eventfd fchmod fchown fork forkpty getegid geteuid getgid
+    getgroups getloadavg getpgid getpgrp getuid getxattr killpg lchown memfd_create mkfifo nice openpty pidfd_open
+    posix_spawn pread preadv register_at_fork sched_getaffinity sched_setaffinity setgid setpgid setsid setuid statvfs
+    sync sysconf tcgetpgrp tcsetpgrp ttyname uname wait wait3 wait4
+"""
+SIGNALS = ("SIGABRT", "SIGFPE", "SIGILL", "SIGINT", "SIGSEGV", "SIGTERM")
+"""Those of Windows that are sent and handled."""
+SIGNAL_FUNCTIONS = (
+    "alarm",
+    "pause",
+    "pthread_kill",
+    "pthread_sigmask",
+    "setitimer",
+    "siginterrupt",
+    "sigpending",
+    "sigwait",
+)
+SOCKETS = ("AF_NETLINK", "AF_PACKET", "AF_UNIX", "MSG_DONTWAIT", "SCM_RIGHTS", "SO_PEERCRED", "SO_REUSEPORT")
+WATCHING = ("add_reader", "add_signal_handler", "add_writer", "create_unix_connection", "create_unix_server",
+            "remove_reader", "remove_signal_handler", "remove_writer")  # fmt: skip
+
+
+def windows() -> None:
+    """Take away what Windows has not. What the library of Python itself needs here, it has taken before."""
+    import asyncio
+    import importlib.abc
+    import multiprocessing.connection
+    import multiprocessing.popen_fork
+    import multiprocessing.popen_spawn_posix
+    import multiprocessing.resource_tracker
+    import pathlib  # noqa: F401 - looks at the system when it is imported
+    import platform
+    import select
+    import selectors
+    import shutil  # noqa: F401 - the same
+    import signal
+    import socket
+    import ssl
+    import subprocess
+    import sysconfig
+    import tempfile  # noqa: F401 - the same
+    import urllib.request  # noqa: F401 - the same
+
+    sysconfig.get_config_vars()
+    platform.uname()
+    kill, pair = signal.SIGKILL, socket.socketpair
+    subprocess.Popen.kill = lambda self: self.send_signal(kill)
+    multiprocessing.popen_fork.Popen.kill = lambda self: self._send_signal(kill)
+    socket.socketpair = lambda family=1, kind=socket.SOCK_STREAM, protocol=0: pair(family, kind, protocol)
+    ssl.enum_certificates = ssl.enum_crls = lambda store: []
+
+    class NotThere(importlib.abc.MetaPathFinder):
+        def find_spec(self, name, path=None, target=None):
+            if name in MODULES:
+                raise ModuleNotFoundError(f"No module named '{name}'", name=name)
+
+    sys.meta_path.insert(0, NotThere())
+    for name in MODULES:
+        sys.modules.pop(name, None)
+    remove(os, FUNCTIONS.split())
+    others = [name for name in dir(signal) if name.startswith("SIG") and name[3] != "_" and name not in SIGNALS]
+    remove(signal, [*others, *SIGNAL_FUNCTIONS, "SIG_BLOCK", "SIG_SETMASK", "SIG_UNBLOCK"])
+    remove(socket, SOCKETS)
+    remove(select, ["epoll", "poll"])
+    selectors.DefaultSelector = selectors.SelectSelector
+
+    def refuse(*_words, **_named):
+        raise NotImplementedError
+
+    for name in WATCHING:  # the loop that Windows has by default watches nothing
+        setattr(asyncio.SelectorEventLoop, name, refuse)
+    sys.platform = "win32"
+
+
+def macos() -> None:
+    """Take away what only Linux has."""
+    import asyncio  # noqa: F401 - looks at the system when it is imported
+    import platform
+    import select
+    import selectors
+    import socket
+    import sysconfig
+    import urllib.request  # noqa: F401 - the same
+
+    sysconfig.get_config_vars()
+    platform.uname()
+    remove(os, ["eventfd", "memfd_create", "pidfd_open", "sched_getaffinity", "sched_setaffinity", "timerfd_create"])
+    remove(socket, ["AF_NETLINK", "AF_PACKET", "SO_PEERCRED", "SO_BINDTODEVICE"])
+    remove(select, ["epoll"])
+    selectors.DefaultSelector = selectors.PollSelector
+
+    def hide(event, arguments):
+        if event in ("open", "os.listdir", "os.scandir") and str(arguments[0]).startswith(("/proc/", "/sys/")):
+            raise FileNotFoundError(2, "No such file or directory", arguments[0])
+
+    sys.addaudithook(hide)
+    sys.platform = "darwin"
+
+
+def remove(module, names) -> None:
+    """Take names from a module, where it has them."""
+    for name in names:
+        if hasattr(module, name):
+            delattr(module, name)
+
+
+if os.environ.get("LINKWRIGHT_TESTS_SYSTEM"):
+    {"windows": windows, "macos": macos}[os.environ["LINKWRIGHT_TESTS_SYSTEM"]]()

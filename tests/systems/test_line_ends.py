@@ -1,0 +1,54 @@
+"""Packages whose files have the line ends of Windows, as git checks them out there, mean what they mean elsewhere."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from linkwright.cli import main
+from tests.places import GAZEBO_PACKAGE, PACKAGE
+
+TEXTS = {".cfg", ".config", ".launch", ".py", ".rviz", ".sdf", ".txt", ".urdf", ".world", ".xacro", ".xml", ".yaml"}
+
+
+@pytest.fixture(params=[b"\n", b"\r\n"], ids=["LF", "CRLF"])
+def packages(request, tmp_path, monkeypatch) -> Path:
+    """A folder with packages whose texts have these line ends."""
+    for package in (PACKAGE, GAZEBO_PACKAGE):
+        shutil.copytree(package, tmp_path / package.name, ignore=shutil.ignore_patterns("__pycache__"))
+    for file in tmp_path.rglob("*"):
+        if file.suffix in TEXTS:
+            file.write_bytes(file.read_bytes().replace(b"\r\n", b"\n").replace(b"\n", request.param))
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_packages_are_checked_without_a_finding(packages, capfd):
+    assert main(["check", PACKAGE.name, GAZEBO_PACKAGE.name]) == 0
+    said = capfd.readouterr()
+    assert said.out + said.err == "0 errors, 0 warnings\n"
+
+
+def test_xacro_writes_the_same(packages, capfd):
+    assert main(["xacro", f"{PACKAGE.name}/urdf/mbot_gazebo.xacro", "laser:=true"]) == 0
+    written = capfd.readouterr().out
+    assert main(["xacro", str(PACKAGE / "urdf" / "mbot_gazebo.xacro"), "laser:=true"]) == 0
+    assert (
+        written.partition("<robot")[2] == capfd.readouterr().out.partition("<robot")[2]
+    )  # before it the file is named
+    assert written.count("\n") > 100
+
+
+def test_launch_files_say_their_arguments(packages, capfd):
+    assert main(["launch", f"{PACKAGE.name}/launch/display.launch.py", "--show-args"]) == 0
+    assert "'gui':" in capfd.readouterr().out
+
+
+def test_a_wrong_frame_is_found_and_named(packages, capfd):
+    file = packages / PACKAGE.name / "rviz" / "urdf.rviz"
+    file.write_bytes(file.read_bytes().replace(b"Fixed Frame: base_link", b"Fixed Frame: base_lnk"))
+    main(["check", PACKAGE.name])
+    said = capfd.readouterr()
+    assert "no robot in this package has a link 'base_lnk'" in said.out + said.err

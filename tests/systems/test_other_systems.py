@@ -1,0 +1,202 @@
+"""Linkwright on a Python that lacks what Windows or macOS lacks: see `sitecustomize`."""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import urllib.request
+from pathlib import Path, PurePosixPath, PureWindowsPath
+
+import pytest
+
+from linkwright import interruption, standard_streams
+from linkwright.packages.uri import absolute_path
+from tests.domains import own_domain
+from tests.places import PACKAGE
+from tests.waiting import wait_until
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="other systems are told from Linux")
+
+SYSTEMS = ("windows", "macos")
+ROBOT = PACKAGE / "urdf" / "mbot_with_laser.urdf"
+IMPORT_ALL = """
+import importlib, pkgutil, linkwright
+LEFT_OUT = ("linkwright.__main__", "linkwright.standins.path", "linkwright.launch.engine.guardian_program",
+            "linkwright.vision.training.learning")
+for module in pkgutil.walk_packages(linkwright.__path__, "linkwright."):
+    if not module.name.startswith(LEFT_OUT):
+        importlib.import_module(module.name)
+print("all")
+"""
+"""Left out are programs, stand-ins that are found by another path, and what needs PyTorch."""
+PROGRAM = """
+import sys
+from launch import LaunchDescription
+from launch.actions import ExecuteProcess, RegisterEventHandler, Shutdown
+from launch.event_handlers import OnProcessIO
+
+SLEEP = "import time; print('began', flush=True); time.sleep(600)"
+
+def generate_launch_description():
+    began = OnProcessIO(on_stdout=lambda event: Shutdown(reason="it began"))
+    return LaunchDescription([ExecuteProcess(cmd=[sys.executable, "-c", SLEEP], EMULATED), RegisterEventHandler(began)])
+"""
+
+
+@pytest.fixture(params=SYSTEMS)
+def elsewhere(request, tmp_path):
+    """Starts ``linkwright`` with some words on another system."""
+    environment = {
+        **os.environ,
+        "LINKWRIGHT_TESTS_SYSTEM": request.param,
+        "PYTHONPATH": str(Path(__file__).parent),
+        "ROS_DOMAIN_ID": str(own_domain()),
+        "ROS_LOG_DIR": str(tmp_path / "log"),
+    }
+
+    def start(*words: object, module: str = "linkwright") -> subprocess.Popen[str]:
+        command = [sys.executable, "-m", module, *map(str, words)]
+        return subprocess.Popen(
+            command, cwd=tmp_path, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        )
+
+    return start
+
+
+def said(process: subprocess.Popen[str]) -> str:
+    """What a command printed, which has to end well."""
+    out, error = process.communicate(timeout=120)
+    assert process.returncode == 0, out + error
+    return out
+
+
+def test_every_module_can_be_imported(elsewhere, tmp_path):
+    (tmp_path / "import_all.py").write_text(IMPORT_ALL, encoding="utf-8")
+    assert said(elsewhere(module="import_all")).splitlines()[-1] == "all"
+
+
+def test_commands_work(elsewhere, tmp_path):
+    assert "base_link" in said(elsewhere("check", ROBOT))
+    assert said(elsewhere("xacro", PACKAGE / "urdf" / "mbot_gazebo.xacro", "laser:=true")).rstrip().endswith("</robot>")
+    said(elsewhere("pkg", "create", "arm", "--build-type", "ament_python", "--license", "MIT"))
+    assert (tmp_path / "arm" / "package.xml").is_file()
+    assert "base_link" in said(elsewhere("inertia", ROBOT))
+
+
+def test_the_page_answers_and_ctrl_c_ends_it(elsewhere):
+    viewer = elsewhere("view", ROBOT, "--no-open")
+    try:
+        address = next(found[0] for line in viewer.stdout if (found := re.search(r"http://\S+", line)))
+        with urllib.request.urlopen(address, timeout=60) as answer:
+            assert b"<script" in answer.read()
+    finally:
+        viewer.send_signal(signal.SIGINT)
+        out, error = viewer.communicate(timeout=60)
+    assert viewer.returncode == 130, out + error
+    assert "Traceback" not in error
+
+
+@pytest.mark.parametrize("emulated", ["", "emulate_tty=True"])
+def test_processes_of_a_launch_are_ended_without_complaint(elsewhere, tmp_path, emulated):
+    (tmp_path / "it.launch.py").write_text(PROGRAM.replace("EMULATED", emulated), encoding="utf-8")
+    process = elsewhere("launch", "./it.launch.py")
+    out, error = process.communicate(timeout=120)
+    assert process.returncode == 0, out + error
+    assert "process has finished cleanly" in out + error
+    assert "has died" not in out + error
+
+
+def test_a_world_is_simulated(elsewhere):
+    pytest.importorskip("mujoco")
+    said(elsewhere("sim", "empty", ROBOT, "--headless", "--seconds", "0.5"))
+
+
+@pytest.mark.parametrize(
+    ("address", "path"),
+    [
+        ("///C:/robots/arm.stl", "C:/robots/arm.stl"),  # as PureWindowsPath.as_uri writes it
+        ("//localhost/C:/robots/arm.stl", "C:/robots/arm.stl"),
+        ("//C:/robots/arm.stl", "C:/robots/arm.stl"),
+        ("//C:\\robots\\arm.stl", "C:\\robots\\arm.stl"),  # file://$(find PACKAGE)\\...
+        ("/d:/my%20robots/arm.stl", "d:/my robots/arm.stl"),
+    ],
+)
+def test_addresses_with_drives_name_files_on_windows(address, path):
+    found = absolute_path(address, with_drives=True)
+    assert found == path
+    assert PureWindowsPath(found).is_absolute()
+    assert absolute_path(PureWindowsPath(path).as_uri()[len("file:") :], with_drives=True) == path.replace("\\", "/")
+
+
+def test_elsewhere_a_drive_is_a_folder_like_any_other():
+    assert absolute_path("///C:/robots", with_drives=False) == "/C:/robots"
+    assert PurePosixPath(absolute_path("///C:/robots", with_drives=False)).is_absolute()
+    assert absolute_path("//C:/robots", with_drives=False) is None
+
+
+def test_signals_are_sent_again_without_ending_the_process_on_windows(monkeypatch):
+    monkeypatch.setattr(sys, "platform", "win32")
+    monkeypatch.setattr(os, "kill", lambda *_: pytest.fail("this ends a process on Windows"))
+    came = []
+    before = signal.signal(signal.SIGINT, lambda number, _: came.append(number))
+    try:
+        interruption.signal_again(signal.SIGINT)
+        wait_until(lambda: came)
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert came == [signal.SIGINT]
+
+
+class Recorded:
+    def __init__(self):
+        self.asked = []
+
+    def send_signal(self, number):
+        self.asked.append(number)
+
+    def terminate(self):
+        self.asked.append("terminate")
+
+
+@pytest.mark.parametrize(
+    ("platform", "asked"), [("linux", signal.SIGINT), ("darwin", signal.SIGINT), ("win32", "terminate")]
+)
+def test_processes_are_interrupted_where_that_can_be_sent(monkeypatch, platform, asked):
+    monkeypatch.setattr(sys, "platform", platform)
+    process = Recorded()
+    interruption.interrupt(process)
+    assert process.asked == [asked]
+
+
+NAMES = "ä漢字"
+
+
+@pytest.mark.parametrize("encoding", ["cp1252", "cp936", "cp437", "latin-1"])
+@pytest.mark.parametrize("verb", ["check", "xacro", "inertia"])
+def test_any_text_comes_through_a_code_page(tmp_path, encoding, verb):
+    robot = tmp_path / "robot.urdf"
+    robot.write_text(f'<robot name="r"><link name="{NAMES}"/></robot>', encoding="utf-8")
+    program = f"""
+import sys
+for stream in (sys.stdout, sys.stderr):
+    stream.reconfigure(encoding="{encoding}")
+from linkwright.cli import main
+sys.exit(main())
+"""
+    command = [sys.executable, "-c", program, verb, str(robot)]
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONIOENCODING"}
+    done = subprocess.run(command, env={**environment, "LINKWRIGHT_LANG": "zh"}, capture_output=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert NAMES in done.stdout.decode("utf-8")
+
+
+def test_an_encoding_that_was_asked_for_is_kept(monkeypatch, tmp_path):
+    monkeypatch.setenv("PYTHONIOENCODING", "cp1252")
+    with (tmp_path / "out").open("w", encoding="cp1252") as stream:
+        monkeypatch.setattr(sys, "stdout", stream)
+        standard_streams.take_any_text()
+        stream.write(NAMES)
+    assert (tmp_path / "out").read_bytes() == b"\xe4\\u6f22\\u5b57"

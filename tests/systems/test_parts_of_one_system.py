@@ -1,0 +1,98 @@
+"""Which modules use what only some systems have: each is listed here, and run without it in `test_other_systems`."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import linkwright
+from tests.systems.sitecustomize import FUNCTIONS, MODULES, SIGNAL_FUNCTIONS, SOCKETS, WATCHING
+
+ROOT = Path(linkwright.__file__).parent
+OF_ONE_SYSTEM = {
+    "os": {*FUNCTIONS.split(), "kill", "set_blocking", "startfile"},
+    "select": {"epoll", "kqueue", "poll"},
+    "signal": {*SIGNAL_FUNCTIONS, "SIGHUP", "SIGKILL", "SIGQUIT", "SIGUSR1", "SIGUSR2"},
+    "socket": {*SOCKETS, "if_nameindex"},
+    "sys": {"platform", "getwindowsversion"},
+    "multiprocessing": {"get_context", "set_start_method", "Process", "Pool"},
+    "ctypes": {"windll", "WinDLL", "PyDLL", "CDLL"},
+}
+"""By module: what is not on every system, or does something else there."""
+FOLDERS = ("/proc", "/dev/", "/sys/", "/tmp", "/bin/", "/usr/")
+KNOWN: dict[str, str] = {
+    "cli/bag/keys.py": "add_reader getpgrp platform remove_reader tcgetpgrp termios tty",
+    "cli/completion/graph_names.py": "start_new_session",
+    "cli/dataset.py": "sched_getaffinity",
+    "cli/sweep.py": "sched_getaffinity",
+    "doctor/report.py": "fcntl if_nameindex platform",
+    "graph/executors/multi_threaded.py": "sched_getaffinity",
+    "graph/time/fine_alarms.py": "O_CLOEXEC O_NONBLOCK PyDLL add_reader platform",
+    "hosting/viewer_host.py": "platform",
+    "input_files.py": "O_NONBLOCK set_blocking",
+    "interruption.py": "kill platform",
+    "launch/engine/guardian.py": "killpg start_new_session",
+    "launch/engine/guardian_program.py": "/proc /proc/ SIGHUP SIGKILL getpgid killpg",
+    "launch/engine/process_table.py": "SIGKILL",
+    "launch/engine/processes.py": "SIGKILL killpg openpty",
+    "nodes/process.py": "SIGHUP add_signal_handler",
+    "nodes/teleop/joy.py": "/dev/input/event0 /dev/input/js /dev/input/js0",
+    "nodes/teleop/joystick_device.py": "/dev/input O_NONBLOCK add_reader fcntl platform remove_reader",
+    "nodes/teleop/terminal.py": "add_reader msvcrt platform remove_reader termios",
+    "packages/readers/cmake_language.py": "platform",
+    "shell/programs.py": "platform",
+    "shell/session.py": "/bin/sh platform",
+    "simulation/rendering/opengl.py": "platform",
+    "sweep/workers.py": "get_context platform pthread_sigmask",
+    "viewer/web/server.py": "O_NONBLOCK",
+    "vision/datasets/workers.py": "get_context",
+    "wire/background.py": "register_at_fork",
+    "wire/dds/local_sockets.py": "/proc/self/fd /proc/self/net",
+    "wire/dds/participant.py": "/proc/self/ns/pid",
+    "wire/dds/remote.py": "/proc/ kill",
+    "wire/dds/settings.py": "fcntl if_nameindex platform",
+    "wire/zenoh/settings.py": "platform",
+}
+"""Module -> what it uses of that. Whoever adds a line makes it work, or be left out, where that is not there."""
+
+
+def test_each_module_that_uses_what_one_system_has_is_listed() -> None:
+    found = {
+        path.relative_to(ROOT).as_posix(): " ".join(sorted(set(used(path)))) for path in sorted(ROOT.rglob("*.py"))
+    }
+    assert {path: names for path, names in found.items() if names} == KNOWN
+
+
+@pytest.mark.parametrize("path", sorted(path for path, names in KNOWN.items() if set(names.split()) & set(MODULES)))
+def test_modules_of_one_system_are_imported_where_they_are_used_only(path: str) -> None:
+    """A module whose head imports one of them cannot be imported elsewhere at all."""
+    head = ast.parse((ROOT / path).read_text(encoding="utf-8")).body
+    assert not {name for node in head for name in imported(node)} & set(MODULES)
+
+
+def used(path: Path) -> Iterator[str]:
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        yield from (name for name in imported(node) if name.partition(".")[0] in {*MODULES, "msvcrt", "winreg"})
+        if isinstance(node, ast.ImportFrom) and node.module in OF_ONE_SYSTEM and not node.level:
+            yield from (each.name for each in node.names if each.name in OF_ONE_SYSTEM[node.module])
+        elif isinstance(node, ast.Attribute):
+            owner = ast.unparse(node.value)
+            if node.attr in OF_ONE_SYSTEM.get(owner, ()) or (node.attr in WATCHING and "loop" in owner):
+                yield node.attr
+        elif isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in ("getattr", "hasattr"):
+            owner, name = ast.unparse(node.args[0]), node.args[1]
+            if isinstance(name, ast.Constant) and name.value in OF_ONE_SYSTEM.get(owner, ()):
+                yield str(name.value)
+        elif isinstance(node, ast.keyword) and node.arg in ("start_new_session", "preexec_fn", "creationflags"):
+            yield str(node.arg)
+        elif isinstance(node, ast.Constant) and isinstance(node.value, str) and node.value.startswith(FOLDERS):
+            yield node.value.split()[0]
+
+
+def imported(node: ast.AST) -> set[str]:
+    if isinstance(node, ast.Import):
+        return {each.name for each in node.names}
+    return {node.module} if isinstance(node, ast.ImportFrom) and node.module and not node.level else set()
