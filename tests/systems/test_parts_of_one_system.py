@@ -44,7 +44,7 @@ KNOWN: dict[str, str] = {
     "nodes/teleop/terminal.py": "add_reader msvcrt platform remove_reader termios",
     "packages/readers/cmake_language.py": "platform",
     "shell/programs.py": "platform",
-    "shell/session.py": "/bin/sh platform",
+    "shell/session.py": "/bin/sh /dev/tty CDLL platform preexec_fn setpgid",
     "simulation/rendering/opengl.py": "platform",
     "sweep/workers.py": "get_context platform pthread_sigmask",
     "viewer/web/server.py": "O_NONBLOCK",

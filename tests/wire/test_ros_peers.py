@@ -10,6 +10,8 @@ from linkwright.graph.endpoints.info import EndpointKind
 from linkwright.graph.names.identity import NodeIdentity
 from linkwright.messages import String, get_service, type_hash
 
+pytest.importorskip("cyclonedds", reason="there is no DDS here")
+
 SetBool = get_service("std_srvs/srv/SetBool")
 DISTRIBUTIONS = ("humble", "jazzy")
 

@@ -9,7 +9,6 @@ import sys
 import textwrap
 
 import pytest
-from cyclonedds.idl import make_idl_struct
 
 from linkwright.messages import String, get_message
 from linkwright.wire.dds import open_domains as opened
@@ -17,6 +16,7 @@ from linkwright.wire.dds.cyclone import CycloneError
 from linkwright.wire.dds.topic_types import _undescribing
 from linkwright.wire.dds.type_descriptions import empty_type_data
 
+make_idl_struct = pytest.importorskip("cyclonedds.idl", reason="there is no DDS here").make_idl_struct
 Point = get_message("geometry_msgs/msg/Point")
 
 CHURN = """

@@ -90,6 +90,8 @@ def failure(error: Exception, segment: str, start: int, end: int) -> Fault:
         hint = phrase("turn the number into text with str(...)")
     elif isinstance(error, RecursionError):
         words = phrase("it is nested too deeply")
+    elif isinstance(error, ZeroDivisionError):
+        words = "division by zero"  # before Python 3.14 the words depend on the kind of number
     return Fault(
         "XAC202",
         phrase("cannot evaluate '{segment}': {words}", segment=segment, words=foreign(words)),

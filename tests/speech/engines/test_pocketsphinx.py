@@ -8,12 +8,13 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
-import pocketsphinx
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.speech.engine import EngineOptions, engine_names
 from linkwright.speech.engines.pocketsphinx_engine import PocketsphinxEngine
+
+pocketsphinx = pytest.importorskip("pocketsphinx", reason="there is no wheel of it here")
 
 FRAME = 480
 SPEECH, QUIET = np.full(FRAME, 1_000, np.int16), np.zeros(FRAME, np.int16)
