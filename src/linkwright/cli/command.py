@@ -60,6 +60,7 @@ GROUPS = {
         "lifecycle": "look at and change the states of managed nodes",
         "component": "load nodes into containers, list and unload them",
         "control": "look at and change the controllers and the hardware of ros2_control",
+        "bridge": "carry topics and services between DDS and Zenoh, both ways",
         "daemon": "accepted for ros2's sake: there is no daemon, and none is needed",
         "doctor": "explain what is wrong with the running nodes, topics and frames",
     },

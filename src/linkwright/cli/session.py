@@ -203,7 +203,7 @@ def run_in_graph(
 
     if hasattr(sys.stdout, "reconfigure"):
         sys.stdout.reconfigure(line_buffering=True)
-    with _TerminationEnds():
+    with TerminationEnds():
         return run_coroutine(main, raise_interrupts)
 
 
@@ -242,7 +242,7 @@ async def join_others(graph: Graph, spin_time: float | None, *, only_looks: bool
         await asyncio.to_thread(transport.wait_for_discovery, _LONGEST_DISCOVERY)
 
 
-class _TerminationEnds:
+class TerminationEnds:
     """While this is entered, SIGTERM ends the process as Ctrl-C does, so that the graph is left properly."""
 
     def __enter__(self) -> None:

@@ -77,9 +77,12 @@ class Endpoint(Part):
         name: the absolute name of the topic or service.
         type_name: such as ``sensor_msgs/msg/JointState``.
         qos_profile: the QoS that it offers or requests.
+        type_hash: of the type (``RIHS01_...``) as others have told it, which goes before that of the type that is known
+            here; empty where nobody has.
     """
 
     kind: EndpointKind
+    type_hash = ""
     _check_interface: Callable[[Any], None]
     """Raises an error for the class of an interface that the endpoint cannot carry."""
 
@@ -153,11 +156,13 @@ class TopicEndpoint(Endpoint, Generic[M]):
     Attributes:
         callback_group: the group that decides which callbacks may run at the same time as its own.
         events: its QoS events; None where there are no callbacks for them.
+        raw: whether messages are bytes alone, so that the type need not be known here.
     """
 
     callback_group: CallbackGroup
     events: MatchListener | None
     _check_interface = staticmethod(check_is_valid_msg_type)
+    raw = False
     _outside_count = 0
 
     @property

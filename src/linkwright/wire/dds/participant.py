@@ -50,7 +50,7 @@ class Participant:
         self.closed = False
         self._domain = open_domain(settings)
         try:
-            with participant_qos(b"enclave=/;", entity_name()) as qos:
+            with participant_qos(f"enclave={settings.enclave};".encode(), entity_name()) as qos:
                 code = self._dds.dds_create_participant(self._domain.number, qos, None)
             self.entity = checked(code, "joining the domain")
         except CycloneError as error:

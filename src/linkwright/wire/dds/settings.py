@@ -65,6 +65,7 @@ class Settings:
         user_configuration: the value of CYCLONEDDS_URI.
         own_configurations: the fragments without that.
         peers: other machines to be asked without multicast.
+        enclave: the security enclave of the nodes.
     """
 
     domain_id: int
@@ -75,6 +76,7 @@ class Settings:
     user_configuration: str = ""
     own_configurations: tuple[str, ...] = ()
     peers: tuple[str, ...] = ()
+    enclave: str = "/"
 
 
 def read_settings(environment: Mapping[str, str] | None = None, *, domain_id: int | None = None) -> Settings:

@@ -6,7 +6,7 @@ import ctypes as c
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 from linkwright.graph.endpoints.bus import describe_mismatch, report_to_publisher, report_to_subscription
 from linkwright.graph.endpoints.info import MessageInfo
@@ -83,8 +83,17 @@ class _MirroredTopic(ABC):
         self._told = _Told()
 
     def _describe_type(self, endpoint: TopicEndpoint[Any], domain: Domain) -> tuple[Any, bytes]:
-        """The type's description for Cyclone, and its hash for others in USER_DATA."""
-        return domain.types.message(endpoint.interface), type_facts(endpoint.interface)
+        """The type's description for Cyclone, and its hash for others in USER_DATA.
+
+        A type that no package here has goes by its name, where the bytes alone are wanted.
+        """
+        told = f"typehash={endpoint.type_hash};".encode() if endpoint.type_hash else b""
+        try:
+            return domain.types.message(endpoint.interface), told or type_facts(endpoint.interface)
+        except InterfaceNotFoundError:
+            if not endpoint.raw:
+                raise
+            return domain.types.by_name(endpoint.type_name), told
 
     @abstractmethod
     def _create(self, qos: Any) -> int:
@@ -208,15 +217,6 @@ class IncomingTopic(_MirroredTopic):
     def close(self) -> None:
         """Delete the reader."""
         self._participant.delete(self.entity, self._topic)
-
-    def _describe_type(self, endpoint: TopicEndpoint[Any], domain: Domain) -> tuple[Any, bytes]:
-        """As it is; a type that no package here has goes by its name, where the bytes alone are wanted."""
-        try:
-            return super()._describe_type(endpoint, domain)
-        except InterfaceNotFoundError:
-            if not cast("Subscription[Any]", endpoint).raw:
-                raise
-            return domain.types.by_name(endpoint.type_name), b""
 
     def _create(self, qos: Any) -> int:
         return self._participant.create_reader(self._topic, qos)

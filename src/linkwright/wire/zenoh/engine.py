@@ -214,6 +214,8 @@ class Engine:
     def _hash_of(self, endpoint: Any, kind: EndpointKind) -> str:
         if not self._settings.hashes:
             return tokens.NO_HASH
+        if endpoint.type_hash:
+            return str(endpoint.type_hash)
         try:
             return type_hash(endpoint.type_name)
         except InterfaceNotFoundError:

@@ -1,0 +1,110 @@
+"""A bridge between two networks: nodes of either are had in the other one, with what they publish and serve.
+
+Two bridges between the same networks do not carry what the other one carries: nodes that a bridge has somewhere are
+known by their enclave, and what two could carry is carried by the one whose id comes first (decision 0066).
+"""
+
+from __future__ import annotations
+
+import asyncio
+import secrets
+from collections.abc import Callable
+
+from linkwright.bridge.direction import Direction
+from linkwright.bridge.filters import NameFilter
+from linkwright.bridge.networks import Network
+from linkwright.bridge.side import Side
+from linkwright.graph.log.levels import LogLevel
+from linkwright.graph.log.record import LogRecord, LogSink
+
+_TOGETHER = 0.02
+"""Seconds for which news are collected before they are looked at."""
+
+_SOON = 0.02
+"""Seconds after which something that waits is looked at again."""
+
+_SELDOM = 0.25
+"""The same when nothing waits."""
+
+_UNSETTLED = 3.0
+"""Seconds after news for which things are looked at as if something waited: who listens is known a moment later."""
+
+_OF_THE_BRIDGE = ("wire", "dds", "zenoh", "bridge")
+
+
+def new_bridge_id() -> str:
+    """An id that no other bridge has."""
+    return f"b{secrets.token_hex(4)}"
+
+
+async def run_bridge(
+    networks: tuple[Network, Network], names: NameFilter, bridge_id: str, log: LogSink, ready: Callable[[], object]
+) -> None:
+    """Carry what the names let through between two networks, both ways, until it is cancelled.
+
+    Args:
+        networks: the networks.
+        names: which topics and services are carried.
+        bridge_id: its own.
+        log: takes what is logged.
+        ready: called once both networks are joined.
+
+    Raises:
+        LinkwrightError: a network cannot be joined.
+    """
+    sink = _relevant(log)
+    first = await networks[0].join(bridge_id, sink)
+    try:
+        second = await networks[1].join(bridge_id, sink)
+        try:
+            logger = first.graph.get_logger("bridge")
+            ready()
+            await _carry(
+                first, second, (Direction(first, second, names, logger), Direction(second, first, names, logger))
+            )
+        finally:
+            await second.graph.close()
+    finally:
+        await first.graph.close()
+
+
+async def _carry(first: Side, second: Side, directions: tuple[Direction, Direction]) -> None:
+    loop = asyncio.get_running_loop()
+    news = asyncio.Event()
+
+    def changed() -> None:
+        loop.call_soon_threadsafe(news.set)
+
+    first.watch(changed)
+    second.watch(changed)
+    news.set()
+    unsettled_until = 0.0
+    while True:
+        if news.is_set():
+            await asyncio.sleep(_TOGETHER)
+            news.clear()
+            first.look()
+            second.look()
+            # What both sides serve is carried neither way, so that no request goes round in a circle.
+            for direction in directions:
+                direction.withdraw()
+            for direction in directions:
+                direction.add()
+            unsettled_until = loop.time() + _UNSETTLED
+        settled = [direction.settle() for direction in directions]
+        pause = _SELDOM if all(settled) and loop.time() > unsettled_until else _SOON
+        waiting = asyncio.ensure_future(news.wait())
+        try:
+            await asyncio.wait((waiting,), timeout=pause)  # `wait_for` of Python 3.11 and older may miss Ctrl-C
+        finally:
+            waiting.cancel()
+
+
+def _relevant(log: LogSink) -> LogSink:
+    """Leaves out what nodes say that stand for others: their quality of service is not theirs."""
+
+    def take(record: LogRecord) -> None:
+        if record.node in _OF_THE_BRIDGE or record.level >= LogLevel.ERROR:
+            log(record)
+
+    return take

@@ -1,0 +1,51 @@
+"""Which topics and services a bridge carries, by patterns for their names.
+
+A pattern such as ``/robot1`` stands for that name and for all names below it; ``*`` in it stands for anything but a
+slash.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+
+_PATTERN = re.compile(r"/|(/[A-Za-z0-9_*]+)+")
+_ACTION = "/_action/"
+
+
+class NameFilter:
+    """Lets names through.
+
+    Args:
+        allowed: patterns, one of which a name has to meet; all names where there is none.
+        denied: patterns that no name may meet, whatever is allowed.
+
+    Raises:
+        LinkwrightError: CLI453, a pattern is none.
+    """
+
+    def __init__(self, allowed: Iterable[str] = (), denied: Iterable[str] = ()) -> None:
+        self._allowed = [_compiled(each) for each in allowed]
+        self._denied = [_compiled(each) for each in denied]
+
+    def passes(self, name: str) -> bool:
+        """Whether a topic or service of an absolute name is carried; the parts of an action go by the action's name."""
+        name = name.partition(_ACTION)[0]
+        if any(each.match(name) for each in self._denied):
+            return False
+        return not self._allowed or any(each.match(name) for each in self._allowed)
+
+
+def _compiled(pattern: str) -> re.Pattern[str]:
+    if not _PATTERN.fullmatch(pattern):
+        raise LinkwrightError(
+            Diagnostic(
+                "CLI453",
+                phrase("'{pattern}' is not a pattern for names of topics and services", pattern=pattern),
+                hint=phrase("write an absolute name, such as /robot1 for all below it, or /*/scan"),
+            )
+        )
+    parts = "[^/]*".join(re.escape(part) for part in pattern.rstrip("/").split("*"))
+    return re.compile(f"{parts}(/.*)?$")

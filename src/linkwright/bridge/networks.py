@@ -1,0 +1,116 @@
+"""The networks that a bridge can connect, by the words of its command line: ``dds``, ``zenoh``, ``dds:5``."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+from linkwright.bridge.side import ENCLAVE, Side
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, phrase
+from linkwright.graph import Graph
+from linkwright.graph.log.logger import Logger
+from linkwright.graph.log.record import LogSink
+from linkwright.wire import dds, zenoh
+from linkwright.wire.background import BackgroundTransport
+from linkwright.wire.dds.settings import read_settings as read_dds_settings
+from linkwright.wire.zenoh.settings import read_settings as read_zenoh_settings
+
+_JOINED_WITHIN = 10.0
+
+
+@dataclass(frozen=True)
+class _Kind:
+    """A transport.
+
+    Attributes:
+        label: its name.
+        why_not: why it cannot be had; empty where it can.
+        open: makes the transport of a domain and a bridge.
+        needs_hashes: see `Side`.
+    """
+
+    label: str
+    why_not: Callable[[], Phrase]
+    open: Callable[[int | None, str, Logger], BackgroundTransport]
+    needs_hashes: bool
+
+
+def _open_dds(domain_id: int | None, bridge_id: str, logger: Logger) -> BackgroundTransport:
+    settings = replace(read_dds_settings(domain_id=domain_id), enclave=f"{ENCLAVE}/{bridge_id}")
+    for warning in settings.warnings:
+        logger.warning(warning)
+    return dds.DdsTransport(settings, logger)
+
+
+def _open_zenoh(domain_id: int | None, _bridge_id: str, logger: Logger) -> BackgroundTransport:
+    return zenoh.ZenohTransport(read_zenoh_settings(domain_id=domain_id), logger)
+
+
+_KINDS = {
+    "dds": _Kind("DDS", dds.why_not, _open_dds, needs_hashes=False),
+    "zenoh": _Kind("Zenoh", zenoh.why_not, _open_zenoh, needs_hashes=True),
+}
+
+
+@dataclass(frozen=True)
+class Network:
+    """A network.
+
+    Attributes:
+        kind: a key of the table above.
+        domain_id: the ROS domain.
+    """
+
+    kind: str
+    domain_id: int
+
+    @property
+    def label(self) -> str:
+        """What it is called in messages."""
+        return f"{_KINDS[self.kind].label} (domain {self.domain_id})"
+
+    async def join(self, bridge_id: str, log: LogSink) -> Side:
+        """Join it.
+
+        Raises:
+            LinkwrightError: CLI454, its package is not there; DDS101 to DDS112, it cannot be joined.
+        """
+        kind = _KINDS[self.kind]
+        reason = kind.why_not()
+        if reason:
+            message = phrase("{network} cannot be joined", network=self.label)
+            raise LinkwrightError(Diagnostic("CLI454", message, notes=(Note(reason),)))
+        graph = Graph(on_log=log, on_namesakes=_nobody_minds)
+        transport = kind.open(self.domain_id, bridge_id, graph.get_logger(self.kind))
+        graph.attach(transport)
+        await asyncio.to_thread(transport.wait_until_ready, _JOINED_WITHIN)
+        if transport.problem is not None:
+            await graph.close()
+            raise transport.problem
+        return Side(self.label, graph, transport, bridge_id, needs_hashes=kind.needs_hashes)
+
+
+def read_network(text: str) -> Network:
+    """The network that words of a command line name.
+
+    Raises:
+        LinkwrightError: CLI451, they name none; DDS101, the domain is not one.
+    """
+    kind, colon, domain = text.partition(":")
+    if kind not in _KINDS or (colon and not domain):
+        raise LinkwrightError(
+            Diagnostic(
+                "CLI451",
+                phrase("'{text}' is not a network that can be bridged", text=text),
+                hint=phrase("write dds or zenoh, with a domain after a colon where ROS_DOMAIN_ID is not meant: dds:5"),
+            )
+        )
+    settings: Any = read_dds_settings if kind == "dds" else read_zenoh_settings
+    return Network(kind, settings({**os.environ, "ROS_DOMAIN_ID": domain} if colon else None).domain_id)
+
+
+def _nobody_minds(_names: frozenset[str]) -> None:
+    """Nodes of a bridge have the names of others by intent."""

@@ -1,0 +1,112 @@
+"""One of the networks that a bridge connects: what others have there, and where the bridge has its own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from linkwright.graph import Graph
+from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
+from linkwright.graph.loop.node_handle import NodeHandle
+from linkwright.graph.names.identity import NodeIdentity
+from linkwright.graph.names.remapping import Remappings
+from linkwright.wire.background import BackgroundTransport
+
+ENCLAVE = "/linkwright_bridge"
+"""Nodes that a bridge has in a network are in the enclave ``/linkwright_bridge/<id of the bridge>``, by which other
+bridges tell them from those that are at home there. Nothing but security asks for a node's enclave."""
+
+Provision = tuple[str, EndpointKind, str, str]
+"""Node, kind, name and type of what a node publishes or serves."""
+
+
+@dataclass
+class Seen:
+    """What was there when it was looked last, without what bridges have.
+
+    Attributes:
+        nodes: the nodes.
+        endpoints: the endpoints whose node is known.
+        demanded: names of topics that somebody subscribes to.
+        served: names of services that somebody serves.
+        carried: what bridges that go before this one carry to here, which this one leaves to them.
+        carried_nodes: full names of the nodes that they have here for those of the other side.
+        by_bridges: the gids of publishers of other bridges.
+    """
+
+    nodes: list[NodeIdentity] = field(default_factory=list)
+    endpoints: list[EndpointInfo] = field(default_factory=list)
+    demanded: set[str] = field(default_factory=set)
+    served: set[str] = field(default_factory=set)
+    carried: set[Provision] = field(default_factory=set)
+    carried_nodes: set[str] = field(default_factory=set)
+    by_bridges: set[bytes] = field(default_factory=set)
+
+
+class Side:
+    """A network.
+
+    Args:
+        label: what it is called in messages.
+        graph: the bridge's graph there.
+        transport: how it has joined.
+        bridge_id: the bridge's own.
+        needs_hashes: whether a type has to be known, or its hash, for a publisher to be made.
+    """
+
+    def __init__(
+        self, label: str, graph: Graph, transport: BackgroundTransport, bridge_id: str, *, needs_hashes: bool
+    ) -> None:
+        self.label = label
+        self.needs_hashes = needs_hashes
+        self.graph = graph
+        self._transport = transport
+        self._bridge_id = bridge_id
+        self._enclave = f"{ENCLAVE}/{bridge_id}"
+        self.seen = Seen()
+        self.own = self.open_node(NodeIdentity(f"linkwright_bridge_{bridge_id}", "/"))
+
+    def open_node(self, node: NodeIdentity) -> NodeHandle:
+        """A node of the bridge's, with a name and nothing else."""
+        return self.graph.open_node(NodeIdentity(node.name, node.namespace, self._enclave), Remappings(()))
+
+    def watch(self, changed: Callable[[], None]) -> None:
+        """Have something called, from any thread, when something comes or goes."""
+        self._transport.watch(changed)
+
+    def look(self) -> None:
+        """Find out what there is now."""
+        seen = Seen()
+        for node in self._transport.remote_nodes():
+            other = _bridge_of(node)
+            if not other:
+                seen.nodes.append(node)
+            elif other < self._bridge_id:
+                seen.carried_nodes.add(node.full_name)
+        for endpoint in self._transport.remote_endpoints():
+            if endpoint.node is None:
+                continue
+            other = _bridge_of(endpoint.node)
+            if other:
+                seen.by_bridges.add(endpoint.gid)
+                if other < self._bridge_id:
+                    seen.carried.add(provision_of(endpoint))
+                continue
+            seen.endpoints.append(endpoint)
+            if endpoint.kind is EndpointKind.SUBSCRIPTION:
+                seen.demanded.add(endpoint.name)
+            elif endpoint.kind is EndpointKind.SERVICE:
+                seen.served.add(endpoint.name)
+        self.seen = seen
+
+
+def provision_of(endpoint: EndpointInfo) -> Provision:
+    """What an endpoint is, whatever its gid."""
+    assert endpoint.node is not None
+    return endpoint.node.full_name, endpoint.kind, endpoint.name, endpoint.type_name
+
+
+def _bridge_of(node: NodeIdentity) -> str:
+    """The id of the bridge that has a node there; empty for one that is at home."""
+    root, slash, bridge_id = node.enclave.rpartition("/")
+    return bridge_id if slash and root == ENCLAVE else ""

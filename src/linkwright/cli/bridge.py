@@ -1,0 +1,72 @@
+"""``linkwright bridge``: carry topics and services between DDS and Zenoh."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+
+from linkwright.cli.session import TerminationEnds
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+from linkwright.event_loop import run_coroutine
+from linkwright.interruption import raise_interrupts
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    parser.add_argument(
+        "networks",
+        metavar="NETWORK",
+        nargs=2,
+        help="dds or zenoh, with a domain after a colon where ROS_DOMAIN_ID is not meant: dds:5",
+    )
+    parser.add_argument(
+        "--allow",
+        metavar="NAME",
+        nargs="+",
+        action="extend",
+        default=[],
+        help="carry only topics, services and actions of these names; a name stands for all below it, too, and * in it "
+        "for anything but a slash",
+    )
+    parser.add_argument(
+        "--deny",
+        metavar="NAME",
+        nargs="+",
+        action="extend",
+        default=[],
+        help="do not carry those of these names, whatever is allowed",
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Carry until interrupted.
+
+    Raises:
+        LinkwrightError: CLI451 to CLI454, an argument is not well formed or a network cannot be joined; DDS101 to
+            DDS112, a setting is not.
+    """
+    from linkwright.bridge.bridge import new_bridge_id, run_bridge
+    from linkwright.bridge.filters import NameFilter
+    from linkwright.bridge.networks import read_network
+    from linkwright.graph.log.console import print_to_console
+
+    first, second = (read_network(each) for each in arguments.networks)
+    if first == second:
+        raise LinkwrightError(
+            Diagnostic(
+                "CLI452",
+                phrase("both networks are the same: {network}", network=first.label),
+                hint=phrase("a bridge joins two, such as: linkwright bridge dds zenoh"),
+            )
+        )
+    names = NameFilter(arguments.allow, arguments.deny)
+
+    def tell() -> None:
+        print(f"Carrying between {first.label} and {second.label}. Ctrl-C ends it", file=sys.stderr)
+
+    async def main() -> int:
+        await run_bridge((first, second), names, new_bridge_id(), print_to_console, tell)
+        return 0
+
+    with TerminationEnds():
+        return run_coroutine(main, raise_interrupts)

@@ -1,0 +1,111 @@
+from __future__ import annotations
+
+import asyncio
+import threading
+from collections.abc import Callable, Iterator
+from importlib.util import find_spec
+
+import pytest
+
+from linkwright.bridge.bridge import run_bridge
+from linkwright.bridge.filters import NameFilter
+from linkwright.bridge.networks import read_network
+from linkwright.graph import LogRecord
+from linkwright.wire.zenoh.settings import ATTEMPTS, OVERRIDES, ROUTER_FILE, SESSION_FILE
+from tests.waiting import SECONDS
+from tests.wire.conftest import Process, domain  # noqa: F401 - the fixture of the domain, which takes no part here else
+from tests.wire.zenoh.conftest import ZenohProcess, router_port  # noqa: F401 - as before
+
+collect_ignore_glob = [] if find_spec("zenoh") and find_spec("cyclonedds") else ["test_*.py"]
+
+
+@pytest.fixture(autouse=True)
+def variables(monkeypatch: pytest.MonkeyPatch, domain: int, router_port: int) -> None:  # noqa: F811 - fixtures
+    """A router that is looked for at a port of the test's own."""
+    for name in (ATTEMPTS, ROUTER_FILE, SESSION_FILE, "RMW_IMPLEMENTATION"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setenv(OVERRIDES, f'connect/endpoints=["tcp/localhost:{router_port}"]')
+
+
+class Bridge:
+    """A bridge in a thread of its own."""
+
+    def __init__(self, bridge_id: str, *, allowed: tuple[str, ...] = (), denied: tuple[str, ...] = ()) -> None:
+        self.log: list[LogRecord] = []
+        self._ready = threading.Event()
+        self._loop = asyncio.new_event_loop()
+        networks = (read_network("dds"), read_network("zenoh"))
+        self._work = run_bridge(networks, NameFilter(allowed, denied), bridge_id, self.log.append, self._ready.set)
+        self._task: asyncio.Task[None] | None = None
+        self._thread = threading.Thread(target=self._run, name="bridge")
+        self._thread.start()
+        assert self._ready.wait(SECONDS)
+
+    def _run(self) -> None:
+        asyncio.set_event_loop(self._loop)
+        self._task = self._loop.create_task(self._work)
+        try:
+            self._loop.run_until_complete(self._task)
+        except asyncio.CancelledError:
+            pass
+        finally:
+            self._loop.close()
+
+    def close(self) -> None:
+        """Take it away."""
+        if self._thread.is_alive():
+            assert self._task is not None
+            self._loop.call_soon_threadsafe(self._task.cancel)
+            self._thread.join(SECONDS)
+        assert not self._thread.is_alive()
+
+
+class Networks:
+    """What a test has in both networks: processes over DDS and over Zenoh, and bridges."""
+
+    def __init__(self) -> None:
+        self._made: list[Process | Bridge] = []
+
+    def dds(self, name: str) -> Process:
+        """A process over DDS."""
+        return self._kept(Process(name))
+
+    def zenoh(self, name: str) -> ZenohProcess:
+        """A process over Zenoh."""
+        return self._kept(ZenohProcess(name))
+
+    def bridge(self, bridge_id: str = "b0", **names: tuple[str, ...]) -> Bridge:
+        """A bridge between both."""
+        return self._kept(Bridge(bridge_id, **names))
+
+    def make(self, network: str) -> Callable[[str], Process]:
+        """What makes processes in a network."""
+        return self.dds if network == "dds" else self.zenoh
+
+    def close(self) -> None:
+        """End all."""
+        for each in self._made:
+            each.close()
+
+    def _kept(self, made):  # type: ignore[no-untyped-def]  # gives back what it is given
+        self._made.append(made)
+        return made
+
+
+@pytest.fixture
+def networks() -> Iterator[Networks]:
+    """Both networks, empty."""
+    made = Networks()
+    yield made
+    made.close()
+
+
+def spin_all(condition: Callable[[], object], *processes: Process) -> None:
+    """Run the callbacks of several processes until something holds."""
+
+    def holds() -> bool:
+        for each in processes[1:]:
+            each.executor.spin_once(timeout_sec=0.0)
+        return bool(condition())
+
+    processes[0].spin_until(holds)

@@ -1,0 +1,252 @@
+from __future__ import annotations
+
+import pytest
+
+from linkwright.graph.actions.client import ActionClient
+from linkwright.graph.actions.server import ActionServer
+from linkwright.graph.endpoints.info import EndpointKind
+from linkwright.graph.endpoints.publisher import Publisher
+from linkwright.graph.names.identity import NodeIdentity
+from linkwright.graph.qos.profile import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+from linkwright.messages import String, get_interface
+from linkwright.wire.zenoh import attachment, qos_text
+from linkwright.wire.zenoh.session import open_session
+from linkwright.wire.zenoh.settings import read_settings
+from linkwright.wire.zenoh.tokens import Token
+from tests.bridge.conftest import spin_all
+
+LASTING = QoSProfile(3, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+EVERYTHING = QoSProfile(history=HistoryPolicy.KEEP_ALL)
+WAYS = [("dds", "zenoh"), ("zenoh", "dds")]
+AddTwoInts = get_interface("example_interfaces/srv/AddTwoInts")
+CALLS = 50
+Fibonacci = get_interface("example_interfaces/action/Fibonacci")
+
+
+def listen(process, topic, qos):
+    got = []
+    process.node.create_subscription(String, topic, lambda message: got.append(message.data), qos)
+    return got
+
+
+@pytest.mark.parametrize(("source", "target"), WAYS)
+def test_each_message_of_a_topic_goes_over_once_and_in_order(networks, source, target):
+    networks.bridge()
+    there, here = networks.make(source)("there"), networks.make(target)("here")
+    got = listen(here, "chatter", EVERYTHING)
+    also = listen(there, "chatter", EVERYTHING)
+    publisher = there.node.create_publisher(String, "chatter", EVERYTHING)
+    spin_all(lambda: publisher.get_subscription_count() == 2 and here.node.count_publishers("chatter"), there, here)
+    words = [str(number) for number in range(500)]
+    for word in words:
+        publisher.publish(String(data=word))
+    spin_all(lambda: len(got) >= len(words), here, there)
+    back = here.node.create_publisher(
+        String, "chatter", EVERYTHING
+    )  # what went over before would have come back by now
+    spin_all(lambda: back.get_subscription_count() == 2, here, there)
+    back.publish(String(data="end"))
+    spin_all(lambda: "end" in also and "end" in got, there, here)
+    assert got == [*words, "end"]
+    assert also == [*words, "end"]
+
+
+@pytest.mark.parametrize(("source", "target"), WAYS)
+def test_nodes_are_seen_by_their_names_with_what_they_publish_and_vanish_with_it(networks, source, target):
+    networks.bridge()
+    there, here = networks.make(source)("there"), networks.make(target)("here")
+    qos = QoSProfile(7, reliability=ReliabilityPolicy.BEST_EFFORT)
+    there.node.create_publisher(String, "/far/chatter", qos)
+    spin_all(lambda: here.node.get_publishers_info_by_topic("/far/chatter"), here)
+    (seen,) = here.node.get_publishers_info_by_topic("/far/chatter")
+    assert (seen.node_name, seen.topic_type) == ("there", "std_msgs/msg/String")
+    assert seen.qos_profile.reliability is ReliabilityPolicy.BEST_EFFORT
+    assert seen.qos_profile.depth == 7
+    assert "there" in here.node.get_node_names()
+    there.close()
+    spin_all(lambda: "there" not in here.node.get_node_names(), here)
+    assert here.node.count_publishers("/far/chatter") == 0
+
+
+@pytest.mark.parametrize(("source", "target"), WAYS)
+def test_late_joiners_get_what_was_kept_once(networks, source, target):
+    there = networks.make(source)("there")
+    publisher = there.node.create_publisher(String, "described", LASTING)
+    for word in ("one", "two", "three", "four"):
+        publisher.publish(String(data=word))
+    networks.bridge()
+    for name in ("first", "second"):
+        here = networks.make(target)(name)
+        got = listen(here, "described", LASTING)
+        spin_all(lambda got=got: len(got) >= 3, here)
+        assert got == ["two", "three", "four"]
+    publisher.publish(String(data="five"))
+    spin_all(lambda: len(got) == 4, here)
+    assert got[3:] == ["five"]
+
+
+@pytest.mark.parametrize(("source", "target"), WAYS)
+def test_what_a_publisher_says_that_comes_while_the_topic_is_carried_is_not_lost(networks, source, target):
+    networks.bridge()
+    first, here = networks.make(source)("first"), networks.make(target)("here")
+    got = listen(here, "chatter", EVERYTHING)
+    publisher = first.node.create_publisher(String, "chatter", EVERYTHING)
+    spin_all(lambda: publisher.get_subscription_count() == 1, first)
+    late = networks.make(source)("late")
+    publisher = late.node.create_publisher(String, "chatter", EVERYTHING)
+    spin_all(lambda: publisher.get_subscription_count() == 1, late)
+    publisher.publish(String(data="at once"))
+    spin_all(lambda: got, here)
+    assert got == ["at once"]
+
+
+@pytest.mark.parametrize(("server", "client"), WAYS)
+def test_requests_of_three_clients_are_answered_each_to_who_asked(networks, server, client):
+    networks.bridge()
+    there = networks.make(server)("there")
+
+    def add(request, response):
+        response.sum = request.a + request.b
+        return response
+
+    there.node.create_service(AddTwoInts, "add", add)
+    asking = [networks.make(client)(name) for name in ("first", "second", "third")]
+    clients = [each.node.create_client(AddTwoInts, "add") for each in asking]
+    spin_all(lambda: all(each.service_is_ready() for each in clients), *asking, there)
+    answers = [[] for _ in clients]
+    waiting = [None for _ in clients]
+
+    def all_answered() -> bool:
+        for which, each in enumerate(clients):
+            if waiting[which] is not None and waiting[which].done():
+                answers[which].append(waiting[which].result().sum)
+                waiting[which] = None
+            if waiting[which] is None and len(answers[which]) < CALLS:
+                waiting[which] = each.call_async(AddTwoInts.Request(a=1000 * which, b=len(answers[which])))
+        return all(len(each) == CALLS for each in answers)
+
+    spin_all(all_answered, there, *asking)
+    assert answers == [[1000 * which + number for number in range(CALLS)] for which in range(3)]
+    there.close()
+    spin_all(lambda: not any(each.service_is_ready() for each in clients), *asking)
+
+
+@pytest.mark.parametrize(("server", "client"), WAYS)
+def test_actions_go_over_with_their_feedback(networks, server, client):
+    networks.bridge()
+    there, here = networks.make(server)("there"), networks.make(client)("here")
+
+    def execute(goal):
+        for number in range(3):
+            goal.publish_feedback(Fibonacci.Feedback(sequence=[number]))
+        goal.succeed()
+        return Fibonacci.Result(sequence=[1, 1, 2])
+
+    ActionServer(there.node, Fibonacci, "count", execute)
+    asking = ActionClient(here.node, Fibonacci, "count")
+    spin_all(asking.server_is_ready, here, there)
+    spin_all(lambda: there.node.count_subscribers("/count/_action/feedback"), there)
+    heard = []
+    sent = asking.send_goal_async(
+        Fibonacci.Goal(order=3), feedback_callback=lambda message: heard.append(list(message.feedback.sequence))
+    )
+    spin_all(sent.done, here, there)
+    assert sent.result().accepted
+    result = sent.result().get_result_async()
+    spin_all(lambda: result.done() and len(heard) == 3, here, there)
+    assert list(result.result().result.sequence) == [1, 1, 2]
+    assert heard == [[0], [1], [2]]
+
+
+def test_a_service_that_both_networks_have_is_left_alone(networks):
+    networks.bridge()
+    there, here = networks.dds("there"), networks.zenoh("here")
+    for process, answer in ((there, 1), (here, 2)):
+
+        def add(_request, response, answer=answer):
+            response.sum = answer
+            return response
+
+        process.node.create_service(AddTwoInts, "add", add)
+    asking = networks.zenoh("asking")
+    client = asking.node.create_client(AddTwoInts, "add")
+    spin_all(client.service_is_ready, asking)
+    spin_all(lambda: {"there", "here"} <= set(asking.node.get_node_names()), asking)
+    answers = []
+    for _ in range(10):
+        future = client.call_async(AddTwoInts.Request())
+        spin_all(future.done, asking, here, there)
+        answers.append(future.result().sum)
+    assert set(answers) <= {1, 2}
+
+
+def test_two_bridges_carry_each_message_once_and_one_goes_on_alone(networks):
+    first = networks.bridge("b0")
+    networks.bridge("b1")
+    there, here = networks.dds("there"), networks.zenoh("here")
+    got = listen(here, "chatter", EVERYTHING)
+    publisher = there.node.create_publisher(String, "chatter", EVERYTHING)
+
+    def settled() -> bool:
+        return publisher.get_subscription_count() == 1 and here.node.count_publishers("chatter") == 1
+
+    spin_all(settled, there, here)
+    for number in range(100):
+        publisher.publish(String(data=str(number)))
+    spin_all(lambda: len(got) >= 100, here, there)
+    assert got == [str(number) for number in range(100)]
+    first.close()
+    spin_all(settled, there, here)
+    publisher.publish(String(data="end"))
+    spin_all(lambda: len(got) > 100, here, there)
+    assert got[100:] == ["end"]
+
+
+def test_names_that_are_denied_or_not_allowed_stay_where_they_are(networks):
+    networks.bridge(allowed=("/robot*",), denied=("/*/secret",))
+    there, here = networks.dds("there"), networks.zenoh("here")
+    for name in ("/robot1/scan", "/robot2/secret/key", "/other"):
+        there.node.create_publisher(String, name, 10)
+    spin_all(lambda: here.node.count_publishers("/robot1/scan"), here)
+    spin_all(lambda: "there" in here.node.get_node_names(), here)
+    names = {name for name, _ in here.node.get_topic_names_and_types()}
+    assert "/robot1/scan" in names
+    assert not {"/robot2/secret/key", "/other"} & names
+
+
+def test_messages_of_types_that_are_not_known_here_go_over_as_they_are(networks):
+    networks.bridge()
+    here = networks.dds("here")
+    got = []
+    here.node.create_subscription("strange_msgs/msg/Odd", "odd", got.append, 10, raw=True)
+    type_hash = f"RIHS01_{0:064x}"
+    domain = read_settings().domain_id
+    token = Token(
+        domain, "ab", "0", "1", NodeIdentity("stranger", "/"), EndpointKind.PUBLISHER, "/odd",
+        "strange_msgs::msg::dds_::Odd_", type_hash, qos_text.write(QoSProfile(10)),
+    )  # fmt: skip
+    with open_session(read_settings()) as session:
+        announced = session.liveliness().declare_token(token.key)
+        stranger = session.declare_publisher(token.data_key)
+        spin_all(lambda: stranger.matching_status.matching, here)
+        (seen,) = here.node.get_publishers_info_by_topic("/odd")
+        assert seen.topic_type_hash == type_hash
+        for number, gid in enumerate((token.gid, bytes(16)), 1):  # the second as programs that make up their gids
+            stranger.put(b"\0\1\0\0abc%d" % number, attachment=attachment.write(number, 2, gid))
+        spin_all(lambda: len(got) == 2, here)
+        announced.undeclare()
+    assert got == [b"\0\1\0\0abc1", b"\0\1\0\0abc2"]
+    spin_all(lambda: not here.node.count_publishers("/odd"), here)
+
+
+def test_what_cannot_be_carried_is_told_once(networks):
+    bridge = networks.bridge()
+    there, here = networks.dds("there"), networks.zenoh("here")
+    strange = Publisher(there.node.handle, "strange_msgs/msg/Odd", "/odd", QoSProfile(10))
+    strange.raw = True  # and without a hash, as those of Humble
+    there.node.handle.add(strange)
+    spin_all(lambda: "there" in here.node.get_node_names() and bridge.log, here, there)
+    (told,) = (record.text for record in bridge.log)
+    assert told.startswith("'/odd' is not carried from DDS")
+    assert "strange_msgs/msg/Odd" in told
+    assert not here.node.count_publishers("/odd")

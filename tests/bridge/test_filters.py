@@ -1,0 +1,32 @@
+from __future__ import annotations
+
+import pytest
+
+from linkwright.bridge.filters import NameFilter
+from linkwright.diagnostics import LinkwrightError
+
+
+@pytest.mark.parametrize(
+    ("allowed", "denied", "passing", "kept_back"),
+    [
+        ((), (), ["/a", "/a/b"], []),
+        (("/a",), (), ["/a", "/a/b/c"], ["/ab", "/b", "/b/a"]),
+        (("/",), (), ["/a", "/a/b"], []),
+        (("/*/scan",), (), ["/r1/scan", "/r2/scan/raw"], ["/scan", "/a/b/scan"]),
+        (("/robot*",), ("/robot2",), ["/robot1/tf", "/robot/tf"], ["/robot2/tf", "/robot2"]),
+        ((), ("/rosout", "/parameter_events"), ["/tf"], ["/rosout", "/parameter_events"]),
+        (("/a",), ("/a/b",), ["/a/_action/status", "/a/c/_action/send_goal"], ["/a/b/_action/status"]),
+        (("/*",), (), ["/a", "/a/b/c"], []),
+    ],
+)
+def test_names_pass_by_themselves_and_below_what_is_allowed(allowed, denied, passing, kept_back):
+    names = NameFilter(allowed, denied)
+    assert [each for each in (*passing, *kept_back) if names.passes(each)] == passing
+
+
+@pytest.mark.parametrize("pattern", ["", "scan", "/a/", "//", "/a b", "/a.*", "/[ab]"])
+def test_what_is_no_pattern_is_refused(pattern):
+    for names in (((pattern,), ()), ((), (pattern,))):
+        with pytest.raises(LinkwrightError) as refused:
+            NameFilter(*names)
+        assert [each.code for each in refused.value.diagnostics] == ["CLI453"]

@@ -1,0 +1,39 @@
+from __future__ import annotations
+
+import pytest
+
+from linkwright.cli.command import main
+
+
+@pytest.mark.parametrize(
+    ("words", "code"),
+    [
+        (("dds", "ros1"), "CLI451"),
+        (("dds:", "zenoh"), "CLI451"),
+        (("zenoh", "zenoh"), "CLI452"),
+        (("dds", "dds:7"), "CLI452"),
+        (("dds:no", "zenoh"), "DDS101"),
+        (("dds:233", "zenoh"), "DDS101"),
+        (("dds", "zenoh", "--allow", "scan"), "CLI453"),
+        (("dds", "zenoh", "--allow", "/scan", "--deny", "/a b"), "CLI453"),
+    ],
+)
+def test_what_cannot_be_bridged_is_told_in_one_error(capsys, monkeypatch, words, code):
+    monkeypatch.setenv("ROS_DOMAIN_ID", "7")
+    assert main(["bridge", *words]) == 1
+    output = capsys.readouterr()
+    assert output.out == ""
+    assert output.err.count("error[") == 1
+    assert output.err.startswith(f"error[{code}]")
+
+
+@pytest.mark.parametrize("words", [(), ("dds",), ("dds", "zenoh", "dds")])
+def test_a_bridge_has_two_ends(capsys, words):
+    assert main(["bridge", *words]) == 2
+    assert "NETWORK" in capsys.readouterr().err
+
+
+def test_a_network_whose_package_is_missing_is_told(capsys, monkeypatch):
+    monkeypatch.setenv("LINKWRIGHT_DDS", "0")
+    assert main(["bridge", "dds", "zenoh"]) == 1
+    assert "error[CLI454]: DDS (domain" in capsys.readouterr().err
