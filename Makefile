@@ -3,6 +3,7 @@
 #   make demo    drive the robot of the tutorial, with laser and camera, through a simulated world in a browser
 #   make test    all tests, those of the page in a real Chromium (fetched below .build/ where there is none)
 #   make test-ros  the tests against real ROS 2, which is installed from PyPI below .build/
+#   make test-zenoh-sdk  those against zenoh-ros2-sdk, which is installed from PyPI below .build/
 #   make test-train  those that train networks, with PyTorch from PyPI below .build/
 #   make check   ruff, mypy, import-linter, the page's type check, generated files current
 #   make bench   the figures the project promises, measured on this machine
@@ -46,7 +47,7 @@ LOCKED := .build/constraints.txt
 RELEASE_TOOLS := .build/release-tools$(if $(VERSION),-$(VERSION))
 PAGE_SOURCES := $(shell find frontend -path frontend/node_modules -prune -o -type f -print)
 
-.PHONY: demo test test-quick coverage test-browser test-ros test-train check bench soak fuzz reference release docs page lock format clean
+.PHONY: demo test test-quick coverage test-browser test-ros test-zenoh-sdk test-train check bench soak fuzz reference release docs page lock format clean
 
 # Ctrl-C is how the demo ends (status 130), which is no error; the shell has to outlive it to say so.
 demo: $(VENV)/.ready
@@ -75,6 +76,15 @@ test-ros: $(VENV)/.dev .build/ros/.ready
 	$(UV) venv --quiet --clear --python 3.12 .build/ros
 	$(UV) pip install --quiet --python .build/ros/bin/python \
 		ros-rclpy==7.1.6 ros-rmw-fastrtps-cpp==8.4.3 ros-common-interfaces==5.3.6
+	touch $@
+
+# Over Zenoh, with nodes that another program makes of it.
+test-zenoh-sdk: $(VENV)/.dev .build/zenoh-sdk/.ready
+	LINKWRIGHT_ZENOH_SDK_PYTHON=$(CURDIR)/.build/zenoh-sdk/bin/python $(BIN)/pytest tests/wire/zenoh/test_sdk.py $(ARGS)
+
+.build/zenoh-sdk/.ready: $(VENV)/.ready | $(UV)
+	$(UV) venv --quiet --clear --python $(BIN)/python .build/zenoh-sdk
+	$(UV) pip install --quiet --python .build/zenoh-sdk/bin/python zenoh-ros2-sdk==0.1.8
 	touch $@
 
 # PyTorch is larger than everything else together, so that it has an environment of its own.

@@ -1,0 +1,112 @@
+"""Over Zenoh with nodes that another program makes of it: zenoh-ros2-sdk, which wrote keys, tokens and hashes itself.
+
+They run where LINKWRIGHT_ZENOH_SDK_PYTHON names an interpreter that has it; see ``make test-zenoh-sdk``.
+"""
+
+from __future__ import annotations
+
+import os
+import threading
+
+import pytest
+
+from linkwright.graph.qos.profile import HistoryPolicy, QoSProfile
+from linkwright.messages import String, get_service
+from linkwright.wire.zenoh.settings import OVERRIDES
+
+PYTHON = os.environ.get("LINKWRIGHT_ZENOH_SDK_PYTHON", "")
+CALLS = 1000
+CLIENTS = 4
+EVERYTHING = QoSProfile(history=HistoryPolicy.KEEP_ALL)
+SetBool = get_service("std_srvs/srv/SetBool")
+
+pytestmark = pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ZENOH_SDK_PYTHON names no interpreter with the SDK")
+
+
+@pytest.fixture
+def peer(programs, router_port, monkeypatch):
+    """A program with the SDK, and a session of ours that it connects to, as there is no router."""
+    settings = os.environ[OVERRIDES]
+    monkeypatch.setenv(OVERRIDES, f'connect/endpoints=[];listen/endpoints=["tcp/127.0.0.1:{router_port}"]')
+    return lambda: programs(
+        "sdk_peer",
+        "sdk",
+        python=PYTHON,
+        **{OVERRIDES: settings, "PYTHONPATH": ""},
+    )
+
+
+def meanwhile(us, question):
+    """The answer to something asked of the peer, for which our callbacks have to run."""
+    answers = []
+    thread = threading.Thread(target=lambda: answers.append(question()))
+    thread.start()
+    us.spin_until(lambda: answers, 300)
+    thread.join()
+    return answers[0]
+
+
+def test_messages_go_both_ways(processes, peer):
+    us = processes("ours")
+    got = []
+    us.node.create_subscription(String, "from_sdk", lambda message: got.append(message.data), EVERYTHING)
+    publisher = us.node.create_publisher(String, "to_sdk", EVERYTHING)
+    them = peer()
+    us.spin_until(lambda: publisher.get_subscription_count() == 1)
+    them.ask_until(bool, "listeners")
+    them.ask("say", 0, 100)
+    for number in range(1000):
+        publisher.publish(String(data=str(number)))
+    us.spin_until(lambda: len(got) == 100)
+    assert got == [str(number) for number in range(100)]
+    assert them.ask_until(lambda heard: len(heard) == 1000, "heard") == [str(number) for number in range(1000)]
+
+
+def test_each_knows_what_the_other_has(processes, peer):
+    us = processes("ours")
+    them = peer()
+    us.spin_until(lambda: "sdk" in us.node.get_node_names())
+    us.spin_until(lambda: ("/flip_sdk", ["std_srvs/srv/SetBool"]) in us.node.get_service_names_and_types())
+    (seen,) = us.node.get_publishers_info_by_topic("/from_sdk")
+    assert (seen.node_name, seen.topic_type) == ("sdk", "std_msgs/msg/String")
+    them.end()
+    us.spin_until(lambda: "sdk" not in us.node.get_node_names())
+    assert not us.node.count_publishers("/from_sdk")
+
+
+def test_a_thousand_calls_of_several_clients_there_are_answered_each_with_its_own(processes, peer):
+    us = processes("ours")
+    served = []
+
+    def flip(request, response):
+        served.append(request.data)
+        response.success, response.message = not request.data, "flipped"
+        return response
+
+    us.node.create_service(SetBool, "flip", flip)
+    them = peer()
+    told = meanwhile(us, lambda: them.ask("call", CLIENTS, CALLS // CLIENTS))
+    assert told == [[f"{number % 2 == 0} flipped" for number in range(CALLS // CLIENTS)]] * CLIENTS
+    assert len(served) == CALLS
+
+
+def test_a_thousand_calls_of_several_clients_of_ours_are_answered_each_with_its_own(processes, peer):
+    us = processes("ours")
+    clients = [us.node.create_client(SetBool, "flip_sdk") for _ in range(CLIENTS)]
+    them = peer()
+    us.spin_until(lambda: all(each.service_is_ready() for each in clients))
+    answers = [[] for _ in clients]
+    waiting = [None for _ in clients]
+
+    def all_answered() -> bool:
+        for which, client in enumerate(clients):
+            if waiting[which] is not None and waiting[which].done():
+                answers[which].append(waiting[which].result().success)
+                waiting[which] = None
+            if waiting[which] is None and len(answers[which]) < CALLS // CLIENTS:
+                waiting[which] = client.call_async(SetBool.Request(data=len(answers[which]) % 2 == 1))
+        return all(len(each) == CALLS // CLIENTS for each in answers)
+
+    us.spin_until(all_answered, 300)
+    assert answers == [[number % 2 == 0 for number in range(CALLS // CLIENTS)]] * CLIENTS
+    assert them.ask("served") == CALLS
