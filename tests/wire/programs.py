@@ -8,7 +8,7 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from queue import Empty, Queue
 from typing import Any
@@ -19,13 +19,32 @@ FOLDER = Path(__file__).parent
 
 
 class Program:
-    """A process that answers, of this interpreter or another."""
+    """A process that answers, of this interpreter or another.
 
-    def __init__(self, name: str, *words: str, python: str = sys.executable, **environment: str) -> None:
+    Args:
+        name: the program.
+        words: its arguments.
+        python: the interpreter.
+        within: what goes before the command, for one that runs elsewhere.
+        folder: where it runs; the repository when left out.
+        environment: what it has beside this process's.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        *words: str,
+        python: str = sys.executable,
+        within: Sequence[str] = (),
+        folder: Path | None = None,
+        **environment: str,
+    ) -> None:
+        repository = FOLDER.parents[1]
+        found = {} if folder is None else {"PYTHONPATH": str(repository)}
         self.process = subprocess.Popen(
-            [python, "-m", f"tests.wire.{name}", *words],
-            cwd=FOLDER.parents[1],
-            env={**os.environ, **environment},
+            [*within, python, "-m", f"tests.wire.{name}", *words],
+            cwd=folder or repository,
+            env={**os.environ, **found, **environment},
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
