@@ -70,12 +70,13 @@ test-browser: $(VENV)/.dev page
 # Against real ROS 2 (Jazzy) from wheels of PyPI, which there are for Linux and Python 3.12.
 test-ros: $(VENV)/.dev .build/ros/.ready
 	LINKWRIGHT_ROS_PYTHON=$(CURDIR)/.build/ros/bin/python RMW_IMPLEMENTATION=rmw_fastrtps_cpp \
-		$(BIN)/pytest tests/wire/test_real_ros.py tests/wire/test_real_services.py tests/standins/test_real_names.py $(ARGS)
+		$(BIN)/pytest tests/wire/test_real_ros.py tests/wire/test_real_services.py tests/wire/test_real_actions.py \
+		tests/standins/test_real_names.py $(ARGS)
 
 .build/ros/.ready: | $(UV)
 	$(UV) venv --quiet --clear --python 3.12 .build/ros
 	$(UV) pip install --quiet --python .build/ros/bin/python \
-		ros-rclpy==7.1.6 ros-rmw-fastrtps-cpp==8.4.3 ros-common-interfaces==5.3.6
+		ros-rclpy==7.1.6 ros-rmw-fastrtps-cpp==8.4.3 ros-common-interfaces==5.3.6 ros-test-msgs==2.0.3
 	touch $@
 
 # Over Zenoh, with nodes that another program makes of it.
