@@ -52,6 +52,8 @@ import { JointDrag } from "./scene/joint-drag";
 import { Keyboard, TAKES_LETTERS } from "./scene/keyboard";
 import type { PanelHost } from "./scene/displays/display-panel";
 import type { Modeller } from "./scene/modelling/modeller";
+import { SERVED } from "./scene/meshes/mesh-files";
+import { StandIns } from "./scene/meshes/stand-ins";
 import { Stage } from "./scene/stage";
 import { WorldHandling } from "./scene/world-handling";
 import type { ToolEvent } from "./scene/tools/tool";
@@ -231,12 +233,17 @@ function takeFileKeys(session: Session, files: FileCommands): void {
 /** Without WebGL everything else still works. */
 function makeStage(container: HTMLElement, session: Session, panels: PanelHost): Stage | null {
   try {
-    return new Stage(container, session, panels);
+    return new Stage(container, session, panels, SERVED, new StandIns(standInWorker));
   } catch (error) {
     console.warn(error);
     container.append(noWebgl());
     return null;
   }
+}
+
+/** Vite makes a file of its own of a worker that is named so. */
+function standInWorker(): Worker {
+  return new Worker(new URL("./scene/meshes/stand-in-worker.ts", import.meta.url), { type: "module" });
 }
 
 const app = document.getElementById("app");

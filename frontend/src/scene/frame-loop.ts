@@ -15,16 +15,18 @@ const STILL_AFTER_MS = 250;
 
 /** How finely a frame is drawn: with smooth edges or without, and on what share of the canvas's pixels along a side. */
 export interface Detail {
+  /** Of a moving picture that the machine is slow at: what nobody sees may be left out. */
+  readonly moving: boolean;
   readonly smooth: boolean;
   readonly share: number;
 }
 
-export const FINEST: Detail = { smooth: true, share: 1 };
+export const FINEST: Detail = { moving: false, smooth: true, share: 1 };
 const DETAILS: readonly Detail[] = [
   FINEST,
-  { smooth: false, share: 1 },
-  { smooth: false, share: 0.7 },
-  { smooth: false, share: 0.5 },
+  { moving: true, smooth: false, share: 1 },
+  { moving: true, smooth: false, share: 0.7 },
+  { moving: true, smooth: false, share: 0.5 },
 ];
 
 /**

@@ -16,6 +16,7 @@ import { FINEST, FrameLoop, type Detail } from "./frame-loop";
 import { InspectLayer } from "./inspect/inspect-layer";
 import { SERVED, type MeshFiles } from "./meshes/mesh-files";
 import { MeshLibrary } from "./meshes/mesh-library";
+import type { StandIns } from "./meshes/stand-ins";
 import { Outline } from "./outline";
 import { Picker } from "./picker";
 import type { Interaction } from "./picking";
@@ -64,8 +65,9 @@ export class Stage {
     private readonly session: Session,
     private readonly panels: PanelHost,
     files: MeshFiles = SERVED,
+    standIns: StandIns | null = null,
   ) {
-    this.meshes = new MeshLibrary(session.meshProgress, files);
+    this.meshes = new MeshLibrary(session.meshProgress, files, standIns);
     // A resized canvas is empty until it is drawn: at once, or it would flicker.
     this.viewport = new Viewport(container, () => this.draw(UNSMOOTHED));
     this.picker = new Picker(this.viewport, session, () => this.enabled());
@@ -273,10 +275,14 @@ export class Stage {
     this.robotSettled ||= settled && [...this.robots(), ...this.worlds()].some((each) => each.isInPlace);
     if (settled && this.session.robot !== null) this.placelessSince ??= now;
     this.lookFirst(settled);
-    this.viewport.light(this.worlds().find((world) => world.ownLight)?.ownLight ?? this.lightOfStudio(inStudio));
+    const ownLight = this.worlds().find((world) => world.ownLight)?.ownLight ?? this.lightOfStudio(inStudio);
+    this.viewport.light(ownLight);
     this.marks.update();
     this.outline.set(this.selectedObjects());
+    const isMoving = detail.moving && ownLight === null;
+    if (isMoving) for (const [, drawing] of this.enabled()) drawing.move?.(this.viewport.drawn);
     this.viewport.render(detail.smooth);
+    if (isMoving) for (const [, drawing] of this.enabled()) drawing.move?.(null);
     this.outline.render();
     this.flash.render();
     this.drawElsewhere();

@@ -130,6 +130,11 @@ export class Viewport {
     return { width: Math.max(1, this.canvas.clientWidth), height: Math.max(1, this.canvas.clientHeight) };
   }
 
+  /** What the next frame is drawn for: the camera, and the height of the picture in pixels of its own. */
+  get drawn(): { camera: PerspectiveCamera | OrthographicCamera; height: number } {
+    return { camera: this.inUse, height: this.canvas.height };
+  }
+
   /** Draws the scene; `fine` smooths its edges. */
   render(fine: boolean): void {
     const draw = (): void => this.renderer.render(this.scene, this.camera);

@@ -3,6 +3,7 @@ import type { DisplayData } from "../../connection/data";
 import type { DisplayState } from "../../state/displays";
 import type { Session } from "../../state/session";
 import type { MeshLibrary } from "../meshes/mesh-library";
+import type { MovingPicture } from "../robot/moving-meshes";
 import type { PanelHost } from "./display-panel";
 import type { Described, Hit, Interaction, ScenePointer, SelectionBox } from "../picking";
 
@@ -42,6 +43,8 @@ export interface Drawing {
   propertiesChanged(): void;
   /** Called before every frame drawn while the display is enabled: put everything where it is now. */
   update(): void;
+  /** Called before a frame of a moving scene that is drawn coarsely: draw less where nobody sees it; null after it: all again. */
+  move?(picture: MovingPicture | null): void;
   /** New content; what was there before comes to a drawing made later, too. */
   dataChanged?(data: DisplayData): void;
   /** The content under a key, or all of it (null), is to be drawn no more. */

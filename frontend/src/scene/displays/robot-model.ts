@@ -1,6 +1,7 @@
 import { Box3, Group, Matrix4, Vector3, type Object3D, type Raycaster } from "three";
 import type { LinkScene, RobotScene } from "../../protocol";
 import { framePose } from "../pose";
+import type { MovingPicture } from "../robot/moving-meshes";
 import { RobotDrawing } from "../robot/robot-drawing";
 import { shade } from "../studio-light";
 import type { Described, Hit, SelectionBox } from "../picking";
@@ -84,6 +85,10 @@ export class RobotModelDrawing implements Drawing {
     const { frames } = this.context.session;
     this.shown?.place((link, matrix) => framePose(frames, frames.row(link.frame), matrix), this.covered());
     this.shown?.look(this.context.camera());
+  }
+
+  move(picture: MovingPicture | null): void {
+    this.shown?.move(picture);
   }
 
   settled(): boolean {

@@ -3,6 +3,7 @@ import type { DisplayData } from "../../connection/data";
 import type { WorldPoses, WorldScene } from "../../protocol";
 import type { Described, Hit, SelectionBox } from "../picking";
 import { dataPose, poseMatrix } from "../pose";
+import type { MovingPicture } from "../robot/moving-meshes";
 import { RobotDrawing } from "../robot/robot-drawing";
 import type { OwnLight } from "../surroundings";
 import { WorldLights } from "../world-lights";
@@ -84,6 +85,10 @@ export class WorldDrawing implements Drawing {
     }
     this.styleIsOld = this.poseIsOld = false;
     shown.look(context.camera());
+  }
+
+  move(picture: MovingPicture | null): void {
+    this.shown?.move(picture);
   }
 
   /** How it is lit; null while it is drawn in the light of the camera. */

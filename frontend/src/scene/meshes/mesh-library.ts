@@ -3,6 +3,7 @@ import { strings } from "../../strings";
 import { bytesText, MeshError } from "./mesh-error";
 import { SERVED, type MeshFiles } from "./mesh-files";
 import type { MeshTemplate } from "./mesh-template";
+import type { StandIns } from "./stand-ins";
 import { SharedTextures } from "./shared-textures";
 
 /** Browsers hold no longer text, and no graphics card takes so many triangles. */
@@ -24,6 +25,8 @@ export class MeshLibrary {
   constructor(
     private readonly progress: MeshProgress,
     readonly files: MeshFiles = SERVED,
+    /** What draws moving meshes with fewer triangles; null: nothing. */
+    readonly standIns: StandIns | null = null,
   ) {}
 
   /**

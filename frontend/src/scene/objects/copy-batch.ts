@@ -2,21 +2,19 @@ import {
   Box3,
   BufferAttribute,
   BufferGeometry,
-  DataTexture,
-  FloatType,
   Frustum,
   Matrix4,
   Mesh,
-  RGBAFormat,
   Sphere,
   Vector3,
   type Camera,
+  type DataTexture,
   type Object3D,
   type Raycaster,
   type ShaderMaterial,
 } from "three";
 import { behind } from "../materials";
-import { slotMaterial, SLOTS_PER_ROW, TEXELS_PER_SLOT } from "./slot-material";
+import { slotMaterial, slotTexture, TEXELS_PER_SLOT, writeSlot } from "./slot-material";
 
 const FLOATS_PER_SLOT = TEXELS_PER_SLOT * 4;
 const WHITE = 0xffffff;
@@ -100,21 +98,13 @@ export class CopyBatch {
     this.mesh.geometry.dispose();
     this.mesh.geometry = copies(this.shape, this.capacity);
     this.slots.value.dispose();
-    this.slots.value = slotTexture(Math.ceil(this.capacity / SLOTS_PER_ROW));
+    this.slots.value = slotTexture(this.capacity);
     this.all = new Float32Array(this.texels.length);
   }
 
   /** `matrix` in the parent's frame; `grey` 1 is all grey; `color` is 0xrrggbb. */
   add(matrix: Matrix4, grey = 0, alpha = 1, color = WHITE): void {
-    const { all: data } = this;
-    const at = this.count * FLOATS_PER_SLOT;
-    const m = matrix.elements;
-    for (let row = 0; row < 3; row++) {
-      for (let column = 0; column < 4; column++) data[at + row * 4 + column] = m[column * 4 + row] ?? 0;
-    }
-    data[at + 12] = grey;
-    data[at + 13] = alpha;
-    data[at + 14] = color;
+    writeSlot(this.all, this.count, matrix, color, grey, alpha);
     this.seeThrough ||= alpha < 1;
     this.count += 1;
   }
@@ -227,12 +217,6 @@ class CopyMesh extends Mesh<BufferGeometry, ShaderMaterial> {
     this.boundingBox = new Box3();
     this.expandBox(this.boundingBox);
   }
-}
-
-function slotTexture(rows: number): DataTexture {
-  const width = SLOTS_PER_ROW * TEXELS_PER_SLOT;
-  const height = Math.max(1, rows);
-  return new DataTexture(new Float32Array(width * height * 4), width, height, RGBAFormat, FloatType);
 }
 
 /** The shape `count` times over; each vertex knows the number of its copy. */

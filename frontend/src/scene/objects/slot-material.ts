@@ -1,15 +1,13 @@
-import { ShaderMaterial, type Texture } from "three";
+import { DataTexture, DoubleSide, FloatType, RGBAFormat, ShaderMaterial, type Matrix4, type Texture } from "three";
 import { AMBIENT } from "../light";
 
 /** Texels of a slot: three rows of the matrix, then grey, alpha and colour. */
 export const TEXELS_PER_SLOT = 4;
 export const SLOTS_PER_ROW = 64;
 
-const VERTEX = /* glsl */ `
+const READING = /* glsl */ `
   attribute float slot;
-  attribute vec3 color;
   uniform highp sampler2D slots;
-  varying vec4 vColor;
   vec4 texel(int part) {
     int index = int(slot + 0.5);
     return texelFetch(slots, ivec2((index % ${SLOTS_PER_ROW}) * ${TEXELS_PER_SLOT} + part, index / ${SLOTS_PER_ROW}), 0);
@@ -17,6 +15,11 @@ const VERTEX = /* glsl */ `
   vec3 unpacked(float rgb) {
     return vec3((uvec3(rgb) >> uvec3(16u, 8u, 0u)) & 255u) * (1.0 / 255.0);
   }
+`;
+const VERTEX = /* glsl */ `
+  ${READING}
+  attribute vec3 color;
+  varying vec4 vColor;
   void main() {
     vec4 row0 = texel(0), row1 = texel(1), row2 = texel(2), look = texel(3);
     mat3 turn = transpose(mat3(row0.xyz, row1.xyz, row2.xyz));
@@ -33,10 +36,59 @@ const FRAGMENT = /* glsl */ `
   void main() { gl_FragColor = vColor; }
 `;
 
+// Both sides are lit, as by three.js: a normal belongs to the side that its triangle shows when its corners turn left.
+const LIT_VERTEX = /* glsl */ `
+  ${READING}
+  flat varying vec3 vColor;
+  varying vec3 vNormal;
+  void main() {
+    vec4 row0 = texel(0), row1 = texel(1), row2 = texel(2);
+    mat3 turn = transpose(mat3(row0.xyz, row1.xyz, row2.xyz));
+    vec3 across = normal / vec3(dot(turn[0], turn[0]), dot(turn[1], turn[1]), dot(turn[2], turn[2]));
+    vNormal = normalize(mat3(modelViewMatrix) * turn * across) * sign(determinant(turn));
+    vColor = unpacked(texel(3).z);
+    vec3 at = turn * position + vec3(row0.w, row1.w, row2.w);
+    gl_Position = projectionMatrix * modelViewMatrix * vec4(at, 1.0);
+  }
+`;
+const LIT_FRAGMENT = /* glsl */ `
+  flat varying vec3 vColor;
+  varying vec3 vNormal;
+  void main() {
+    float facing = normalize(vNormal).z * (gl_FrontFacing ? 1.0 : -1.0);
+    float light = ${AMBIENT.toFixed(2)} + ${(1 - AMBIENT).toFixed(2)} * max(0.0, facing);
+    gl_FragColor = vec4(vColor * light, 1.0);
+  }
+`;
+
+/** For so many slots, 64 in a row. */
+export function slotTexture(slots: number): DataTexture {
+  const width = SLOTS_PER_ROW * TEXELS_PER_SLOT;
+  const height = Math.max(1, Math.ceil(slots / SLOTS_PER_ROW));
+  return new DataTexture(new Float32Array(width * height * 4), width, height, RGBAFormat, FloatType);
+}
+
+/** Writes into a slot a pose or other affine matrix and a colour 0xrrggbb; `data` is that of a texture, or alike. */
+export function writeSlot(data: Float32Array, slot: number, matrix: Matrix4, color: number, grey = 0, alpha = 1): void {
+  const at = slot * TEXELS_PER_SLOT * 4;
+  const m = matrix.elements;
+  for (let row = 0; row < 3; row++) {
+    for (let column = 0; column < 4; column++) data[at + row * 4 + column] = m[column * 4 + row] ?? 0;
+  }
+  data[at + 12] = grey;
+  data[at + 13] = alpha;
+  data[at + 14] = color;
+}
+
 /**
  * For copies that read their matrix, colour, grey and alpha from a texture. Lit as everything else by the light at the
  * camera, but at the vertices: small things do not show the difference, software renderers do.
  */
 export function slotMaterial(slots: { value: Texture }): ShaderMaterial {
   return new ShaderMaterial({ vertexShader: VERTEX, fragmentShader: FRAGMENT, uniforms: { slots } });
+}
+
+/** For opaque surfaces that are seen from both sides and lit at each pixel, exactly as three.js does by the light at the camera. */
+export function litSlotMaterial(slots: { value: Texture }): ShaderMaterial {
+  return new ShaderMaterial({ vertexShader: LIT_VERTEX, fragmentShader: LIT_FRAGMENT, uniforms: { slots }, side: DoubleSide });
 }

@@ -2,8 +2,10 @@ import { Group, Matrix4, type Mesh, type Object3D } from "three";
 import type { LinkScene } from "../../protocol";
 import type { Instead } from "../../state/comparison";
 import type { MaterialPool } from "../materials";
+import type { StandIns } from "../meshes/stand-ins";
 import { LinkTrail } from "./link-trail";
-import { ShapeDrawing, type ShapeTold } from "./shape-drawing";
+import type { MovingPiece } from "./moving-meshes";
+import { ShapeDrawing, type ShapePiece, type ShapeTold } from "./shape-drawing";
 import type { SolidKind, Solids } from "./solids";
 
 /** How a link is to be drawn: the display's properties and the link's own, together. */
@@ -91,6 +93,16 @@ export class LinkDrawing {
     for (const { solid } of this.shown) {
       if (solid) solids.add(solid.kind, scratch.multiplyMatrices(this.root.matrix, solid.matrix), solid.color);
     }
+  }
+
+  /** Adds what is drawn together with meshes of other links while the robot moves, see `ShapeDrawing.addPieces`. */
+  addPieces(standIns: StandIns, meshes: Mesh[], pieces: MovingPiece[]): boolean {
+    const own: ShapePiece[] = [];
+    const found = this.shown.map((shape) => shape.addPieces(standIns, meshes, own));
+    for (const { standIn, matrix, color } of own) {
+      pieces.push({ standIn, matrix: new Matrix4().multiplyMatrices(this.root.matrix, matrix), color });
+    }
+    return found.every((complete) => complete);
   }
 
   setStyle(style: LinkStyle): void {

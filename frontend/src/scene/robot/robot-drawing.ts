@@ -1,4 +1,4 @@
-import { Box3, Group, Vector3, type Camera, type Matrix4, type Object3D, type Raycaster } from "three";
+import { Box3, Group, Vector3, type Camera, type Matrix4, type Mesh, type Object3D, type Raycaster } from "three";
 import type { LinkScene, RobotScene } from "../../protocol";
 import type { Instead } from "../../state/comparison";
 import type { PropertyRows } from "../../state/properties";
@@ -6,6 +6,7 @@ import type { Described, Hit, SelectionBox } from "../picking";
 import { describedPose } from "../described-pose";
 import { MaterialPool } from "../materials";
 import type { MeshLibrary } from "../meshes/mesh-library";
+import { MovingMeshes, type MovingPicture, type MovingPiece } from "./moving-meshes";
 import { LinkDrawing, type FindLink } from "./link-drawing";
 import { RobotExtras } from "./robot-extras";
 import type { ShapeDrawing } from "./shape-drawing";
@@ -28,20 +29,22 @@ export class RobotDrawing {
   private readonly links: ReadonlyMap<string, LinkDrawing>;
   private readonly extras: RobotExtras;
   private readonly solids: Solids;
+  private readonly moving: MovingMeshes;
   private readonly linkOf = new Map<number, string>();
   private loading: number;
 
-  constructor(scene: DrawnLinks, meshes: MeshLibrary, report: MeshReport, changed: () => void) {
+  constructor(scene: DrawnLinks, private readonly meshes: MeshLibrary, report: MeshReport, changed: () => void) {
     this.links = new Map(scene.links.map((link) => [link.name, new LinkDrawing(link, this.pool, this.root)]));
     for (const link of this.links.values()) this.root.add(link.root);
     this.extras = new RobotExtras(scene, this.root);
     this.solids = new Solids(this.root);
+    this.moving = new MovingMeshes(this.root);
     const loads: Promise<void>[] = [];
     for (const link of this.links.values()) {
       for (const shape of [...link.visuals, ...link.collisions]) {
         const { url, texture, surface } = shape.shape;
         if (url === null && texture === null && surface === null) continue;
-        loads.push(this.load(link, shape, meshes, report, changed));
+        loads.push(this.load(link, shape, report, changed));
       }
     }
     this.loading = loads.length;
@@ -130,6 +133,16 @@ export class RobotDrawing {
     this.solids.look(camera);
   }
 
+  /** Draws meshes for a picture of a robot that moves by fewer triangles, as far as nobody sees it; null: as they are. */
+  move(picture: MovingPicture | null): void {
+    this.moving.end();
+    const { standIns } = this.meshes;
+    if (!picture || !standIns || this.pool.isLit) return;
+    const [pieces, meshes]: [MovingPiece[], Mesh[]] = [[], []];
+    const found = [...this.links.values()].map((link) => link.addPieces(standIns, meshes, pieces));
+    if (pieces.length > 0 && found.every((complete) => complete)) this.moving.begin(pieces, meshes, picture);
+  }
+
   pick(ray: Raycaster): Hit | null {
     this.linkOf.clear();
     const targets = [...this.links.values()].flatMap((link) => {
@@ -168,7 +181,7 @@ export class RobotDrawing {
   tell(): object {
     const links = [...this.links.values()].map((link) => [link.link.name, link.tell()] as const);
     const { size: drawnTogether, smallSpheres } = this.solids;
-    return { ...this.extras.counts, drawnTogether, smallSpheres, links: Object.fromEntries(links) };
+    return { ...this.extras.counts, drawnTogether, smallSpheres, moving: this.moving.drawn, links: Object.fromEntries(links) };
   }
 
   objectsOf(link: string): readonly Object3D[] {
@@ -179,6 +192,7 @@ export class RobotDrawing {
     for (const link of this.links.values()) link.dispose();
     this.extras.dispose();
     this.solids.dispose();
+    this.moving.dispose();
     this.root.removeFromParent();
     this.pool.dispose();
   }
@@ -207,14 +221,13 @@ export class RobotDrawing {
   private async load(
     link: LinkDrawing,
     shape: ShapeDrawing,
-    meshes: MeshLibrary,
     report: MeshReport,
     changed: () => void,
   ): Promise<void> {
     const { url } = shape.shape;
     let error: string | null = null;
     try {
-      error = await shape.load(meshes);
+      error = await shape.load(this.meshes);
       link.paint();
     } catch (reason) {
       error = reason instanceof Error ? reason.message : String(reason);

@@ -1,4 +1,4 @@
-import { Box3, Color, Group, Matrix4, Mesh, type BufferGeometry, type Material, type MeshLambertMaterial, type Texture } from "three";
+import { Box3, Color, DoubleSide, Group, Matrix4, Mesh, MeshLambertMaterial, type BufferGeometry, type Material, type Texture } from "three";
 import type { Shape } from "../../protocol";
 import type { Instead } from "../../state/comparison";
 import { strings } from "../../strings";
@@ -6,6 +6,8 @@ import { TOUCHED } from "../layers";
 import { errorMaterial, OPAQUE_FROM, RVIZ_RED, type Look, type MaterialPool, type Surface } from "../materials";
 import { quoted } from "../meshes/mesh-error";
 import type { MeshLibrary } from "../meshes/mesh-library";
+import type { StandIn } from "../meshes/stand-in";
+import type { StandIns } from "../meshes/stand-ins";
 import { UNCOLOURED_GREY, type MeshTemplate, type OwnMaterial } from "../meshes/mesh-template";
 import { extrusion, ground, submesh } from "../objects/world-geometries";
 import { capsule, unitBox, unitCone, unitCylinder, unitPlane, unitSphere } from "../objects/geometries";
@@ -21,6 +23,15 @@ interface Part {
 export interface Solid {
   readonly kind: SolidKind;
   /** From the shape of size one to the link. */
+  readonly matrix: Matrix4;
+  /** 0xrrggbb */
+  readonly color: number;
+}
+
+/** A piece of a shape that may be drawn together with others while the robot moves. */
+export interface ShapePiece {
+  readonly standIn: StandIn;
+  /** From the mesh to the link. */
   readonly matrix: Matrix4;
   /** 0xrrggbb */
   readonly color: number;
@@ -121,6 +132,31 @@ export class ShapeDrawing {
         mesh.layers.enable(TOUCHED);
       } else mesh.layers.enable(0);
     }
+  }
+
+  /**
+   * Adds the meshes that stand-ins look like, and the pieces of these.
+   *
+   * @returns whether all stand-ins that there will be are there.
+   */
+  addPieces(standIns: StandIns, meshes: Mesh[], pieces: ShapePiece[]): boolean {
+    let complete = true;
+    if (this.shape.kind !== "mesh") return complete;
+    for (const { mesh } of this.parts) {
+      const materials = [mesh.material].flat();
+      if (!materials.every(isPlain)) continue;
+      const found = standIns.of(mesh.geometry);
+      complete &&= found !== null;
+      if (!found || found.length === 0) continue;
+      const matrix = new Matrix4().multiplyMatrices(this.root.matrix, mesh.matrix);
+      const { groups } = mesh.geometry;
+      found.forEach((standIn, i) => {
+        const material = materials[groups[i]?.materialIndex ?? 0] ?? materials[0];
+        if (material) pieces.push({ standIn, matrix, color: material.color.getHex() });
+      });
+      meshes.push(mesh);
+    }
+    return complete;
   }
 
   /** What is drawn, for tests: bounds in the fixed frame, and colour, opacity and texture of each material. */
@@ -250,4 +286,10 @@ export class ShapeDrawing {
     const [r = 0, g = 0, b = 0, a = 1] = this.texture ? [1, 1, 1, 1] : (this.shape.color ?? bare);
     return { color: [r, g, b], map: this.texture, vertexColors: false, alpha: alpha * a, doubleSided, behind, surface: this.surface };
   }
+}
+
+/** Whether a surface shows its colour in the light of the camera, and nothing else. */
+function isPlain(material: Material): material is MeshLambertMaterial {
+  if (!(material instanceof MeshLambertMaterial) || material.side !== DoubleSide) return false;
+  return material.map === null && !material.vertexColors && !material.transparent;
 }

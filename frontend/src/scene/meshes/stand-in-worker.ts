@@ -1,0 +1,30 @@
+import { MeshoptSimplifier } from "meshoptimizer/simplifier";
+import { standIn, type StandIn, type Triangles } from "./stand-in";
+
+/** What the page asks for: a stand-in for each piece of a mesh. */
+export interface StandInRequest {
+  readonly id: number;
+  readonly pieces: readonly Triangles[];
+}
+
+/** Null where one could not be made. */
+export interface StandInAnswer {
+  readonly id: number;
+  readonly standIns: readonly StandIn[] | null;
+}
+
+/** Of the worker's own scope, which TypeScript's types of pages do not know. */
+const scope = globalThis as unknown as {
+  onmessage: ((event: MessageEvent<StandInRequest>) => void) | null;
+  postMessage: (answer: StandInAnswer, transfer: Transferable[]) => void;
+};
+
+scope.onmessage = ({ data: { id, pieces } }): void => {
+  void MeshoptSimplifier.ready.then(() => {
+    const standIns = pieces.map((piece) => standIn(piece, MeshoptSimplifier));
+    const buffers = standIns.flatMap(({ positions, normals, levels }) => {
+      return [positions.buffer, normals.buffer, ...levels.map(({ index }) => index.buffer)];
+    });
+    scope.postMessage({ id, standIns }, [...new Set(buffers)]);
+  }).catch(() => scope.postMessage({ id, standIns: null }, []));
+};

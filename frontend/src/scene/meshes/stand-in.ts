@@ -1,0 +1,126 @@
+import type { MeshoptSimplifier } from "meshoptimizer/simplifier";
+
+/** What of meshoptimizer is needed. */
+export type Simplifier = Pick<typeof MeshoptSimplifier, "generatePositionRemap" | "simplifyWithAttributes" | "compactMesh" | "getScale">;
+
+/** Triangles with a normal at each corner: three corners in a row for each, or as the index says. */
+export interface Triangles {
+  readonly positions: Float32Array;
+  readonly normals: Float32Array;
+  readonly index: Uint32Array | null;
+}
+
+/** Some of the triangles; they differ from the mesh by about this at most, m. */
+export interface StandInLevel {
+  readonly error: number;
+  readonly index: Uint32Array;
+}
+
+/** A mesh in fewer and fewer triangles, which share their vertices. */
+export interface StandIn {
+  readonly positions: Float32Array;
+  readonly normals: Float32Array;
+  /** From the finest, which has all triangles, to the coarsest. */
+  readonly levels: readonly StandInLevel[];
+  /** A ball around it: x y z of its middle, radius. */
+  readonly ball: readonly [number, number, number, number];
+}
+
+/** The most that a level may be off by, as shares of the mesh's size. */
+const STEPS = [0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1];
+/** A level must save this share of the triangles of the one before. */
+const WORTH = 0.2;
+/** How much a wrong normal counts, as a share of the mesh's size. */
+const NORMAL_WEIGHT = 0.2;
+/** Corners in one place whose normals are no further apart than this share one vertex: the cosine of 30 degrees. */
+const SMOOTH = 0.866;
+const COMPONENTS = 3;
+
+/** Simplifies a mesh again and again, each time as far as an error allows. */
+export function standIn(mesh: Triangles, simplifier: Simplifier): StandIn {
+  const { positions, normals, index } = weld(mesh, simplifier);
+  const scale = positions.length > 0 ? simplifier.getScale(positions, COMPONENTS) : 0;
+  const levels: StandInLevel[] = [{ error: 0, index }];
+  const weights = [NORMAL_WEIGHT, NORMAL_WEIGHT, NORMAL_WEIGHT];
+  let finest = index;
+  let error = 0;
+  for (const step of STEPS) {
+    if (finest.length === 0) break;
+    const [fewer, off] = simplifier.simplifyWithAttributes(
+      finest, positions, COMPONENTS, normals, COMPONENTS, weights, null, 0, step, ["Prune"],
+    );
+    if (fewer.length > (1 - WORTH) * finest.length) continue;
+    error += off * scale; // each starts where the one before ended
+    levels.push({ error, index: fewer });
+    finest = fewer;
+  }
+  return { positions, normals, levels, ball: ballAround(positions) };
+}
+
+/** Joins corners that are in one place and have like normals: exporters write each triangle by itself, and simplifying goes along what is joined. */
+function weld({ positions, normals, index }: Triangles, simplifier: Simplifier): { positions: Float32Array; normals: Float32Array; index: Uint32Array } {
+  const place = simplifier.generatePositionRemap(positions, COMPONENTS);
+  const corners = index?.length ?? positions.length / COMPONENTS;
+  const joined = new Uint32Array(corners);
+  /** Of each place its newest vertex, and of each vertex the one before it there; one more than its number, 0 for none. */
+  const [newest, before] = [new Uint32Array(place.length), new Uint32Array(corners)];
+  const [at, sum] = [new Float32Array(corners * COMPONENTS), new Float32Array(corners * COMPONENTS)];
+  const first = new Float32Array(corners * COMPONENTS);
+  let count = 0;
+  for (let corner = 0; corner < corners; corner++) {
+    const vertex = index?.[corner] ?? corner;
+    const [x, y, z] = [normals[3 * vertex] ?? 0, normals[3 * vertex + 1] ?? 0, normals[3 * vertex + 2] ?? 0];
+    const here = place[vertex] ?? vertex;
+    let found = newest[here] ?? 0;
+    const isUnlit = x === 0 && y === 0 && z === 0;
+    while (found > 0 && !isUnlit) {
+      const i = 3 * (found - 1);
+      if (x * (first[i] ?? 0) + y * (first[i + 1] ?? 0) + z * (first[i + 2] ?? 0) >= SMOOTH) break;
+      found = before[found - 1] ?? 0;
+    }
+    if (found === 0) {
+      before[count] = newest[here] ?? 0;
+      at.set(positions.subarray(3 * vertex, 3 * vertex + 3), 3 * count);
+      first.set([x, y, z], 3 * count);
+      count += 1;
+      found = newest[here] = count;
+    }
+    const i = 3 * (found - 1);
+    sum[i] = (sum[i] ?? 0) + x;
+    sum[i + 1] = (sum[i + 1] ?? 0) + y;
+    sum[i + 2] = (sum[i + 2] ?? 0) + z;
+    joined[corner] = found - 1;
+  }
+  for (let i = 0; i < 3 * count; i += 3) {
+    const length = Math.hypot(sum[i] ?? 0, sum[i + 1] ?? 0, sum[i + 2] ?? 0) || 1;
+    for (let j = i; j < i + 3; j++) sum[j] = (sum[j] ?? 0) / length;
+  }
+  return { positions: at.slice(0, 3 * count), normals: sum.slice(0, 3 * count), index: withArea(joined) };
+}
+
+/** Without the triangles of which two corners are one. */
+function withArea(index: Uint32Array): Uint32Array {
+  let kept = 0;
+  for (let i = 0; i + 2 < index.length; i += 3) {
+    const [a = 0, b = 0, c = 0] = index.subarray(i, i + 3);
+    if (a === b || b === c || c === a) continue;
+    index.set([a, b, c], kept);
+    kept += 3;
+  }
+  return index.slice(0, kept);
+}
+
+function ballAround(positions: Float32Array): [number, number, number, number] {
+  const [least, most] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
+  positions.forEach((each, i) => {
+    least[i % 3] = Math.min(least[i % 3] ?? each, each);
+    most[i % 3] = Math.max(most[i % 3] ?? each, each);
+  });
+  const middle = (axis: number): number => ((least[axis] ?? 0) + (most[axis] ?? 0)) / 2;
+  const [x, y, z] = [middle(0), middle(1), middle(2)];
+  let radius = 0;
+  for (let i = 0; i < positions.length; i += 3) {
+    radius = Math.max(radius, Math.hypot((positions[i] ?? 0) - x, (positions[i + 1] ?? 0) - y, (positions[i + 2] ?? 0) - z));
+  }
+  return positions.length > 0 ? [x, y, z, radius] : [0, 0, 0, 0];
+}

@@ -1,0 +1,135 @@
+import { BoxGeometry, BufferGeometry, Matrix4, Mesh, MeshLambertMaterial, Object3D, PerspectiveCamera, SphereGeometry } from "three";
+import { MeshoptSimplifier } from "meshoptimizer/simplifier";
+import { beforeAll, describe, expect, it } from "vitest";
+import { TOUCHED } from "../src/scene/layers";
+import { standIn, type StandIn, type Triangles } from "../src/scene/meshes/stand-in";
+import type { StandInAnswer, StandInRequest } from "../src/scene/meshes/stand-in-worker";
+import { StandIns, type StandInWorker } from "../src/scene/meshes/stand-ins";
+import { levelsFor, MovingMeshes, type MovingPiece } from "../src/scene/robot/moving-meshes";
+
+beforeAll(() => MeshoptSimplifier.ready);
+
+function triangles(geometry: BufferGeometry): Triangles {
+  const array = (name: string): Float32Array => geometry.getAttribute(name).array as Float32Array;
+  return { positions: array("position"), normals: array("normal"), index: geometry.index ? Uint32Array.from(geometry.index.array) : null };
+}
+
+/** As STL has it: each triangle by itself, and flat. */
+function soup(geometry: BufferGeometry): Triangles {
+  const apart = geometry.toNonIndexed();
+  apart.computeVertexNormals();
+  return triangles(apart);
+}
+
+function made(mesh: Triangles): StandIn {
+  return standIn(mesh, MeshoptSimplifier);
+}
+
+function looking(distance: number): { camera: PerspectiveCamera; height: number } {
+  const camera = new PerspectiveCamera(45, 1, 0.01, 1000);
+  camera.position.set(0, 0, distance);
+  camera.updateMatrixWorld();
+  return { camera, height: 600 };
+}
+
+/** A worker that answers when it is told to. */
+function worker(): { worker: StandInWorker; requests: StandInRequest[]; answer: (standIns: StandInAnswer["standIns"]) => void } {
+  const requests: StandInRequest[] = [];
+  const made: StandInWorker = { onmessage: null, onerror: null, postMessage: (request) => void requests.push(request) };
+  const answer = (standIns: StandInAnswer["standIns"]): void => {
+    made.onmessage?.({ data: { id: requests.at(-1)!.id, standIns } } as MessageEvent<StandInAnswer>);
+  };
+  return { worker: made, requests, answer };
+}
+
+describe("a stand-in", () => {
+  it("has fewer triangles at each level, and stays within the error", () => {
+    const { positions, levels } = made(soup(new SphereGeometry(1, 48, 32)));
+    expect(levels.length).toBeGreaterThan(3);
+    expect(levels[0]?.error).toBe(0);
+    for (let i = 1; i < levels.length; i++) {
+      expect(levels[i]!.error).toBeGreaterThan(levels[i - 1]!.error);
+      expect(levels[i]!.index.length).toBeLessThan(0.81 * levels[i - 1]!.index.length);
+    }
+    for (const { error, index } of levels) {
+      let off = 0;
+      for (let i = 0; i < index.length; i += 3) {
+        // The middle of a flat triangle is the farthest from the sphere.
+        const middle = [0, 1, 2].map((axis) => [0, 1, 2].reduce((sum, k) => sum + positions[3 * index[i + k]! + axis]! / 3, 0));
+        off = Math.max(off, 1 - Math.hypot(...middle));
+      }
+      expect(off).toBeLessThan(1.3 * error + 0.005);
+    }
+  });
+
+  it("joins the corners of triangles that are written by themselves, but not over edges", () => {
+    const box = made(soup(new BoxGeometry(1, 1, 1)));
+    expect(box.positions.length / 3).toBe(24);
+    expect(box.levels[0]?.index.length).toBe(36);
+    const round = made(soup(new SphereGeometry(1, 24, 16)));
+    expect(round.positions.length / 3).toBeLessThan(25 * 17);
+  });
+
+  it("is nothing for a mesh without an area", () => {
+    const { levels, ball } = made({ positions: new Float32Array(9), normals: new Float32Array(9), index: null });
+    expect(levels).toEqual([{ error: 0, index: new Uint32Array(0) }]);
+    expect(ball[3]).toBe(0);
+  });
+});
+
+describe("stand-ins of meshes", () => {
+  it("are asked for once, one for each group", () => {
+    const { worker: made, requests, answer } = worker();
+    const standIns = new StandIns(() => made);
+    const geometry = new BoxGeometry(1, 1, 1);
+    expect(standIns.of(geometry)).toBeNull();
+    expect(standIns.of(geometry)).toBeNull();
+    expect(requests).toHaveLength(1);
+    expect(requests[0]?.pieces).toHaveLength(6);
+    expect(requests[0]?.pieces[0]?.index).toHaveLength(6);
+    const found = requests[0]!.pieces.map((piece) => standIn(piece, MeshoptSimplifier));
+    answer(found);
+    expect(standIns.of(geometry)).toBe(found);
+  });
+
+  it("are none where the worker does not run", () => {
+    const { worker: made } = worker();
+    const standIns = new StandIns(() => made);
+    const geometry = new SphereGeometry();
+    standIns.of(geometry);
+    made.onerror?.({} as ErrorEvent);
+    expect(standIns.of(geometry)).toEqual([]);
+  });
+});
+
+describe("moving meshes", () => {
+  const ball = (): MovingPiece => ({ standIn: made(triangles(new SphereGeometry(1, 48, 32))), matrix: new Matrix4(), color: 0xff0000 });
+
+  it("are the coarser the farther away they are, and nothing where no one looks", () => {
+    const piece = ball();
+    const levels = [2, 5, 50, 500].map((distance) => levelsFor([piece], looking(distance))[0]);
+    expect(levels).toEqual([...levels].sort((a, b) => a! - b!));
+    expect(new Set(levels).size).toBeGreaterThan(2);
+    expect(levelsFor([{ ...piece, matrix: new Matrix4().makeTranslation(100, 0, 0) }], looking(5))).toEqual([null]);
+    // From within it nothing is left out.
+    expect(levelsFor([piece], looking(0.5))).toEqual([0]);
+    // As large as a hundred from a hundred times as far.
+    expect(levelsFor([{ ...piece, matrix: new Matrix4().makeScale(100, 100, 100) }], looking(500))).toEqual(levelsFor([piece], looking(5)));
+  });
+
+  it("stand in for the meshes until the frame is drawn", () => {
+    const parent = new Object3D();
+    const mesh = new Mesh(new SphereGeometry(), new MeshLambertMaterial());
+    const moving = new MovingMeshes(parent);
+    moving.begin([ball(), ball()], [mesh], looking(50));
+    expect(moving.drawn.pieces).toBe(2);
+    expect(moving.drawn.triangles).toBeLessThan(48 * 32);
+    expect(mesh.layers.isEnabled(0)).toBe(false);
+    expect(mesh.layers.isEnabled(TOUCHED)).toBe(true);
+    expect(parent.children).toHaveLength(1);
+    moving.end();
+    expect(mesh.layers.isEnabled(0)).toBe(true);
+    expect(parent.children).toHaveLength(0);
+    moving.dispose();
+  });
+});
