@@ -34,6 +34,11 @@ class LazySubscriptions:
         graph.watch(self._changed.trigger)
         self._look()
 
+    @property
+    def are_open(self) -> bool:
+        """Whether the subscriptions are there."""
+        return bool(self._open)
+
     def close(self) -> None:
         """Look no more; the subscriptions go with their node."""
         self._graph.unwatch(self._changed.trigger)

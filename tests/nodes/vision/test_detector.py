@@ -10,7 +10,7 @@ import pytest
 from PIL import Image
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
-from linkwright.graph import LogLevel, Parameter
+from linkwright.graph import LogLevel, Parameter, QoSProfile, ReliabilityPolicy
 from linkwright.messages import Time, get_message, get_service
 from linkwright.nodes import NodeOptions
 from linkwright.nodes.vision import detector
@@ -294,6 +294,79 @@ async def test_detectors_that_cannot_be_loaded_end_the_node_with_one_error_and_w
     said = [record.text for record in test.log if record.level is LogLevel.FATAL]
     assert len(said) == 2, "the error, and the hint"
     assert words in said[0]
+
+
+# --- where no pictures come -----------------------------------------------------------------------------------------
+
+
+IMAGE, COMPRESSED = "sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage"
+
+
+@pytest.fixture
+def warnings(test):
+    """What was warned of."""
+    return lambda: [record.text for record in test.log if record.level is LogLevel.WARN]
+
+
+async def test_a_topic_that_nobody_publishes_is_told_once_with_those_that_have_pictures(test, start, warnings):
+    await start(model="colours")
+    test.record("/yolo/detections")
+    test.record("/yolo/debug_image")
+    test.node.create_publisher(get_message(IMAGE), "/camera/image_raw", 1)
+    await test.advance(30.0)
+    assert warnings() == [
+        "no pictures come: nobody publishes '/yolo/image_raw'",
+        "there are pictures on '/camera/image_raw'; the parameter 'input_image_topic' names the topic",
+    ]
+
+
+async def test_a_topic_of_another_type_is_told(test, start, warnings):
+    await start(DarknetRosNode, namespace="/", network={"weights": "colours"}, remappings=[("~/images", "/camera")])
+    test.record("/detector_node/detections")
+    test.node.create_publisher(get_message(COMPRESSED), "/camera", 1)
+    test.node.create_publisher(get_message(IMAGE), "/kinect/image_raw", 1)
+    await test.advance(11.0)
+    assert warnings()[-2:] == [
+        f"no pictures come: '/camera' has '{COMPRESSED}', and not '{IMAGE}'",
+        "there are pictures on '/kinect/image_raw'; remap '/camera'",
+    ]
+
+
+async def test_qos_that_does_not_fit_is_told(test, start, warnings):
+    await start(model="colours", image_reliability=1)
+    test.record("/yolo/detections")
+    offered = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+    test.node.create_publisher(get_message(IMAGE), "/yolo/image_raw", offered)
+    await test.advance(11.0)
+    assert warnings()[-2:] == [
+        "no pictures come: '/yolo/image_raw' is published with best effort, and asked for reliably",
+        "set 'image_reliability' to 2",
+    ]
+
+
+async def test_a_camera_that_stops_and_goes_on_is_told_of_and_the_next_time_later(test, start, warnings):
+    await start(model="colours")
+    recording = test.record("/yolo/detections")
+    await test.settle()
+    stopped = "no picture has come on '/yolo/image_raw' for {} s".format
+    await seen(test, recording, "/yolo/image_raw", image())
+    await test.advance(9.0)
+    assert warnings() == []
+    await test.advance(3.0)
+    assert warnings() == [stopped(5)]
+    await seen(test, recording, "/yolo/image_raw", image())
+    await test.advance(5.0)
+    assert [record.text for record in test.log][-1] == "pictures come now"
+    await test.advance(7.0)
+    assert warnings() == [stopped(5)]
+    await test.advance(5.0)
+    assert warnings() == [stopped(5), stopped(10)]
+
+
+async def test_where_nobody_wants_detections_nothing_is_missed(test, start, warnings):
+    await start(model="colours")
+    await test.advance(30.0)
+    assert warnings() == []
 
 
 # --- while the detector is loaded -----------------------------------------------------------------------------------

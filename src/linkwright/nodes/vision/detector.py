@@ -57,6 +57,7 @@ from linkwright.nodes.settings import bad_value, tell_unknown
 from linkwright.nodes.vision.detection_messages import MESSAGES, picture_message
 from linkwright.nodes.vision.dialects import DARKNET_ROS, OURS, YOLO_ROS, YOLOV5_ROS, YOLOV5_ROS2, Dialect
 from linkwright.nodes.vision.latest import LatestWorker
+from linkwright.nodes.vision.picture_watch import PictureWatch
 from linkwright.vision.detections import Detections
 from linkwright.vision.detector import Detector, Limits
 from linkwright.vision.detectors.drawing import drawn
@@ -262,6 +263,7 @@ class DetectorNode(SingleNode):
         return [self._node.create_subscription(kind, self._source.topic, self._see, self._qos)]
 
     def _see(self, message: Any) -> None:
+        self._watch.came()
         if not self._value("enable") or self._is_too_early():
             return
         draws = any(publisher.get_subscription_count() for publisher in self._pictures)
@@ -323,7 +325,10 @@ class DetectorNode(SingleNode):
             self._fail(error)
             return
         self._names = detector.names
-        self._lazy = LazySubscriptions(self._graph, self._node, [self._detections, *self._pictures], self._subscribe)
+        lazy = self._lazy = LazySubscriptions(
+            self._graph, self._node, [self._detections, *self._pictures], self._subscribe
+        )
+        self._watch = PictureWatch(self._node, self._source, self._qos, lambda: lazy.are_open, self.DIALECT.image_topic)
         self.loaded.set_result(None)
 
     def _fail(self, error: LinkwrightError) -> None:

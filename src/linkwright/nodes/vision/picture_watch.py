@@ -1,0 +1,102 @@
+"""Says why no pictures come to a node that waits for them: a wrong topic, another type, QoS, a camera that stopped."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from linkwright.diagnostics import Phrase, phrase, quoted_names
+from linkwright.diagnostics.translation import localized
+from linkwright.graph import Clock, ClockType, Node, QoSProfile, ReliabilityPolicy
+from linkwright.images import ImageSource
+
+_SECONDS = 5.0
+_IMAGES = ("sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage")
+_MOST_TOPICS = 5
+
+
+class PictureWatch:
+    """Warns once when no picture has come for some seconds, and tells when they come again.
+
+    After each time that they came again it waits twice as long, so that a camera that is slow is told of a few times
+    only.
+
+    Args:
+        node: logs, and knows who publishes.
+        source: where pictures are to come from.
+        qos: what the node asks for.
+        is_waiting: whether it takes pictures now.
+        topic_parameter: the parameter that has the topic; empty where it is only remapped.
+    """
+
+    def __init__(
+        self, node: Node, source: ImageSource, qos: QoSProfile, is_waiting: Callable[[], bool], topic_parameter: str
+    ) -> None:
+        self._node, self._source, self._qos = node, source, qos
+        self._is_waiting, self._topic_parameter = is_waiting, topic_parameter
+        self._came = self._told = False
+        self._quiet, self._patience = 0, 1  # periods
+        # Silence may not wait for simulated time, which may stand still.
+        clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=node.get_clock().timebase)
+        node.create_timer(_SECONDS, self._look, clock=clock)
+
+    def came(self) -> None:
+        """A picture is there."""
+        self._came = True
+
+    def _look(self) -> None:
+        came, self._came = self._came, False
+        if came or not self._is_waiting():
+            self._quiet = 0
+            if came and self._told:
+                self._told = False
+                self._patience *= 2
+                self._node.get_logger().info(localized(phrase("pictures come now")))
+            return
+        self._quiet += 1
+        if self._told or self._quiet < self._patience:
+            return
+        self._told = True
+        reason, hint = self._reason()
+        logger = self._node.get_logger()
+        logger.warning(localized(reason))
+        if hint is not None:
+            logger.warning(localized(hint))
+
+    def _reason(self) -> tuple[Phrase, Phrase | None]:
+        """Why no pictures come, and what to do."""
+        topic, wanted = self._source.topic, self._source.message_type
+        publishers = self._node.get_publishers_info_by_topic(topic)
+        if not publishers:
+            return phrase("no pictures come: nobody publishes '{topic}'", topic=topic), self._others()
+        fitting = [each for each in publishers if each.topic_type == wanted]
+        if not fitting:
+            types = quoted_names(sorted({each.topic_type for each in publishers}))
+            return phrase(
+                "no pictures come: '{topic}' has {types}, and not '{wanted}'", topic=topic, types=types, wanted=wanted
+            ), self._others()
+        offered = {each.qos_profile.reliability for each in fitting}
+        if self._qos.reliability is ReliabilityPolicy.RELIABLE and offered == {ReliabilityPolicy.BEST_EFFORT}:
+            return phrase(
+                "no pictures come: '{topic}' is published with best effort, and asked for reliably", topic=topic
+            ), phrase("set '{parameter}' to {value}", parameter="image_reliability", value=2)
+        seconds = round(_SECONDS * self._quiet)
+        return phrase("no picture has come on '{topic}' for {seconds} s", topic=topic, seconds=seconds), None
+
+    def _others(self) -> Phrase | None:
+        """Where pictures can be had."""
+        passed = {self._source.topic, *(each.name for each in self._node.publishers)}
+        topics = [
+            name
+            for name, types in self._node.get_topic_names_and_types()
+            if name not in passed and set(types) & set(_IMAGES) and self._node.count_publishers(name)
+        ]
+        if not topics:
+            return None
+        names = quoted_names(topics[:_MOST_TOPICS])
+        if self._topic_parameter:
+            return phrase(
+                "there are pictures on {topics}; the parameter '{parameter}' names the topic",
+                topics=names,
+                parameter=self._topic_parameter,
+            )
+        return phrase("there are pictures on {topics}; remap '{topic}'", topics=names, topic=self._source.topic)
