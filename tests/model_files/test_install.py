@@ -109,6 +109,7 @@ def test_a_file_with_another_sum_does_not_count_and_leaves_nothing(shop, home):
     diagnostic = refused(entry)
     assert diagnostic.code == "MODEL104"
     assert PACKED.sha256 in str(diagnostic.notes[0].message)
+    assert str(diagnostic.message).startswith(f"'{entry.address}' is not"), "and not where it was kept meanwhile"
     assert below(home) == set()
 
 

@@ -19,27 +19,29 @@ _MOST_BYTES = 1 << 29
 _AT_ONCE = 1 << 20
 
 
-def unpack(entry: ModelEntry, archive: Path, target: Path) -> None:
+def unpack(entry: ModelEntry, archive: Path, target: Path, origin: str | None = None) -> None:
     """Write the files of a model that a ZIP archive has; no path of the archive is ever used for writing.
 
     Args:
         entry: the model.
         archive: the file.
         target: the folder to write them to; it is made.
+        origin: where the file was fetched from, for who never saw its path.
 
     Raises:
         LinkwrightError: MODEL105 it is no such archive, lacks a file or holds too much; MODEL106 it cannot be written.
     """
+    shown = origin or str(archive)
     try:
         with zipfile.ZipFile(archive) as opened:
             left = _MOST_BYTES
             for name in entry.files:
                 with closing(_blocks(opened, f"{entry.folder}/{name}")) as blocks:
-                    left -= _write(target / name, blocks, left, entry, archive)
+                    left -= _write(target / name, blocks, left, entry, shown)
     except KeyError as error:
-        raise _unusable(entry, archive, phrase("it lacks '{file}'", file=str(error.args[0]))) from None
+        raise _unusable(entry, shown, phrase("it lacks '{file}'", file=str(error.args[0]))) from None
     except (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, NotImplementedError, OSError) as error:
-        raise _unusable(entry, archive, foreign(error)) from None
+        raise _unusable(entry, shown, foreign(error)) from None
 
 
 def _blocks(opened: zipfile.ZipFile, name: str) -> Generator[bytes, None, None]:
@@ -52,14 +54,14 @@ def _blocks(opened: zipfile.ZipFile, name: str) -> Generator[bytes, None, None]:
             yield block
 
 
-def _write(path: Path, blocks: Iterator[bytes], most: int, entry: ModelEntry, archive: Path) -> int:
+def _write(path: Path, blocks: Iterator[bytes], most: int, entry: ModelEntry, shown: str) -> int:
     """Write a file; how long it is."""
     size = 0
     _append(path, b"")
     for block in blocks:
         size += len(block)
         if size > most:
-            raise _unusable(entry, archive, phrase("what is in it is too large"))
+            raise _unusable(entry, shown, phrase("what is in it is too large"))
         _append(path, block)
     return size
 
@@ -73,8 +75,8 @@ def _append(path: Path, block: bytes) -> None:
         raise cannot_write(path, error) from None
 
 
-def _unusable(entry: ModelEntry, archive: Path, problem: Phrase) -> LinkwrightError:
+def _unusable(entry: ModelEntry, shown: str, problem: Phrase) -> LinkwrightError:
     message = phrase(
-        "'{path}' is no archive of the model '{name}': {problem}", path=archive, name=entry.name, problem=problem
+        "'{path}' is no archive of the model '{name}': {problem}", path=shown, name=entry.name, problem=problem
     )
     return LinkwrightError(Diagnostic("MODEL105", message, hint=by_hand(entry)))

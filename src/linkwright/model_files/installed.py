@@ -91,8 +91,14 @@ def checked(entry: ModelEntry, place: Path) -> None:
         check_sum(entry, place / name, expected)
 
 
-def check_sum(entry: ModelEntry, path: Path, expected: str | None) -> None:
+def check_sum(entry: ModelEntry, path: Path, expected: str | None, origin: str | None = None) -> None:
     """See that a file of a model has the sum that it must have.
+
+    Args:
+        entry: the model.
+        path: the file.
+        expected: its SHA-256; None where it is not known.
+        origin: where the file was fetched from, for who never saw its path.
 
     Raises:
         LinkwrightError: MODEL104 it has not, MODEL105 it cannot be read.
@@ -113,6 +119,6 @@ def check_sum(entry: ModelEntry, path: Path, expected: str | None) -> None:
         )
         raise LinkwrightError(Diagnostic("MODEL105", message, hint=by_hand(entry))) from None
     if found.hexdigest() != expected:
-        message = phrase("'{path}' is not what belongs to the model '{name}'", path=path, name=entry.name)
+        message = phrase("'{path}' is not what belongs to the model '{name}'", path=origin or path, name=entry.name)
         sums = phrase("its SHA-256 is {found}, and {expected} is right", found=found.hexdigest(), expected=expected)
         raise LinkwrightError(Diagnostic("MODEL104", message, notes=(Note(sums),), hint=by_hand(entry)))

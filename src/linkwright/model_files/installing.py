@@ -45,7 +45,7 @@ def install(entry: ModelEntry, source: str | None, folder: Path | None, progress
     address = _file_of(entry, source or entry.address)
     fetch(entry, address, part, progress)
     try:
-        place = _install_file(entry, part, target)
+        place = _install_file(entry, part, target, address)
     except LinkwrightError as error:
         if error.diagnostics[0].code != "MODEL106":
             part.unlink(missing_ok=True)  # going on with it would not mend it
@@ -53,7 +53,7 @@ def install(entry: ModelEntry, source: str | None, folder: Path | None, progress
             raise
         fetch(entry, address, part, progress)  # the beginning may have been another file's
         try:
-            place = _install_file(entry, part, target)
+            place = _install_file(entry, part, target, address)
         except LinkwrightError:
             part.unlink(missing_ok=True)
             raise
@@ -89,12 +89,12 @@ def _install_local(entry: ModelEntry, source: Path, target: Path) -> Path:
     raise LinkwrightError(Diagnostic("MODEL107", message, hint=hint))
 
 
-def _install_file(entry: ModelEntry, file: Path, target: Path) -> Path:
+def _install_file(entry: ModelEntry, file: Path, target: Path, origin: str | None = None) -> Path:
     """Put a file as it is fetched in its place."""
-    check_sum(entry, file, entry.sha256)
+    check_sum(entry, file, entry.sha256, origin)
     with _draft(entry, target) as draft:
         if entry.folder:
-            unpack(entry, file, draft)
+            unpack(entry, file, draft, origin)
             checked(entry, draft)
         else:
             _copy(file, draft)
