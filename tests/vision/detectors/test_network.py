@@ -11,7 +11,9 @@ import onnxruntime
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
+from linkwright.model_files.onnx_sessions import load_session
 from linkwright.vision.detector import Limits
+from linkwright.vision.detectors import sessions
 from linkwright.vision.detectors.options import DetectorOptions
 from linkwright.vision.detectors.registry import detector_names, make_detector
 from tests.vision.detectors.networks import columns, constant
@@ -198,6 +200,16 @@ def test_a_device_that_is_not_there_is_told_of(tmp_path):
         pytest.skip("there is a GPU")
     assert [str(each) for each in opened(path, device="cuda:0").notes] == [
         "onnxruntime has no 'cuda:0' here; the network runs on the CPU"
+    ]
+
+
+def test_a_gpu_whose_libraries_are_missing_leaves_the_processor_and_a_note(tmp_path, monkeypatch):
+    """As onnxruntime-gpu does without CUDA: it knows the provider, and makes a session without it."""
+    path = columns(tmp_path / "v8.onnx", metadata=NAMES)
+    monkeypatch.setattr(sessions, "has_cuda", lambda: True)
+    monkeypatch.setattr(sessions, "load_session", lambda file, gpu: load_session(file))
+    assert [str(each) for each in opened(path, device="cuda:0").notes] == [
+        "CUDA does not work here with 'cuda:0'; the network runs on the CPU"
     ]
 
 
