@@ -1,10 +1,12 @@
 from __future__ import annotations
 
 import json
+import socket
 
 import pytest
 
-from linkwright.wire.zenoh.session import configuration
+from linkwright.diagnostics import LinkwrightError, render
+from linkwright.wire.zenoh.session import configuration, open_session
 from linkwright.wire.zenoh.settings import OVERRIDES, read_router_settings, read_settings
 
 DROPPING = "transport/link/tx/queue/congestion_control/drop"
@@ -23,3 +25,24 @@ def test_sessions_wait_for_a_busy_machine_before_they_drop_and_routers_do_not():
 def test_how_long_they_wait_can_be_said(wait):
     settings = read_settings({OVERRIDES: f"{DROPPING}/wait_before_drop={wait}"})
     assert dropping(settings)["wait_before_drop"] == wait
+
+
+@pytest.mark.parametrize(
+    ("override", "said", "advice"),
+    [
+        ('listen/endpoints=["tcp/127.0.0.1:{port}"]', "already in use", "port 0"),
+        ('mode="client";connect/endpoints=["tcp/127.0.0.1:{free}"]', "Unable to connect", "start a router there first"),
+    ],
+)
+def test_why_a_session_cannot_be_opened_is_told_with_what_helps(router_port, override, said, advice):
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        text = override.format(port=taken.getsockname()[1], free=router_port)
+        with pytest.raises(LinkwrightError) as refused:
+            open_session(read_settings({OVERRIDES: text}))
+    (finding,) = refused.value.diagnostics
+    assert finding.code == "DDS112"
+    assert said in render(finding)
+    assert advice in render(finding)
+    assert "/src/" not in render(finding)

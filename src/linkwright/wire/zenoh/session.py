@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import json
+import re
 
 import zenoh
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, foreign, phrase
 from linkwright.wire.zenoh.settings import OVERRIDES, Settings
+
+_PLACE = re.compile(r"\s+at /\S+?:\d+\.?")
+_NOT_CONNECTED = "Unable to connect"
+_TAKEN = "already in use"
 
 
 def open_session(settings: Settings) -> zenoh.Session:
@@ -32,7 +37,7 @@ def open_with(config: zenoh.Config) -> zenoh.Session:
             Diagnostic(
                 "DDS112",
                 phrase("a session of Zenoh cannot be opened: {reason}", reason=foreign(_reason(error))),
-                hint=phrase("an address to listen at may be in use by another program, or not be one of this machine"),
+                hint=_advice(str(error)),
             )
         ) from error
 
@@ -84,4 +89,18 @@ def _override(config: zenoh.Config, key: str, value: str) -> None:
 
 def _reason(error: Exception) -> str:
     """What went wrong, without the places in Zenoh's source."""
-    return str(error).split(" at ", 1)[0].strip().rstrip(".")
+    return _PLACE.sub("", str(error)).strip().rstrip(".")
+
+
+def _advice(reason: str) -> Phrase:
+    if _NOT_CONNECTED in reason:
+        return phrase(
+            "nobody answers at the address of 'connect/endpoints': start a router there first; with TLS, see that the"
+            " certificates are of one authority"
+        )
+    if _TAKEN in reason:
+        return phrase(
+            "only one process can listen at an address of 'listen/endpoints': give the others port 0, which is any free"
+            " one, or leave it out"
+        )
+    return phrase("an address to listen at may be in use by another program, or not be one of this machine")
