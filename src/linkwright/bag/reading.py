@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from linkwright.bag.moments import Moments, Recorded
 from linkwright.bag.qos import from_bag
-from linkwright.bag.scratch import scratch_folder
-from linkwright.bag.unfinished import finished_copy, is_unfinished
+from linkwright.bag.unfinished import FinishedFile, has_index, is_unfinished
 from linkwright.diagnostics import (
     Diagnostic,
     LinkwrightError,
@@ -99,14 +98,13 @@ class BagReader:
             for name, info in self._reader.topics.items()
         ]
 
-    def _finished(self, target: Path) -> Path:
-        """What is to be opened: the target, or a copy of it with an end where that is missing."""
+    def _finished(self, target: Path) -> Any:
+        """What is to be opened: the target, or its file with the end and the index that it lacks."""
         files = sorted(target.glob("*.mcap")) if target.is_dir() else [target]
-        if len(files) != 1 or files[0].suffix != ".mcap" or not is_unfinished(files[0]):
+        if len(files) != 1 or files[0].suffix != ".mcap":
             return target
-        self._is_cut_off = True
-        scratch = self._open.enter_context(scratch_folder())
-        return finished_copy(files[0], Path(scratch))
+        self._is_cut_off = is_unfinished(files[0])
+        return FinishedFile(files[0]) if self._is_cut_off or not has_index(files[0]) else target
 
     def _make_types_known(self) -> None:
         from rosbags.interfaces import MessageDefinitionFormat

@@ -1,21 +1,38 @@
-"""MCAP files without an end: those of a recording that was killed, or that were cut off in a copy.
+"""MCAP files without an end, or without an index: those of a recording that was killed, cut off in a copy, or streamed.
 
-A file is a row of records, each with its kind and length (the MCAP specification). All that are whole are good; what
-is missing is the end, without which readers refuse the file.
+A file is a row of records, each with its kind and length (the MCAP specification). All that are whole are good. What is
+missing, the summary that lists the chunks, is made in memory; readers see it after the file's own bytes. So nothing is
+copied, and such a file is as fast to seek in as others.
 """
 
 from __future__ import annotations
 
-import shutil
+import io
 import struct
+from collections import defaultdict
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from itertools import chain
 from pathlib import Path
+from typing import TYPE_CHECKING, BinaryIO, cast
+
+if TYPE_CHECKING:
+    from typing_extensions import Buffer
 
 _MAGIC = b"\x89MCAP0\r\n"
 _HEAD = struct.Struct("<BQ")
-_DATA_END = _HEAD.pack(0x0F, 4) + bytes(4)
-_FOOTER = _HEAD.pack(0x02, 20) + bytes(20)
-_SUMMARY_KINDS = frozenset({0x02, 0x08, 0x0B, 0x0D, 0x0E, 0x0F})
-"""Records that only the end of a file has; a damaged end is left out and made anew, without an index."""
+_HEADER, _FOOTER, _SCHEMA, _CHANNEL, _MESSAGE, _CHUNK, _MESSAGE_INDEX, _CHUNK_INDEX = range(0x01, 0x09)
+_STATISTICS, _DATA_END = 0x0B, 0x0F
+_SUMMARY_KINDS = frozenset({_FOOTER, _CHUNK_INDEX, _STATISTICS, 0x0D, 0x0E, _DATA_END})
+"""Records that only the end of a file has; a damaged end is left out and made anew."""
+
+_CHUNK_HEAD = struct.Struct("<QQQII")
+"""Of a chunk: times of first and last message, unpacked size, checksum, length of the compression's name."""
+_FOOTER_BODY = struct.Struct("<QQI")
+_NUMBER, _PAIR, _ENTRY, _WORD = struct.Struct("<H"), struct.Struct("<HQ"), struct.Struct("<QQ"), struct.Struct("<I")
+_LONG = struct.Struct("<Q")
+_MESSAGE_HEAD = struct.Struct("<HIQ")
+_COUNTS = struct.Struct("<QHIIIIQQ")
 
 
 def is_unfinished(path: Path) -> bool:
@@ -30,36 +47,244 @@ def is_unfinished(path: Path) -> bool:
         return file.read() != _MAGIC
 
 
-def finished_copy(path: Path, folder: Path) -> Path:
-    """A copy of the whole records of an unfinished file, with an end.
+def has_index(path: Path) -> bool:
+    """Whether the end of a finished MCAP file says where its summary is."""
+    length = _HEAD.size + _FOOTER_BODY.size
+    with path.open("rb") as file:
+        if path.stat().st_size < length + 2 * len(_MAGIC):
+            return False
+        file.seek(-length - len(_MAGIC), 2)
+        footer = file.read(length)
+    return bool(_FOOTER_BODY.unpack_from(footer, _HEAD.size)[0])
+
+
+class FinishedFile:
+    """The whole records of an MCAP file, with a summary; for the library, in place of a path.
 
     Args:
-        path: the file.
-        folder: where to put the copy.
+        path: the file, which is only read.
+
+    Attributes:
+        name: of the file.
+        suffix: ``.mcap``.
     """
-    copy = folder / path.name
-    with path.open("rb") as source, copy.open("wb") as target:
-        remaining = _whole_records(path)
-        while remaining:
-            block = source.read(min(remaining, 1 << 20))
-            target.write(block)
-            remaining -= len(block)
-        target.write(_DATA_END + _FOOTER + _MAGIC)
-    shutil.copystat(path, copy)
-    return copy
+
+    def __init__(self, path: Path) -> None:
+        self.name = path.name
+        self.suffix = path.suffix
+        self._path = path
+        self._size, self._tail = _summarized(path)
+
+    def __str__(self) -> str:
+        return str(self._path)
+
+    def exists(self) -> bool:
+        """Whether it is there."""
+        return self._path.exists()
+
+    def is_dir(self) -> bool:
+        """It is a file."""
+        return False
+
+    def open(self, mode: str = "rb") -> BinaryIO:
+        """The bytes of the file and of the summary."""
+        assert mode == "rb"
+        return cast("BinaryIO", io.BufferedReader(_WithTail(self._path, self._size, self._tail), 1 << 16))
 
 
-def _whole_records(path: Path) -> int:
-    """How many bytes at the beginning of the file are whole records with data."""
-    size = path.stat().st_size
-    end = len(_MAGIC)
+class _WithTail(io.RawIOBase):
+    """The beginning of a file, and bytes that follow it."""
+
+    def __init__(self, path: Path, size: int, tail: bytes) -> None:
+        self._file = path.open("rb", buffering=0)
+        self._size = size
+        self._tail = tail
+        self._at = 0
+
+    def readable(self) -> bool:
+        return True
+
+    def seekable(self) -> bool:
+        return True
+
+    def seek(self, offset: int, whence: int = 0) -> int:
+        begin = (0, self._at, self._size + len(self._tail))[whence]
+        self._at = max(0, begin + offset)
+        return self._at
+
+    def readinto(self, buffer: Buffer) -> int:
+        into = memoryview(buffer)
+        if self._at < self._size:
+            self._file.seek(self._at)
+            count = self._file.readinto(into[: self._size - self._at]) or 0
+        else:
+            part = self._tail[self._at - self._size :][: len(into)]
+            into[: len(part)] = part
+            count = len(part)
+        self._at += count
+        return count
+
+    def close(self) -> None:
+        self._file.close()
+        super().close()
+
+
+@dataclass(slots=True)
+class _Chunk:
+    """A chunk: its place in the file, what its record says, and where the index of each channel is."""
+
+    offset: int
+    length: int
+    start_ns: int
+    end_ns: int
+    compression: bytes
+    compressed_size: int
+    size: int
+    indexes: dict[int, int] = field(default_factory=dict)
+    counts: dict[int, int] = field(default_factory=dict)
+    indexes_end: int = 0
+
+
+@dataclass(slots=True)
+class _Scan:
+    """What a file has in it."""
+
+    end: int = len(_MAGIC)
+    chunks: list[_Chunk] = field(default_factory=list)
+    schemas: dict[int, bytes] = field(default_factory=dict)
+    channels: dict[int, bytes] = field(default_factory=dict)
+    has_loose_messages: bool = False
+
+    def declare(self, kind: int, body: bytes) -> None:
+        """Take note of a schema or channel."""
+        into = self.schemas if kind == _SCHEMA else self.channels
+        into.setdefault(_NUMBER.unpack_from(body)[0], _record(kind, body))
+
+
+def _summarized(path: Path) -> tuple[int, bytes]:
+    """How many bytes of the file are whole records with data, and what has to follow them."""
     with path.open("rb") as file:
-        while True:
-            file.seek(end)
-            head = file.read(_HEAD.size)
-            if len(head) < _HEAD.size:
-                return end
-            kind, length = _HEAD.unpack(head)
-            if kind == 0 or kind in _SUMMARY_KINDS or end + _HEAD.size + length > size:
-                return end
-            end += _HEAD.size + length
+        scan = _scan(file, path.stat().st_size)
+        if scan.has_loose_messages or not scan.chunks:
+            # The library reads such a file from one end to the other, whatever a summary says.
+            return scan.end, _record(_DATA_END, bytes(4)) + _record(_FOOTER, bytes(_FOOTER_BODY.size)) + _MAGIC
+        made = bytearray()
+        for chunk in scan.chunks:
+            if not chunk.indexes or not scan.channels.keys() >= chunk.indexes.keys():
+                _look_into(file, chunk, scan, made)
+    return scan.end, _tail(scan, bytes(made))
+
+
+def _scan(file: BinaryIO, size: int) -> _Scan:
+    """Go from record to record; what is in chunks is passed over."""
+    scan = _Scan()
+    while True:
+        file.seek(scan.end)
+        head = file.read(_HEAD.size)
+        if len(head) < _HEAD.size:
+            return scan
+        kind, length = _HEAD.unpack(head)
+        if kind == 0 or kind in _SUMMARY_KINDS or scan.end + _HEAD.size + length > size:
+            return scan
+        if kind == _CHUNK and length >= _CHUNK_HEAD.size:
+            scan.chunks.append(_chunk(file, scan.end, _HEAD.size + length))
+        elif kind == _MESSAGE_INDEX and scan.chunks:
+            channel, entries = _NUMBER.unpack(file.read(2))[0], _WORD.unpack(file.read(4))[0]
+            chunk = scan.chunks[-1]
+            if entries:
+                chunk.indexes[channel], chunk.counts[channel] = scan.end, entries // _ENTRY.size
+            chunk.indexes_end = scan.end + _HEAD.size + length
+        elif kind in (_SCHEMA, _CHANNEL):
+            scan.declare(kind, file.read(length))
+        elif kind == _MESSAGE:
+            scan.has_loose_messages = True
+        scan.end += _HEAD.size + length
+
+
+def _chunk(file: BinaryIO, offset: int, length: int) -> _Chunk:
+    start_ns, end_ns, size, _, named = _CHUNK_HEAD.unpack(file.read(_CHUNK_HEAD.size))
+    compression = file.read(named)
+    (compressed,) = _LONG.unpack(file.read(8))
+    return _Chunk(offset, length, start_ns, end_ns, compression, compressed, size, indexes_end=offset + length)
+
+
+def _look_into(file: BinaryIO, chunk: _Chunk, scan: _Scan, made: bytearray) -> None:
+    """Read schemas and channels in a chunk, and make the indexes of its messages, where it has none."""
+    from rosbags.rosbag2.storage_mcap import decompress
+
+    file.seek(chunk.offset + chunk.length - chunk.compressed_size)
+    data = decompress(file.read(chunk.compressed_size), chunk.compression.decode(), chunk.size, 0)
+    entries: dict[int, list[bytes]] = defaultdict(list)
+    for kind, place, length in _records(data):
+        body = data[place + _HEAD.size : place + _HEAD.size + length]
+        if kind in (_SCHEMA, _CHANNEL):
+            scan.declare(kind, body)
+        elif kind == _MESSAGE:
+            channel, _, stamp_ns = _MESSAGE_HEAD.unpack_from(body)
+            entries[channel].append(_ENTRY.pack(stamp_ns, place))
+    if chunk.indexes:
+        return
+    for channel, packed in entries.items():
+        chunk.indexes[channel], chunk.counts[channel] = scan.end + len(made), len(packed)
+        joined = b"".join(packed)
+        made += _record(_MESSAGE_INDEX, _NUMBER.pack(channel) + _WORD.pack(len(joined)) + joined)
+    chunk.indexes_end = scan.end + len(made)
+
+
+def _records(data: bytes) -> Iterator[tuple[int, int, int]]:
+    """The records of an unpacked chunk: kind, place, length of what follows the head."""
+    place = 0
+    while place + _HEAD.size <= len(data):
+        kind, length = _HEAD.unpack_from(data, place)
+        yield kind, place, length
+        place += _HEAD.size + length
+
+
+def _tail(scan: _Scan, made: bytes) -> bytes:
+    """Indexes that were made, the end of the data, and the summary."""
+    before = made + _record(_DATA_END, bytes(4))
+    chunks = [each for each in scan.chunks if each.indexes]
+    totals: dict[int, int] = defaultdict(int)
+    for channel, count in chain.from_iterable(each.counts.items() for each in chunks):
+        totals[channel] += count
+    counts = b"".join(_PAIR.pack(*each) for each in totals.items())
+    statistics = _COUNTS.pack(
+        sum(totals.values()),
+        len(scan.schemas),
+        len(scan.channels),
+        0,
+        0,
+        len(chunks),
+        min((each.start_ns for each in chunks), default=0),
+        max((each.end_ns for each in chunks), default=0),
+    )
+    summary = b"".join(
+        (
+            *scan.schemas.values(),
+            *scan.channels.values(),
+            *(_record(_CHUNK_INDEX, _chunk_index(each)) for each in chunks),
+            _record(_STATISTICS, statistics + _WORD.pack(len(counts)) + counts),
+        )
+    )
+    footer = _record(_FOOTER, _FOOTER_BODY.pack(scan.end + len(before), 0, 0))
+    return before + summary + footer + _MAGIC
+
+
+def _chunk_index(chunk: _Chunk) -> bytes:
+    offsets = b"".join(_PAIR.pack(*each) for each in chunk.indexes.items())
+    return b"".join(
+        (
+            struct.pack("<QQQQ", chunk.start_ns, chunk.end_ns, chunk.offset, chunk.length),
+            _WORD.pack(len(offsets)),
+            offsets,
+            _LONG.pack(chunk.indexes_end - chunk.offset - chunk.length),
+            _WORD.pack(len(chunk.compression)),
+            chunk.compression,
+            _LONG.pack(chunk.compressed_size),
+            _LONG.pack(chunk.size),
+        )
+    )
+
+
+def _record(kind: int, body: bytes) -> bytes:
+    return _HEAD.pack(kind, len(body)) + body
