@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import socket
 import struct
@@ -90,6 +91,17 @@ async def world(**parameters):
         made.bridge.close()
         await made.bridge._goodbye
         await made.graph.close()
+
+
+@pytest.mark.parametrize("steps", range(8))
+async def test_wherever_its_start_is_broken_off_it_listens_no_longer(steps):
+    made = World()
+    for _ in range(steps):
+        await asyncio.sleep(0)
+    made.bridge.close()
+    assert made.bridge._listener.fileno() == -1  # before the loop runs on, which may be ended here
+    await asyncio.wait([made.bridge._serving])
+    await made.graph.close()
 
 
 def test_launch_files_that_start_it_find_it():

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import gzip
 import math
+from functools import partial
 from urllib.parse import urlsplit
 
 import aiohttp
@@ -19,6 +20,7 @@ from linkwright.nodes.joint_state_publisher_gui import JointStatePublisherGui
 from linkwright.nodes.robot_state_publisher import RobotStatePublisher
 from linkwright.packages import PackageFinder
 from linkwright.viewer import RvizConfig, Viewer
+from linkwright.viewer.features.joints import JointsFeature
 from linkwright.viewer.protocol.session import PROTOCOL_VERSION
 from linkwright.viewer.web import server
 from linkwright.viewer.web.server import listen
@@ -38,7 +40,14 @@ async def test_a_page_that_opens_gets_everything_in_order():
             transforms = await client.transforms()
             kinds = [message["type"] for message in client.messages[:-1]]
             first, table = client.messages[0], client.messages[-2]
-    whatever_is_shown = ["diagnostics", "joints", "modelling_state", "simulation_status", "view_classes"]
+    whatever_is_shown = [
+        "diagnostics",
+        "joints",
+        "modelling_state",
+        "recording_state",
+        "simulation_status",
+        "view_classes",
+    ]
     of_the_configuration = ["configuration", "description_changed", "panels", "time_state", "tools", "view_state"]
     assert kinds == [
         *("hello", "tree", "robot_scene"),
@@ -279,8 +288,9 @@ async def test_a_taken_port_leaves_no_node_behind():
         assert "/second" not in made.graph.node_names()
 
 
+@pytest.mark.parametrize("times", [1, 2])
 @pytest.mark.parametrize("steps", range(1, 6))
-async def test_a_start_that_is_broken_off_leaves_no_node_and_no_socket_behind(steps, monkeypatch):
+async def test_a_start_that_is_broken_off_leaves_no_node_and_no_socket_behind(steps, times, monkeypatch):
     listening = []
     monkeypatch.setattr(server, "listen", lambda host, port: listening.append(listen(host, port)) or listening[0])
     made = World()
@@ -288,6 +298,9 @@ async def test_a_start_that_is_broken_off_leaves_no_node_and_no_socket_behind(st
     for _ in range(steps):
         await asyncio.sleep(0)
     broken_off = start.cancel()
+    if times == 2:  # while it cleans up
+        await asyncio.sleep(0)
+        start.cancel()
     await asyncio.wait([start])
     if not broken_off:  # it had started: ended as ever
         await made.viewer.close()
@@ -296,8 +309,39 @@ async def test_a_start_that_is_broken_off_leaves_no_node_and_no_socket_behind(st
     await made.graph.close()
 
 
+async def test_it_listens_no_longer_where_a_part_of_it_cannot_be_started(monkeypatch):
+    def fail(feature):
+        raise OSError("the disk is full")
+
+    listening = []
+    monkeypatch.setattr(server, "listen", lambda host, port: listening.append(listen(host, port)) or listening[0])
+    monkeypatch.setattr(JointsFeature, "start", fail)
+    made = World()
+    with pytest.raises(OSError, match="the disk is full"):
+        await made.viewer.start()
+    assert listening[0].fileno() == -1
+    assert made.graph.node_names() == ["/publishers"]
+    await made.graph.close()
+
+
+async def test_it_listens_no_longer_where_a_part_of_it_cannot_be_closed(monkeypatch):
+    def fail(feature):
+        raise OSError("the disk is full")
+
+    monkeypatch.setattr(JointsFeature, "close", fail)
+    made = World()
+    await made.viewer.start()
+    address = urlsplit(made.viewer.url)
+    with pytest.raises(OSError, match="the disk is full"):
+        await made.viewer.close()
+    with pytest.raises(ConnectionRefusedError):
+        await asyncio.open_connection(address.hostname, address.port)
+    assert made.graph.node_names() == ["/publishers"]
+    await made.graph.close()
+
+
 async def test_without_a_built_page_the_answer_says_how_to_build_it(tmp_path, monkeypatch):
-    monkeypatch.setattr(server.WebServer.__init__, "__defaults__", (tmp_path,))
+    monkeypatch.setattr(server, "WebServer", partial(server.WebServer, page_folder=tmp_path))
     async with world() as made, aiohttp.ClientSession() as session, session.get(made.viewer.url) as answer:
         assert answer.status == 503
         assert "make page" in await answer.text()
@@ -307,7 +351,7 @@ async def test_the_page_and_its_hashed_files_are_served(tmp_path, monkeypatch):
     (tmp_path / "assets").mkdir()
     (tmp_path / "index.html").write_text("<!doctype html><title>x</title>", encoding="utf-8")
     (tmp_path / "assets" / "index-abc.js").write_text("export {}", encoding="utf-8")
-    monkeypatch.setattr(server.WebServer.__init__, "__defaults__", (tmp_path,))
+    monkeypatch.setattr(server, "WebServer", partial(server.WebServer, page_folder=tmp_path))
     async with world() as made, aiohttp.ClientSession() as session:
         base = made.viewer.url.partition("?")[0]
         async with session.get(made.viewer.url) as answer:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import AsyncExitStack
 from typing import TYPE_CHECKING, Any
 
 from linkwright._version import __version__
@@ -122,26 +123,28 @@ class Viewer:
         Raises:
             LinkwrightError: VIEW101 to VIEW103, it cannot listen where it should.
         """
-        if self._beside is None:
-            await self._serve()
-        if self._history:
-            self._recording.use(self._timeline.keep(self._history))
-        self.managers.shared.start()
-        for feature in self._features:
-            feature.start()
+        try:
+            if self._beside is None:
+                await self._serve()
+            if self._history:
+                self._recording.use(self._timeline.keep(self._history))
+            self.managers.shared.start()
+            for feature in self._features:
+                feature.start()
+        except BaseException:  # cancelled, too: whoever ends the program does not know this viewer yet
+            self._node.destroy_node()
+            if self._server is not None:
+                await self._server.close()
+            raise
 
     async def _serve(self) -> None:
         from linkwright.viewer.web.server import WebServer, is_open_to_others, listen
 
-        try:
-            listener = listen(self._host, self._port)
-            self._server = WebServer(
-                Gate(self._host), self._audience, self.context.meshes, self.context.downloads, guests=self.guests
-            )
-            self._url = await self._server.start(listener)
-        except BaseException:  # cancelled, too: whoever ends the program does not know this viewer yet
-            self._node.destroy_node()
-            raise
+        listener = listen(self._host, self._port)
+        self._server = WebServer(
+            Gate(self._host), self._audience, self.context.meshes, self.context.downloads, guests=self.guests
+        )
+        self._url = await self._server.start(listener)
         if is_open_to_others(listener):
             self._node.get_logger().warning(
                 f"Listening on '{self._host}': whoever reaches it and knows the token can see and move the robot"
@@ -149,17 +152,18 @@ class Viewer:
 
     async def close(self) -> None:
         """Close the connections to pages, leave the graph and stop listening."""
-        if self.guests is not None:
-            await self.guests.close()
-        for feature in self._features:
-            feature.close()
-        self.managers.close()
-        if self._server is not None:
-            await self._server.close()
-            self._server = None
-        if self._beside is not None:
-            await self._audience.close()
-        self._node.destroy_node()
+        async with AsyncExitStack() as stack:  # each of these is done, also where one before it fails
+            stack.callback(self._node.destroy_node)
+            if self._beside is not None:
+                stack.push_async_callback(self._audience.close)
+            if self._server is not None:
+                stack.push_async_callback(self._server.close)
+                self._server = None
+            stack.callback(self.managers.close)
+            for feature in reversed(self._features):
+                stack.callback(feature.close)
+            if self.guests is not None:
+                stack.push_async_callback(self.guests.close)
 
     def keep_unsaved(self) -> list[Diagnostic]:
         """Keep what pages edited and did not save, before the program ends; returns the notices about it."""

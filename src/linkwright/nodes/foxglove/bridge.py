@@ -7,7 +7,7 @@ import socket
 import time
 from collections.abc import Sequence
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.graph import DESCRIPTION_QOS, Graph
@@ -67,6 +67,7 @@ class FoxgloveBridge(SingleNode):
         self._sessions: dict[Session, None] = {}
         self._loop = asyncio.get_running_loop()
         self._runner: web.AppRunner | None = None
+        self._server: asyncio.Server | None = None
         self._look_due: asyncio.TimerHandle | None = None
         self._identity = str(time.time_ns())
         self._listen_to_the_graph(graph)
@@ -87,10 +88,9 @@ class FoxgloveBridge(SingleNode):
             session.close()
         self._offer.parameters.close()
         self._serving.cancel()
+        (self._server or self._listener).close()  # now: the loop may end before it comes to what is scheduled here
         if self._runner is not None:
             self._goodbye = self._loop.create_task(self._runner.cleanup())
-        else:
-            self._listener.close()
         super().close()
 
     # --- the graph ---------------------------------------------------------------------------------------------
@@ -166,7 +166,9 @@ class FoxgloveBridge(SingleNode):
         application.router.add_get("/", self._connected)
         self._runner = web.AppRunner(application, handle_signals=False, access_log=None, shutdown_timeout=0.5)
         await self._runner.setup()
-        await web.SockSite(self._runner, self._listener).start()
+        serve = cast("web.Server", self._runner.server)
+        self._server = await self._loop.create_server(serve, sock=self._listener, start_serving=False)
+        await self._server.start_serving()
         self._node.get_logger().info(f"Foxglove and Lichtblick connect to {self.address}")
 
     async def _connected(self, request: web.Request) -> web.StreamResponse:

@@ -154,8 +154,10 @@ class WebServer:
             )
             await self._listening.start_serving()
         except BaseException:
-            await self.close()
-            listener.close()
+            try:
+                await self.close()
+            finally:
+                listener.close()
             raise
         return f"{url_of(listener)}?{TOKEN_PARAMETER}={self._gate.token}"
 
