@@ -77,8 +77,12 @@ def simulators(monkeypatch: pytest.MonkeyPatch) -> Simulators:
     return simulators
 
 
+FINDER = PackageFinder(start=Path(__file__).parent, environment={})
+"""Finds no package of Gazebo: what it finds is ours."""
+
+
 def share(package: str) -> Path:
-    return PackageFinder(start=Path("/"), environment={}).share(package)
+    return FINDER.share(package)
 
 
 def include(package: str, name: str, **arguments: str) -> IncludeLaunchDescription:
