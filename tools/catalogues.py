@@ -4,8 +4,8 @@ Usage: python tools/catalogues.py [update | check | compile]
 
 ``update`` takes what the source says, and the titles of the pages of `linkwright explain`, into the catalogues: what is
 new comes without a translation, what is no longer said is removed. ``check`` names what lacks a translation, what is
-stale and which placeholders differ, and exits with 1 when there is anything. ``compile`` writes the
-files that the program reads, where they are older than the catalogues.
+stale, which placeholders differ and which file ``update`` would change, and exits with 1 when there is anything.
+``compile`` writes the files that the program reads, where they are older than the catalogues.
 """
 
 from __future__ import annotations
@@ -215,13 +215,13 @@ def read(path: Path) -> Catalog:
         return read_po(file, locale=path.stem, domain="linkwright")
 
 
-def written(path: Path, catalogue: Catalog) -> None:
-    """Write a catalogue, a line for each text, without dates, so that only texts make a difference."""
+def as_text(catalogue: Catalog) -> str:
+    """What a catalogue's file holds: a line for each text, without dates, so that only texts make a difference."""
     text = BytesIO()
     write_po(text, catalogue, width=0, include_lineno=False)
     head, _, entries = text.getvalue().decode("utf-8").partition("\n\n")
     kept = [line for line in head.splitlines() if not line.startswith(_DATED)]
-    path.write_text("\n".join(kept) + "\n\n" + entries, encoding="utf-8")
+    return "\n".join(kept) + "\n\n" + entries
 
 
 def compile_catalogues() -> None:
@@ -248,9 +248,13 @@ def main(words: list[str]) -> int:
     source = Source()
     found = list(source.problems)
     for path in sorted(FOLDER.glob("*.po")):
+        kept = as_text(updated(read(path), source))
         if words == ["update"]:
-            written(path, updated(read(path), source))
-        found += [f"{path.name}: {problem}" for problem in problems_of(read(path), source)]
+            path.write_text(kept, encoding="utf-8")
+        problems = list(problems_of(read(path), source))
+        if not problems and path.read_text(encoding="utf-8") != kept:
+            problems.append("its entries stand otherwise than `python tools/catalogues.py update` puts them: run it")
+        found += [f"{path.name}: {problem}" for problem in problems]
     for problem in dict.fromkeys(found):
         print(problem, file=sys.stderr)
     return int(bool(found))

@@ -68,7 +68,9 @@ def test_the_catalogues_say_what_the_source_says(source: Any) -> None:
     tool = load_tool("catalogues")
     assert len(source.said) > 1000
     for path in sorted(tool.FOLDER.glob("*.po")):
-        assert list(tool.problems_of(tool.read(path), source)) == []
+        catalogue = tool.read(path)
+        assert list(tool.problems_of(catalogue, source)) == []
+        assert tool.as_text(tool.updated(catalogue, source)) == path.read_text(encoding="utf-8")
 
 
 def test_what_is_wrong_with_a_catalogue_is_told(tmp_path: Path) -> None:
@@ -102,6 +104,9 @@ def test_what_is_wrong_with_a_catalogue_is_told(tmp_path: Path) -> None:
     assert [message.id for message in new if message.id] == [
         "'{tag}' is odd", "a new one", "{a} is {b}", ("{count} link", "{count} links")
     ]  # fmt: skip
+    once = tool.as_text(new)
+    (tmp_path / "zh.po").write_text(once, encoding="utf-8")
+    assert tool.as_text(tool.updated(tool.read(tmp_path / "zh.po"), source)) == once
 
 
 def test_a_page_without_a_title_in_another_language_is_told(tmp_path: Path) -> None:
