@@ -10,14 +10,15 @@ import time
 import weakref
 from abc import ABC, abstractmethod
 from collections import deque
-from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Protocol, TypedDict, TypeVar
 
 from linkwright.diagnostics import LinkwrightError, Phrase, render
 from linkwright.graph.endpoints.info import EndpointInfo
 from linkwright.graph.faults import ExternalShutdownException
 from linkwright.graph.log.logger import Logger
 from linkwright.graph.names.identity import NodeIdentity
+from linkwright.wire.switch import is_switched_off
 
 if TYPE_CHECKING:
     from linkwright.graph.computation_graph import Graph
@@ -350,24 +351,44 @@ def say_alone(logger: Logger, reason: Phrase) -> None:
 AnyTransport = TypeVar("AnyTransport", bound=BackgroundTransport)
 
 
+class JoinOptions(TypedDict, total=False):
+    """How a graph is joined to others."""
+
+    domain_id: int | None
+    """Takes the place of ROS_DOMAIN_ID."""
+
+    environment: Mapping[str, str] | None
+    """The environment variables; those of the process when left out."""
+
+    only_looks: bool
+    """Whether the graph sees other processes and is not seen by them."""
+
+
 def join_with(
-    graph: Graph, make: Callable[[], AnyTransport], logger: Logger, reason: Phrase, *, told: bool
+    graph: Graph,
+    name: str,
+    make: Callable[[Logger, JoinOptions], AnyTransport],
+    why_not: Callable[[Mapping[str, str] | None], Phrase],
+    options: JoinOptions,
 ) -> AnyTransport | None:
     """Attach a transport to a graph; where there is none, the graph goes on without the network.
 
     Args:
         graph: the graph.
-        make: makes the transport.
-        logger: where problems are logged.
-        reason: why there is no transport; empty where there is one.
-        told: whether the reason is logged.
+        name: of the logger that says why there is none.
+        make: makes the transport; it may raise LinkwrightError.
+        why_not: why there is no transport in an environment; empty where there is one.
+        options: handed to `make`.
     """
+    logger = graph.get_logger(name)
+    environment = options.get("environment")
+    reason = why_not(environment)
     if reason:
-        if told:
+        if not is_switched_off(environment):
             say_alone(logger, reason)
         return None
     try:
-        transport = make()
+        transport = make(logger, options)
     except LinkwrightError as error:
         log_join_failure(logger, error)
         return None

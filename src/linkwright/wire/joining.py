@@ -19,8 +19,10 @@ from linkwright.wire.switch import is_switched_off
 from linkwright.wire.zenoh.joining import is_installed as zenoh_is_installed
 
 if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
     from linkwright.graph.computation_graph import Graph
-    from linkwright.wire.background import BackgroundTransport
+    from linkwright.wire.background import BackgroundTransport, JoinOptions
 
 VARIABLE = "RMW_IMPLEMENTATION"
 ZENOH = "rmw_zenoh_cpp"
@@ -83,30 +85,23 @@ def check_settings(environment: Mapping[str, str] | None = None) -> None:
         read_settings(environment)
 
 
-def join(
-    graph: Graph,
-    *,
-    domain_id: int | None = None,
-    environment: Mapping[str, str] | None = None,
-    only_looks: bool = False,
-) -> BackgroundTransport | None:
+def join(graph: Graph, **options: Unpack[JoinOptions]) -> BackgroundTransport | None:
     """Have a graph seen by other processes, and see theirs. It happens in the background; nothing waits for it.
 
     Problems are logged, and the graph goes on without the network.
 
     Args:
         graph: the graph; the transport attaches itself to it.
-        domain_id: takes the place of ROS_DOMAIN_ID.
-        environment: the environment variables; those of the process when left out.
-        only_looks: whether the graph sees other processes and is not seen by them.
+        options: see `JoinOptions`.
 
     Returns:
         The transport; None where there is none, it is switched off, or wrongly set.
     """
+    environment = options.get("environment")
     reason = why_not(environment)
     if reason:
         if not is_switched_off(environment):
             say_alone(graph.get_logger("wire"), reason)
         return None
     chosen = zenoh.join if middleware(environment) == ZENOH else dds.join
-    return chosen(graph, domain_id=domain_id, environment=environment, only_looks=only_looks)
+    return chosen(graph, **options)

@@ -8,13 +8,16 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Phrase, phrase
-from linkwright.wire.background import join_with
+from linkwright.wire.background import JoinOptions, join_with
 from linkwright.wire.dds.settings import read_settings
 from linkwright.wire.dds.transport import DdsTransport
 from linkwright.wire.switch import is_switched_off, switched_off
 
 if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
     from linkwright.graph.computation_graph import Graph
+    from linkwright.graph.log.logger import Logger
 
 
 def why_not(environment: Mapping[str, str] | None = None) -> Phrase:
@@ -42,32 +45,13 @@ def available(environment: Mapping[str, str] | None = None) -> bool:
     return not why_not(environment)
 
 
-def join(
-    graph: Graph,
-    *,
-    domain_id: int | None = None,
-    environment: Mapping[str, str] | None = None,
-    only_looks: bool = False,
-) -> DdsTransport | None:
-    """Have a graph seen by other processes, and see theirs. It happens in the background; nothing waits for it.
+def join(graph: Graph, **options: Unpack[JoinOptions]) -> DdsTransport | None:
+    """Have a graph seen by other processes over DDS, and see theirs; None where that cannot be."""
+    return join_with(graph, "dds", _make, why_not, options)
 
-    Problems are logged, and the graph goes on without the network.
 
-    Args:
-        graph: the graph; the transport attaches itself to it.
-        domain_id: takes the place of ROS_DOMAIN_ID.
-        environment: the environment variables; those of the process when left out.
-        only_looks: whether the graph sees other processes and is not seen by them.
-
-    Returns:
-        The transport; None where DDS is not installed, switched off, or wrongly set.
-    """
-    logger = graph.get_logger("dds")
-
-    def make() -> DdsTransport:
-        settings = read_settings(environment, domain_id=domain_id)
-        for warning in settings.warnings:
-            logger.warning(warning)
-        return DdsTransport(settings, logger, only_looks=only_looks)
-
-    return join_with(graph, make, logger, why_not(environment), told=not is_switched_off(environment))
+def _make(logger: Logger, options: JoinOptions) -> DdsTransport:
+    settings = read_settings(options.get("environment"), domain_id=options.get("domain_id"))
+    for warning in settings.warnings:
+        logger.warning(warning)
+    return DdsTransport(settings, logger, only_looks=options.get("only_looks", False))

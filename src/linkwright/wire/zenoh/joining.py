@@ -8,13 +8,16 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Phrase, phrase
-from linkwright.wire.background import join_with
+from linkwright.wire.background import JoinOptions, join_with
 from linkwright.wire.switch import is_switched_off, switched_off
 from linkwright.wire.zenoh.settings import read_settings
 from linkwright.wire.zenoh.transport import ZenohTransport
 
 if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
     from linkwright.graph.computation_graph import Graph
+    from linkwright.graph.log.logger import Logger
 
 
 def is_installed() -> bool:
@@ -41,29 +44,11 @@ def why_not(environment: Mapping[str, str] | None = None) -> Phrase:
     return Phrase("")
 
 
-def join(
-    graph: Graph,
-    *,
-    domain_id: int | None = None,
-    environment: Mapping[str, str] | None = None,
-    only_looks: bool = False,
-) -> ZenohTransport | None:
-    """Have a graph seen by other processes, and see theirs. It happens in the background; nothing waits for it.
+def join(graph: Graph, **options: Unpack[JoinOptions]) -> ZenohTransport | None:
+    """Have a graph seen by other processes over Zenoh, and see theirs; None where that cannot be."""
+    return join_with(graph, "zenoh", _make, why_not, options)
 
-    Problems are logged, and the graph goes on without the network.
 
-    Args:
-        graph: the graph; the transport attaches itself to it.
-        domain_id: takes the place of ROS_DOMAIN_ID.
-        environment: the environment variables; those of the process when left out.
-        only_looks: whether the graph sees other processes and is not seen by them.
-
-    Returns:
-        The transport; None where Zenoh is not installed, switched off, or wrongly set.
-    """
-    logger = graph.get_logger("zenoh")
-
-    def make() -> ZenohTransport:
-        return ZenohTransport(read_settings(environment, domain_id=domain_id), logger, only_looks=only_looks)
-
-    return join_with(graph, make, logger, why_not(environment), told=not is_switched_off(environment))
+def _make(logger: Logger, options: JoinOptions) -> ZenohTransport:
+    settings = read_settings(options.get("environment"), domain_id=options.get("domain_id"))
+    return ZenohTransport(settings, logger, only_looks=options.get("only_looks", False))
