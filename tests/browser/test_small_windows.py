@@ -45,17 +45,24 @@ def sized(browser: Browser, live: Callable[..., LiveViewer]) -> Iterator[Callabl
         context.close()
 
 
-def box(page: Page, selector: str) -> dict[str, float]:
-    found = page.locator(selector).first.bounding_box()
-    assert found is not None, selector
+RECTANGLE = """([selector, part, text]) => {
+  const has = (each) => part === null || [...each.querySelectorAll(part)].some((tab) => tab.textContent.includes(text));
+  const found = [...document.querySelectorAll(selector)].find((each) => each.checkVisibility() && has(each));
+  const { x, y, width, height } = found?.getBoundingClientRect() ?? {};
+  return width > 0 ? { x, y, width, height } : null;
+}"""
+"""Finds and measures at one moment: of a window that changes its size all is built anew, and what was found is gone."""
+
+
+def box(page: Page, selector: str, *, part: str | None = None, text: str = "") -> dict[str, float]:
+    """The first element to be seen, or the first that has such a part with a text in it."""
+    found: dict[str, float] = page.wait_for_function(RECTANGLE, arg=[selector, part, text]).json_value()
     return found
 
 
 def place(page: Page, name: str) -> dict[str, float]:
     """The group that has a panel's tab."""
-    found = page.locator(".dv-groupview", has=page.locator(".panel-tab", has_text=name)).first.bounding_box()
-    assert found is not None, name
-    return found
+    return box(page, ".dv-groupview", part=".panel-tab", text=name)
 
 
 @pytest.mark.parametrize(("width", "height"), [(500, 800), (900, 700)])
