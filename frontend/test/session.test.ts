@@ -127,6 +127,18 @@ describe("the view", () => {
     expect(session.view.awaitsFit("4 links")).toBe(true);
   });
 
+  it("that nobody chose has the robot measured once, for each configuration", () => {
+    const measured = (): unknown[] => sent.filter(({ type }) => type === "robot_measured");
+    receive(view(1, 1, true));
+    session.view.measured({ min: [0, 0, 0], max: [2, 3, 6] });
+    session.view.measured({ min: [0, 0, 0], max: [4, 6, 12] });
+    expect(measured()).toEqual([{ type: "robot_measured", diagonal: 7 }]);
+    receive(view(1, 2, true));
+    session.view.update({ Yaw: 2 });
+    session.view.measured({ min: [0, 0, 0], max: [2, 3, 6] });
+    expect(measured()).toHaveLength(1);
+  });
+
   it("stays where the user has put it, or the file", () => {
     receive(view(1));
     expect(session.view.awaitsFit("3 links")).toBe(false);

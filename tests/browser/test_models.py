@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+import trimesh
 
 from tests.browser.conftest import becomes, state, until
 from tests.places import PACKAGE, TUTORIAL_PACKAGES, without_meshes
@@ -64,6 +65,24 @@ def test_a_model_without_a_configuration_is_shown_whole_whatever_its_size(start,
     until(page, f"lw.view.distance !== {view['distance']}")
     page.keyboard.press("Shift+Z")
     until(page, f"Math.abs(lw.view.distance - {view['distance']}) < {size / 100}")
+
+
+def test_the_grid_of_a_ship_that_is_one_mesh_fits_unless_somebody_works_with_it(start, open_page, tmp_path):
+    trimesh.creation.box((100.0, 20.0, 15.0)).export(tmp_path / "hull.stl")
+    ship = tmp_path / "ship.urdf"
+    visual = f'<visual><geometry><mesh filename="file://{tmp_path}/hull.stl"/></geometry></visual>'
+    ship.write_text(f'<robot name="ship"><link name="hull">{visual}</link></robot>', encoding="utf-8")
+    program = start("view", str(ship))
+    page = open_page(program)
+    cell = page.locator('[data-key="display-1/Cell Size"] input')
+    page.locator('[data-key="display-1"] .twist').click()
+    becomes(cell.input_value, "100")
+    cell.fill("20")
+    page.keyboard.press("Enter")
+    again = open_page(program)
+    again.locator('[data-key="display-1"] .twist').click()
+    until(again, "lw.settled")
+    assert again.locator('[data-key="display-1/Cell Size"] input').input_value() == "20"
 
 
 @pytest.mark.parametrize("package", TUTORIAL_PACKAGES, ids=lambda package: package.parent.name)

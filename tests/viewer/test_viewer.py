@@ -150,6 +150,18 @@ async def test_every_page_begins_with_the_view_of_the_file():
     assert "a view that is none" in made.logged()
 
 
+async def test_a_page_that_has_drawn_the_meshes_says_how_large_grid_and_axes_are():
+    async with world(RvizConfig.for_model("base")) as made, page(made.viewer) as client:
+        await client.opened()
+        await client.send("robot_measured", diagonal=100.0)
+        cells = await client.until("property_changed", id="display-1/Cell Size")
+        axes = await client.until("property_changed", id="display-3/Marker Scale")
+        assert (cells["value"], axes["value"]) == (100.0, 50.0)
+        await client.send("robot_measured", diagonal=1.0)
+        await client.set("display-1/Alpha", 0.3)
+        assert (await client.until("property_changed"))["id"] == "display-1/Alpha"
+
+
 async def test_diagnostics_are_shown_with_their_line_and_cleared():
     source = SourceText("/some/r.xacro", "<robot>\n  <xacro:whel/>\n</robot>\n")
     span = source.span(10, 21)

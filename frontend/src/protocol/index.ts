@@ -106,6 +106,7 @@ import type {
   PoseChosen,
   RemoveSavedView,
   RemoveTool,
+  RobotMeasured,
   SaveView,
   SavedViews,
   SetToolProperty,
@@ -275,6 +276,7 @@ export type PageMessage =
   | RenameWord
   | ResetTime
   | RevertConfiguration
+  | RobotMeasured
   | SaveConfiguration
   | SaveMinutes
   | SaveView

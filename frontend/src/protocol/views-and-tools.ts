@@ -48,6 +48,12 @@ export interface ViewChanged {
   type: "view_changed";
 }
 
+/** The diagonal of the box around robots with their meshes, m, from a page whose camera nobody has put anywhere. */
+export interface RobotMeasured {
+  diagonal: number;
+  type: "robot_measured";
+}
+
 /** Add a view to the saved ones. */
 export interface SaveView {
   view: View;

@@ -317,6 +317,7 @@ export class Stage {
       if (seen === "" || !view.awaitsFit(seen)) return;
       const box = this.boundsOfRobots();
       if (box) view.fitFirst(box, this.freeSize(), seen);
+      if (box && settled) view.measured(box);
     }
     this.viewport.aim(view);
   }

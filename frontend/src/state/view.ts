@@ -5,7 +5,7 @@ import { Signal } from "./signal";
 import { cameraInFixed, cameraInTarget, FIXED, toTarget, type Camera, type Target, type ViewSize } from "./views/camera";
 import { controllerOf } from "./views/catalog";
 import { holds, spanInTarget, type Span } from "./views/fit";
-import type { Vector } from "./views/vector";
+import { distanceBetween, type Vector } from "./views/vector";
 import type { Drag, ViewController, ViewValues } from "./views/view-controller";
 
 export const FIXED_FRAME = "<Fixed Frame>";
@@ -27,6 +27,7 @@ export class ViewState {
   /** What there was when the camera was last put where it shows all of it; null: somebody has put it somewhere. */
   private lookedAt: { readonly what: string; readonly box: Span | null } | null = null;
   private revision: number | null = null;
+  private measuredFor: number | null = null;
   private lastTarget: Target = FIXED;
   private timer: ReturnType<typeof setTimeout> | undefined;
 
@@ -99,6 +100,13 @@ export class ViewState {
     const before = this.lookedAt?.box;
     if (!before || !holds(before, box)) this.update(this.fitted(box, size));
     this.lookedAt = { what, box: before && holds(before, box) ? before : box };
+  }
+
+  /** Tells how large the robots are that a camera is before that nobody has put anywhere, once all of them are there. */
+  measured({ min, max }: Span): void {
+    if (this.lookedAt === null || this.measuredFor === this.revision) return;
+    this.measuredFor = this.revision;
+    this.connection.send({ type: "robot_measured", diagonal: distanceBetween(min, max) });
   }
 
   /** Looks as values say with a camera that nobody has put anywhere; it waits for more to be seen, unless `isLast`. */

@@ -79,6 +79,35 @@ def test_grid_and_axes_are_as_large_as_the_model_asks_for(size, cell, marker_sca
     assert again.views.current.values["Focal Shape Size"] <= min(0.05, size.diagonal / 10)
 
 
+def sized(config, diagonal):
+    return {(display.name, name): value for display, name, value in config.sizes_for(diagonal)}
+
+
+def test_grid_and_axes_are_mended_once_the_meshes_are_known():
+    size = ModelSize(0.5, 0.2)
+    found = {("Grid", "Cell Size"): 100.0, ("TF", "Marker Scale"): 12.0}
+    assert sized(RvizConfig.for_model("base_link", size=size), 100.0) == found
+    # A single link of one mesh has no size without it.
+    assert sized(RvizConfig.for_model("base_link"), 100.0) == {**found, ("TF", "Marker Scale"): 50.0}
+    config = RvizConfig.for_model("base_link", size=size)
+    assert sized(config.copy(), 100.0) == found
+    assert sized(config, 100.0) == found
+    assert sized(config, 200.0) == {}  # only once: somebody looks at it
+
+
+@pytest.mark.parametrize("diagonal", [0.0, -1.0, float("nan"), float("inf")])
+def test_a_model_without_a_size_mends_nothing(diagonal):
+    assert sized(RvizConfig.for_model("base_link"), diagonal) == {}
+
+
+def test_what_somebody_has_changed_is_not_mended():
+    config = RvizConfig.for_model("base_link", size=ModelSize(0.5, 0.2))
+    config.displays[0].section.put(("Cell Size",), "3")
+    assert set(sized(config, 100.0)) == {("TF", "Marker Scale")}
+    assert sized(RvizConfig.default(), 100.0) == {}
+    assert sized(RvizConfig.parse(RvizConfig.for_model("base_link").text()), 100.0) == {}
+
+
 def test_the_frames_of_a_model_are_off_where_they_would_cover_it():
     assert [display.checked for display in RvizConfig.for_model("base_link").displays] == [True, True, True]
     config = RvizConfig.for_model("base_link", frames=False)

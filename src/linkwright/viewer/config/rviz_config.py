@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
@@ -267,6 +268,7 @@ class RvizConfig:
         self.tools = ToolsConfig(document, self.warnings.append)
         self.panels = PanelsConfig(document, self.warnings.append)
         self._unchosen_view: View | None = None
+        self._proposed: _Proposed | None = None
 
     @classmethod
     def load(cls, path: str | Path) -> RvizConfig:
@@ -323,11 +325,11 @@ class RvizConfig:
         view = config.views.current
         view.values |= {"Distance": _MODEL_DISTANCE, "Pitch": _MODEL_PITCH}
         if size is not None:
-            grid, _, tf = (display.section for display in config.displays)
-            grid.put(("Cell Size",), f"{size.cell:g}")
-            tf.put(("Marker Scale",), f"{size.marker_scale:g}")
+            for each, property_name, length in _sizes(config.displays, size):
+                each.section.put((property_name,), f"{length:g}")
             view.values |= {"Distance": size.distance, "Focal Shape Size": size.focal_shape}
         config.propose_view(view.values)
+        config._proposed = _Proposed(config.displays, size)
         return config
 
     def propose_view(self, values: Mapping[str, Any]) -> None:
@@ -342,10 +344,25 @@ class RvizConfig:
         """Whether nobody has said yet where the camera is: pages put it where they see all of the robot."""
         return self._unchosen_view == self.views.current
 
+    def sizes_for(self, diagonal: float) -> list[tuple[DisplayConfig, str, float]]:
+        """What grid and axes should have that were made for a robot of unknown meshes: display, property, value.
+
+        Only once, and only what nobody has changed since.
+
+        Args:
+            diagonal: of the box around the robot, m.
+        """
+        proposed, self._proposed = self._proposed, None
+        if proposed is None or not isfinite(diagonal) or diagonal <= 0:
+            return []
+        return proposed.mended(diagonal)
+
     def copy(self) -> RvizConfig:
         """A copy that belongs to no file."""
         copied = RvizConfig.parse(self.text(), self.document.source.name)
         copied._unchosen_view = self._unchosen_view
+        if self._proposed is not None:
+            copied._proposed = self._proposed.among(dict(zip(self.walk(), copied.walk(), strict=True)))
         return copied
 
     # --- displays ----------------------------------------------------------------------------------------------
@@ -449,3 +466,33 @@ class RvizConfig:
     def changed_on_disk(self) -> bool:
         """Whether another program has changed the file since it was read or saved."""
         return self.path is not None and configuration_file.state_of(self.path) not in (self._state, None)
+
+
+class _Proposed:
+    """What grid and axes were given by the size that a robot seems to have without its meshes; None for no size."""
+
+    def __init__(self, displays: Sequence[DisplayConfig], size: ModelSize | None) -> None:
+        self._displays = tuple(displays)
+        self._size = size
+        self._texts = [display.section.text(key) for display, key, _ in _sizes(displays, size or _ANY_SIZE)]
+
+    def mended(self, diagonal: float) -> list[tuple[DisplayConfig, str, float]]:
+        """What of it should be another, and was not changed since."""
+        spacing = diagonal if self._size is None else self._size.spacing
+        found = _sizes(self._displays, ModelSize(diagonal, spacing))
+        same = [display.section.text(key) == text for (display, key, _), text in zip(found, self._texts, strict=True)]
+        return [each for each, is_same in zip(found, same, strict=True) if is_same]
+
+    def among(self, copies: Mapping[DisplayConfig, DisplayConfig]) -> _Proposed | None:
+        """The same for copies of the displays; None where one has gone."""
+        found = [copies[display] for display in self._displays if display in copies]
+        return _Proposed(found, self._size) if len(found) == len(self._displays) else None
+
+
+_ANY_SIZE = ModelSize(1.0, 1.0)
+
+
+def _sizes(displays: Sequence[DisplayConfig], size: ModelSize) -> list[tuple[DisplayConfig, str, float]]:
+    """What displays of `RvizConfig.for_model` have by the size of a robot: display, property, value."""
+    grid, _, tf = displays
+    return [(grid, "Cell Size", size.cell), (tf, "Marker Scale", size.marker_scale)]

@@ -22,6 +22,7 @@ from linkwright.viewer.protocol.views_and_tools import (
     PoseChosen,
     RemoveSavedView,
     RemoveTool,
+    RobotMeasured,
     SavedView,
     SavedViews,
     SaveView,
@@ -44,7 +45,7 @@ if TYPE_CHECKING:
 class ViewsFeature(PageFeature):
     """Every page has a camera of its own and begins with the file's; the last that any page told is saved."""
 
-    RECEIVES: ClassVar[tuple[type, ...]] = (ViewChanged, SaveView, ChangeSavedView, RemoveSavedView)
+    RECEIVES: ClassVar[tuple[type, ...]] = (ViewChanged, RobotMeasured, SaveView, ChangeSavedView, RemoveSavedView)
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -65,6 +66,9 @@ class ViewsFeature(PageFeature):
         try:
             if isinstance(message, ViewChanged):
                 views.current = message.view
+                return
+            if isinstance(message, RobotMeasured):
+                manager.measured(message.diagonal)
                 return
             if isinstance(message, SaveView):
                 views.save(message.view)

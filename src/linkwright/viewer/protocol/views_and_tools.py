@@ -65,6 +65,12 @@ class ViewChanged(PageMessage):
     view: View
 
 
+class RobotMeasured(PageMessage):
+    """The diagonal of the box around robots with their meshes, m, from a page whose camera nobody has put anywhere."""
+
+    diagonal: float
+
+
 class SaveView(PageMessage):
     """Add a view to the saved ones."""
 
