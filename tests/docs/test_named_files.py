@@ -20,7 +20,10 @@ PAGES = [
     REPOSITORY / "fuzz" / "README.md",
     REPOSITORY / "tests" / "corpus" / "README.md",
 ]
-FOLDERS = (".github", "benchmarks", "docs", "frontend/src", "frontend/test", "fuzz", "robots", "src", "tests", "tools")
+FOLDERS = (
+    ".github", "benchmarks", "docs", "frontend/src", "frontend/test", "fuzz", "packaging", "robots", "src", "tests",
+    "tools",
+)  # fmt: skip
 MADE = [line.strip("/") for line in (REPOSITORY / ".gitignore").read_text(encoding="utf-8").split()]
 """What make makes, which a fresh clone lacks."""
 

@@ -55,6 +55,7 @@ def windows() -> None:
     import tempfile  # noqa: F401 - the same
     import urllib.request  # noqa: F401 - the same
 
+    asyncio.new_event_loop().close()  # the loops of Windows cannot be loaded here
     sysconfig.get_config_vars()
     platform.uname()
     kill, pair = signal.SIGKILL, socket.socketpair

@@ -13,6 +13,8 @@ from linkwright.wire.dds import available, join, why_not
 from linkwright.wire.dds.settings import most_participants
 from linkwright.wire.domain_id import MAX_DOMAIN_ID
 
+with_dds = pytest.mark.skipif(not available(), reason="there is no DDS here")
+
 
 @pytest.fixture
 def log() -> list[LogRecord]:
@@ -62,6 +64,7 @@ def test_without_a_wheel_a_process_says_so_and_goes_on(graph, log, monkeypatch):
     assert goes_on(graph)
 
 
+@with_dds
 @pytest.mark.parametrize("number", ["233", "-1", "one", "1.5"])
 def test_a_domain_that_is_none_is_told(graph, log, monkeypatch, number):
     monkeypatch.setenv("ROS_DOMAIN_ID", number)
@@ -72,6 +75,7 @@ def test_a_domain_that_is_none_is_told(graph, log, monkeypatch, number):
     assert goes_on(graph)
 
 
+@with_dds
 @pytest.mark.parametrize("uri", ["file:///no/such/file.xml", "<CycloneDDS><Nonsense/></CycloneDDS>", "<Cyclone"])
 def test_a_configuration_that_cyclone_refuses_is_told(graph, log, monkeypatch, uri, capfd):
     monkeypatch.setenv("CYCLONEDDS_URI", uri)
@@ -84,6 +88,7 @@ def test_a_configuration_that_cyclone_refuses_is_told(graph, log, monkeypatch, u
     capfd.readouterr()
 
 
+@with_dds
 def test_a_wrong_range_is_told_and_stays_on_the_machine(graph, log, monkeypatch):
     monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOTS")
     transport = join(graph)
@@ -93,6 +98,7 @@ def test_a_wrong_range_is_told_and_stays_on_the_machine(graph, log, monkeypatch)
     assert "did you mean 'LOCALHOST'?" in text
 
 
+@with_dds
 def test_a_domain_without_free_ports_is_told(graph, log, domain, capfd):
     with ExitStack() as taken:
         for index in range(most_participants(domain) + 1):
@@ -106,6 +112,7 @@ def test_a_domain_without_free_ports_is_told(graph, log, domain, capfd):
     capfd.readouterr()
 
 
+@with_dds
 def test_the_highest_domain_is_one_to_join(graph, monkeypatch):
     monkeypatch.setenv("ROS_DOMAIN_ID", str(MAX_DOMAIN_ID))
     transport = join(graph)

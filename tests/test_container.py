@@ -1,0 +1,56 @@
+"""The container file runs the demo of the Makefile, with a Python and extras that there are, and not as root."""
+
+from __future__ import annotations
+
+import json
+import re
+import sys
+from importlib import import_module
+from typing import Any
+
+import pytest
+
+from linkwright.cli.command import parser_for
+from tests.places import REPOSITORY
+
+tomllib: Any = import_module("tomllib" if sys.version_info >= (3, 11) else "tomli")
+
+
+@pytest.fixture(scope="module")
+def project() -> dict[str, Any]:
+    found: dict[str, Any] = tomllib.loads((REPOSITORY / "pyproject.toml").read_text(encoding="utf-8"))
+    return found
+
+
+@pytest.fixture(scope="module")
+def container() -> str:
+    return (REPOSITORY / "Containerfile").read_text(encoding="utf-8").replace("\\\n", "")
+
+
+def test_the_container_takes_a_python_and_extras_that_there_are(project, container):
+    (python,) = re.findall(r"^ARG PYTHON=(\S+)$", container, re.MULTILINE)
+    assert f"Programming Language :: Python :: {python}" in project["project"]["classifiers"]
+    (extras,) = re.findall(r"^ARG EXTRAS=(\S+)$", container, re.MULTILINE)
+    assert set(extras.split(",")) <= set(project["project"]["optional-dependencies"])
+
+
+def test_the_container_runs_the_demo_of_the_makefile_and_not_as_root(container):
+    (command,) = re.findall(r"^CMD (.+)$", container, re.MULTILINE)
+    words = json.loads(command)
+    arguments = parser_for(words[0]).parse_intermixed_args(words[1:])
+    assert (arguments.host, arguments.no_open) == ("0.0.0.0", True)  # the port of a container is its only way in
+    assert f"EXPOSE {arguments.port}\n" in container
+    robot = words[2].removeprefix("/opt/linkwright/robots/")
+    assert (REPOSITORY / "robots" / robot).is_file()
+    makefile = (REPOSITORY / "Makefile").read_text(encoding="utf-8")
+    assert f"MBOT := robots/{robot}\n" in makefile
+    assert f"linkwright sim {words[1]} $(MBOT) {' '.join(words[3:5])} " in makefile
+    user = container.rindex("\nUSER 1000\n")
+    assert container.rindex("\nRUN ") < user < container.index("\nENTRYPOINT ")
+
+
+def test_the_build_of_the_container_finds_what_the_build_reads(project):
+    taken = (REPOSITORY / ".dockerignore").read_text(encoding="utf-8").splitlines()
+    allowed = {line[1:] for line in taken if line.startswith("!")}
+    needed = set(project["tool"]["hatch"]["build"]["targets"]["sdist"]["include"]) - {"CHANGELOG.md", "SECURITY.md"}
+    assert needed | {"pyproject.toml", "uv.lock", "LICENSE"} <= allowed
