@@ -222,6 +222,9 @@ class _Container:
         if number not in self._deaf_to:
             self._end(-number)
 
+    def terminate(self) -> None:
+        self.send_signal(signal.SIGTERM)
+
     def kill(self) -> None:
         self.send_signal(signal.SIGKILL)
 

@@ -15,6 +15,8 @@ from linkwright.graph.qos.profile import QoSProfile
 from linkwright.messages import String, get_message
 from tests.waiting import SECONDS, wait_until
 
+pytest.importorskip("cyclonedds", reason="there is no DDS here")
+
 on_linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="looks into /proc")
 
 

@@ -14,6 +14,8 @@ from linkwright.wire.dds import join
 from linkwright.wire.dds import transport as module
 from tests.waiting import SECONDS, wait_until
 
+pytest.importorskip("cyclonedds", reason="there is no DDS here")
+
 on_linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="the system does not tell who is there")
 
 
