@@ -94,6 +94,17 @@ const HOMES: Readonly<Record<PanelId, Home>> = {
     ],
     width: 290,
   },
+  navigation: {
+    beside: [
+      ["teleop", "within"],
+      ["voice", "within"],
+      ["joints", "within"],
+      ["diagnostics", "within"],
+      ["views", "below"],
+      ["scene", "right"],
+    ],
+    width: 290,
+  },
   diagnostics: {
     beside: [
       ["joints", "within"],
@@ -129,7 +140,7 @@ function wideHome(api: DockviewApi, id: PanelId): Home {
 }
 
 /** The order in which panels that are open come to their usual places. */
-export const USUAL: readonly PanelId[] = ["scene", "time", "displays", "links", "world", "comparison", "views", "tool-properties", "selection", "diagnostics", "joints", "teleop", "voice", "transformation", ...BOTTOM];
+export const USUAL: readonly PanelId[] = ["scene", "time", "displays", "links", "world", "comparison", "views", "tool-properties", "selection", "diagnostics", "joints", "teleop", "voice", "navigation", "transformation", ...BOTTOM];
 
 /** Adds panels at their usual places. */
 export function addPanels(api: DockviewApi, ids: readonly PanelId[]): void {

@@ -11,6 +11,7 @@ export const FILE_PANELS: readonly PanelName[] = [
   "views",
   "time",
   "transformation",
+  "navigation",
 ];
 
 /** What of the dock this needs. */

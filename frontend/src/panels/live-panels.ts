@@ -1,5 +1,6 @@
 import type { MonitorState } from "../state/monitor/monitor";
 import { LogPanel } from "./log-panel";
+import { NavigationPanel } from "./navigation-panel";
 import { NodeGraphPanel } from "./node-graph-panel";
 import type { Panel, PanelId } from "./panel";
 import { ParametersPanel } from "./parameters-panel";
@@ -21,5 +22,6 @@ export function livePanels(monitor: MonitorState, open: (id: PanelId) => void, s
     new ParametersPanel(monitor.parameters),
     new LogPanel(monitor.log),
     new TeleopPanel(monitor.teleop),
+    new NavigationPanel(monitor.navigation),
   ];
 }

@@ -174,7 +174,14 @@ export interface AskConfigurationText {
   type: "ask_configuration_text";
 }
 
-export type PanelName = "displays" | "selection" | "tool-properties" | "views" | "time" | "transformation";
+export type PanelName =
+  | "displays"
+  | "selection"
+  | "tool-properties"
+  | "views"
+  | "time"
+  | "transformation"
+  | "navigation";
 
 /** What the configuration says of panels. */
 export interface Panels {

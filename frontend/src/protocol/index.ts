@@ -84,6 +84,7 @@ import type {
   WatchSeries,
   WatchTopics,
 } from "./monitor";
+import type { CommandNavigation, NavigationState, WatchNavigation } from "./navigation";
 import type { AskPoint, CellGrid, CloudPoints, PointFields } from "./points";
 import type { RecordTopics, RecordingState, SaveMinutes, StopRecording } from "./recording";
 import type { AskProvenance, LinkProvenance, MeshStatus, RobotScene } from "./robot";
@@ -144,6 +145,7 @@ export * from "./joints";
 export * from "./markers";
 export * from "./modelling";
 export * from "./monitor";
+export * from "./navigation";
 export * from "./points";
 export * from "./recording";
 export * from "./robot";
@@ -184,6 +186,7 @@ export type ServerMessage =
   | LogLines
   | ModelChoices
   | ModellingState
+  | NavigationState
   | NodeGraph
   | NodeParameters
   | Panels
@@ -239,6 +242,7 @@ export type PageMessage =
   | CenterJoints
   | ChangeSavedView
   | ChangeThings
+  | CommandNavigation
   | ControlSimulation
   | CopyThings
   | DeleteModel
@@ -302,6 +306,7 @@ export type PageMessage =
   | ViewChanged
   | WatchClock
   | WatchLog
+  | WatchNavigation
   | WatchNodeGraph
   | WatchParameters
   | WatchSeries

@@ -2,6 +2,7 @@ import type { Connection } from "../../connection/connection";
 import type { TextStorage } from "../storage";
 import { fieldText } from "./field-text";
 import { LogState } from "./log";
+import { NavigationState } from "./navigation";
 import { NodeGraphState } from "./node-graph";
 import { ParametersState } from "./parameters";
 import { PlotsState } from "./plots";
@@ -16,6 +17,7 @@ export class MonitorState {
   readonly parameters: ParametersState;
   readonly log: LogState;
   readonly teleop: TeleopState;
+  readonly navigation: NavigationState;
 
   constructor(connection: Connection, storage: TextStorage) {
     this.topics = new TopicsState(connection);
@@ -24,6 +26,7 @@ export class MonitorState {
     this.parameters = new ParametersState(connection);
     this.log = new LogState(connection, storage);
     this.teleop = new TeleopState(connection, storage);
+    this.navigation = new NavigationState(connection);
   }
 
   /** For `window.linkwright`. */

@@ -41,13 +41,16 @@ _NAMES: Mapping[PanelName, str] = MappingProxyType(
         "views": "Views",
         "time": "Time",
         "transformation": "Transformation",
+        "navigation": "Navigation 2",
     }
 )
 _PRESENT, _FORMER = "rviz_common/", "rviz/"
+_OF_NAV2 = "nav2_rviz_plugins/Navigation 2"
 _CLASSES: Mapping[str, PanelName] = MappingProxyType(
-    {prefix + name: panel for panel, name in _NAMES.items() for prefix in (_PRESENT, _FORMER)}
+    {prefix + name: panel for panel, name in _NAMES.items() for prefix in (_PRESENT, _FORMER) if panel != "navigation"}
+    | {_OF_NAV2: "navigation"}
 )
-_NOT_OF_RVIZ_1 = frozenset({"transformation"})
+_NOT_OF_RVIZ_1 = frozenset({"transformation", "navigation"})
 
 
 class PanelsConfig:
@@ -136,7 +139,8 @@ class PanelsConfig:
             if former and panel in _NOT_OF_RVIZ_1:
                 return None
             gone = new_section(self._document.source)
-            gone.put(("Class",), (_FORMER if former else _PRESENT) + _NAMES[panel], string=True)
+            own = _OF_NAV2 if panel == "navigation" else (_FORMER if former else _PRESENT) + _NAMES[panel]
+            gone.put(("Class",), own, string=True)
             gone.put(("Name",), _NAMES[panel], string=True)
             self._order.append(gone)
             self._added.append(gone)

@@ -19,6 +19,7 @@ from linkwright.viewer.protocol.monitor import (
     WatchSeries,
     WatchTopics,
 )
+from linkwright.viewer.protocol.navigation import CommandNavigation, WatchNavigation
 from linkwright.viewer.protocol.voice import SayCommand, SoundBlock, Talk, WatchVoice
 from linkwright.viewer.protocol.voice_words import (
     AskWordsFile,
@@ -34,6 +35,7 @@ from linkwright.viewer.web.audience import Page
 _ANSWERED_BY: dict[type, str] = {
     AimTeleop: "monitor.teleop:TeleopFeature",
     AskExport: "export.feature:ExportFeature",
+    CommandNavigation: "monitor.navigation:NavigationFeature",
     AskFields: "monitor.plots:PlotsFeature",
     Drive: "monitor.teleop:TeleopFeature",
     DumpParameters: "monitor.parameters:ParametersFeature",
@@ -42,6 +44,7 @@ _ANSWERED_BY: dict[type, str] = {
     SoundBlock: "voice.feature:VoiceFeature",
     Talk: "voice.feature:VoiceFeature",
     WatchLog: "monitor.log:LogFeature",
+    WatchNavigation: "monitor.navigation:NavigationFeature",
     WatchNodeGraph: "monitor.node_graph:NodeGraphFeature",
     WatchParameters: "monitor.parameters:ParametersFeature",
     WatchSeries: "monitor.plots:PlotsFeature",

@@ -195,8 +195,8 @@ class AskConfigurationText(PageMessage):
     """The file as it would be saved now, to be kept on the browser's machine."""
 
 
-PanelName = Literal["displays", "selection", "tool-properties", "views", "time", "transformation"]
-"""The panels that RViz has, too; the names are the page's."""
+PanelName = Literal["displays", "selection", "tool-properties", "views", "time", "transformation", "navigation"]
+"""The panels that RViz has, or nav2 for it, too; the names are the page's."""
 
 
 class Panels(ServerMessage):

@@ -1,0 +1,35 @@
+import type { Connection } from "../../connection/connection";
+import type { NavigationCommand, NavigationState as Told } from "../../protocol";
+import { Signal } from "../signal";
+
+/** What nav2 is doing; asked for only while the panel is seen. */
+export class NavigationState {
+  readonly changed = new Signal();
+  /** Null before the server told. */
+  told: Told | null = null;
+  private opened = false;
+
+  constructor(private readonly connection: Connection) {
+    connection.on("hello", () => {
+      if (this.opened) this.announce();
+    });
+    connection.on("navigation_state", (told) => {
+      this.told = told;
+      this.changed.emit();
+    });
+  }
+
+  setOpen(opened: boolean): void {
+    if (opened === this.opened) return;
+    this.opened = opened;
+    this.announce();
+  }
+
+  command(command: NavigationCommand): void {
+    this.connection.send({ type: "command_navigation", command });
+  }
+
+  private announce(): void {
+    this.connection.send({ type: "watch_navigation", open: this.opened });
+  }
+}

@@ -1,0 +1,52 @@
+"""The panel of nav2: what its nodes and its goal are doing, and commands to them."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from linkwright.viewer.protocol.message import PageMessage, ServerMessage
+
+ManagerState = Literal["unknown", "inactive", "active"]
+"""What a lifecycle manager says of its nodes; unknown where there is none."""
+
+GoalState = Literal["none", "active", "canceling", "succeeded", "canceled", "aborted"]
+
+NavigationCommand = Literal["startup", "pause", "resume", "reset", "cancel"]
+
+
+class WatchNavigation(PageMessage):
+    """The page shows its panel, or shows it no more."""
+
+    open: bool
+
+
+class CommandNavigation(PageMessage):
+    """The user pressed a button: a command to both lifecycle managers, or to cancel all goals."""
+
+    command: NavigationCommand
+
+
+class NavigationState(ServerMessage):
+    """What the panel shows.
+
+    Attributes:
+        navigation: the nodes of lifecycle_manager_navigation.
+        localization: those of lifecycle_manager_localization.
+        goal: of ``navigate_to_pose``, the one that was sent last.
+        eta: seconds that it will take from now; None without feedback, as all below.
+        distance: metres that remain.
+        taken: seconds that it took till now.
+        recoveries: how often something had to be tried to get on.
+        busy: a command is under way.
+        problem: why the last command was not done; empty where it was.
+    """
+
+    navigation: ManagerState
+    localization: ManagerState
+    goal: GoalState
+    eta: float | None
+    distance: float | None
+    taken: float | None
+    recoveries: int | None
+    busy: bool
+    problem: str
