@@ -26,6 +26,16 @@ export interface PolygonLine {
   kind: "polygon_line";
 }
 
+/** GridMap: the middles of cells in the frame of the content, row by row. */
+export interface GridSurface {
+  rows: number;
+  columns: number;
+  points: Float32Array;
+  colors: Uint8Array;
+  filled: boolean;
+  kind: "grid_surface";
+}
+
 /** Range: a cone along x of the frame of the content, metres and radians; no cone where `range` is 0. */
 export interface RangeCone {
   range: number;

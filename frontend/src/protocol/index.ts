@@ -41,7 +41,16 @@ import type {
 import type { PictureBoxes, SolidBoxes } from "./detections";
 import type { DisplayProperties, DisplayStatus, PropertyChanged, SetProperty, Tree } from "./displays";
 import type { AskExport, ExportFailed, ExportReady } from "./export";
-import type { EffortRings, ParticleMarks, PointMarks, PolygonLine, PoseMarks, RangeCone, Screw } from "./geometry";
+import type {
+  EffortRings,
+  GridSurface,
+  ParticleMarks,
+  PointMarks,
+  PolygonLine,
+  PoseMarks,
+  RangeCone,
+  Screw,
+} from "./geometry";
 import type { ImageFrame, OccupancyMap, PictureSize } from "./images";
 import type { CenterJoints, JointPositions, Joints, RandomizeJoints, SetJoint, SetJoints } from "./joints";
 import type { InteractiveMarkerMoved, InteractiveMarkerShape, MarkerFeedback, MarkersChanged } from "./markers";
@@ -318,6 +327,7 @@ export type DataContent =
   | CellGrid
   | CloudPoints
   | EffortRings
+  | GridSurface
   | ImageFrame
   | InteractiveMarkerMoved
   | InteractiveMarkerShape

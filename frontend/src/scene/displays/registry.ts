@@ -9,6 +9,7 @@ import { DetectionPictureDrawing } from "./detection-picture";
 import { EffortDrawing } from "./effort";
 import { GridCellsDrawing } from "./grid-cells";
 import { GridDrawing } from "./grid";
+import { GridMapDrawing } from "./grid-map";
 import { InteractiveMarkersDrawing } from "./interactive-markers";
 import { MarkersDrawing } from "./markers";
 import { ParticleCloudDrawing } from "./particle-cloud";
@@ -30,6 +31,7 @@ export const DRAWINGS: ReadonlyMap<string, DrawingClass> = new Map<string, Drawi
   ["rviz_default_plugins/AccelStamped", ScrewDrawing],
   ["rviz_default_plugins/Effort", EffortDrawing],
   ["rviz_default_plugins/Odometry", PosesDrawing],
+  ["grid_map_rviz_plugin/GridMap", GridMapDrawing],
   ["nav2_rviz_plugins/ParticleCloud", ParticleCloudDrawing],
   ["rviz_default_plugins/Path", PathDrawing],
   ["rviz_default_plugins/Polygon", PolygonDrawing],

@@ -9,6 +9,7 @@ const about: Readonly<Record<DisplayIcon, string>> = {
   FluidPressure: "Measured fluid pressures, as coloured points.",
   Grid: "A grid in a plane of a frame.",
   GridCells: "Cells of a grid, such as obstacles in a costmap.",
+  GridMap: "Layers over a grid, such as heights, as a surface.",
   Group: "Holds other displays, and switches them on and off together.",
   Illuminance: "Measured illuminances, as coloured points.",
   Image: "A camera's image, in a panel of its own.",

@@ -10,6 +10,7 @@ export const displays: typeof english = {
     FluidPressure: "用彩色点显示测得的流体压力。",
     Grid: "坐标系平面内的网格。",
     GridCells: "栅格单元，例如代价地图中的障碍物。",
+    GridMap: "网格地图的各层（例如高程），画成曲面。",
     Group: "容纳其他显示项，并把它们一起打开或关闭。",
     Illuminance: "用彩色点显示测得的照度。",
     Image: "相机图像，显示在单独的面板中。",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from linkwright.viewer.protocol.binary import Floats
+from linkwright.viewer.protocol.binary import Bytes, Floats
 from linkwright.viewer.protocol.message import DataContent
 
 
@@ -34,6 +34,20 @@ class PolygonLine(DataContent):
     """Polygon: its corners in the frame of the content, shape (N, 3)."""
 
     points: Floats
+
+
+class GridSurface(DataContent):
+    """GridMap: the middles of cells in the frame of the content, row by row.
+
+    `points` has shape (rows * columns, 3); `colors` (rows * columns, 4): red, green, blue, and 0 where a cell is not
+    there. The surface is drawn where it is `filled`; otherwise only lines are.
+    """
+
+    rows: int
+    columns: int
+    points: Floats
+    colors: Bytes
+    filled: bool
 
 
 class RangeCone(DataContent):

@@ -1,0 +1,127 @@
+import { BufferAttribute, BufferGeometry, DoubleSide, Matrix4, Mesh, MeshLambertMaterial, Vector3, type Box3 } from "three";
+import type { GridSurface } from "../../protocol";
+import { OPAQUE_FROM } from "../materials";
+import { ThinLines } from "../objects/thin-lines";
+import { ContentDrawing } from "./content-drawing";
+import type { DrawingContext } from "./drawing";
+
+/** grid_map_rviz_plugin/GridMap: a surface through the middles of cells, and lines between them. */
+export class GridMapDrawing extends ContentDrawing<"grid_surface"> {
+  private readonly lines = new ThinLines();
+  private readonly surfaces = new Map<GridSurface, Mesh<BufferGeometry, MeshLambertMaterial>>();
+
+  constructor(context: DrawingContext) {
+    super(context, "grid_surface");
+    this.root.add(this.lines.root);
+  }
+
+  dispose(): void {
+    this.lines.dispose();
+    for (const surface of [...this.surfaces.keys()]) this.drop(surface);
+  }
+
+  protected override told(): object {
+    const shown = [...this.surfaces.values()];
+    const triangles = shown.reduce((sum, { geometry, visible }) => sum + (visible ? (geometry.index?.count ?? 0) / 3 : 0), 0);
+    return { triangles, lines: this.lines.root.visible ? this.lines.count : 0 };
+  }
+
+  protected expandBox(box: Box3): void {
+    for (const mesh of this.surfaces.values()) box.expandByObject(mesh);
+    this.lines.expandBox(box);
+  }
+
+  protected arrange(): void {
+    const { rows } = this.context.display;
+    const alpha = rows.number(1, "Alpha");
+    const placed = this.placed();
+    const now = new Set(placed.map(({ content }) => content));
+    for (const old of [...this.surfaces.keys()]) if (!now.has(old)) this.drop(old);
+    for (const { content, pose } of placed) {
+      const mesh = this.surfaces.get(content) ?? this.make(content);
+      pose.decompose(mesh.position, mesh.quaternion, new Vector3());
+      mesh.visible = content.filled && alpha > 0;
+      mesh.material.opacity = alpha;
+      mesh.material.transparent = alpha < OPAQUE_FROM;
+      mesh.material.depthWrite = alpha >= OPAQUE_FROM;
+    }
+    const segments = rows.bool(true, "Show Grid Lines") ? placed.map(({ content, pose }) => segmentsOf(content, pose)) : [];
+    this.lines.setSegments(joined(segments));
+    this.lines.setStyle("#000000", alpha);
+  }
+
+  private make(content: GridSurface): Mesh<BufferGeometry, MeshLambertMaterial> {
+    const geometry = new BufferGeometry();
+    geometry.setAttribute("position", new BufferAttribute(content.points, 3));
+    geometry.setAttribute("color", new BufferAttribute(colorsOf(content), 3, true));
+    geometry.setIndex(trianglesOf(content));
+    geometry.computeVertexNormals();
+    const mesh = new Mesh(geometry, new MeshLambertMaterial({ side: DoubleSide, vertexColors: true }));
+    this.surfaces.set(content, mesh);
+    this.root.add(mesh);
+    return mesh;
+  }
+
+  private drop(content: GridSurface): void {
+    const mesh = this.surfaces.get(content);
+    mesh?.removeFromParent();
+    mesh?.geometry.dispose();
+    mesh?.material.dispose();
+    this.surfaces.delete(content);
+  }
+}
+
+function isThere({ colors }: GridSurface, cell: number): boolean {
+  return colors[cell * 4 + 3] !== 0;
+}
+
+function colorsOf({ colors }: GridSurface): Uint8Array {
+  const result = new Uint8Array((colors.length / 4) * 3);
+  for (let cell = 0; cell < colors.length / 4; cell++) result.set(colors.subarray(cell * 4, cell * 4 + 3), cell * 3);
+  return result;
+}
+
+/** Two triangles between four cells that are there, one between three of them. */
+export function trianglesOf(content: GridSurface): number[] {
+  const { rows, columns } = content;
+  const result: number[] = [];
+  for (let row = 0; row + 1 < rows; row++) {
+    for (let column = 0; column + 1 < columns; column++) {
+      const first = row * columns + column;
+      const corners = [first, first + columns, first + columns + 1, first + 1].filter((cell) => isThere(content, cell));
+      const [a = 0, b = 0, c = 0, d = 0] = corners;
+      if (corners.length >= 3) result.push(a, b, c);
+      if (corners.length === 4) result.push(a, c, d);
+    }
+  }
+  return result;
+}
+
+function segmentsOf(content: GridSurface, pose: Matrix4): Float32Array {
+  const { rows, columns, points } = content;
+  const placed = new Float32Array(points.length);
+  const at = new Vector3();
+  for (let i = 0; i < points.length; i += 3) at.fromArray(points, i).applyMatrix4(pose).toArray(placed, i);
+  const result: number[] = [];
+  const connect = (one: number, other: number): void => {
+    if (isThere(content, one) && isThere(content, other)) result.push(...placed.subarray(one * 3, one * 3 + 3), ...placed.subarray(other * 3, other * 3 + 3));
+  };
+  for (let row = 0; row < rows; row++) {
+    for (let column = 0; column < columns; column++) {
+      const cell = row * columns + column;
+      if (row + 1 < rows) connect(cell, cell + columns);
+      if (column + 1 < columns) connect(cell, cell + 1);
+    }
+  }
+  return Float32Array.from(result);
+}
+
+function joined(parts: readonly Float32Array[]): Float32Array {
+  const result = new Float32Array(parts.reduce((sum, part) => sum + part.length, 0));
+  let at = 0;
+  for (const part of parts) {
+    result.set(part, at);
+    at += part.length;
+  }
+  return result;
+}
