@@ -19,6 +19,7 @@ const about: Readonly<Record<DisplayIcon, string>> = {
   Marker: "Shapes that a node draws: arrows, boxes, lines, texts, meshes.",
   MarkerArray: "Many shapes that a node draws at once.",
   MotionPlanning: "MoveIt: the scene, planned motions, and where they begin and end.",
+  OccupancyGrid: "An octomap, as boxes.",
   Odometry: "Where a robot was, as arrows or axes, with their covariance.",
   ParticleCloud: "Where a robot may be, as amcl tells: the likelier, the larger.",
   PlanningScene: "MoveIt: the robot, what it holds, and what is around it.",

@@ -1,0 +1,138 @@
+"""octomap_rviz_plugins/OccupancyGrid."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from linkwright.geometry.single import IDENTITY
+from linkwright.graph import QoSProfile
+from linkwright.viewer.config.property_store import qos_of
+from linkwright.viewer.config.rviz_config import DisplayConfig
+from linkwright.viewer.config.schema import Path, PropertySpec, topic_spec
+from linkwright.viewer.displays.base.display import DisplayHost, Pose
+from linkwright.viewer.displays.base.stored_markers import StoredMarkersDisplay
+from linkwright.viewer.displays.base.topic_display import TRANSFORM
+from linkwright.viewer.displays.moveit.octree import BadOctreeError, Cells, read_octree
+from linkwright.viewer.displays.moveit.properties import BY_HEIGHT, BY_PROBABILITY, VOXELS, fraction
+from linkwright.viewer.displays.moveit.voxels import octomap_markers
+
+_TOPIC = "Octomap Topic"
+_MOST = 3.4028234663852886e38
+"""Stands for infinity in properties."""
+
+_DEPTH = 16
+_LIKELY = 0.5
+_MAP = "Octomap"
+
+
+class OctomapDisplay(StoredMarkersDisplay):
+    """The octomap of a topic, as boxes where the frame of its header is now."""
+
+    CLASS = "octomap_rviz_plugins/OccupancyGrid"
+    MESSAGE = "octomap_msgs/msg/Octomap"
+    DRAWN_AS = "rviz_default_plugins/MarkerArray"
+    TOPIC = (_TOPIC,)
+    SCHEMA = (
+        topic_spec(_TOPIC, description=MESSAGE, messages=(MESSAGE,)),
+        PropertySpec("Voxel Rendering", "enum", VOXELS[0], "Which cells are drawn.", options=VOXELS),
+        PropertySpec(
+            "Voxel Coloring",
+            "enum",
+            BY_HEIGHT,
+            "Whether colours tell how high a cell is, or how probable it is that it is occupied.",
+            options=(BY_HEIGHT, BY_PROBABILITY),
+        ),
+        fraction("Voxel Alpha", 1.0, "Opacity of the cells."),
+        PropertySpec(
+            "Max. Octree Depth",
+            "int",
+            _DEPTH,
+            "Levels below the root; each less makes cells twice as large.",
+            minimum=1,
+            maximum=_DEPTH,
+        ),
+        PropertySpec("Max. Height Display", "float", _MOST, "Cells above are left out, metres."),
+        PropertySpec("Min. Height Display", "float", -_MOST, "Cells below are left out, metres."),
+    )
+
+    def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
+        super().__init__(host, identity, config)
+        self._shown: set[str] = set()
+        self._frame = ""
+
+    def subscription(self) -> tuple[str, str, QoSProfile]:
+        """Type, topic and quality of service."""
+        return self.MESSAGE, self.properties.text(_TOPIC).strip(), qos_of(self.properties, _TOPIC)
+
+    def changed(self, path: Path) -> None:
+        """Listen to another topic, or draw the last map anew."""
+        if path[0] == _TOPIC:
+            self._restart()
+        else:
+            self.show_again()
+
+    def frames_changed(self) -> None:
+        """Say whether the frame of the map has a place."""
+        problem = self.host.frames.problem(self._frame) if self._frame else None
+        if problem:
+            self.say(TRANSFORM, "error", problem)
+        elif self._frame:
+            self.say(TRANSFORM, "ok", "Transform OK")
+
+    def reset(self) -> None:
+        """Forget the map."""
+        self._frame = ""
+        self._shown.clear()
+        self._store.clear()
+        self.show_markers()
+
+    def take(self, message: Any, pose: Pose | None) -> None:
+        """Draw a map."""
+        data = np.asarray(message.data, dtype=np.int8).tobytes()
+        try:
+            cells = read_octree(data=data, binary=message.binary, kind=message.id, resolution=message.resolution)
+        except BadOctreeError as error:
+            self.reset()
+            self.say(_MAP, "error", str(error))
+            return
+        self.unsay(_MAP)
+        self._frame = message.header.frame_id.removeprefix("/")
+        markers = octomap_markers(
+            self._chosen(cells, message.resolution),
+            "octomap",
+            frame=self._frame,
+            base=IDENTITY,
+            alpha=self.properties.number("Voxel Alpha"),
+            by_probability=self.properties.text("Voxel Coloring") == BY_PROBABILITY,
+        )
+        for gone in self._shown - {each.id for each in markers}:
+            self._store.remove(gone)
+        self._shown = {each.id for each in markers}
+        for each in markers:
+            self._store.put(each)
+        self.show_markers()
+        self.frames_changed()
+
+    def _chosen(self, cells: Cells, resolution: float) -> Cells:
+        """The cells that properties ask for, made larger where the tree is to be looked at less deep."""
+        rendering = self.properties.text("Voxel Rendering")
+        if rendering != VOXELS[2]:
+            cells = cells.chosen((cells.probabilities > _LIKELY) == (rendering == VOXELS[0]))
+        height = cells.centers[:, 2]
+        lowest, highest = (self.properties.number(f"{which}. Height Display") for which in ("Min", "Max"))
+        cells = cells.chosen((height >= lowest) & (height <= highest))
+        least = resolution * 2 ** (_DEPTH - int(self.properties.number("Max. Octree Depth")))
+        small = cells.sizes < least * 0.75
+        if not small.any():
+            return cells
+        places, inverse = np.unique(np.floor(cells.centers[small] / least), axis=0, return_inverse=True)
+        probabilities = np.zeros(len(places))
+        np.maximum.at(probabilities, inverse.reshape(-1), cells.probabilities[small])
+        large = cells.chosen(~small)
+        return Cells(
+            np.concatenate([large.centers, (places + 0.5) * least]),
+            np.concatenate([large.sizes, np.full(len(places), least)]),
+            np.concatenate([large.probabilities, probabilities]),
+        )
