@@ -76,20 +76,39 @@ def read_octree(*, data: bytes, binary: bool, kind: str, resolution: float) -> C
 
 
 def _read_binary(data: bytes, resolution: float) -> Cells:
-    leaves = _Leaves()
+    inner: list[_Node] = []
+    states: list[int] = []
     pending = [_ROOT]
     at = 0
     while pending:
         node = pending.pop()
         bits = data[at] | data[at + 1] << 8
         at += 2
-        for child in reversed(range(8)):
-            state = bits >> 2 * child & 3
-            if state == _INNER:
-                pending.append(_child(node, child))
-            elif state:
-                leaves.add(_child(node, child), _CLAMPED[state])
-    return leaves.cells(resolution, at, data)
+        inner.append(node)
+        states.append(bits)
+        deeper = bits & bits >> 1 & 0x5555
+        if deeper:
+            pending += [_child(node, child) for child in reversed(range(8)) if deeper >> 2 * child & 1]
+        if len(inner) > MOST_CELLS:
+            raise BadOctreeError(f"The octomap has more than {MOST_CELLS} cells")
+    _check_end(at, data)
+    return _leaves_of(np.array(inner, dtype=np.int64), np.array(states, dtype=np.int64), resolution)
+
+
+def _leaves_of(inner: NDArray[np.int64], bits: NDArray[np.int64], resolution: float) -> Cells:
+    """The children of inner nodes, shape (N, 4), that are leaves, by the two bits of each."""
+    states = bits[:, None] >> 2 * np.arange(8) & 3
+    parents, children = np.nonzero((states == _FREE) | (states == _OCCUPIED))
+    if len(parents) > MOST_CELLS:
+        raise BadOctreeError(f"The octomap has more than {MOST_CELLS} cells")
+    edges = inner[parents, 3]
+    if (edges <= 2).any():
+        raise BadOctreeError(f"The octomap is deeper than {_DEPTH} levels")
+    signs = (children[:, None] >> np.arange(3) & 1) * 2 - 1
+    centers = inner[parents, :3] + signs * (edges // 4)[:, None]
+    half = resolution / 2.0
+    probabilities = np.where(states[parents, children] == _FREE, _CLAMPED[_FREE], _CLAMPED[_OCCUPIED])
+    return Cells(centers * half, edges // 2 * half, probabilities)
 
 
 def _read_full(data: bytes, kind: str, resolution: float) -> Cells:
@@ -145,7 +164,11 @@ class _Leaves:
         self._probabilities.append(probability)
 
     def cells(self, resolution: float, at: int, data: bytes) -> Cells:
-        if at != len(data):
-            raise BadOctreeError(f"The octomap ends after {at} of {len(data)} bytes")
+        _check_end(at, data)
         nodes = np.array(self._nodes, dtype=np.float64).reshape(-1, 4) * (resolution / 2.0)
         return Cells(nodes[:, :3], nodes[:, 3], np.array(self._probabilities, dtype=np.float64))
+
+
+def _check_end(at: int, data: bytes) -> None:
+    if at != len(data):
+        raise BadOctreeError(f"The octomap ends after {at} of {len(data)} bytes")

@@ -70,19 +70,23 @@ def _is_seen(cells: Cells) -> NDArray[np.bool_]:
     seen = np.ones(len(cells.sizes), dtype=np.bool_)
     for size in np.unique(cells.sizes):
         mask = cells.sizes == size
-        places = np.floor(cells.centers[mask] / size).astype(np.int64)
-        codes = _codes(places)
+        codes = _codes(np.floor(cells.centers[mask] / size).astype(np.int64))
+        known = np.sort(codes)
         around = np.ones(len(codes), dtype=np.bool_)
-        for axis in range(3):
-            for step in (-1, 1):
-                moved = places.copy()
-                moved[:, axis] += step
-                around &= np.isin(_codes(moved), codes)
+        for step in _STEPS:
+            places = np.searchsorted(known, codes + step)
+            around &= known[np.minimum(places, len(known) - 1)] == codes + step
         seen[mask] = ~around
     return seen
 
 
+_BITS = 20
+_STEPS = (1, -1, 1 << _BITS, -(1 << _BITS), 1 << 2 * _BITS, -(1 << 2 * _BITS))
+"""From the code of a place to those of its neighbours."""
+
+
 def _codes(places: NDArray[np.int64]) -> NDArray[np.int64]:
-    shifted = places + (1 << 17)
-    codes: NDArray[np.int64] = shifted[:, 0] << 40 | shifted[:, 1] << 20 | shifted[:, 2]
+    """A number for each place in the grid of cells of one size; the grid of a tree has 2^16 of them along an axis."""
+    shifted = places + (1 << (_BITS - 1))
+    codes: NDArray[np.int64] = shifted[:, 0] << 2 * _BITS | shifted[:, 1] << _BITS | shifted[:, 2]
     return codes
