@@ -1,7 +1,7 @@
-"""What the wire costs: two processes on this machine, joint states, transforms and images.
+"""What the wires cost: two processes on this machine, joint states, transforms and images, over DDS and over Zenoh.
 
-Beside us: `cyclonedds` alone with its IdlStructs, and zenoh-ros2-sdk. Run it with ``python -m benchmarks dds``.
-Messages are received as objects, ours in an event loop as the launcher's.
+Beside us over DDS: us over Zenoh, `cyclonedds` alone with its IdlStructs, and zenoh-ros2-sdk, which goes over Zenoh.
+Run it with ``python -m benchmarks dds``. Messages are received as objects, ours in an event loop as the launcher's.
 """
 
 from __future__ import annotations
@@ -19,21 +19,23 @@ from benchmarks.measure import ROOT, Row
 DOMAIN = "67"
 ROUNDS = 3
 SECONDS = 2.0
-LIBRARIES = {"ours": "", "plain": "cyclonedds alone", "zenoh": "zenoh-ros2-sdk"}
+LIBRARIES = {"ours": "", "ours over Zenoh": "ours over Zenoh", "plain": "cyclonedds alone", "zenoh": "zenoh-ros2-sdk"}
 """What stands for a library -> what a reader calls it."""
 
 
 def measured(library: str, kind: str, rate: float) -> dict[str, float] | None:
     """What the two sides found; None for a library that does not run here."""
-    words = (library, kind, str(SECONDS), str(rate))
-    environment = {**os.environ, "ROS_DOMAIN_ID": DOMAIN}
+    name, _, over = library.partition(" over ")
+    words = (name, kind, str(SECONDS), str(rate))
+    middleware = "rmw_zenoh_cpp" if over == "Zenoh" else "rmw_cyclonedds_cpp"
+    environment = {**os.environ, "ROS_DOMAIN_ID": DOMAIN, "RMW_IMPLEMENTATION": middleware}
     sides = [
         subprocess.Popen(
             [sys.executable, "-m", "benchmarks.dds_sides", side, *words],
             cwd=ROOT,
             env=environment,
             stdout=subprocess.PIPE,
-            stderr=None if library == "ours" else subprocess.DEVNULL,
+            stderr=None if name == "ours" else subprocess.DEVNULL,
             text=True,
         )
         for side in ("receive", "send")
@@ -46,6 +48,7 @@ def measured(library: str, kind: str, rate: float) -> dict[str, float] | None:
         "rate": received.count / max(received.seconds, 1e-9),
         "sending": 100.0 * sent.cores,
         "receiving": 100.0 * received.cores,
+        "latency": 1e3 * received.latency,
         "lost": 100.0 * (sent.count - received.count) / sent.count,
     }
 
@@ -66,7 +69,7 @@ def medians(kind: str, rate: float) -> dict[str, dict[str, float]]:
     }
 
 
-def table(what: str, kind: str, rate: float, promised: str, share: str = "") -> list[Row]:
+def table(what: str, kind: str, rate: float, promised: str, share: str = "", *, aged: bool = False) -> list[Row]:
     """The rows of one kind of message.
 
     Args:
@@ -75,15 +78,22 @@ def table(what: str, kind: str, rate: float, promised: str, share: str = "") -> 
         rate: messages a second; 0 for as many as it goes.
         promised: the rate.
         share: how much of a core each side may take.
+        aged: whether it matters how old messages are that come.
     """
     found = medians(kind, rate)
 
     def row(name: str, figure: str, unit: str, target: str) -> Row:
-        beside = {title: found.get(library, {}).get(figure) for library, title in LIBRARIES.items() if title}
+        beside = {
+            title: found.get(library, {}).get(figure)
+            for library, title in LIBRARIES.items()
+            if title and not (figure == "latency" and library == "plain")
+        }
         return Row(f"{what}{name}", found["ours"][figure], unit, target, dict(beside))
 
     rows = [row(", received", "rate", "1/s", promised)]
-    if share:
+    if aged:
+        rows.append(row(", from sender to callback", "latency", "ms", ""))
+    if share or aged:
         rows += [
             row(", sender", "sending", "% of a core", share),
             row(", receiver", "receiving", "% of a core", share),
@@ -95,9 +105,10 @@ def rows() -> list[Row]:
     """The table."""
     return [
         *table("JointState of 12 joints, unpaced", "joints", 0.0, "30000"),
+        *table("JointState of 12 joints at 1 kHz", "joints", 1000.0, "1000", aged=True),
         *table("TF of 100 transforms at 500 Hz, as arrays", "transforms", 500.0, "500", "100"),
         *table("TF of 100 transforms at 500 Hz, as objects", "objects", 500.0, "500", "100"),
         *table("TF of 100 transforms, unpaced, as objects", "objects", 0.0, ""),
-        *table("images 640x480 RGB at 60 Hz", "images", 60.0, "60", "10"),
+        *table("images 640x480 RGB at 60 Hz", "images", 60.0, "60", "10", aged=True),
         *table("images 640x480 RGB, unpaced", "images", 0.0, ""),
     ]

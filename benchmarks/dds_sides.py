@@ -1,9 +1,10 @@
-"""The two processes of a measurement over DDS: one sends, one receives; each prints what it found as JSON.
+"""The two processes of a measurement over DDS or Zenoh: one sends, one receives; each prints what it found as JSON.
 
 ``python -m benchmarks.dds_sides send|receive ours|plain|zenoh KIND SECONDS RATE``; a rate of 0 is as fast as it goes.
 Kinds are `joints`, `transforms` (received as arrays, as a tf buffer reads them), `objects` (the same received as Python
-objects) and `images`. `plain` stands for `cyclonedds` alone with its own IdlStructs, `zenoh` for zenoh-ros2-sdk. Each
-message is another one than the last: its stamp and a position change.
+objects) and `images`. `ours` goes over what RMW_IMPLEMENTATION says; `plain` stands for `cyclonedds` alone with its own
+IdlStructs, `zenoh` for zenoh-ros2-sdk. Each message is another one than the last: its stamp and a position change. From
+the stamp the receiver tells how old it is.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ import importlib
 import itertools
 import json
 import os
+import statistics
 import sys
 import time
 from collections.abc import Callable
@@ -22,7 +24,7 @@ from typing import Any
 from linkwright.graph import Graph
 from linkwright.graph.qos.profile import HistoryPolicy, QoSProfile
 from linkwright.messages import get_message
-from linkwright.wire.dds import join
+from linkwright.wire.joining import join
 
 JOINTS = 12
 TRANSFORMS = 100
@@ -39,11 +41,13 @@ class Result:
         count: messages sent or received.
         seconds: from the first message to the last.
         cores: processor time by that span.
+        latency: how old messages were when they were handed over, the median in seconds; 0 where nobody looked.
     """
 
     count: int
     seconds: float
     cores: float
+    latency: float = 0.0
 
 
 def ours(kind: str) -> Any:
@@ -70,10 +74,25 @@ def ours(kind: str) -> Any:
 
 def renew(message: Any, count: int) -> None:
     """Change a message a little, of whatever library it is."""
-    header = message.transforms[0].header if hasattr(message, "transforms") else message.header
-    header.stamp.nanosec = count
+    stamp = _stamp(message)
+    stamp.sec, stamp.nanosec = divmod(time.time_ns(), 1_000_000_000)
     if hasattr(message, "position"):
         message.position[0] = float(count)
+
+
+def age(message: Any) -> float:
+    """How long ago a message was renewed, seconds."""
+    stamp = _stamp(message)
+    return float(time.time() - stamp.sec - 1e-9 * stamp.nanosec)
+
+
+def median_age(ages: list[float]) -> float:
+    """The median of those; 0 where there are none."""
+    return statistics.median(ages) if ages else 0.0
+
+
+def _stamp(message: Any) -> Any:
+    return (message.transforms[0].header if hasattr(message, "transforms") else message.header).stamp
 
 
 def paced(send: Callable[[], object], seconds: float, rate: float) -> Result:
@@ -112,12 +131,13 @@ async def receive_ours(kind: str, seconds: float) -> Result:
     """Receive as the launcher does, in an event loop; each message is read as an object."""
     graph = Graph()
     message_class = type(ours(kind))
+    ages: list[float] = []
     count, first, last, cpu = 0, 0.0, 0.0, 0.0
 
     def received(message: Any) -> None:
         nonlocal count, first, last, cpu
-        if kind == "objects":
-            assert message.transforms[0].header
+        if kind != "transforms":  # whose objects are not made at all
+            ages.append(age(message))
         last = time.perf_counter()
         if not count:
             first, cpu = last, time.process_time()
@@ -126,7 +146,7 @@ async def receive_ours(kind: str, seconds: float) -> Result:
     graph.create_node("receiver").create_subscription(message_class, TOPIC, received, LOSSLESS)
     join(graph)
     await _until_quiet(lambda: count, seconds)
-    result = Result(count, last - first, (time.process_time() - cpu) / max(last - first, 1e-9))
+    result = Result(count, last - first, (time.process_time() - cpu) / max(last - first, 1e-9), median_age(ages))
     await graph.close()
     return result
 

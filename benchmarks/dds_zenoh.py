@@ -7,13 +7,12 @@ and type hashes are given, because the SDK would fetch them from the network.
 from __future__ import annotations
 
 import dataclasses
-import itertools
 import os
 import time
 from typing import Any
 
 from benchmarks import peers
-from benchmarks.dds_sides import HEIGHT, JOINTS, TOPIC, TRANSFORMS, WIDTH, Result, paced
+from benchmarks.dds_sides import HEIGHT, JOINTS, TOPIC, TRANSFORMS, WIDTH, Result, age, median_age, paced
 from linkwright.messages import type_hash
 from linkwright.messages.schema_text import schema_of
 
@@ -68,11 +67,10 @@ def send(kind: str, seconds: float, rate: float) -> Result:
     limit = time.monotonic() + 10.0
     while not publisher.pub.matching_status.matching and time.monotonic() < limit:
         time.sleep(0.01)
-    numbers = itertools.count()
 
     def publish() -> None:
-        header = message["header"] if "header" in message else message["transforms"][0].header
-        header.stamp.nanosec = next(numbers)
+        stamp = (message["header"] if "header" in message else message["transforms"][0].header).stamp
+        stamp.sec, stamp.nanosec = divmod(time.time_ns(), 1_000_000_000)
         publisher.publish(**message)
 
     result = paced(publish, seconds, rate)
@@ -82,10 +80,12 @@ def send(kind: str, seconds: float, rate: float) -> Result:
 
 def receive(kind: str, seconds: float, _rate: float) -> Result:
     """Receive until no more comes."""
+    ages: list[float] = []
     count, first, last, cpu = 0, 0.0, 0.0, 0.0
 
-    def received(_message: Any) -> None:
+    def received(message: Any) -> None:
         nonlocal count, first, last, cpu
+        ages.append(age(message))
         last = time.perf_counter()
         if not count:
             first, cpu = last, time.process_time()
@@ -97,4 +97,4 @@ def receive(kind: str, seconds: float, _rate: float) -> Result:
     while time.monotonic() < limit and not (count and time.perf_counter() - last > 1.0):
         time.sleep(0.1)
     assert subscriber is not None
-    return Result(count, last - first, (time.process_time() - cpu) / max(last - first, 1e-9))
+    return Result(count, last - first, (time.process_time() - cpu) / max(last - first, 1e-9), median_age(ages))

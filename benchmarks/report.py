@@ -21,6 +21,7 @@ TITLES = {
     "urdf": ("URDF", "URDF"),
     "kinematics": ("Forward kinematics", "正运动学"),
     "graph": ("Computation graph", "计算图"),
+    "dds": ("DDS and Zenoh", "DDS 与 Zenoh"),
     "launch": ("Launch", "启动"),
     "viewer": ("Viewer", "查看器"),
     "page": ("Page", "网页"),
