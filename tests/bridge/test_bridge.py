@@ -100,6 +100,21 @@ def test_what_a_publisher_says_that_comes_while_the_topic_is_carried_is_not_lost
     assert got == ["at once"]
 
 
+@pytest.mark.parametrize(("source", "target"), WAYS)
+def test_what_a_publisher_said_last_goes_over_though_it_has_left(networks, source, target):
+    networks.bridge()
+    there, here = networks.make(source)("there"), networks.make(target)("here")
+    got = listen(here, "chatter", EVERYTHING)
+    publisher = there.node.create_publisher(String, "chatter", EVERYTHING)
+    spin_all(lambda: publisher.get_subscription_count() == 1, there, here)
+    for number in range(5000):
+        publisher.publish(String(data=str(number)))
+    there.close()
+    spin_all(lambda: len(got) >= 5000, here)
+    assert got == [str(number) for number in range(5000)]
+    spin_all(lambda: "there" not in here.node.get_node_names(), here)
+
+
 @pytest.mark.parametrize(("server", "client"), WAYS)
 def test_requests_of_three_clients_are_answered_each_to_who_asked(networks, server, client):
     networks.bridge()

@@ -20,6 +20,9 @@ _KNOWN_WITHIN = 2.0
 
 _MOST_EARLY = 1000
 
+_QUIET = 3
+"""How many times in a row nothing waits of what publishers said that have left, before their mirrors leave."""
+
 
 class Early(NamedTuple):
     """A message whose publisher is not known yet.
@@ -61,6 +64,8 @@ class Direction:
         self._taps: dict[Stream, Tap] = {}
         self._early: deque[Early] = deque(maxlen=_MOST_EARLY)
         self._aliases: dict[bytes, bytes] = {}
+        self._leaving: dict[bytes, int] = {}
+        """Publishers that have left, and how many times nothing of theirs waited since."""
         self._wanted_nodes: dict[str, NodeIdentity] = {}
         self._wanted_publishers: dict[bytes, EndpointInfo] = {}
         self._wanted_services: dict[tuple[str, str, str], EndpointInfo] = {}
@@ -71,13 +76,12 @@ class Direction:
     def withdraw(self) -> None:
         """Take away what has left, having found out what there is to be carried now."""
         self._decide()
-        for gid in self._publishers.keys() - self._wanted_publishers.keys():
-            self._publishers.pop(gid).close()
-            self._aliases = {alias: meant for alias, meant in self._aliases.items() if meant != gid}
+        self._leaving = {
+            gid: self._leaving.get(gid, 0) for gid in self._publishers.keys() - self._wanted_publishers.keys()
+        }
         for key in self._services.keys() - self._wanted_services.keys():
             self._services.pop(key).close()
-        for name in self._nodes.keys() - self._wanted_nodes.keys():
-            self._nodes.pop(name).destroy()
+        self._let_go()
 
     def add(self) -> None:
         """Have at the target what is new."""
@@ -93,8 +97,9 @@ class Direction:
 
     def settle(self) -> bool:
         """Do what had to wait; whether nothing waits any more."""
-        is_settled = True
+        is_settled = not self._leaving
         self._say_early()
+        self._let_go()
         for publisher in self._publishers.values():
             is_settled = publisher.settle() and is_settled
         for service in self._services.values():
@@ -103,6 +108,20 @@ class Direction:
         return is_settled and not self._early
 
     # --- inside ------------------------------------------------------------------------------------------------------
+
+    def _let_go(self) -> None:
+        """Take away publishers that have left, once what they said last was carried, and nodes that have."""
+        for gid, quiet in tuple(self._leaving.items()):
+            tap = self._taps.get(self._publishers[gid].stream)
+            self._leaving[gid] = 0 if tap is not None and tap.has_more() else quiet + 1
+            if tap is None or self._leaving[gid] >= _QUIET:
+                del self._leaving[gid]
+                self._publishers.pop(gid).close()
+                self._aliases = {alias: meant for alias, meant in self._aliases.items() if meant != gid}
+        kept = {self._publishers[gid].info.node for gid in self._leaving}
+        names = self._wanted_nodes.keys() | {node.full_name for node in kept if node is not None}
+        for name in self._nodes.keys() - names:
+            self._nodes.pop(name).destroy()
 
     def _node_of(self, info: EndpointInfo) -> NodeHandle:
         assert info.node is not None

@@ -112,6 +112,10 @@ class Tap:
         self.stream = stream
         self._subscription = node.add(subscription)
 
+    def has_more(self) -> bool:
+        """Whether messages wait for their turn."""
+        return self._subscription.has_work()
+
     def close(self) -> None:
         """Listen no more."""
         self._subscription.destroy()
