@@ -314,9 +314,23 @@ async def test_a_question_is_answered_first(stage, talk, tmp_path, answer, count
     assert len(reset) == count
 
 
-async def test_answers_are_in_the_language_of_the_node(talk):
+async def test_answers_are_in_the_language_of_the_node_until_somebody_speaks(talk):
     robot = talk(language="zh")
     assert await robot.type("唱歌") == "我没听懂“唱歌”"
+
+
+async def test_answers_are_in_the_language_that_was_spoken_last(talk, tmp_path):
+    told = """
+commands:
+  stop: {phrases: {en: stop, zh: 停}, stop: true, response: {en: stopped, zh: 停下了}}
+  forward: {phrases: {en: [forward], zh: [前进]}, drive: {x: 1}, response: {en: I drive, zh: 我走}}
+"""
+    robot = talk(commands_file=commands(tmp_path, told))
+    assert await robot.type("前进") == "我走"
+    assert await robot.type("sing") == "我没听懂“sing”"
+    assert await robot.type("停") == "停下了"
+    assert await robot.type("forward") == "I drive"
+    assert await robot.type("stop") == "stopped"
 
 
 PLACES = """
@@ -365,7 +379,7 @@ async def test_it_goes_to_places_and_says_when_it_is_there(stage, talk, tmp_path
     assert robot.said["command"] == ["go place=kitchen"]
     goal.succeed(navigator.result())
     await stage.graph.settle()
-    assert robot.said["response"][-1] == "I am done"
+    assert robot.said["response"][-1] == "完成了"
 
 
 @pytest.mark.parametrize("text", ["stop", "forward"])

@@ -24,7 +24,7 @@ from linkwright.speech.commands.actions import (
     filled,
     shown,
 )
-from linkwright.speech.commands.command_set import CommandSet, Understood, chosen
+from linkwright.speech.commands.command_set import ANY, CommandSet, Understood, chosen
 
 
 class Conversation:
@@ -33,7 +33,7 @@ class Conversation:
     Args:
         node: whose it is.
         commands: those that are understood.
-        language: of the answers.
+        language: of the answers, until something was said in another.
         driver: moves the robot.
         requests: asks others.
         patience: s that a question waits for its answer.
@@ -84,6 +84,7 @@ class Conversation:
         if found is None:
             return False
         self._forget()
+        self._answer_in(found.language)
         if found.command.question:
             self._asked = found, text
             self._say(str(filled(chosen(found.command.question, self._language), found.values)))
@@ -104,6 +105,9 @@ class Conversation:
         self._tell_others()
         if text:
             stop = self._commands.stops[0]
+            found = self._commands.understand(text)
+            if found is not None:
+                self._answer_in(found.language)
             self._tell_command(stop.intent)
             self._say(chosen(stop.response, self._language) or text)
 
@@ -113,8 +117,8 @@ class Conversation:
         self.answer(why)
 
     def answer(self, text: Phrase) -> None:
-        """Say something in the language of the answers."""
-        self._say(localized(text, self._language))
+        """Say something in the language that was spoken last."""
+        self._say(localized(text, "zh" if self._language.startswith("zh") else "en"))
 
     def drive_ended(self, ending: Ending) -> None:
         """A way is done, or takes too long."""
@@ -129,6 +133,11 @@ class Conversation:
             self.answer(phrase("I could not do it: {reason}", reason=reason))
         else:
             self.answer(phrase("I could not do it"))
+
+    def _answer_in(self, language: str) -> None:
+        """Answer in the language that somebody speaks."""
+        if language != ANY:
+            self._language = language
 
     def _carry_out(self, found: Understood, text: str) -> None:
         if isinstance(found.command.action, Stop):

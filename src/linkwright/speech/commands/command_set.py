@@ -61,10 +61,12 @@ class Understood:
     Attributes:
         command: which.
         values: slot -> what was said in it.
+        language: that it was said in; `ANY` for what is said in all of them.
     """
 
     command: Command
     values: Mapping[str, Value]
+    language: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,10 +95,11 @@ class CommandSet:
         words = words_of(text)
         best: tuple[int, Understood] | None = None
         for command in self.commands:
-            for template in _all(command.phrases):
-                values = template.values(words, self.names)
-                if values is not None and (best is None or template.literal_count > best[0]):
-                    best = template.literal_count, Understood(command, values)
+            for language, templates in command.phrases.items():
+                for template in templates:
+                    values = template.values(words, self.names)
+                    if values is not None and (best is None or template.literal_count > best[0]):
+                        best = template.literal_count, Understood(command, values, language)
         return None if best is None else best[1]
 
     @property
