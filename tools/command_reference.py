@@ -68,7 +68,7 @@ def completion_table() -> str:
     types = {kind: sorted(name for name in names if f"/{kind}/" in name) for kind in ("msg", "srv", "action")}
     verbs = {name: _completed(parser_for(name)) for name in VERBS}
     table = {"verbs": verbs, "ros2": list(COMMANDS), "executables": executables, "types": types}
-    return json.dumps(table, separators=(",", ":")) + "\n"
+    return json.dumps(table, indent=1) + "\n"  # a line for each entry, which merges
 
 
 def _completed(parser: argparse.ArgumentParser) -> dict[str, object]:
