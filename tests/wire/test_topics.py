@@ -29,10 +29,12 @@ def test_a_message_goes_from_process_to_process_once(processes):
     publisher.publish(String(data="hej"))
     b.spin_until(lambda: len(got) == 1)
     a.spin_until(lambda: len(got) == 2)
-    time.sleep(0.2)
+    publisher.publish(String(data="end"))
+    b.spin_until(lambda: got.count("end") == 1)
+    a.spin_until(lambda: got.count("end") == 2)
     a.executor.spin_once(timeout_sec=0.05)
     b.executor.spin_once(timeout_sec=0.05)
-    assert got == ["hej", "hej"]
+    assert got == ["hej", "hej", "end", "end"]
 
 
 def test_nothing_is_serialised_while_nobody_outside_listens(processes):

@@ -6,8 +6,6 @@ import zenoh
 
 from linkwright.graph.endpoints.info import EndpointInfo
 from linkwright.graph.qos.profile import (
-    DurabilityPolicy,
-    HistoryPolicy,
     LivelinessPolicy,
     QoSProfile,
     ReliabilityPolicy,
@@ -17,28 +15,12 @@ from linkwright.messages import String, serialize, type_hash
 from linkwright.wire.zenoh.session import open_session
 from linkwright.wire.zenoh.settings import read_settings
 from tests.wire.test_topics import (  # noqa: F401 - the same over Zenoh
+    EVERYTHING,
+    LASTING,
+    test_a_message_goes_from_process_to_process_once,
     test_nothing_is_serialised_while_nobody_outside_listens,
     test_what_is_published_as_soon_as_there_is_a_publisher_goes_to_who_is_known,
 )
-
-LASTING = QoSProfile(3, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-EVERYTHING = QoSProfile(history=HistoryPolicy.KEEP_ALL)
-
-
-def test_a_message_goes_from_process_to_process_once(processes):
-    a, b = processes("a"), processes("b")
-    got: list[str] = []
-    for process in (a, b):
-        process.node.create_subscription(String, "chatter", lambda message: got.append(message.data), 10)
-    publisher = a.node.create_publisher(String, "chatter", 10)
-    b.spin_until(lambda: publisher.get_subscription_count() == 2)
-    publisher.publish(String(data="hej"))
-    b.spin_until(lambda: len(got) == 1)
-    a.spin_until(lambda: len(got) == 2)
-    publisher.publish(String(data="end"))
-    b.spin_until(lambda: got.count("end") == 1)
-    a.spin_until(lambda: got.count("end") == 2)
-    assert got == ["hej", "hej", "end", "end"]
 
 
 def test_late_comers_get_what_was_published_before_the_session_was_open(processes):
