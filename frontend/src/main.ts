@@ -14,6 +14,7 @@ import "./styles/modelling.css";
 import "./styles/voice.css";
 import "./styles/timeline.css";
 import "./styles/comparison.css";
+import "./styles/editing.css";
 import { Connection, socketUrl } from "./connection/connection";
 import { Tokens, type AddressBar } from "./connection/tokens";
 import { h } from "./dom";
@@ -23,6 +24,7 @@ import { DiagnosticsPanel } from "./panels/diagnostics-panel";
 import { DiagramPanel } from "./panels/diagram-panel";
 import { DisplaysPanel } from "./panels/displays-panel";
 import { Dock } from "./panels/dock";
+import { EditingPanel } from "./panels/editing/editing-panel";
 import { FilePanels } from "./panels/file-panels";
 import { fullScreenOnF11 } from "./panels/full-screen";
 import { JointTablePanel } from "./panels/joint-table-panel";
@@ -51,6 +53,7 @@ import { Controls } from "./scene/controls";
 import { JointDrag } from "./scene/joint-drag";
 import { Keyboard, TAKES_LETTERS } from "./scene/keyboard";
 import type { PanelHost } from "./scene/displays/display-panel";
+import type { PartHandles } from "./scene/editing/part-handles";
 import type { Modeller } from "./scene/modelling/modeller";
 import { SERVED } from "./scene/meshes/mesh-files";
 import { StandIns } from "./scene/meshes/stand-ins";
@@ -82,6 +85,7 @@ function start(app: HTMLElement): void {
 
   const sheet = new KeySheet(session.tools);
   let modeller: Modeller | null = null;
+  let handles: PartHandles | null = null;
   const commands = new WorldCommands(session.modelling, () => modeller?.escape());
   const scene = new ScenePanel(
     session,
@@ -109,6 +113,7 @@ function start(app: HTMLElement): void {
     new DiagnosticsPanel(session),
     new WorldPanel(session.modelling, session.angles, commands),
     new ComparisonPanel(session, () => stage?.fit()),
+    new EditingPanel(session),
     new VoicePanel(session.voice, session.words),
     ...livePanels(session.monitor, (id) => dock.open(id), (topic) => showTopic(session, topic)),
   ], new Layouts(browserStorage()));
@@ -120,11 +125,19 @@ function start(app: HTMLElement): void {
     source.reveal(file, line, { display });
   });
 
+  session.editing.wanted.on(() => dock.open("editing"));
+
   const stage = makeStage(scene.container, session, dock.displayPanels);
   if (stage) scene.column.lieOver(stage);
   commands.takeKeys();
-  const toolbox = stage && takeTools(stage, session, (event) => (modeller ? modeller.pointer(event) : event));
-  if (stage) whenModelling(stage, session, (made) => (modeller = made));
+  const toolbox = stage && takeTools(stage, session, (event) => {
+    if (handles?.pointer(event)) return null;
+    return modeller ? modeller.pointer(event) : event;
+  });
+  if (stage) {
+    whenModelling(stage, session, (made) => (modeller = made));
+    whenEditing(stage, session, (made) => (handles = made));
+  }
   const files = new FileCommands(session.configuration);
   app.prepend(new TitleBar(session, dock, files, new RecordingDrop(session, tokens), theme, new ShareMenu(session, stage, tokens)).element);
   takeFileKeys(session, files);
@@ -141,6 +154,7 @@ function start(app: HTMLElement): void {
     diagram: () => diagram.inspect(),
     monitor: () => session.monitor.inspect(),
     voice: () => session.voice.inspect(),
+    editing: () => handles?.inspect() ?? {},
   });
 }
 
@@ -203,6 +217,15 @@ function whenModelling(stage: Stage, session: Session, made: (modeller: Modeller
     if (!session.modelling.active) return;
     stop();
     void import("./scene/modelling/modeller").then(({ Modeller }) => made(new Modeller(stage, session)));
+  });
+}
+
+/** Fetches the handles of a robot's parts when one is edited first. */
+function whenEditing(stage: Stage, session: Session, made: (handles: PartHandles) => void): void {
+  const stop = session.editing.changed.on(() => {
+    if (!session.editing.active) return;
+    stop();
+    void import("./scene/editing/part-handles").then(({ PartHandles }) => made(new PartHandles(stage, session)));
   });
 }
 

@@ -77,7 +77,7 @@ def test_the_page_of_a_robot_and_the_panels_of_its_description(start, open_page,
         assert found_in_menu(page) == []
     for keys in ("?", "Control+o", "Control+Shift+s"):
         assert found_in_dialog(page, keys) == []
-    own = ("Joints", "Links", "Diagram", "Source", "Joint Table")
+    own = ("Joints", "Links", "Diagram", "Source", "Joint Table", "Edit robot")
     assert found_in_panels(page, "Views", "Tool Properties", "Selection", "Transformation", *own) == []
     file.write_text(file.read_text().replace("</robot>", "<link/></robot>"))
     page.locator(".banner").wait_for()

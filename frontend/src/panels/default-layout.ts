@@ -18,7 +18,7 @@ const RIGHT: Home["beside"] = [
 ];
 
 /** What is wide and read line by line shares one place below the scene. */
-const BOTTOM: readonly PanelId[] = ["source", "diagram", "joint-table", "plot", "topics", "graph", "parameters", "log"];
+const BOTTOM: readonly PanelId[] = ["source", "diagram", "joint-table", "editing", "plot", "topics", "graph", "parameters", "log"];
 const BELOW: Home = { beside: [...BOTTOM.map((id) => [id, "within"] as const), ["scene", "below"]], height: 300 };
 /** The part of the dock's height that a panel asks for at most. */
 const MOST_HEIGHT = 0.4;
@@ -69,6 +69,7 @@ const HOMES: Readonly<Record<PanelId, Home>> = {
   source: BELOW,
   diagram: BELOW,
   "joint-table": BELOW,
+  editing: BELOW,
   plot: BELOW,
   topics: BELOW,
   graph: BELOW,

@@ -34,7 +34,7 @@ export class ScenePanel implements Panel {
     const toolbar = new Toolbar(session.tools, fit, showKeys, talkButton(session.voice, "scene-tool small talk"));
     const banner = new DiagnosticsBanner(session, showDiagnostics);
     const notice = new ConnectionNotice(session.connection);
-    const card = new SelectionCard(session, this.column);
+    const card = new SelectionCard(session, this.column, () => session.editing.wanted.emit());
     const inspect = new InspectMenu(session, this.column.changed);
     const sign = new OrientationSign(session);
     const simulation = new SimulationBar(session.simulation, session.modelling, commands);

@@ -12,10 +12,14 @@ export class SelectionCard {
 
   private folded = false;
 
-  /** @param column it is for; where it would lie over a robot, only its head is shown until the user unfolds it. */
+  /**
+   * @param column it is for; where it would lie over a robot, only its head is shown until the user unfolds it.
+   * @param edit what edits the link; null where nothing does.
+   */
   constructor(
     private readonly session: Session,
     private readonly column: CardColumn,
+    private readonly edit: (() => void) | null = null,
   ) {
     session.selection.changed.on(() => this.update());
     session.provenanceAnswered.on((provenance) => this.show(provenance));
@@ -34,8 +38,9 @@ export class SelectionCard {
     const { link } = selected;
     const words = strings.selection;
     const clear = button(words.clear, () => this.session.selection.select(null), "tool bare", icon("close"));
+    const edit = this.edit && button(strings.editing.editHint, this.edit, "tool bare edit-link", icon("handles"));
     this.element.replaceChildren(
-      h("header", {}, icon("cube"), h("strong", { title: words.title }, link.name), h("span", { class: "spacer" }), this.folder(), clear),
+      h("header", {}, icon("cube"), h("strong", { title: words.title }, link.name), h("span", { class: "spacer" }), edit, this.folder(), clear),
       ...details(link),
       place(link, (file, line) => this.session.description.placeAsked.emit({ file, line })),
       ...trail(link),

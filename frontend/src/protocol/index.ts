@@ -40,6 +40,17 @@ import type {
 } from "./description";
 import type { PictureBoxes, SolidBoxes } from "./detections";
 import type { DisplayProperties, DisplayStatus, PropertyChanged, SetProperty, Tree } from "./displays";
+import type {
+  ApplyEdit,
+  AskEditableParts,
+  EditHistory,
+  EditPreview,
+  EditWritten,
+  EditableParts,
+  PreviewEdit,
+  RedoEdit,
+  UndoEdit,
+} from "./editing";
 import type { AskExport, ExportFailed, ExportReady } from "./export";
 import type {
   EffortRings,
@@ -147,6 +158,7 @@ export * from "./configuration";
 export * from "./description";
 export * from "./detections";
 export * from "./displays";
+export * from "./editing";
 export * from "./export";
 export * from "./geometry";
 export * from "./images";
@@ -182,6 +194,10 @@ export type ServerMessage =
   | DisplayForgotten
   | DisplayProperties
   | DisplayStatus
+  | EditHistory
+  | EditPreview
+  | EditWritten
+  | EditableParts
   | ExportFailed
   | ExportReady
   | Folder
@@ -235,10 +251,12 @@ export type PageMessage =
   | AddThing
   | AddTool
   | AimTeleop
+  | ApplyEdit
   | AskConfigurationText
   | AskDescription
   | AskDescriptionText
   | AskDisplayChoices
+  | AskEditableParts
   | AskExport
   | AskFields
   | AskFolder
@@ -275,11 +293,13 @@ export type PageMessage =
   | Play
   | PointChosen
   | PoseChosen
+  | PreviewEdit
   | PushLink
   | RandomizeJoints
   | Received
   | RecordTopics
   | Redo
+  | RedoEdit
   | RedoWorld
   | RemoveDisplays
   | RemoveSavedView
@@ -310,6 +330,7 @@ export type PageMessage =
   | StopRecording
   | Talk
   | Undo
+  | UndoEdit
   | UndoWorld
   | UngroupThing
   | ViewChanged

@@ -27,6 +27,12 @@ export class Picker {
     private readonly drawings: () => Iterable<readonly [string, Drawing]>,
   ) {}
 
+  /** What draws a display that is on. */
+  drawing(display: string): Drawing | undefined {
+    for (const [id, drawing] of this.drawings()) if (id === display) return drawing;
+    return undefined;
+  }
+
   /** From the eye through a place. */
   rayAt(x: number, y: number): Raycaster {
     this.viewport.aim(this.session.view);

@@ -7,6 +7,7 @@ import { DisplayDataStore } from "./display-data";
 import { DescriptionState } from "./description";
 import { DrawingPace } from "./drawing-pace";
 import { DisplaysState } from "./displays";
+import { EditingState } from "./editing/editing";
 import { ElementFocus } from "./element-focus";
 import { FrameStore } from "./frames";
 import { InspectState } from "./inspect";
@@ -51,6 +52,7 @@ export class Session {
   readonly pace = new DrawingPace();
   readonly simulation: SimulationState;
   readonly modelling: Modelling;
+  readonly editing: EditingState;
   readonly robotChanged = new Signal<RobotScene>();
   readonly diagnosticsChanged = new Signal();
   /** Answers `ask_provenance`. */
@@ -79,6 +81,7 @@ export class Session {
     this.slowLine = new SlowLine(this.data);
     this.simulation = new SimulationState(connection);
     this.modelling = new Modelling(connection, browserStorage());
+    this.editing = new EditingState(connection, browserStorage());
     this.joints = new JointsState(connection);
     this.description = new DescriptionState(connection);
     this.monitor = new MonitorState(connection, browserStorage());

@@ -90,6 +90,11 @@ export class ViewState {
     return this.lookedAt !== null && what !== this.lookedAt.what;
   }
 
+  /** Somebody works with what is seen now: the camera stays where it is. */
+  stay(): void {
+    this.lookedAt = null;
+  }
+
   /** Looks at all of a box in the fixed frame, from the side it is seen from, in a canvas of this size. */
   fit(box: Span, size: ViewSize): void {
     this.update(this.fitted(box, size));

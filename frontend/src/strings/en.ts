@@ -1,6 +1,7 @@
 import { comparison } from "./en/comparison";
 import { details } from "./en/details";
 import { displays } from "./en/displays";
+import { editing } from "./en/editing";
 import { shell } from "./en/shell";
 import { description } from "./en/description";
 import { meshes } from "./en/meshes";
@@ -27,6 +28,7 @@ export const en = {
     world: modelling.panel,
     comparison: comparison.panel,
     voice: voice.panel,
+    editing: editing.panel,
   },
   shell,
   sharing,
@@ -35,6 +37,7 @@ export const en = {
   timeline,
   recording,
   comparison,
+  editing,
   modelling,
   voice,
   details,

@@ -1,4 +1,5 @@
 import { comparison } from "./zh/comparison";
+import { editing } from "./zh/editing";
 import { details } from "./zh/details";
 import { displays } from "./zh/displays";
 import { shell } from "./zh/shell";
@@ -17,7 +18,7 @@ import { voice } from "./zh/voice";
 /** 简体中文 */
 export const zh: Strings = {
   panels: { ...description.panels,
-    ...tools.panels, ...monitor.panels, displays: "显示", scene: "三维视图", views: "视角", joints: "关节", diagnostics: "诊断", world: modelling.panel, comparison: comparison.panel, voice: voice.panel },
+    ...tools.panels, ...monitor.panels, displays: "显示", scene: "三维视图", views: "视角", joints: "关节", diagnostics: "诊断", world: modelling.panel, comparison: comparison.panel, voice: voice.panel, editing: editing.panel },
   shell,
   sharing,
   simulation,
@@ -25,6 +26,7 @@ export const zh: Strings = {
   timeline,
   recording,
   comparison,
+  editing,
   modelling,
   voice,
   details,

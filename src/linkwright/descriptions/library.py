@@ -54,6 +54,10 @@ class DescriptionLibrary:
         """What finds the packages that a remembered description names; None where nobody said so."""
         return self._finders.get(text)
 
+    def description(self, text: str) -> Description | None:
+        """The remembered description that a text stands for; None where nobody said so."""
+        return self._descriptions.get(text)
+
     def files(self, text: str) -> tuple[Path, ...]:
         """What a remembered description was made from, the main file first; empty where nobody said so."""
         known = self._descriptions.get(text)

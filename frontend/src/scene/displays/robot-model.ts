@@ -2,7 +2,7 @@ import { Box3, Group, Matrix4, Vector3, type Object3D, type Raycaster } from "th
 import type { LinkScene, RobotScene } from "../../protocol";
 import { framePose } from "../pose";
 import type { MovingPicture } from "../robot/moving-meshes";
-import { RobotDrawing } from "../robot/robot-drawing";
+import { RobotDrawing, type Displacement } from "../robot/robot-drawing";
 import { shade } from "../studio-light";
 import type { Described, Hit, SelectionBox } from "../picking";
 import type { Drawing, DrawingContext } from "./drawing";
@@ -21,6 +21,7 @@ export class RobotModelDrawing implements Drawing {
   private lit = false;
   private styleIsOld = true;
   private contrast: boolean;
+  private displaced: Displacement | null = null;
   private readonly forget: readonly (() => void)[];
 
   constructor(private readonly context: DrawingContext) {
@@ -71,6 +72,13 @@ export class RobotModelDrawing implements Drawing {
     this.lit = lit;
   }
 
+  /** Draws a part elsewhere than the description has it; null for nothing. */
+  displace(displaced: Displacement | null): void {
+    this.displaced = displaced;
+    this.shown?.displaceShape(displaced?.shape ?? null);
+    this.context.invalidate();
+  }
+
   propertiesChanged(): void {
     this.styleIsOld = true;
   }
@@ -83,7 +91,12 @@ export class RobotModelDrawing implements Drawing {
     }
     this.styleIsOld = false;
     const { frames } = this.context.session;
-    this.shown?.place((link, matrix) => framePose(frames, frames.row(link.frame), matrix), this.covered());
+    const find = (link: LinkScene, matrix: Matrix4): boolean => {
+      const found = framePose(frames, frames.row(link.frame), matrix);
+      if (found) this.displaced?.link?.(link.name, matrix);
+      return found;
+    };
+    this.shown?.place(find, this.covered());
     this.shown?.look(this.context.camera());
   }
 

@@ -1,4 +1,4 @@
-import { Matrix4, Object3D, Vector3 } from "three";
+import { Matrix4, Object3D, PerspectiveCamera, Vector3 } from "three";
 import { TransformControls } from "three/addons/controls/TransformControls.js";
 import type { GizmoMode } from "../../state/modelling/modelling";
 import type { Stage } from "../stage";
@@ -6,6 +6,9 @@ import type { ToolEvent } from "../tools/tool";
 
 /** Of the handles, for a mouse and for fingers. */
 const [SIZE, LARGE] = [0.9, 1.3];
+
+/** How far handles reach on the canvas, as three.js has them. */
+const REACH = 0.19;
 
 /** Handles that move, turn and scale a frame; told of the pointer by the stage's own events. */
 export class Gizmo {
@@ -34,18 +37,27 @@ export class Gizmo {
     return this.frame.scale.toArray();
   }
 
-  /** Puts the handles on a pose in the fixed frame; null takes them away. */
-  show(pose: Matrix4 | null, mode: GizmoMode): void {
+  /** Puts the handles on a pose in the fixed frame, with its axes or those of the fixed frame; null takes them away. */
+  show(pose: Matrix4 | null, mode: GizmoMode, space: "world" | "local" = mode === "translate" ? "world" : "local"): void {
     if (pose === null) {
       this.controls.detach();
     } else {
       pose.decompose(this.frame.position, this.frame.quaternion, this.frame.scale);
       this.frame.scale.setScalar(1);
       this.controls.mode = mode;
-      this.controls.space = mode === "translate" ? "world" : "local";
+      this.controls.space = space;
       this.controls.attach(this.frame);
     }
     this.stage.loop.invalidate();
+  }
+
+  /** Where on the canvas the arrow or ring of an axis is, pixels; for tests. */
+  seenAt(axis: Vector3): { x: number; y: number } {
+    const { camera, size } = this.stage.viewport;
+    const angle = camera instanceof PerspectiveCamera ? (camera.fov * Math.PI) / 180 : 1;
+    const reach = REACH * this.frame.position.distanceTo(camera.position) * this.controls.size * Math.tan(angle / 2);
+    const tip = axis.clone().multiplyScalar(reach).applyQuaternion(this.frame.quaternion).add(this.frame.position).project(camera);
+    return { x: ((tip.x + 1) / 2) * size.width, y: ((1 - tip.y) / 2) * size.height };
   }
 
   /** Whether the pointer is over a handle. */

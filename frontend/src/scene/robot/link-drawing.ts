@@ -5,6 +5,7 @@ import type { MaterialPool } from "../materials";
 import type { StandIns } from "../meshes/stand-ins";
 import { LinkTrail } from "./link-trail";
 import type { MovingPiece } from "./moving-meshes";
+import type { Displacement } from "./robot-drawing";
 import { ShapeDrawing, type ShapePiece, type ShapeTold } from "./shape-drawing";
 import type { SolidKind, Solids } from "./solids";
 
@@ -134,6 +135,17 @@ export class LinkDrawing {
       this.lost = !found;
       this.paint();
     }
+  }
+
+  /** Draws one of its shapes elsewhere; null for none. */
+  displaceShape(displaced: Displacement["shape"] | null): void {
+    for (const each of [...this.visuals, ...this.collisions]) each.displace(null);
+    const { style } = this;
+    // A collision that is moved is seen, whether the others are or not.
+    this.collisionGroup.visible = (style.collision || style.contrast || displaced?.kind === "collision") && style.enabled;
+    if (!displaced) return;
+    const shapes = displaced.kind === "visual" ? this.visuals : this.collisions;
+    shapes.filter((each) => each.isAt(displaced.from))[displaced.among]?.displace(displaced.to);
   }
 
   /** What is drawn, for tests. */

@@ -15,6 +15,14 @@ import { Solids, type SolidKind } from "./solids";
 /** Told once for each mesh of each link: `error` is null when all of it is drawn. */
 export type MeshReport = (link: string, url: string, error: string | null) => void;
 
+/** A part of a robot that is drawn elsewhere than its description has it. */
+export interface Displacement {
+  /** Changes where a link is in the fixed frame. */
+  readonly link?: (name: string, matrix: Matrix4) => void;
+  /** A shape of a link: of those that stand at `from` in it the one after so many others. */
+  readonly shape?: { readonly link: string; readonly kind: "visual" | "collision"; readonly among: number; readonly from: Matrix4; readonly to: Matrix4 };
+}
+
 type InsteadOf = (link: string) => Instead | null;
 
 /** What is drawn: of a robot, or of all models of a world. */
@@ -126,6 +134,10 @@ export class RobotDrawing {
     for (const link of this.links.values()) link.addSolids(this.solids);
     this.solids.end();
     this.extras.place((name) => this.links.get(name)?.pose ?? null);
+  }
+
+  displaceShape(displaced: Displacement["shape"] | null): void {
+    for (const link of this.links.values()) link.displaceShape(displaced?.link === link.link.name ? displaced : null);
   }
 
   /** Chooses how finely shapes are drawn, for the camera of the next frame. */

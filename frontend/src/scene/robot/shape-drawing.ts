@@ -10,8 +10,12 @@ import type { StandIn } from "../meshes/stand-in";
 import type { StandIns } from "../meshes/stand-ins";
 import { UNCOLOURED_GREY, type MeshTemplate, type OwnMaterial } from "../meshes/mesh-template";
 import { extrusion, ground, submesh } from "../objects/world-geometries";
+import { poseMatrix } from "../pose";
 import { capsule, unitBox, unitCone, unitCylinder, unitPlane, unitSphere } from "../objects/geometries";
 import { solidKind, type SolidKind } from "./solids";
+
+/** m, and parts of rotation matrices. */
+const SAME_PLACE = 1e-6;
 
 /** A part of a shape: what is drawn, and with which materials of the file's own. */
 interface Part {
@@ -157,6 +161,23 @@ export class ShapeDrawing {
       meshes.push(mesh);
     }
     return complete;
+  }
+
+  /** Whether the description has it at a pose of its link. */
+  isAt(pose: Matrix4): boolean {
+    const [x = 0, y = 0, z = 0] = this.shape.position;
+    const place = poseMatrix([x, y, z, ...this.shape.quaternion], new Matrix4());
+    return place.elements.every((value, i) => Math.abs(value - (pose.elements[i] ?? NaN)) < SAME_PLACE);
+  }
+
+  /** Is drawn at another pose of its link; null for that of the description. */
+  displace(pose: Matrix4 | null): void {
+    if (pose) this.root.matrix.copy(pose);
+    else this.root.updateMatrix();
+    this.root.matrixWorldNeedsUpdate = true;
+    const [part] = this.parts;
+    if (!this.together || !part) return;
+    this.together = { ...this.together, matrix: new Matrix4().multiplyMatrices(this.root.matrix, part.mesh.matrix) };
   }
 
   /** What is drawn, for tests: bounds in the fixed frame, and colour, opacity and texture of each material. */

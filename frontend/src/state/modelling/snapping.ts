@@ -16,12 +16,18 @@ export function snapped(value: number, step: number): number {
 /** Whether things that are moved, turned and scaled keep to a grid, and which; remembered by the browser. */
 export class Snapping {
   readonly changed = new Signal();
-  private on = true;
-  private length = 0.1;
+  private on: boolean;
+  private length: number;
   private angle = 15;
 
-  constructor(private readonly storage: TextStorage) {
-    const [on, length, angle] = (storage.getItem(KEY) ?? "").split(" ");
+  /** `key`: under which it is remembered; `usual`: what holds before the user chooses. */
+  constructor(
+    private readonly storage: TextStorage,
+    private readonly key = KEY,
+    usual = { on: true, length: 0.1 },
+  ) {
+    [this.on, this.length] = [usual.on, usual.length];
+    const [on, length, angle] = (storage.getItem(key) ?? "").split(" ");
     if (!(Number(length) > 0 && Number(angle) > 0)) return;
     [this.on, this.length, this.angle] = [on === "on", Number(length), Number(angle)];
   }
@@ -61,7 +67,7 @@ export class Snapping {
   }
 
   private keep(): void {
-    this.storage.setItem(KEY, `${this.on ? "on" : "off"} ${this.length} ${this.angle}`);
+    this.storage.setItem(this.key, `${this.on ? "on" : "off"} ${this.length} ${this.angle}`);
     this.changed.emit();
   }
 }

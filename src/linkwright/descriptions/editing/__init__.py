@@ -4,6 +4,7 @@ from linkwright.descriptions.editing.errors import EditRefusedError
 from linkwright.descriptions.editing.files import EditHistory, Workspace
 from linkwright.descriptions.editing.planning import Allowed, EditPlan, plan_edit
 from linkwright.descriptions.editing.request import EditRequest, Part
+from linkwright.descriptions.editing.snapshot import read_again
 
 __all__ = [
     "Allowed",
@@ -14,4 +15,5 @@ __all__ = [
     "Part",
     "Workspace",
     "plan_edit",
+    "read_again",
 ]

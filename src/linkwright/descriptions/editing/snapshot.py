@@ -8,14 +8,19 @@ from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from linkwright.descriptions.description import Description
 from linkwright.descriptions.editing.definitions import Definitions
 from linkwright.descriptions.editing.places import Place
 from linkwright.diagnostics import LinkwrightError
+from linkwright.urdf import read
 from linkwright.urdf.plaintext import parse_as_urdfdom
 from linkwright.xmltree import Document, Element, Overlay
 from linkwright.xmltree.reader import read_bytes
+
+if TYPE_CHECKING:
+    from linkwright.xacro import Expansion
 
 _YAML = (".yaml", ".yml")
 
@@ -29,12 +34,14 @@ class Snapshot:
         texts: real path of a file -> its changed text.
         document: what it expands to with these.
         files: what was read for that.
+        expansion: how it was expanded; None for plain URDF.
     """
 
     description: Description
     texts: Mapping[str | os.PathLike[str], str]
     document: Document
     files: tuple[Path, ...]
+    expansion: Expansion | None = None
 
     @classmethod
     def of(cls, description: Description) -> Snapshot:
@@ -73,9 +80,14 @@ class Snapshot:
         whole = place.source.text
         changed = whole[: place.start] + text + whole[place.end :]
         texts = {**self.texts, os.path.realpath(place.source.name): changed}
-        return self._with(texts)
+        return self.with_texts(texts)
 
-    def _with(self, texts: Mapping[str | os.PathLike[str], str]) -> Snapshot:
+    def with_texts(self, texts: Mapping[str | os.PathLike[str], str]) -> Snapshot:
+        """The description with these texts in the place of those of files.
+
+        Raises:
+            LinkwrightError: it cannot be expanded with them.
+        """
         name, expansion, overlay = self.description.name, self.description.expansion, Overlay(texts)
         text = overlay.text(name)
         if expansion is None:
@@ -86,4 +98,16 @@ class Snapshot:
         inputs = expansion.inputs
         assert inputs is not None, "it was expanded from a file"
         again = expand(name, inputs.arguments, packages=inputs.packages, text=text, overlay=overlay)
-        return Snapshot(self.description, texts, again.document, again.dependencies)
+        return Snapshot(self.description, texts, again.document, again.dependencies, again)
+
+
+def read_again(description: Description) -> Description:
+    """A description as its files say it now, with the arguments and packages that it was read with.
+
+    Raises:
+        LinkwrightError: they cannot be read or expanded any more.
+    """
+    snapshot = Snapshot.of(description).with_texts({})
+    if snapshot.expansion is None:
+        return Description(description.name, snapshot.document, read(snapshot.document))
+    return Description.of_expansion(description.name, snapshot.expansion)

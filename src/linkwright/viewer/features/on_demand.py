@@ -6,6 +6,7 @@ from importlib import import_module
 from typing import Any, ClassVar
 
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
+from linkwright.viewer.protocol.editing import ApplyEdit, AskEditableParts, PreviewEdit, RedoEdit, UndoEdit
 from linkwright.viewer.protocol.export import AskExport
 from linkwright.viewer.protocol.monitor import (
     AimTeleop,
@@ -51,6 +52,10 @@ _ANSWERED_BY: dict[type, str] = {
     WatchTopics: "monitor.topics:TopicsFeature",
     WatchVoice: "voice.feature:VoiceFeature",
     **dict.fromkeys(
+        (ApplyEdit, AskEditableParts, PreviewEdit, RedoEdit, UndoEdit),
+        "editing.feature:EditingFeature",
+    ),
+    **dict.fromkeys(
         (AskWordsFile, BeginTake, EndTake, ImportWords, RemoveWord, RenameWord, WatchWords),
         "voice.feature:VoiceFeature",
     ),
@@ -59,7 +64,7 @@ _ANSWERED_BY: dict[type, str] = {
 
 
 class OnDemandFeatures(PageFeature):
-    """The live panels, the Voice panel and the export.
+    """The live panels, the Voice panel, editing and the export.
 
     They speak only to pages that have asked, so they are told of questions, of pages that go, and of the end.
     """

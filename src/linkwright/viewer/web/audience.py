@@ -43,11 +43,13 @@ class Page:
     Args:
         socket: of the page.
         own: the name that the page has for displays of its own; empty for a page that shares the common ones.
+        is_here: whether it is open on this machine, or came through a tunnel to it.
     """
 
-    def __init__(self, socket: WebSocketResponse, own: str = "") -> None:
+    def __init__(self, socket: WebSocketResponse, own: str = "", *, is_here: bool = False) -> None:
         self.outbox = Outbox()
         self.own = own
+        self.is_here = is_here
         self.line = Line(asyncio.get_running_loop().time)
         self._socket = socket
         self._reduced: dict[str, tuple[ScaledData, int]] = {}
@@ -229,9 +231,9 @@ class Audience(PageGroup):
         finally:
             self._expected -= 1
 
-    async def attend(self, socket: WebSocketResponse, own: str = "") -> None:
-        """Serve a page until it goes; `own` is its name for displays of its own."""
-        page = Page(socket, own)
+    async def attend(self, socket: WebSocketResponse, own: str = "", *, is_here: bool = False) -> None:
+        """Serve a page until it goes; see `Page`."""
+        page = Page(socket, own, is_here=is_here)
         page.open(self._opening(page))
         self.add(page)
         self._sockets.add(socket)

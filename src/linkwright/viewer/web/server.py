@@ -302,7 +302,7 @@ class WebServer:
             await socket.prepare(request)
         if request.transport is not None:
             keep_short(request.transport)
-        await audience.attend(socket, _own_displays(request))
+        await audience.attend(socket, _own_displays(request), is_here=_is_from_here(request))
         return socket
 
     def _audience_of(self, request: web.Request) -> Audience:
@@ -310,6 +310,17 @@ class WebServer:
         key = request.query.get("recording", "")
         found = None if self._guests is None or not key else self._guests.audience(key)
         return self._audience if found is None else found
+
+
+def _is_from_here(request: web.Request) -> bool:
+    """Whether a request comes from this machine: by its loopback, or from the address that it went to."""
+    transport = request.transport
+    peer, own = (transport and transport.get_extra_info(name) for name in ("peername", "sockname"))
+    if not peer or not own:
+        return False
+    address = ipaddress.ip_address(peer[0].partition("%")[0])
+    mapped = getattr(address, "ipv4_mapped", None)
+    return (mapped or address).is_loopback or peer[0] == own[0]
 
 
 def _own_displays(request: web.Request) -> str:

@@ -1,0 +1,70 @@
+import { button, h } from "../../dom";
+import { icon } from "../../icons";
+import type { DiagnosticItem, EditedFile } from "../../protocol";
+import type { EditingState } from "../../state/editing/editing";
+import { strings } from "../../strings";
+import { shortPath } from "../place";
+
+/** What an edit comes to in the files, or why it cannot be; writing it, and taking that back. */
+export class EditOutcome {
+  readonly element: HTMLElement;
+  private readonly text = h("div", { class: "edit-text", role: "status", tabIndex: 0 });
+  private readonly apply: HTMLButtonElement;
+  private readonly drop: HTMLButtonElement;
+  private readonly all: HTMLButtonElement;
+  private readonly undo: HTMLButtonElement;
+  private readonly redo: HTMLButtonElement;
+
+  constructor(private readonly editing: EditingState) {
+    const words = strings.editing;
+    this.apply = button(words.applyHint, () => editing.apply(), "tool framed primary", words.apply);
+    this.drop = button(words.dropHint, () => editing.reset(), "tool framed", words.drop);
+    this.all = button(words.allHint, () => editing.changeAll(), "tool framed", words.all);
+    this.undo = button(words.undo, () => editing.undo(), "tool bare", icon("undo"));
+    this.redo = button(words.redo, () => editing.redo(), "tool bare", icon("redo"));
+    const bar = h("div", { class: "edit-bar" }, this.apply, this.drop, this.all, h("span", { class: "spacer" }), this.undo, this.redo);
+    this.element = h("div", { class: "edit-outcome" }, this.text, bar);
+    editing.changed.on(() => this.show());
+    editing.draftChanged.on(() => this.show());
+    this.show();
+  }
+
+  private show(): void {
+    const { editing } = this;
+    const words = strings.editing;
+    const { preview, refusal, isOpen, written } = editing;
+    this.apply.disabled = !isOpen || (preview?.files.length ?? 0) === 0;
+    this.drop.disabled = !isOpen;
+    this.all.hidden = !isOpen || preview?.refusal?.code !== "EDIT104" || editing.isTogether;
+    this.undo.disabled = !editing.canUndo;
+    this.redo.disabled = !editing.canRedo;
+    if (refusal) this.text.replaceChildren(told(refusal));
+    else if (preview?.refusal) this.text.replaceChildren(told(preview.refusal));
+    else if (preview) this.text.replaceChildren(...also(preview.also), ...preview.files.map(diff));
+    else if (isOpen) this.text.replaceChildren(h("p", { class: "hint" }, words.looking));
+    else if (written.length > 0) this.text.replaceChildren(h("p", { class: "hint" }, words.written(written.map((file) => shortPath(file)).join(", "))));
+    else this.text.replaceChildren(h("p", { class: "hint" }, words.idle));
+    this.element.classList.toggle("refused", refusal !== null || (preview?.refusal ?? null) !== null);
+  }
+}
+
+function also(names: readonly string[]): HTMLElement[] {
+  return names.length === 0 ? [] : [h("p", { class: "edit-also" }, strings.editing.also(names.join(", ")))];
+}
+
+function diff({ file, diff: lines }: EditedFile): HTMLElement {
+  const kinds: Readonly<Record<string, string>> = { "+": "added", "-": "removed", "@": "at" };
+  const rows = lines.map((line) => h("span", { class: kinds[line[0] ?? ""] ?? "around" }, `${line}\n`));
+  return h("figure", { class: "edit-diff" }, h("figcaption", { title: file }, shortPath(file)), h("pre", {}, ...rows));
+}
+
+function told({ message, file, line, notes, hints }: DiagnosticItem): HTMLElement {
+  const at = (path: string | null, number: number | null): string => (path === null || number === null ? "" : ` (${shortPath(path)}:${number})`);
+  return h(
+    "div",
+    { class: "edit-refusal" },
+    h("p", {}, h("strong", {}, message), at(file, line)),
+    ...hints.map((hint) => h("p", { class: "hint" }, hint)),
+    h("ul", {}, ...notes.map((note) => h("li", {}, note.message, at(note.file, note.line)))),
+  );
+}

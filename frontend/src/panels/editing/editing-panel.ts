@@ -1,0 +1,220 @@
+import { button, coalesced, h } from "../../dom";
+import { icon } from "../../icons";
+import type { EditablePart } from "../../protocol";
+import type { HandleFrame } from "../../state/editing/editing";
+import { ANGLE_STEPS } from "../../state/modelling/snapping";
+import type { Session } from "../../state/session";
+import { strings } from "../../strings";
+import { formatNumber, parseNumber } from "../../tree/numbers";
+import { choice } from "../controls";
+import type { Panel } from "../panel";
+import { shortPath } from "../place";
+import { UnitSwitch } from "../unit-switch";
+import { holdWhileVisible } from "../visibility";
+import { EditOutcome } from "./edit-outcome";
+
+/** m */
+const LENGTH_STEPS = [0.001, 0.005, 0.01, 0.05, 0.1] as const;
+/** What an arrow key moves: m, parts of an axis, rad. */
+const [MOVE, TURN_RAD, TURN_DEGREES] = [0.001, 0.01, Math.PI / 180];
+
+/** A field of a number; `isTyped`: the user has not finished typing. */
+interface NumberInput {
+  readonly input: HTMLInputElement;
+  readonly value: () => number;
+  isTyped: boolean;
+}
+
+/** Moves and turns what the selected link is made of, and shows what that comes to in the files. */
+export class EditingPanel implements Panel {
+  readonly id = "editing";
+  readonly icon = "handles";
+  readonly element: HTMLElement;
+  private readonly hint = h("p", { class: "hint editing-hint" });
+  private readonly work = h("div", { class: "editing-work" });
+  private readonly list = h("div", { class: "editing-parts", role: "group", aria: { label: strings.editing.parts } });
+  private readonly place = h("div", { class: "editing-place" });
+  private readonly fields = h("div", { class: "editing-fields" });
+  private readonly modes = h("div", { class: "segmented", role: "group", aria: { label: strings.editing.handles } });
+  private shown: EditablePart | null = null;
+  /** What the fields are of. */
+  private built = "";
+  private inputs: NumberInput[] = [];
+
+  constructor(private readonly session: Session) {
+    const { editing, focus, angles } = session;
+    const numbers = h("div", { class: "editing-numbers" }, this.place, this.fields, this.tools());
+    this.work.append(numbers, new EditOutcome(editing).element);
+    this.element = h("div", { class: "panel editing-panel" }, this.hint, this.list, this.work);
+    const update = coalesced(() => this.update());
+    const follow = (): void => {
+      const { current } = focus;
+      const link = current && focus.linkOf(current);
+      editing.follow(current && typeof link === "string" ? { display: current.display, link } : null);
+    };
+    holdWhileVisible(this.element, () => editing.hold(), update);
+    focus.changed.on(follow);
+    for (const signal of [editing.changed, editing.draftChanged, editing.snapping.changed]) signal.on(update);
+    angles.changed.on(() => {
+      this.shown = null;
+      update();
+    });
+    follow();
+    this.update();
+  }
+
+  private update(): void {
+    const { editing } = this.session;
+    const words = strings.editing;
+    const { chosen, parts, whyNot, current } = editing;
+    const why = current === null ? words.selectLink : whyNot !== "" ? whyNot : "";
+    this.hint.hidden = why === "";
+    this.hint.textContent = why;
+    this.work.hidden = this.list.hidden = current === null || parts.length === 0;
+    this.list.replaceChildren(...parts.map((part) => this.partRow(part)));
+    if (chosen !== this.shown) this.build(chosen);
+    for (const { input, value, isTyped } of this.inputs) {
+      input.disabled = whyNot !== "";
+      if (!isTyped) input.value = formatNumber(value());
+    }
+    this.showModes();
+  }
+
+  private partRow(part: EditablePart): HTMLElement {
+    const words = strings.editing;
+    const { editing } = this.session;
+    const isChosen = part === editing.chosen;
+    const what = words.kinds[part.part];
+    const row = button(words.choose(what, part.title), () => editing.choose(part), "editing-part", h("strong", {}, what), " ", h("span", {}, part.part === "joint" || part.part === "axis" ? part.name : part.title));
+    row.setAttribute("aria-pressed", String(isChosen));
+    row.classList.toggle("selected", isChosen);
+    return row;
+  }
+
+  /** The fields of a part, which stay while it does: the user may be typing. */
+  private build(part: EditablePart | null): void {
+    this.shown = part;
+    this.place.replaceChildren();
+    if (part) this.showPlace(part);
+    const built = part ? [part.part, part.name, part.index, this.session.angles.current].join(" ") : "";
+    if (built === this.built) return;
+    this.built = built;
+    this.inputs = [];
+    this.fields.replaceChildren(...(part ? this.rows(part) : []));
+  }
+
+  private showPlace(part: EditablePart): void {
+    const words = strings.editing;
+    const { file, line, written } = part;
+    if (file !== "") {
+      const show = (): void => this.session.description.placeAsked.emit({ file, line });
+      const text = `${shortPath(file)}:${line}`;
+      this.place.append(button(`${file}:${line}`, show, "place", icon("file"), text), h("code", { title: written }, written === "" ? words.notWritten : written));
+    }
+  }
+
+  private rows(part: EditablePart): HTMLElement[] {
+    const words = strings.editing;
+    if (part.part === "axis") return [this.row(words.axis, "xyz", ["x", "y", "z"], "")];
+    const degrees = this.session.angles.current === "deg";
+    return [
+      this.row(words.position, "xyz", ["x", "y", "z"], "m"),
+      this.row(words.rotation, "rpy", words.angles, degrees ? strings.joints.degrees : strings.joints.radians),
+    ];
+  }
+
+  private row(label: string, kind: "xyz" | "rpy", names: readonly string[], unit: string): HTMLElement {
+    const cells = names.map((name, i) => {
+      const input = h("input", { class: "field numeric", aria: { label: `${label} ${name}` }, data: { number: `${kind}${i}` } });
+      input.type = "text";
+      input.inputMode = "decimal";
+      const value = (): number => this.now(kind, i) * this.scale(kind);
+      const made: NumberInput = { input, value, isTyped: false };
+      this.inputs.push(made);
+      this.listen(made, kind, i);
+      return h("label", { class: "editing-number" }, h("span", {}, name), input);
+    });
+    return h("div", { class: "editing-row" }, h("span", { class: "editing-label" }, label), ...cells, h("span", { class: "unit" }, unit));
+  }
+
+  private listen(made: NumberInput, kind: "xyz" | "rpy", index: number): void {
+    const { input, value } = made;
+    const show = (): void => {
+      made.isTyped = false;
+      input.value = formatNumber(value());
+    };
+    const read = (): void => {
+      const number = parseNumber(input.value);
+      if (made.isTyped && number !== null && input.value !== formatNumber(value())) this.set(kind, index, number / this.scale(kind));
+      show();
+    };
+    const step = (by: number): void => {
+      const angle = this.session.angles.current === "deg" ? TURN_DEGREES : TURN_RAD;
+      this.set(kind, index, this.now(kind, index) + by * (kind === "rpy" ? angle : MOVE));
+      show();
+    };
+    input.addEventListener("input", () => (made.isTyped = true));
+    input.addEventListener("focus", () => input.select());
+    input.addEventListener("blur", read);
+    input.addEventListener("keydown", (event) => {
+      if (event.key === "Enter") read();
+      else if (event.key === "Escape") show();
+      else if (event.key === "ArrowUp") step(1);
+      else if (event.key === "ArrowDown") step(-1);
+      else return;
+      event.preventDefault();
+      event.stopPropagation();
+    });
+  }
+
+  private now(kind: "xyz" | "rpy", index: number): number {
+    const { draft, chosen } = this.session.editing;
+    return (draft ?? chosen)?.[kind][index] ?? 0;
+  }
+
+  private set(kind: "xyz" | "rpy", index: number, value: number): void {
+    const { editing } = this.session;
+    const now = editing.draft ?? editing.chosen;
+    if (!now) return;
+    // Degrees that were typed are said by no more digits than they have.
+    const rounded = Number(value.toPrecision(12));
+    editing.move({ xyz: now.xyz, rpy: now.rpy, [kind]: now[kind].map((old, i) => (i === index ? rounded : old)) });
+  }
+
+  private scale(kind: "xyz" | "rpy"): number {
+    return kind === "rpy" ? this.session.angles.scale("revolute") : 1;
+  }
+
+  private tools(): HTMLElement {
+    const words = strings.editing;
+    const { editing, angles } = this.session;
+    const frame = choice<HandleFrame>(words.frameHint, [["parent", words.parentFrame], ["own", words.ownFrame]], (value) => (editing.frame = value));
+    const steps = (values: readonly number[], unit: string): (readonly [string, string])[] => values.map((value) => [String(value), `${value}${unit}`]);
+    const { snapping } = editing;
+    const length = choice(strings.modelling.lengthStep, steps(LENGTH_STEPS, " m"), (value) => (snapping.metres = Number(value)));
+    const angle = choice(strings.modelling.angleStep, steps(ANGLE_STEPS, "°"), (value) => (snapping.degrees = Number(value)));
+    const snap = button(words.snap, () => (snapping.enabled = !snapping.enabled), "tool bare", icon("magnet"));
+    const show = (): void => {
+      snap.setAttribute("aria-pressed", String(snapping.enabled));
+      snap.classList.toggle("active", snapping.enabled);
+      length.value = String(snapping.metres);
+      angle.value = String(snapping.degrees);
+      frame.value = editing.frame;
+    };
+    snapping.changed.on(show);
+    show();
+    return h("div", { class: "editing-tools" }, this.modes, frame, snap, length, angle, h("span", { class: "spacer" }), new UnitSwitch(angles).element);
+  }
+
+  private showModes(): void {
+    const { editing } = this.session;
+    const words = strings.editing;
+    const make = (mode: "translate" | "rotate"): HTMLElement => {
+      const made = button(words.modeHints[mode], () => (editing.mode = mode), editing.mode === mode ? "on" : "", words.modes[mode]);
+      made.setAttribute("aria-pressed", String(editing.mode === mode));
+      made.disabled = editing.chosen?.part === "axis" && mode === "translate";
+      return made;
+    };
+    this.modes.replaceChildren(make("translate"), make("rotate"));
+  }
+}

@@ -1,0 +1,223 @@
+import { BufferGeometry, Line, LineBasicMaterial, Matrix4, Quaternion, Vector3 } from "three";
+import type { EditablePart } from "../../protocol";
+import type { Draft, EditingState } from "../../state/editing/editing";
+import { nearestRpy, quaternionOf } from "../../state/editing/rotation";
+import { snapped } from "../../state/modelling/snapping";
+import type { Session } from "../../state/session";
+import { RobotModelDrawing } from "../displays/robot-model";
+import { Gizmo } from "../modelling/gizmo";
+import { framePose, poseMatrix } from "../pose";
+import type { Stage } from "../stage";
+import type { ToolEvent } from "../tools/tool";
+
+/** Without a grid, numbers of a drag are kept to this: m, and rad for a hundredth of a degree. */
+const FINEST_LENGTH = 1e-4;
+const FINEST_ANGLE = Math.PI / 18000;
+const FINEST_AXIS = 1e-4;
+const AXIS_COLOR = 0xff9d3c;
+const ONE = new Vector3(1, 1, 1);
+
+/** Handles on the part that is edited, and the robot as it would be: in the page alone, until the files say so. */
+export class PartHandles {
+  private readonly gizmo: Gizmo;
+  private readonly axis = new Line(new BufferGeometry(), new LineBasicMaterial({ color: AXIS_COLOR, depthTest: false }));
+  private readonly editing: EditingState;
+  /** While a handle is held: where the handles were, and the part. */
+  private start: { handles: Matrix4; draft: Draft } | null = null;
+  private previewed: string | null = null;
+
+  constructor(
+    private readonly stage: Stage,
+    private readonly session: Session,
+  ) {
+    this.gizmo = new Gizmo(stage);
+    this.editing = session.editing;
+    this.axis.renderOrder = 1;
+    this.axis.visible = false;
+    this.axis.frustumCulled = false;
+    stage.aids.add(this.axis);
+    const follow = (): void => this.update();
+    for (const signal of [this.editing.changed, this.editing.draftChanged, session.frames.posesChanged, session.frames.tableChanged]) signal.on(follow);
+    this.update();
+  }
+
+  /** False for an event that others should have. */
+  pointer(event: ToolEvent): boolean {
+    const { gizmo } = this;
+    if (gizmo.held) {
+      if (event.type === "move") this.drag(event);
+      else if (event.type === "up" && event.button === "left") this.letGo(event);
+      return true;
+    }
+    if (!this.editing.active || !this.editing.chosen || this.editing.whyNot !== "") return false;
+    if (event.type === "down" && event.button === "left") {
+      const { now } = this;
+      if (!now || !gizmo.grab(event)) return false;
+      this.start = { handles: gizmo.pose, draft: now };
+      return true;
+    }
+    if (event.type !== "move" || event.left || event.middle || event.right || !gizmo.hover(event)) return false;
+    this.stage.viewport.canvas.style.cursor = "grab";
+    return true;
+  }
+
+  /** What is asked for, and where the handles are on the canvas, for tests. */
+  inspect(): object {
+    const axes = { x: new Vector3(1, 0, 0), y: new Vector3(0, 1, 0), z: new Vector3(0, 0, 1) };
+    const handles = Object.entries(axes).map(([name, axis]) => [name, this.gizmo.seenAt(axis)] as const);
+    return { draft: this.editing.draft, handles: Object.fromEntries(handles) };
+  }
+
+  private get now(): Draft | null {
+    return this.editing.draft ?? this.editing.chosen;
+  }
+
+  private update(): void {
+    const { editing, gizmo, now } = this;
+    const { chosen } = editing;
+    if (editing.draft) this.session.view.stay();
+    const shown = editing.active && chosen && now && editing.whyNot === "" ? chosen : null;
+    this.preview(shown);
+    if (gizmo.held) return;
+    const base = shown && this.base(shown);
+    if (!shown || !now || !base) {
+      gizmo.show(null, "translate");
+      this.axis.visible = false;
+      return;
+    }
+    const pose = base.clone().multiply(partMatrix(shown, now));
+    if (editing.frame === "parent" && shown.part !== "axis") {
+      const turn = new Quaternion().setFromRotationMatrix(base);
+      pose.compose(new Vector3().setFromMatrixPosition(pose), turn, ONE);
+    }
+    gizmo.show(pose, editing.mode, "local");
+    this.showAxis(shown, now, base);
+  }
+
+  /** What the numbers of a part are relative to, in the fixed frame; null where nothing tells where it is. */
+  private base(part: EditablePart): Matrix4 | null {
+    const { current } = this.editing;
+    const robot = this.session.robots.get(current?.display ?? "");
+    const joint = robot?.joints.find((each) => each.name === part.name);
+    const link = part.part === "joint" ? joint?.parent : part.part === "axis" ? joint?.child : part.name;
+    const frame = robot?.links.find((each) => each.name === link)?.frame;
+    const pose = new Matrix4();
+    return frame !== undefined && framePose(this.session.frames, this.session.frames.row(frame), pose) ? pose : null;
+  }
+
+  private drag(event: ToolEvent): void {
+    const { start, gizmo, editing } = this;
+    const { chosen } = editing;
+    const base = chosen && this.base(chosen);
+    const steps = editing.snapping.steps(event.ctrl);
+    gizmo.drag(event, { length: 0, angle: steps.angle });
+    if (!start || !base) return;
+    // By how much the handles have gone, in the frame that the numbers are in.
+    const by = gizmo.pose.multiply(start.handles.clone().invert());
+    const inBase = base.clone().invert().multiply(by).multiply(base);
+    editing.move(chosen.part === "axis" ? turnedAxis(start.draft, inBase) : this.moved(chosen, start.draft, inBase, steps));
+  }
+
+  private moved(part: EditablePart, from: Draft, by: Matrix4, steps: { length: number; angle: number }): Draft {
+    const before = partMatrix(part, from);
+    const after = by.clone().multiply(before);
+    const [at, turn] = [new Vector3(), new Quaternion()];
+    after.decompose(at, turn, new Vector3());
+    if (this.editing.mode === "rotate") {
+      const rpy = nearestRpy([turn.x, turn.y, turn.z, turn.w], from.rpy);
+      return { xyz: from.xyz, rpy: keep(rpy, from.rpy, steps.angle > 0 ? 0 : FINEST_ANGLE) };
+    }
+    const step = steps.length || FINEST_LENGTH;
+    if (this.editing.frame === "parent") return { xyz: keep(at.toArray(), from.xyz, step), rpy: from.rpy };
+    // Along its own axes the way is kept to the grid, and not the place.
+    const own = new Quaternion().setFromRotationMatrix(before);
+    const way = at.sub(new Vector3().fromArray(from.xyz)).applyQuaternion(own.clone().invert());
+    const kept = new Vector3(...way.toArray().map((part) => snapped(part, step))).applyQuaternion(own);
+    return { xyz: keep(kept.toArray().map((part, i) => part + (from.xyz[i] ?? 0)), from.xyz, 0), rpy: from.rpy };
+  }
+
+  private letGo(event: ToolEvent): void {
+    this.gizmo.release(event);
+    this.start = null;
+    this.update();
+  }
+
+  /** Has the robot drawn as it would be. */
+  private preview(part: EditablePart | null): void {
+    const { editing, stage, now } = this;
+    const display = part && (editing.draft || part.part === "collision") ? (editing.current?.display ?? null) : null;
+    if (this.previewed !== null && this.previewed !== display) this.robot(this.previewed)?.displace(null);
+    this.previewed = display;
+    if (display === null || !part || !now || part.part === "axis") {
+      if (display !== null) this.robot(display)?.displace(null);
+      stage.loop.invalidate();
+      return;
+    }
+    const [before, after] = [partMatrix(part, part), partMatrix(part, now)];
+    if (part.part === "joint") {
+      const links = this.below(display, part.name);
+      this.robot(display)?.displace({
+        link: (name, matrix) => {
+          const base = links.has(name) ? this.base(part) : null;
+          if (base) matrix.premultiply(base.clone().multiply(after).multiply(before.clone().invert()).multiply(base.invert()));
+        },
+      });
+    } else {
+      const twins = editing.parts.filter((each) => each.part === part.part && each.index < part.index && isPlacedAs(each, part));
+      this.robot(display)?.displace({ shape: { link: part.name, kind: part.part, among: twins.length, from: before, to: after } });
+    }
+    stage.loop.invalidate();
+  }
+
+  private robot(display: string): RobotModelDrawing | null {
+    const drawing = this.stage.picker.drawing(display);
+    return drawing instanceof RobotModelDrawing ? drawing : null;
+  }
+
+  /** The links that a joint carries. */
+  private below(display: string, joint: string): ReadonlySet<string> {
+    const joints = this.session.robots.get(display)?.joints ?? [];
+    const found = new Set<string>();
+    const pending = joints.filter(({ name }) => name === joint).map(({ child }) => child);
+    for (let link = pending.pop(); link !== undefined; link = pending.pop()) {
+      if (found.has(link)) continue;
+      found.add(link);
+      for (const { parent, child } of joints) if (parent === link) pending.push(child);
+    }
+    return found;
+  }
+
+  private showAxis(part: EditablePart, { xyz }: Draft, base: Matrix4): void {
+    this.axis.visible = part.part === "axis";
+    if (!this.axis.visible) return;
+    const reach = this.stage.boundsOf(this.editing.current?.display ?? "").getSize(new Vector3()).length() / 4 || 0.2;
+    const along = new Vector3().fromArray(xyz).normalize().multiplyScalar(reach);
+    this.axis.geometry.setFromPoints([along.clone().negate().applyMatrix4(base), along.applyMatrix4(base)]);
+  }
+}
+
+/** Where a part is, or how its axis points: turned from x. */
+function partMatrix(part: EditablePart, { xyz, rpy }: Draft): Matrix4 {
+  if (part.part === "axis") {
+    const turn = new Quaternion().setFromUnitVectors(new Vector3(1, 0, 0), new Vector3().fromArray(xyz).normalize());
+    return new Matrix4().makeRotationFromQuaternion(turn);
+  }
+  return poseMatrix([...xyz, ...quaternionOf(rpy)], new Matrix4());
+}
+
+function turnedAxis({ xyz }: Draft, by: Matrix4): Draft {
+  const [x, y, z] = new Vector3().fromArray(xyz).normalize().transformDirection(by).toArray();
+  return { xyz: [x, y, z].map((part) => snapped(part, FINEST_AXIS)), rpy: [] };
+}
+
+/** Numbers on a grid; those that hardly changed are what they were. */
+function keep(numbers: readonly number[], before: readonly number[], step: number): number[] {
+  return numbers.map((number, i) => {
+    const old = before[i] ?? 0;
+    return Math.abs(number - old) < 1e-6 ? old : Number(snapped(number, step).toPrecision(12));
+  });
+}
+
+function isPlacedAs(one: EditablePart, other: EditablePart): boolean {
+  return [...one.xyz, ...one.rpy].every((value, i) => value === [...other.xyz, ...other.rpy][i]);
+}

@@ -1,0 +1,255 @@
+import type { Connection } from "../../connection/connection";
+import type { DiagnosticItem, EditablePart, EditableParts, EditPreview } from "../../protocol";
+import { Signal } from "../signal";
+import { Snapping } from "../modelling/snapping";
+import type { TextStorage } from "../storage";
+
+/** Where the part that is edited shall be: metres, or the parts of an axis; rad, empty for an axis. */
+export interface Draft {
+  readonly xyz: readonly number[];
+  readonly rpy: readonly number[];
+}
+
+export type HandleMode = "translate" | "rotate";
+/** Whose axes the handles have. */
+export type HandleFrame = "parent" | "own";
+
+const SNAPPING = "linkwright.editing-snapping";
+/** After the last change, ms. */
+const ASKS_AFTER = 120;
+const NOTHING = 1e-9;
+
+/** A robot that is edited: what can be, what is asked for, and what that comes to in the files. */
+export class EditingState {
+  /** What can be edited, which of it is, the preview, what can be undone, or what was refused. */
+  readonly changed = new Signal();
+  /** Where the chosen part shall be. */
+  readonly draftChanged = new Signal();
+  /** The user wants to edit a link. */
+  readonly wanted = new Signal();
+  readonly snapping: Snapping;
+  preview: EditPreview | null = null;
+  /** Why nothing was written. */
+  refusal: DiagnosticItem | null = null;
+  /** The files that were written last. */
+  written: readonly string[] = [];
+  canUndo = false;
+  canRedo = false;
+  private link: { display: string; link: string } | null = null;
+  private known: EditableParts | null = null;
+  private part: EditablePart | null = null;
+  private asked: Draft | null = null;
+  /** The draft was written, and the robot that has it is to come. */
+  private isWritten = false;
+  private number = 0;
+  private together = false;
+  private timer: ReturnType<typeof setTimeout> | undefined;
+  private holders = 0;
+  private handleMode: HandleMode = "translate";
+  private handleFrame: HandleFrame = "parent";
+
+  constructor(
+    private readonly connection: Connection,
+    storage: TextStorage,
+  ) {
+    this.snapping = new Snapping(storage, SNAPPING, { on: false, length: 0.01 });
+    connection.on("editable_parts", (message) => this.take(message));
+    connection.on("edit_preview", (message) => {
+      if (message.number !== this.number) return;
+      this.preview = message;
+      this.changed.emit();
+    });
+    connection.on("edit_written", ({ files, refusal }) => {
+      this.refusal = refusal;
+      this.written = files;
+      this.isWritten = refusal === null && this.asked !== null;
+      this.preview = null;
+      this.changed.emit();
+      this.draftChanged.emit();
+    });
+    connection.on("edit_history", ({ can_undo, can_redo }) => {
+      [this.canUndo, this.canRedo] = [can_undo, can_redo];
+      this.changed.emit();
+    });
+    connection.on("description_changed", ({ display }) => {
+      if (this.active && display === this.link?.display) this.ask();
+    });
+    connection.on("robot_scene", ({ display }) => {
+      if (display === this.link?.display && this.isWritten) this.reset();
+    });
+  }
+
+  /** Whether somebody edits now. */
+  get active(): boolean {
+    return this.holders > 0;
+  }
+
+  get parts(): readonly EditablePart[] {
+    return this.known?.parts ?? [];
+  }
+
+  /** Why nothing can be edited; empty where it can. */
+  get whyNot(): string {
+    return this.known?.why_not ?? "";
+  }
+
+  get current(): { display: string; link: string } | null {
+    return this.link;
+  }
+
+  get chosen(): EditablePart | null {
+    return this.part;
+  }
+
+  /** Null where nothing was moved. */
+  get draft(): Draft | null {
+    return this.asked;
+  }
+
+  /** Whether the draft still has to be written, or thrown away. */
+  get isOpen(): boolean {
+    return this.asked !== null && !this.isWritten;
+  }
+
+  /** Whether all that one text makes may change. */
+  get isTogether(): boolean {
+    return this.together;
+  }
+
+  get mode(): HandleMode {
+    return this.part?.part === "axis" ? "rotate" : this.handleMode;
+  }
+
+  set mode(mode: HandleMode) {
+    this.handleMode = mode;
+    this.changed.emit();
+    this.draftChanged.emit();
+  }
+
+  get frame(): HandleFrame {
+    return this.handleFrame;
+  }
+
+  set frame(frame: HandleFrame) {
+    this.handleFrame = frame;
+    this.changed.emit();
+    this.draftChanged.emit();
+  }
+
+  /** Edits until the returned function is called. */
+  hold(): () => void {
+    this.holders += 1;
+    this.ask();
+    this.draftChanged.emit();
+    let done = false;
+    return () => {
+      if (!done) this.holders -= 1;
+      done = true;
+      if (!this.active) this.reset();
+    };
+  }
+
+  /** The link that the user looks at; null for none. */
+  follow(link: { display: string; link: string } | null): void {
+    if (link?.display === this.link?.display && link?.link === this.link?.link) return;
+    this.link = link;
+    this.known = this.part = null;
+    this.written = [];
+    this.reset();
+    this.ask();
+  }
+
+  choose(part: EditablePart): void {
+    if (isSame(part, this.part)) return;
+    this.part = part;
+    this.written = [];
+    this.reset();
+  }
+
+  /** What the chosen part shall have; the files are asked for when the hand rests. */
+  move(draft: Draft): void {
+    const { part } = this;
+    if (!part || this.whyNot !== "") return;
+    const stays = equal(draft.xyz, part.xyz) && equal(draft.rpy, part.rpy);
+    this.asked = stays ? null : draft;
+    this.isWritten = this.together = false;
+    this.written = [];
+    this.forget();
+    this.draftChanged.emit();
+    if (this.asked) this.timer = setTimeout(() => this.askPreview(), ASKS_AFTER);
+  }
+
+  /** Asks for the same once more, where all that the text makes may change. */
+  changeAll(): void {
+    this.together = true;
+    this.askPreview();
+    this.changed.emit();
+  }
+
+  apply(): void {
+    if (!this.preview || this.preview.files.length === 0) return;
+    this.connection.send({ type: "apply_edit", number: this.preview.number });
+  }
+
+  undo(): void {
+    this.reset();
+    this.connection.send({ type: "undo_edit" });
+  }
+
+  redo(): void {
+    this.reset();
+    this.connection.send({ type: "redo_edit" });
+  }
+
+  /** Throws the draft away. */
+  reset(): void {
+    this.asked = null;
+    this.isWritten = this.together = false;
+    this.forget();
+    this.draftChanged.emit();
+  }
+
+  private forget(): void {
+    clearTimeout(this.timer);
+    this.number += 1;
+    this.preview = this.refusal = null;
+    this.changed.emit();
+  }
+
+  private ask(): void {
+    if (this.active && this.link) this.connection.send({ type: "ask_editable_parts", ...this.link });
+  }
+
+  private askPreview(): void {
+    const { part, asked, link } = this;
+    if (!part || !asked || !link) return;
+    this.number += 1;
+    this.preview = null;
+    const { name, index } = part;
+    const xyz = equal(asked.xyz, part.xyz) ? null : [...asked.xyz];
+    const rpy = equal(asked.rpy, part.rpy) ? null : [...asked.rpy];
+    const { number, together } = this;
+    this.connection.send({ type: "preview_edit", number, display: link.display, part: part.part, name, index, xyz, rpy, together });
+  }
+
+  /** A draft stays while what it starts from stays: then another part of the robot has changed. */
+  private take(message: EditableParts): void {
+    if (message.display !== this.link?.display || message.link !== this.link.link) return;
+    this.known = message;
+    const before = this.part;
+    this.part = message.parts.find((part) => isSame(part, before)) ?? message.parts[0] ?? null;
+    const stays = before && this.part && isSame(before, this.part) && equal(before.xyz, this.part.xyz) && equal(before.rpy, this.part.rpy);
+    if (!stays) this.reset();
+    else if (this.isOpen) this.askPreview();
+    this.changed.emit();
+    this.draftChanged.emit();
+  }
+}
+
+function isSame(one: EditablePart, other: EditablePart | null): boolean {
+  return other !== null && one.part === other.part && one.name === other.name && one.index === other.index;
+}
+
+function equal(some: readonly number[], others: readonly number[]): boolean {
+  return some.length === others.length && some.every((value, i) => Math.abs(value - (others[i] ?? NaN)) < NOTHING);
+}

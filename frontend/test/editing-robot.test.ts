@@ -1,0 +1,139 @@
+import { beforeEach, describe, expect, it, vi } from "vitest";
+import { Euler, Quaternion } from "three";
+import { Connection } from "../src/connection/connection";
+import type { EditablePart, PageMessage } from "../src/protocol";
+import { EditingState } from "../src/state/editing/editing";
+import { nearestRpy, quaternionOf } from "../src/state/editing/rotation";
+import { browserStorage } from "../src/state/storage";
+
+let sent: PageMessage[];
+let connection: Connection;
+let editing: EditingState;
+const LINK = { display: "d", link: "arm" };
+
+function part(fields: Partial<EditablePart> = {}): EditablePart {
+  return { part: "joint", name: "shoulder", index: 0, title: "", xyz: [0, 0, 1], rpy: [0, 0, 0], written: "", file: "/r.urdf", line: 3, ...fields };
+}
+
+function told(...parts: EditablePart[]): void {
+  connection.message.emit({ type: "editable_parts", ...LINK, why_not: "", parts });
+}
+
+function kinds(): string[] {
+  return sent.map((message) => message.type);
+}
+
+beforeEach(() => {
+  vi.useFakeTimers();
+  sent = [];
+  connection = new Connection("ws://localhost/ws");
+  vi.spyOn(connection, "send").mockImplementation((message) => void sent.push(message));
+  editing = new EditingState(connection, browserStorage());
+});
+
+describe("rotations", () => {
+  it("are those of URDF", () => {
+    const [r, p, y] = [0.3, -1.1, 2.2];
+    const three = new Quaternion().setFromEuler(new Euler(r, p, y, "ZYX"));
+    quaternionOf([r, p, y]).forEach((value, i) => expect(value).toBeCloseTo(three.toArray()[i] ?? NaN, 12));
+  });
+
+  it.each([[[0.3, -1.1, 2.2]], [[3.1, 0.2, -3.1]], [[0.3, 2.5, 1]], [[0, 0, 0]]])("of %j keep their angles", (rpy) => {
+    nearestRpy(quaternionOf(rpy), rpy).forEach((angle, i) => expect(angle).toBeCloseTo(rpy[i] ?? NaN, 9));
+  });
+
+  it.each([Math.PI / 2, -Math.PI / 2])("keep roll at gimbal lock, %d", (pitch) => {
+    const rotation = quaternionOf([0.5, pitch, 0.2]);
+    const found = nearestRpy(rotation, [0.4, 0, 0]);
+    expect(found[0]).toBe(0.4);
+    const again = quaternionOf(found);
+    expect(Math.abs(again.reduce((sum, value, i) => sum + value * (rotation[i] ?? 0), 0))).toBeCloseTo(1, 9);
+  });
+
+  it("turn on where whole turns end", () => {
+    expect(nearestRpy(quaternionOf([0, 0, 3.2]), [0, 0, 3.1])[2]).toBeCloseTo(3.2, 9);
+  });
+});
+
+describe("editing", () => {
+  it("asks for the parts of a link only while somebody edits", () => {
+    editing.follow(LINK);
+    expect(sent).toEqual([]);
+    const release = editing.hold();
+    expect(sent).toEqual([{ type: "ask_editable_parts", ...LINK }]);
+    release();
+    editing.follow({ ...LINK, link: "hand" });
+    expect(sent).toHaveLength(1);
+  });
+
+  it("asks for the files when the hand rests, and only for what differs", () => {
+    editing.follow(LINK);
+    editing.hold();
+    told(part());
+    editing.move({ xyz: [0, 0, 1.1], rpy: [0, 0, 0] });
+    editing.move({ xyz: [0, 0, 1.2], rpy: [0, 0, 0] });
+    expect(kinds()).toEqual(["ask_editable_parts"]);
+    vi.runAllTimers();
+    expect(sent.at(-1)).toMatchObject({ type: "preview_edit", part: "joint", name: "shoulder", xyz: [0, 0, 1.2], rpy: null, together: false });
+  });
+
+  it("takes no preview of an older question, and writes the one that is shown", () => {
+    editing.follow(LINK);
+    editing.hold();
+    told(part());
+    editing.move({ xyz: [0, 0, 1.1], rpy: [0, 0, 0] });
+    vi.runAllTimers();
+    const { number } = sent.at(-1) as { number: number };
+    const files = [{ file: "/r.urdf", diff: ["+x"] }];
+    connection.message.emit({ type: "edit_preview", number: number - 1, files, also: [], refusal: null });
+    expect(editing.preview).toBeNull();
+    editing.apply();
+    expect(kinds()).not.toContain("apply_edit");
+    connection.message.emit({ type: "edit_preview", number, files, also: [], refusal: null });
+    editing.apply();
+    expect(sent.at(-1)).toEqual({ type: "apply_edit", number });
+  });
+
+  it("shows the robot as it was asked for until the new one comes", () => {
+    editing.follow(LINK);
+    editing.hold();
+    told(part());
+    editing.move({ xyz: [0, 0, 1.1], rpy: [0, 0, 0] });
+    connection.message.emit({ type: "edit_written", files: ["/r.urdf"], refusal: null });
+    expect(editing.draft).not.toBeNull();
+    expect(editing.isOpen).toBe(false);
+    connection.message.emit({ type: "robot_scene", display: "d", revision: 2, name: "r", links: [], joints: [] });
+    expect(editing.draft).toBeNull();
+    expect(editing.written).toEqual(["/r.urdf"]);
+  });
+
+  it("keeps a draft when something else of the robot changes, and drops it when its own numbers do", () => {
+    editing.follow(LINK);
+    editing.hold();
+    told(part());
+    editing.move({ xyz: [0, 0, 1.1], rpy: [0, 0, 0] });
+    told(part({ line: 4 }));
+    expect(editing.draft?.xyz).toEqual([0, 0, 1.1]);
+    told(part({ xyz: [0, 0, 2] }));
+    expect(editing.draft).toBeNull();
+  });
+
+  it("keeps a draft that could not be written", () => {
+    editing.follow(LINK);
+    editing.hold();
+    told(part());
+    editing.move({ xyz: [0, 0, 1.1], rpy: [0, 0, 0] });
+    const refusal = { code: "EDIT107", severity: "error" as const, message: "changed", file: null, line: null, column: null, end_line: null, end_column: null, excerpt: "", notes: [], hints: [] };
+    connection.message.emit({ type: "edit_written", files: [], refusal });
+    expect(editing.isOpen).toBe(true);
+    expect(editing.refusal).toBe(refusal);
+  });
+
+  it("moves nothing where nothing may be written", () => {
+    editing.follow(LINK);
+    editing.hold();
+    connection.message.emit({ type: "editable_parts", ...LINK, why_not: "elsewhere", parts: [part()] });
+    editing.move({ xyz: [0, 0, 1.1], rpy: [0, 0, 0] });
+    expect(editing.draft).toBeNull();
+  });
+});

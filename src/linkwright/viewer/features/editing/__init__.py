@@ -1,0 +1,1 @@
+"""Editing a robot in the page."""

@@ -1,0 +1,141 @@
+"""A robot is edited in the page: by numbers and by handles, into the source, and back."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.browser.conftest import becomes, state, until
+
+pytestmark = pytest.mark.browser
+
+ROBOT = """\
+<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:property name="height" value="0.5"/>
+  <xacro:macro name="arm" params="name y">
+    <link name="${name}"><visual><geometry><box size="0.2 0.2 0.2"/></geometry></visual></link>
+    <joint name="${name}_joint" type="fixed">
+      <origin xyz="0.6 ${y} 0"/><parent link="base"/><child link="${name}"/>
+    </joint>
+  </xacro:macro>
+  <link name="base"><visual><geometry><box size="1 1 0.2"/></geometry></visual></link>
+  <link name="mast">
+    <visual><origin xyz="0 0 0.2"/><geometry><box size="0.2 0.2 0.4"/></geometry></visual>
+  </link>
+  <joint name="mast_joint" type="revolute">
+    <origin xyz="0 0 ${height}"/><parent link="base"/><child link="mast"/><axis xyz="0 0 1"/>
+    <limit lower="-1" upper="1" effort="1" velocity="1"/>
+  </joint>
+  <xacro:arm name="left" y="0.6"/>
+  <xacro:arm name="right" y="-0.6"/>
+</robot>
+"""
+MAST = "lw.displays.find(({class: c}) => c === 'rviz_default_plugins/RobotModel').drawn.links.mast.visuals[0].bounds"
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    path = tmp_path / "robot.urdf.xacro"
+    path.write_text(ROBOT)
+    return path
+
+
+def edited(page, link: str) -> None:
+    """Have a link edited, by way of its card."""
+    page.get_by_role("tab", name="Links").click()
+    page.get_by_text(link, exact=True).first.click()
+    page.get_by_role("button", name="Move and turn this link").click()
+    page.locator(".editing-part").first.wait_for()
+
+
+def number(page, name: str):
+    return page.locator(f"[data-number={name}]")
+
+
+def type_in(page, name: str, text: str) -> None:
+    number(page, name).fill(text)
+    number(page, name).press("Enter")
+
+
+def test_a_number_is_shown_at_once_written_on_request_and_taken_back(start, open_page, file):
+    page = open_page(start("view", str(file)))
+    edited(page, "mast")
+    becomes(lambda: number(page, "xyz2").input_value(), "0.5")
+    until(page, f"Math.abs({MAST}.min[2] - 0.5) < 1e-6")
+    type_in(page, "xyz2", "0.8")
+    until(page, f"Math.abs({MAST}.min[2] - 0.8) < 1e-6")
+    page.get_by_text('+  <xacro:property name="height" value="0.8"/>').wait_for()
+    assert file.read_text() == ROBOT
+
+    page.get_by_role("button", name="Write", exact=True).click()
+    page.get_by_text("Written: ", exact=False).wait_for()
+    assert file.read_text() == ROBOT.replace('"0.5"', '"0.8"')
+    until(page, "Math.abs(lw.frames.mast.position[2] - 0.8) < 1e-6")
+    until(page, f"Math.abs({MAST}.min[2] - 0.8) < 1e-6")
+
+    page.get_by_role("button", name="Take the last written edit back").click()
+    until(page, "Math.abs(lw.frames.mast.position[2] - 0.5) < 1e-6")
+    assert file.read_text() == ROBOT
+    becomes(lambda: number(page, "xyz2").input_value(), "0.5")
+
+
+def test_a_visual_is_turned_in_degrees_and_put_back(start, open_page, file):
+    page = open_page(start("view", str(file)))
+    edited(page, "mast")
+    page.get_by_role("button", name="Visual box").click()
+    page.locator(".editing-tools").get_by_role("button", name="deg").click()
+    type_in(page, "rpy1", "90")
+    until(page, f"Math.abs({MAST}.max[0] - {MAST}.min[0] - 0.4) < 1e-6")
+    page.get_by_text('rpy="0 1.570796327 0"', exact=False).wait_for()
+    page.get_by_role("button", name="Discard").click()
+    until(page, f"Math.abs({MAST}.max[0] - {MAST}.min[0] - 0.2) < 1e-6")
+    assert number(page, "rpy1").input_value() == "0"
+    assert file.read_text() == ROBOT
+
+
+def test_handles_move_a_link_along_one_axis(start, open_page, file):
+    page = open_page(start("view", str(file)))
+    edited(page, "left")
+    becomes(lambda: number(page, "xyz0").input_value(), "0.6")
+    page.get_by_role("button", name="Keep to a grid").click()
+    canvas = page.locator("canvas").first.bounding_box()
+    until(page, "lw.panels.editing.handles !== undefined")
+    found = state(page, "panels.editing.handles.z")
+    x, y = canvas["x"] + found["x"], canvas["y"] + found["y"]
+    page.mouse.move(x, y)
+    page.mouse.down()
+    for step in range(1, 6):
+        page.mouse.move(x, y - 12 * step)
+    page.mouse.up()
+    until(page, "lw.panels.editing.draft !== null && lw.panels.editing.draft.xyz[2] > 0.01")
+    moved = state(page, "panels.editing.draft.xyz")
+    assert moved[:2] == [0.6, 0.6]
+    assert moved[2] == pytest.approx(round(moved[2], 2), abs=1e-12)
+    page.get_by_text("would also change joint 'right_joint'", exact=False).wait_for()
+
+
+def test_what_a_macro_makes_twice_is_refused_and_changed_together_on_request(start, open_page, file):
+    page = open_page(start("view", str(file)))
+    edited(page, "left")
+    type_in(page, "xyz2", "0.1")
+    page.get_by_text("would also change joint 'right_joint'", exact=False).wait_for()
+    assert page.get_by_role("button", name="Write", exact=True).is_disabled()
+    page.get_by_role("button", name="Change all").click()
+    page.get_by_text("Changes with it: joint 'right_joint'").wait_for()
+    page.get_by_role("button", name="Write", exact=True).click()
+    until(page, "Math.abs(lw.frames.right.position[2] - 0.1) < 1e-6")
+    assert file.read_text() == ROBOT.replace("${y} 0", "${y} 0.1")
+
+
+def test_a_file_that_was_changed_meanwhile_is_not_written_over(start, open_page, file):
+    page = open_page(start("view", str(file)))
+    edited(page, "mast")
+    type_in(page, "xyz2", "0.8")
+    page.get_by_text('value="0.8"', exact=False).wait_for()
+    mine = ROBOT.replace('value="0.5"', 'value="0.7"')
+    file.write_text(mine)
+    until(page, "Math.abs(lw.frames.mast.position[2] - 0.7) < 1e-6")
+    becomes(lambda: number(page, "xyz2").input_value(), "0.7")
+    assert page.get_by_role("button", name="Write", exact=True).is_disabled()
+    assert file.read_text() == mine
