@@ -95,6 +95,21 @@ def test_two_files_that_differ_end_with_1(package, capsys):
     )
 
 
+def test_meshes_of_one_address_are_compared_by_their_bytes(package, tmp_path, monkeypatch, capsys):
+    other = tmp_path / "before/arm"
+    shutil.copytree(package, other)
+    (tmp_path / "elsewhere").mkdir()
+    monkeypatch.chdir(tmp_path / "elsewhere")
+    words = ["diff", *(str(each / "urdf/arm.urdf.xacro") for each in (other, package)), "--format", "json"]
+    main(words)
+    assert [each for each in json.loads(capsys.readouterr().out)["differences"] if each["subject"] == "link"] == []
+    edit(package / "meshes/body.stl", "solid", "solid body")
+    assert main(words) == 1
+    (mesh,) = (each for each in json.loads(capsys.readouterr().out)["differences"] if each["subject"] == "link")
+    assert mesh["property"] == "visual mesh package://arm/meshes/body.stl"
+    assert (mesh["old"], mesh["new"], mesh["unit"]) == ("5", "10", "bytes")
+
+
 @needs_git
 def test_a_file_does_not_differ_from_its_commit_in_paths(committed, capsys):
     assert main(["diff", "urdf/arm.urdf.xacro", "--against", "HEAD"]) == 0

@@ -68,6 +68,14 @@ class Model:
         assert robot is not None
         return robot
 
+    def resolve(self, address: str) -> Path:
+        """The file that the address of a mesh means.
+
+        Raises:
+            LinkwrightError: its package is not there.
+        """
+        return self.finder.resolve(address, self.path.parent)
+
     def _relabelled(self, diagnostic: Diagnostic) -> Diagnostic:
         """A finding that names files of a commit as git does."""
         if self.revision is None:
@@ -110,11 +118,10 @@ class Pair:
 
     def compare(self, old: Robot, new: Robot) -> Comparison:
         """How robots that were read of the two differ."""
-        before, after = Side(old), Side(new)
+        before, after = Side(old, resolve=self.old.resolve), Side(new, resolve=self.new.resolve)
         if self.old.revision is not None:
             ours, theirs = self.old.revision.normalizers(self.new.finder)
-            before = Side(old, ours, lambda address: self.old.finder.resolve(address, self.old.path.parent))
-            after = Side(new, theirs, lambda address: self.new.finder.resolve(address, self.new.path.parent))
+            before, after = replace(before, normalize=ours), replace(after, normalize=theirs)
         return compare(before, after)
 
 

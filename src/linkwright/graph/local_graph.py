@@ -92,13 +92,21 @@ class LocalGraph(GraphQueries):
         """Whether the graph has ended."""
         return self._closed
 
-    def open_node(self, identity: NodeIdentity, remappings: Remappings, *, copies_messages: bool = False) -> NodeHandle:
+    def open_node(
+        self,
+        identity: NodeIdentity,
+        remappings: Remappings,
+        *,
+        copies_messages: bool = False,
+        stays_inside: bool = False,
+    ) -> NodeHandle:
         """Begin a node; a warning is logged when another one of this process has its name.
 
         Args:
             identity: its name.
             remappings: its rules for names of topics and services.
             copies_messages: whether what it sends is copied, for its sender to change it then.
+            stays_inside: whether other processes see neither it nor anything of it.
 
         Raises:
             InvalidHandleError: the graph is closed.
@@ -120,10 +128,11 @@ class LocalGraph(GraphQueries):
                 logger=logger,
                 dispatcher=self._dispatcher,
                 copies_messages=copies_messages,
+                stays_inside=stays_inside,
             )
             self._nodes[node] = None
             self._taken_names[full_name] += 1
-            if self._transport is not None:
+            if self._transport is not None and not stays_inside:
                 self._transport.open_node(identity)
         self._outside_changed()
         return node
@@ -149,9 +158,11 @@ class LocalGraph(GraphQueries):
                 raise RuntimeError("the graph has a transport already, or is closed")
             self._transport = transport
             for node in self._nodes:
-                transport.open_node(node.identity)
+                if not node.stays_inside:
+                    transport.open_node(node.identity)
             for endpoint in self.bus.endpoints():
-                _open(transport, endpoint)
+                if not endpoint.node.stays_inside:
+                    _open(transport, endpoint)
             if self._watches_lost:
                 transport.watch_lost(self._lost_outside)
         transport.watch(self._outside_changed)
@@ -171,7 +182,7 @@ class LocalGraph(GraphQueries):
         """Bring a new endpoint together with those of its name, here and outside."""
         with self._lock:
             self.bus.add(endpoint)
-            if self._transport is not None:
+            if self._transport is not None and not endpoint.node.stays_inside:
                 _open(self._transport, endpoint)
         self.notify_change()
 
@@ -179,7 +190,7 @@ class LocalGraph(GraphQueries):
         """Take an endpoint away."""
         with self._lock:
             self.bus.remove(endpoint)
-            if self._transport is not None:
+            if self._transport is not None and not endpoint.node.stays_inside:
                 _close(self._transport, endpoint)
         self.notify_change()
 
@@ -198,7 +209,7 @@ class LocalGraph(GraphQueries):
                 return
             del self._nodes[node]
             self._taken_names -= Counter([node.identity.full_name])
-            if self._transport is not None:
+            if self._transport is not None and not node.stays_inside:
                 self._transport.close_node(node.identity)
         if self._dispatcher is not None:
             self._dispatcher.forget(node)

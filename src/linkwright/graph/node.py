@@ -68,6 +68,7 @@ class Node(NodeParameters, NodeQueries):
         allow_undeclared_parameters: whether parameters can be set that were not declared.
         automatically_declare_parameters_from_overrides: whether `parameters` are declared at once.
         copies_messages: whether what it sends is copied, for its sender to change it then.
+        stays_inside: whether other processes see neither it nor anything of it.
 
     Raises:
         InvalidNodeNameError: the name is not valid.
@@ -91,13 +92,16 @@ class Node(NodeParameters, NodeQueries):
         allow_undeclared_parameters: bool = False,
         automatically_declare_parameters_from_overrides: bool = False,
         copies_messages: bool = False,
+        stays_inside: bool = False,
     ) -> None:
         rules = Remappings(remappings)
         name = rules.node_name(node_name)
         check_node_name(name)
         identity = NodeIdentity(name, absolute_namespace(rules.namespace(namespace, node_name)), enclave)
         self.__local_graph = graph
-        self.__handle = handle = graph.open_node(identity, rules, copies_messages=copies_messages)
+        self.__handle = handle = graph.open_node(
+            identity, rules, copies_messages=copies_messages, stays_inside=stays_inside
+        )
         self.__clock = ROSClock(timebase=graph.timebase)
         NodeQueries.__init__(self, graph, handle)
         try:

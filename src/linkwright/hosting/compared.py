@@ -85,7 +85,9 @@ class ComparedView(ModelView):
         return config
 
     def _attach(self, viewer: Viewer) -> None:
-        node = self.host.graph.create_node("old_robot_state_publisher", start_parameter_services=False)
+        node = self.host.graph.create_node(
+            "old_robot_state_publisher", start_parameter_services=False, stays_inside=True
+        )
         publish = viewer.attach_comparison(self._pair, node)
 
         def show(text: str) -> None:

@@ -91,6 +91,26 @@ async def test_what_there_is_and_what_comes_is_mirrored(graph, transport):
     assert transport.closed
 
 
+@pytest.mark.parametrize("is_early", [True, False])
+async def test_a_node_that_stays_inside_is_not_mirrored_and_is_heard_inside(graph, transport, is_early):
+    if not is_early:
+        graph.attach(transport)
+    node = graph.create_node("inside", stays_inside=True)
+    publisher = node.create_publisher(String, "topic", 1)
+    if is_early:
+        graph.attach(transport)
+    heard = []
+    listener = graph.create_node("listener")
+    listener.create_subscription(String, "topic", heard.append, 1)
+    assert transport.open == ["listener", (EndpointKind.SUBSCRIPTION, "/topic")]
+    publisher.publish(String("here"))
+    await graph.settle()
+    assert [each.data for each in heard] == ["here"]
+    publisher.destroy()
+    node.destroy_node()
+    assert transport.open == ["listener", (EndpointKind.SUBSCRIPTION, "/topic")]
+
+
 async def test_there_is_one_transport_at_most(graph, transport):
     graph.attach(transport)
     with pytest.raises(RuntimeError, match="has a transport already"):

@@ -352,6 +352,6 @@ def _meshes_of(shapes: Sequence[Visual | Collision]) -> dict[str, Element | None
 
 def _same_bytes(old: Path, new: Path) -> bool:
     try:
-        return filecmp.cmp(old, new, shallow=False)
+        return old.samefile(new) or filecmp.cmp(old, new, shallow=False)
     except OSError:
         return True

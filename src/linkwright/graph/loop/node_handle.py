@@ -156,6 +156,7 @@ class NodeHandle(Handle):
         logger: what it logs with.
         dispatcher: what runs its callbacks; None while nothing does.
         copies_messages: whether what it sends is copied, for its sender to change it then.
+        stays_inside: whether other processes see neither it nor anything of it.
 
     Attributes:
         timebase: what the graph's time is made of.
@@ -173,6 +174,7 @@ class NodeHandle(Handle):
         logger: Logger,
         dispatcher: Dispatcher | None,
         copies_messages: bool = False,
+        stays_inside: bool = False,
     ) -> None:
         super().__init__(lambda: self.is_destroyed)
         self.graph = graph
@@ -181,6 +183,7 @@ class NodeHandle(Handle):
         self.logger = logger
         self.dispatcher = dispatcher
         self.copies_messages = copies_messages
+        self.stays_inside = stays_inside
         self.timebase = graph.timebase
         self.default_callback_group: CallbackGroup = MutuallyExclusiveCallbackGroup()
         self.is_destroyed = False

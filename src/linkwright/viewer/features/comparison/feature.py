@@ -61,7 +61,7 @@ class ComparisonFeature(PageFeature):
         Returns:
             What takes each new text of the old one.
         """
-        self._pair, self._old = pair, OldRobot(node)
+        self._pair, self._old = pair, OldRobot(node, self.context.node)
         return self._old.publish
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:

@@ -36,11 +36,12 @@ class OldRobot:
     limits without zero.
 
     Args:
-        node: publishes, and is told the other one's joint states.
+        node: publishes; it need not be seen by other programs, whose robot this is not.
+        listener: is told the other one's joint states.
     """
 
-    def __init__(self, node: Node) -> None:
-        self._node = node
+    def __init__(self, node: Node, listener: Node) -> None:
+        self._listener = listener
         self._text = node.create_publisher(String, TOPIC, DESCRIPTION_QOS)
         self._fixed = node.create_publisher(TFMessage, "/tf_static", STATIC_TF_PUBLISHER_QOS)
         self._moving = node.create_publisher(TFMessage, "/tf", TF_QOS)
@@ -48,7 +49,7 @@ class OldRobot:
         self._transforms: RobotTransforms | None = None
         self._leaders: dict[str, str] = {}
         self._zeros: dict[str, float] = {}
-        node.create_subscription(JointState, "joint_states", self._moved, SENSOR_DATA_QOS)
+        listener.create_subscription(JointState, "joint_states", self._moved, SENSOR_DATA_QOS)
 
     def publish(self, text: str) -> None:
         """Publish a description; `place` says where it is."""
@@ -62,7 +63,7 @@ class OldRobot:
             new: the robot that joint states are about.
             comparison: which links and joints of the two are the same.
         """
-        now = self._node.get_clock().now_ns()
+        now = self._listener.get_clock().now_ns()
         self._transforms = RobotTransforms(old, f"{PREFIX}/")
         self._leaders = joints_that_follow(old, new, comparison.joints)
         self._zeros = _positions_at_zero(old, self._leaders)
