@@ -12,6 +12,7 @@ import { sharing } from "./en/sharing";
 import { simulation } from "./en/simulation";
 import { recording } from "./en/recording";
 import { timeline } from "./en/timeline";
+import { values } from "./en/values";
 import { voice } from "./en/voice";
 
 /** Every word of the page that does not come from the server. */
@@ -35,6 +36,7 @@ export const en = {
   simulation,
   meshes,
   timeline,
+  values,
   recording,
   comparison,
   editing,

@@ -13,6 +13,7 @@ import { sharing } from "./zh/sharing";
 import { simulation } from "./zh/simulation";
 import { recording } from "./zh/recording";
 import { timeline } from "./zh/timeline";
+import { values } from "./zh/values";
 import { voice } from "./zh/voice";
 
 /** 简体中文 */
@@ -24,6 +25,7 @@ export const zh: Strings = {
   simulation,
   meshes,
   timeline,
+  values,
   recording,
   comparison,
   editing,

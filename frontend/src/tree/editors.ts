@@ -126,7 +126,7 @@ class Choice implements Editor {
     const options = [...new Set([...(item.options ?? []), value])];
     if (options.join("\n") !== this.options) {
       this.options = options.join("\n");
-      this.element.replaceChildren(...options.map((option) => new Option(option)));
+      this.element.replaceChildren(...options.map((option) => new Option(strings.values[option] ?? option, option)));
     }
     this.element.value = value;
     this.element.setAttribute("aria-label", item.name);
