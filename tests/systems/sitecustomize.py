@@ -37,12 +37,13 @@ WATCHING = ("add_reader", "add_signal_handler", "add_writer", "create_unix_conne
 def windows() -> None:
     """Take away what Windows has not. What the library of Python itself needs here, it has taken before."""
     import asyncio
+    import ctypes.util  # noqa: F401 - looks at the system when it is imported
     import importlib.abc
     import multiprocessing.connection
     import multiprocessing.popen_fork
     import multiprocessing.popen_spawn_posix
     import multiprocessing.resource_tracker
-    import pathlib  # noqa: F401 - looks at the system when it is imported
+    import pathlib  # noqa: F401 - the same
     import platform
     import select
     import selectors
@@ -90,6 +91,7 @@ def windows() -> None:
 def macos() -> None:
     """Take away what only Linux has."""
     import asyncio  # noqa: F401 - looks at the system when it is imported
+    import ctypes.util  # noqa: F401 - the same
     import platform
     import select
     import selectors
@@ -114,6 +116,8 @@ def macos() -> None:
 
 def remove(module, names) -> None:
     """Take names from a module, where it has them."""
+    if module is os and hasattr(os, "process_cpu_count"):  # it is made of what is taken away
+        os.process_cpu_count = os.cpu_count
     for name in names:
         if hasattr(module, name):
             delattr(module, name)
