@@ -6,6 +6,7 @@ It publishes on ``/from_sdk``, subscribes to ``/to_sdk``, and serves ``/flip_sdk
 from __future__ import annotations
 
 import logging
+import os
 import sys
 import threading
 from typing import Any
@@ -73,7 +74,7 @@ def main() -> None:
             "call": peer.call,
         }
     )
-    peer.server.close()
+    os._exit(0)  # threads of the SDK would keep it for ever; its session is gone all the same
 
 
 if __name__ == "__main__":
