@@ -23,6 +23,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     add_second_model(parser)
     parser.add_argument(
+        "-d", "--display-config", metavar="RVIZ", help="the .rviz file to open in place of the usual displays"
+    )
+    parser.add_argument(
         "--join", action="store_true", help="join the ROS 2 network (ROS_DOMAIN_ID), where other programs see the nodes"
     )
     add_viewer_options(parser)
@@ -77,20 +80,54 @@ def run(arguments: argparse.Namespace) -> int:
     from linkwright.bag import is_recording
     from linkwright.hosting.plans import HostOptions
 
+    rviz = None if arguments.display_config is None else _readable(Path(arguments.display_config))
     options = HostOptions(
-        arguments.host, arguments.port, not arguments.no_open, network=arguments.join, history=arguments.history
+        arguments.host,
+        arguments.port,
+        not arguments.no_open,
+        network=arguments.join,
+        history=arguments.history,
+        rviz=rviz,
     )
-    is_bag = is_recording(Path(arguments.file))
-    if not is_bag and (arguments.against or any(map(names_file, arguments.words))):
+    if is_recording(Path(arguments.file)):
+        return _run_bag(arguments, options)
+    bag = next((word for word in arguments.words if names_file(word) and is_recording(Path(word))), None)
+    if bag is not None:
+        return _misused(f"'{bag}' is a recording, which is shown by itself: linkwright view {bag}")
+    if arguments.against or any(map(names_file, arguments.words)):
+        if rviz is not None:
+            return _misused("two descriptions are compared with displays of their own: leave -d out")
         return _run_compared(arguments, options)
     values = parse_assignments(arguments.words)
-    if is_bag and not values:
-        from linkwright.hosting.bag_view import run_bag_view
-
-        return run_bag_view(Path(arguments.file), options, foxglove=arguments.foxglove)
     from linkwright.hosting.view import run_view
 
     return run_view(arguments.file, values, options, foxglove=arguments.foxglove)
+
+
+def _run_bag(arguments: argparse.Namespace, options: HostOptions) -> int:
+    from linkwright.hosting.bag_view import run_bag_view
+
+    needless = [*arguments.words, *([f"--against {arguments.against}"] if arguments.against else [])]
+    if needless:
+        return _misused(f"'{arguments.file}' is a recording, which is shown by itself: leave {', '.join(needless)} out")
+    return run_bag_view(Path(arguments.file), options, foxglove=arguments.foxglove)
+
+
+def _readable(rviz: Path) -> Path:
+    """The .rviz file.
+
+    Raises:
+        LinkwrightError: it cannot be read; see `linkwright.viewer.RvizConfig.load`.
+    """
+    from linkwright.viewer import RvizConfig
+
+    RvizConfig.load(rviz)
+    return rviz.absolute()
+
+
+def _misused(what: str) -> int:
+    print(f"linkwright view: {what}", file=sys.stderr)
+    return 2
 
 
 def _run_compared(arguments: argparse.Namespace, options: HostOptions) -> int:
@@ -99,6 +136,5 @@ def _run_compared(arguments: argparse.Namespace, options: HostOptions) -> int:
     with ExitStack() as stack:
         pair = asked_pair(arguments, stack)
         if pair is None:
-            print("linkwright view: give one file, two to compare, or one and --against COMMIT", file=sys.stderr)
-            return 2
+            return _misused("give one file, two to compare, or one and --against COMMIT")
         return run_compared_view(pair, options, foxglove=arguments.foxglove)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Coroutine, Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 from linkwright.graph.parameters.rules import ParameterRules
@@ -129,6 +130,7 @@ class HostOptions:
         title: what the page is called.
         network: whether the nodes join the ROS 2 network, where other programs see them.
         history: how many bytes of what comes a viewer keeps, to go back to the last minutes; 0 for none.
+        rviz: the file with the displays of what is viewed; None for the usual ones.
     """
 
     host: str = "127.0.0.1"
@@ -137,6 +139,7 @@ class HostOptions:
     title: str = ""
     network: bool = True
     history: int = DEFAULT_HISTORY
+    rviz: Path | None = None
 
 
 class Supervisor(Protocol):

@@ -6,6 +6,7 @@ import asyncio
 import re
 from collections.abc import Callable, Coroutine, Mapping
 from dataclasses import replace
+from functools import partial
 from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -218,6 +219,9 @@ class ModelView:
         output: str = "log",
         waits: bool = True,
     ) -> None:
+        rviz = self.options.rviz
+        if viewer_config is not None and rviz is not None:
+            viewer_config = partial(_config_of, rviz)
         plan = HostedPlan(
             self,
             f"{name or executable}-{next(self._numbers)}",
@@ -294,6 +298,12 @@ class ModelView:
         await asyncio.gather(*self._tasks, return_exceptions=True)
         await self.host.close()
         self.log.close()
+
+
+def _config_of(rviz: Path) -> RvizConfig:
+    from linkwright.viewer import RvizConfig
+
+    return RvizConfig.load(rviz)
 
 
 def _first_link(path: Path) -> str:

@@ -204,7 +204,8 @@ class Viewer:
     def attach_recording(self, playback: Playback, bag: BagReader) -> None:
         """Have pages show a recording's timeline."""
         self._timeline.attach(playback, bag)
-        self._recording.withdraw()
+        for feature in self._features:
+            feature.recording_shown()
 
     def playback_failed(self, error: LinkwrightError) -> None:
         """Tell pages that the recording cannot be read on."""

@@ -86,6 +86,19 @@ async def test_a_page_sets_speed_and_whether_it_begins_anew(tmp_path):
 
 
 @skipping
+async def test_a_simulation_that_was_recorded_has_no_bar(tmp_path):
+    async with shown(tmp_path) as made:
+        node = made.graph.create_node("recorded_simulation")
+        state = node.create_publisher("simulation_interfaces/msg/SimulationState", "/simulation_state", 1)
+        async with page(made.viewer) as client:
+            assert (await client.until("simulation_status"))["present"] is False
+            state.publish(state.msg_type(state=1))
+            await client.until("playhead", playing=False, position=START + 10)
+            told = [each for each in client.messages if isinstance(each, dict) and each["type"] == "simulation_status"]
+            assert not any(each["present"] for each in told)
+
+
+@skipping
 async def test_a_viewer_without_a_recording_has_no_timeline():
     async with world() as made, page(made.viewer) as client:
         assert "timeline" not in await client.opened()

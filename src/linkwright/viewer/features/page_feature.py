@@ -76,6 +76,9 @@ class PageFeature:
     def diagnostics_changed(self, diagnostics: Sequence[Diagnostic]) -> None:
         """The findings about the description have changed; an empty list when it is in order."""
 
+    def recording_shown(self) -> None:
+        """What is shown is a recording: nobody does what robots and simulations could be asked for."""
+
     def receive(self, page: Page, message: Any) -> None:
         """Do what a page asks for; the message is of one of the classes in `RECEIVES`."""
 

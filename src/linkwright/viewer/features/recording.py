@@ -74,8 +74,8 @@ class RecordingFeature(PageFeature):
         """Have pages save what it keeps."""
         self._live = live
 
-    def withdraw(self) -> None:
-        """Record nothing: what is shown is a recording."""
+    def recording_shown(self) -> None:
+        """Record nothing."""
         self._possible = False
         self._tell()
 

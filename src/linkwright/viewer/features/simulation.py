@@ -69,6 +69,7 @@ class SimulationFeature(PageFeature):
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
         self._listening = False
+        self._recorded = False
         self._subscriptions: list[Any] = []
         self._services = SimulationServices(self.context)
         self._status = _ABSENT
@@ -77,11 +78,16 @@ class SimulationFeature(PageFeature):
 
     def opening(self) -> list[ServerMessage]:
         """How the simulation goes."""
-        if not self._listening:
+        if not self._listening and not self._recorded:
             self._listening = True
             self.context.graph_changes.listen(self._review)
             self._review()
         return [self._status]
+
+    def recording_shown(self) -> None:
+        """Have no bar: what a simulation told then controls none now."""
+        self._recorded = True
+        self._stop()
 
     def page_gone(self, page: Page) -> None:
         """Let go of what it moves, and stop listening after the last page."""

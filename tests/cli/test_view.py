@@ -1,0 +1,65 @@
+"""What `linkwright view` takes beside a recording, and says where it takes it not."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from linkwright.cli import main
+from linkwright.hosting import bag_view, view
+from linkwright.hosting.plans import HostOptions
+from tests.viewer.features.test_timeline import recorded
+
+RVIZ = "Panels: []\nVisualization Manager:\n  Displays: []\n  Global Options:\n    Fixed Frame: odom\n"
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The working directory: a robot, a recording `drive`, an .rviz file."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "r.urdf").write_text("<robot name='r'><link name='a'/></robot>")
+    (tmp_path / "v.rviz").write_text(RVIZ)
+    recorded(tmp_path)
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["drive", "a:=b"], "'drive' is a recording, which is shown by itself: leave a:=b out"),
+        (["drive", "r.urdf"], "leave r.urdf out"),
+        (["drive", "--against", "HEAD"], "leave --against HEAD out"),
+        (["r.urdf", "drive"], "'drive' is a recording, which is shown by itself: linkwright view drive"),
+        (["r.urdf", "r.urdf", "-d", "v.rviz"], "leave -d out"),
+    ],
+)
+@pytest.mark.usefixtures("folder")
+def test_what_cannot_be_shown_together_is_said(words: list[str], said: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["view", *words]) == 2
+    assert said in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("text", [None, "nothing: [of the kind"])
+def test_an_rviz_file_that_cannot_be_read_is_said_before_anything_starts(
+    folder: Path, text: str | None, capsys: pytest.CaptureFixture[str]
+) -> None:
+    if text is not None:
+        (folder / "broken.rviz").write_text(text)
+    assert main(["view", "drive", "-d", "broken.rviz"]) == 1
+    assert "broken.rviz" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("file", ["r.urdf", "drive"])
+def test_the_displays_of_an_rviz_file_are_shown(folder: Path, file: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[HostOptions] = []
+
+    def show(path: object, *arguments: object, **_: object) -> int:
+        asked.extend(each for each in arguments if isinstance(each, HostOptions))
+        return 0
+
+    monkeypatch.setattr(bag_view, "run_bag_view", show)
+    monkeypatch.setattr(view, "run_view", show)
+    assert main(["view", file, "-d", "v.rviz"]) == 0
+    assert [each.rviz for each in asked] == [folder / "v.rviz"]
+    assert view._config_of(folder / "v.rviz").options.text("Fixed Frame") == "odom"
