@@ -16,6 +16,7 @@ import pytest
 from linkwright.diagnostics import LinkwrightError
 from linkwright.launch.arguments import argument_listing
 from linkwright.launch.frontend.launch_file import load_launch_file
+from linkwright.messages.distribution import ASSUMED
 from linkwright.packages import PackageFinder, use_finder
 from linkwright.shell.programs import PROGRAMS, offer_programs, offer_ros_variables
 
@@ -344,7 +345,7 @@ class TestPrograms:
         offer_ros_variables(bare)
         offer_ros_variables(sourced)
         of_ros = {"ROS_DISTRO": "humble", "ROS_VERSION": "2", "ROS_PYTHON_VERSION": "3"}
-        assert bare == {"A": "b", **of_ros, "GZ_SIM_RESOURCE_PATH": ""}
+        assert bare == {"A": "b", **of_ros, ASSUMED: "1", "GZ_SIM_RESOURCE_PATH": ""}
         assert sourced == {"ROS_DISTRO": "jazzy"}
         models = {"GZ_SIM_RESOURCE_PATH": "/models"}
         offer_ros_variables(models)

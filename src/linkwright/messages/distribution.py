@@ -5,6 +5,9 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 
+ASSUMED = "LINKWRIGHT_ROS_DISTRO_ASSUMED"
+"""Set where nobody named a distribution, and ``ROS_DISTRO`` is there only because launch files ask for it."""
+
 BEFORE_IRON = ("dashing", "eloquent", "foxy", "galactic", "humble")
 """The distributions up to Humble."""
 

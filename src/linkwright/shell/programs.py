@@ -11,6 +11,7 @@ from collections.abc import MutableMapping
 from contextlib import suppress
 from pathlib import Path
 
+from linkwright.messages.distribution import ASSUMED
 from linkwright.packages.ament import ROS_VARIABLES
 from linkwright.packages.cache import cache_folder
 
@@ -67,4 +68,5 @@ def offer_ros_variables(environment: MutableMapping[str, str]) -> None:
     """Set what sourcing a ROS 2 sets and launch files ask for, where none is sourced: we follow Humble."""
     if "ROS_DISTRO" not in environment:
         environment.update(ROS_VARIABLES)
+        environment[ASSUMED] = "1"
         environment.setdefault("GZ_SIM_RESOURCE_PATH", "")  # launch files add to it without asking whether it is there

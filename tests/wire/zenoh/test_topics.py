@@ -1,5 +1,8 @@
 from __future__ import annotations
 
+import signal
+import subprocess
+import sys
 import time
 
 import zenoh
@@ -14,6 +17,7 @@ from linkwright.graph.time.values import Duration
 from linkwright.messages import String, serialize, type_hash
 from linkwright.wire.zenoh.session import open_session
 from linkwright.wire.zenoh.settings import read_settings
+from tests.wire.programs import linkwright
 from tests.wire.test_topics import (  # noqa: F401 - the same over Zenoh
     EVERYTHING,
     LASTING,
@@ -199,3 +203,25 @@ def test_a_publisher_that_left_is_not_lost_and_one_that_was_killed_is(processes,
     again = programs("our_program", "marker")
     us.spin_until(lambda: us.node.get_node_names().count("marker") == 1)
     assert again.ask("nodes") == ["marker", "ours"]
+
+
+LAUNCH_FILE = """
+from launch import LaunchDescription
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    return LaunchDescription([Node(package='demo_nodes_cpp', executable='talker')])
+"""
+
+
+def test_what_a_launch_says_is_heard_by_a_verb(tmp_path):
+    """Launch files are told that this is Humble, where types have no hash on the wire; nobody said so to the verb."""
+    (tmp_path / "talk.launch.py").write_text(LAUNCH_FILE)
+    words = [sys.executable, "-m", "linkwright", "launch", str(tmp_path / "talk.launch.py")]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, cwd=tmp_path) as launch:
+        try:
+            assert linkwright("topic", "echo", "--once", "/chatter")[0].startswith("data: 'Hello World: ")
+        finally:
+            launch.send_signal(signal.SIGINT)
+            launch.communicate(timeout=60)

@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+from linkwright.messages.distribution import ASSUMED
 from linkwright.wire.domain_id import read_domain_id
 
 ROUTER_PORT = 7447
@@ -94,7 +95,7 @@ def read_settings(environment: Mapping[str, str] | None = None, *, domain_id: in
         own=_session(domain_id),
         overrides=_overrides(variables),
         attempts=_attempts(variables),
-        hashes=variables.get("ROS_DISTRO", "").lower() != _WITHOUT_HASHES,
+        hashes=ASSUMED in variables or variables.get("ROS_DISTRO", "").lower() != _WITHOUT_HASHES,
     )
 
 
