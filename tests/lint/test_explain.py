@@ -34,6 +34,12 @@ def test_no_page_is_of_a_code_that_nothing_reports():
     assert set(room_pages()) - codes_of_the_program() == set()
 
 
+def test_every_file_of_pages_begins_with_its_own_title():
+    """Else its first code is missing from the list in the documentation."""
+    for file in (ROOMS / "lint" / "pages").glob("*.md"):
+        assert file.read_text(encoding="utf-8").startswith("# "), file.name
+
+
 @pytest.mark.parametrize("rule", all_rules(), ids=lambda rule: rule.code)
 def test_the_page_of_a_rule_says_what_why_and_what_instead(rule):
     page = rule_page(rule)

@@ -14,7 +14,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from linkwright.descriptions import Description, examine
-from linkwright.descriptions.editing import EditPlan, EditRefusedError, EditRequest, plan_edit
+from linkwright.descriptions.editing import WITHOUT_AXIS, EditPlan, EditRefusedError, EditRequest, plan_edit
 from linkwright.diagnostics import Diagnostic
 from linkwright.geometry.single import Pose
 from linkwright.urdf import Robot
@@ -286,7 +286,7 @@ def test_what_is_not_there_is_refused(tmp_path: Path) -> None:
 
 def parts_of(found: Robot) -> list[tuple[Any, str, int]]:
     parts: list[tuple[Any, str, int]] = [("joint", name, 0) for name in found.joints]
-    parts += [("axis", name, 0) for name, joint in found.joints.items() if joint.type != "fixed"]
+    parts += [("axis", name, 0) for name, joint in found.joints.items() if joint.type not in WITHOUT_AXIS]
     for link in found.links.values():
         parts += [("visual", link.name, i) for i in range(len(link.visuals))]
         parts += [("collision", link.name, i) for i in range(len(link.collisions))]
@@ -356,6 +356,13 @@ def planned(before: Description, request: EditRequest) -> EditPlan | Diagnostic:
 
 ROBOTS = [model for model in OWN.models if model.data["links"]]
 NUMBERS = st.integers(-2000, 2000).map(lambda number: number / 1000)
+
+
+def test_a_joint_without_an_axis_has_none_to_be_edited(tmp_path: Path) -> None:
+    text = robot("").replace('type="revolute"', 'type="floating"')
+    found = refused(tmp_path, text, EditRequest("axis", "j", xyz=(0, 0, 1)))
+    assert found.code == "EDIT101"
+    assert "there is no axis of 'j'" in found.message
 
 
 @settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow])

@@ -3,10 +3,11 @@
 from linkwright.descriptions.editing.errors import EditRefusedError
 from linkwright.descriptions.editing.files import EditHistory, Workspace
 from linkwright.descriptions.editing.planning import Allowed, EditPlan, plan_edit
-from linkwright.descriptions.editing.request import EditRequest, Part
+from linkwright.descriptions.editing.request import WITHOUT_AXIS, EditRequest, Part
 from linkwright.descriptions.editing.snapshot import read_again
 
 __all__ = [
+    "WITHOUT_AXIS",
     "Allowed",
     "EditHistory",
     "EditPlan",

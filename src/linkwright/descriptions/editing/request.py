@@ -11,6 +11,9 @@ from linkwright.xmltree import Element
 
 Part = Literal["joint", "axis", "visual", "collision"]
 
+WITHOUT_AXIS = ("fixed", "floating")
+"""The types of joints whose axis urdfdom does not read."""
+
 
 @dataclass(frozen=True, slots=True)
 class EditRequest:
@@ -42,7 +45,9 @@ class EditRequest:
         """The joint, visual or collision in a robot; None where there is none."""
         if self.part in ("joint", "axis"):
             joint = robot.joints.get(self.name)
-            return None if joint is None else joint.element
+            if joint is None or (self.part == "axis" and joint.type in WITHOUT_AXIS):
+                return None
+            return joint.element
         link = robot.links.get(self.name)
         if link is None:
             return None

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from difflib import unified_diff
 from pathlib import PurePosixPath
 
-from linkwright.descriptions.editing import EditPlan, EditRequest
+from linkwright.descriptions.editing import WITHOUT_AXIS, EditPlan, EditRequest
 from linkwright.geometry.single import Pose, rpy_from_quaternion
 from linkwright.urdf import Collision, Joint, Mesh, Robot, Visual
 from linkwright.viewer.protocol.editing import EditablePart, EditedFile, EditedPart, PreviewEdit
@@ -47,7 +47,7 @@ def _diff(before: str, after: str) -> Iterator[str]:
 def _of_joint(joint: Joint) -> Iterator[EditablePart]:
     xyz, rpy = _numbers(joint.origin)
     yield EditablePart("joint", joint.name, 0, joint.type, xyz, rpy, *_written(joint.element, "origin"))
-    if joint.type not in ("fixed", "floating"):
+    if joint.type not in WITHOUT_AXIS:
         yield EditablePart("axis", joint.name, 0, joint.type, list(joint.axis), [], *_written(joint.element, "axis"))
 
 
