@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from linkwright.messages.distribution import ASSUMED
 from linkwright.wire import dds
 from tests.domains import own_domain
 from tests.reliability.running import Machine
@@ -14,6 +15,7 @@ ROS_VARIABLES = (
     "ROS_AUTOMATIC_DISCOVERY_RANGE",
     "ROS_STATIC_PEERS",
     "ROS_DISTRO",
+    ASSUMED,
     "CYCLONEDDS_URI",
     "LINKWRIGHT_DDS",
     "PYTHONDONTWRITEBYTECODE",

@@ -28,6 +28,6 @@ def test_every_code_is_shown_here_or_in_other_tests():
     tests = Path(__file__).parent
     room = Path(linkwright.sdf.__file__).parent
     written = {code for file in room.glob("*.py") for code in re.findall(r'"(SDF\d{3})"', file.read_text("utf-8"))}
-    files = ("test_from_urdf.py", "test_includes.py", "test_reader.py")
+    files = ("test_from_urdf.py", "test_includes.py", "test_reader.py", "test_to_urdf.py")
     shown = PAGE + "".join((tests / file).read_text(encoding="utf-8") for file in files)
     assert written - set(re.findall(r"SDF\d{3}", shown)) == set()

@@ -8,6 +8,7 @@ import pytest
 from linkwright.graph import Graph, LogRecord
 from linkwright.graph.executors import SingleThreadedExecutor
 from linkwright.graph.log.levels import LogLevel
+from linkwright.messages.distribution import ASSUMED
 from linkwright.wire.dds import DdsTransport, join
 from tests.domains import own_domain
 from tests.waiting import SECONDS
@@ -18,6 +19,7 @@ ROS_VARIABLES = (
     "ROS_AUTOMATIC_DISCOVERY_RANGE",
     "ROS_STATIC_PEERS",
     "ROS_DISTRO",
+    ASSUMED,
     "CYCLONEDDS_URI",
     "LINKWRIGHT_DDS",
 )
