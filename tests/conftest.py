@@ -24,13 +24,17 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 
 @pytest.hookimpl(wrapper=True)
 def pytest_collection() -> Generator[None, object, object]:
-    """What is collected stays: Python does not look for garbage among 17,000 tests, while they are made and later."""
+    """What is collected stays: Python does not look for garbage among 17,000 tests while they are made.
+
+    They count as old then. They do not stay frozen: `seldom_collected` asks how many objects are, which counts them.
+    """
     gc.disable()
     try:
         return (yield)
     finally:
         gc.enable()
         gc.freeze()
+        gc.unfreeze()
 
 
 @pytest.fixture(autouse=True, scope="session")
