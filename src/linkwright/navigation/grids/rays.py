@@ -64,8 +64,9 @@ def ranges(distances: Grid, points: NDArray[np.float64], angles: NDArray[np.floa
     # No farther than the rim of the cell that the distance is to, and never less than half a cell, or nothing moves.
     ways = np.where(field > 0.0, np.maximum(field - np.float32(0.75), np.float32(0.5)), field).ravel()
     most = np.float32(limit / size)
-    travelled, so_far = np.full(row.size, most), np.zeros(row.size, np.float32)
-    under_way = np.arange(row.size)
+    travelled: NDArray[np.float32] = np.full(row.size, most)
+    so_far: NDArray[np.float32] = np.zeros(row.size, np.float32)
+    under_way: Cells = np.arange(row.size)
     while under_way.size:
         cells = _index(row + across * so_far, distances.rows + 1).astype(np.int64)
         cells *= distances.columns + 2
