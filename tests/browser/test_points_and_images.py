@@ -16,6 +16,7 @@ from tests.viewer.clouds.test_clouds import cloud, depth_image, scan, xyz
 from tests.viewer.displays.test_cloud_displays import camera_info, placed
 from tests.viewer.displays.test_map_displays import cell_grid, grid, update
 from tests.viewer.packed_images import depth_message, jpeg, packed
+from tests.waiting import wait_until
 
 pytestmark = pytest.mark.browser
 
@@ -210,6 +211,7 @@ def test_an_image_has_a_panel_of_its_own(live, open_page):
     page.locator(".panel-tab", has_text="Image").locator(".tab-close").click()
     until(page, "lw.displays[0].enabled === false")
     page.locator(".picture-panel").wait_for(state="detached")
+    wait_until(lambda: not viewer.viewer.displays[0].enabled)  # the page knows first
     viewer.run(lambda: viewer.viewer.manager.tree.check(viewer.viewer.displays[0], True))
     page.locator(".picture-panel").wait_for()
     page.reload()
