@@ -221,7 +221,9 @@ def test_what_a_launch_says_is_heard_by_a_verb(tmp_path):
     words = [sys.executable, "-m", "linkwright", "launch", str(tmp_path / "talk.launch.py")]
     with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, cwd=tmp_path) as launch:
         try:
-            assert linkwright("topic", "echo", "--once", "/chatter")[0].startswith("data: 'Hello World: ")
+            assert linkwright("topic", "echo", "--once", "/chatter", "std_msgs/msg/String")[0].startswith(
+                "data: 'Hello World: "
+            )
         finally:
             launch.send_signal(signal.SIGINT)
             launch.communicate(timeout=60)
