@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from linkwright.cli import main
+from linkwright.cli import calls, main
 from linkwright.graph import Graph
 from linkwright.nodes import NodeOptions
 from linkwright.nodes.control.ros2_control_node import Ros2ControlNode
@@ -139,7 +139,8 @@ def test_chains_are_drawn(manager, capsys, tmp_path, monkeypatch):
     assert '"positions" -> "hw command_interfaces" [label="hip/position"];' in text
 
 
-def test_another_manager_is_asked(manager, capsys):
+def test_another_manager_is_asked(manager, capsys, monkeypatch):
+    monkeypatch.setattr(calls, "APPEARS_WITHIN", 0.5)
     manager()
     said = run(capsys, "list_controllers", "-c", "/robot/controller_manager", status=1)
     assert "/robot/controller_manager/list_controllers" in said

@@ -35,7 +35,7 @@ def test_a_client_of_ours_takes_the_answer_that_is_for_it(processes, programs, t
     assert future.result().status_message == text
     assert not us.warnings()
     peer.end()
-    us.spin_until(lambda: not client.service_is_ready())
+    us.spin_until(lambda: not client.service_is_ready(), 5.0)  # it said so: its lease of 10 s need not run out
 
 
 @pytest.mark.parametrize("text", ["hej", LARGE])

@@ -11,12 +11,15 @@ from urllib.parse import parse_qs, urlsplit
 import aiohttp
 import pytest
 
-from linkwright.viewer import guests as guests_module
+from linkwright.viewer import guests
 from linkwright.viewer.guests import GuestRecordings
 from linkwright.viewer.web import uploads
 from tests.skipping import skipping
 from tests.viewer.features.test_timeline import recorded
 from tests.viewer.scene import Client, World
+
+SECONDS = 5.0
+"""In place of the minute after which what nobody goes on with is given up."""
 
 REFUSED = -1
 """In place of a status: the user is told a problem."""
@@ -30,6 +33,13 @@ def scratch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setenv("TMPDIR", str(folder))
     monkeypatch.setattr("tempfile.tempdir", None)
     return folder
+
+
+@pytest.fixture(autouse=True)
+def little_patience(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Even minutes that are skipped take seconds."""
+    monkeypatch.setattr(uploads, "PATIENCE", SECONDS)
+    monkeypatch.setattr(guests, "PATIENCE", SECONDS)
 
 
 class Sender:
@@ -211,7 +221,7 @@ async def test_what_is_given_up_or_comes_to_a_standstill_is_removed(scratch: Pat
         assert len(left(scratch)) == 2
         assert (await sender.ask("DELETE", f"recordings/{given_up['key']}"))[0] == 204
         assert len(left(scratch)) == 1
-        await asyncio.sleep(2 * uploads.PATIENCE)
+        await asyncio.sleep(2 * SECONDS)
         assert not left(scratch)
         assert (await sender.ask("PUT", f"recordings/{forgotten['key']}/0", data=b"x" * 100))[0] == 404
 
@@ -235,10 +245,10 @@ async def test_a_recording_is_closed_a_while_after_its_last_page(tmp_path: Path,
         async with seen(sender, answer["recording"]) as client:
             await client.until("timeline")
             answering = asyncio.create_task(answer_pings(client))
-            await asyncio.sleep(3 * guests_module.PATIENCE)
+            await asyncio.sleep(3 * SECONDS)
             assert len(left(scratch)) == 1, "a page looks at it"
             answering.cancel()
-        await asyncio.sleep(2 * guests_module.PATIENCE)
+        await asyncio.sleep(2 * SECONDS)
         assert not left(scratch)
 
 

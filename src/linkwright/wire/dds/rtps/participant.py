@@ -251,7 +251,8 @@ class RtpsParticipant:
         now = time.monotonic()
         packets: list[Packet] = []
         with self._lock:
-            for prefix in [each for each, peer in self._peers.items() if peer.until < now]:
+            lost = [each for each, peer in self._peers.items() if peer.until < now]
+            for prefix in lost:
                 self._forget_peer(prefix)
             looking = bool(self._expected - self._peers.keys()) and now >= self._look_at
             if looking:
@@ -268,6 +269,8 @@ class RtpsParticipant:
             if self._expected - self._peers.keys():
                 due.append(self._look_at)
         self._network.send(packets)
+        if lost:
+            self.changed()
         if looking:
             self._network.send_everywhere(self._spdp())
         if telling:
@@ -296,9 +299,10 @@ class RtpsParticipant:
             peers = list(self._peers.values())
         self._network.send((packet, peer.discovery) for peer in peers)
 
-    def _participant_said(self, sample: Data, vendor: bytes) -> list[Packet]:
+    def _participant_said(self, sample: Data, vendor: bytes, calls: list[Callable[[], None]]) -> list[Packet]:
         if gone_guid(sample):
             self._forget_peer(gone_guid(sample)[: v.PREFIX])
+            calls.append(self.changed)
             return []
         if sample.payload is None:
             return []
@@ -397,7 +401,7 @@ class RtpsParticipant:
                 peer.until = time.monotonic() + peer.told.lease
             try:
                 if isinstance(said, Data) and said.writer[v.PREFIX :] == v.SPDP_WRITER:
-                    packets += self._participant_said(said, vendor)
+                    packets += self._participant_said(said, vendor, calls)
                 elif peer is not None:
                     packets += self._peer_said(said, calls)
                 else:
