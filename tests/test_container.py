@@ -4,22 +4,12 @@ from __future__ import annotations
 
 import json
 import re
-import sys
-from importlib import import_module
-from typing import Any
 
 import pytest
 
 from linkwright.cli.command import parser_for
 from tests.places import REPOSITORY
-
-tomllib: Any = import_module("tomllib" if sys.version_info >= (3, 11) else "tomli")
-
-
-@pytest.fixture(scope="module")
-def project() -> dict[str, Any]:
-    found: dict[str, Any] = tomllib.loads((REPOSITORY / "pyproject.toml").read_text(encoding="utf-8"))
-    return found
+from tests.toml_files import PROJECT, PYPROJECT
 
 
 @pytest.fixture(scope="module")
@@ -27,11 +17,11 @@ def container() -> str:
     return (REPOSITORY / "Containerfile").read_text(encoding="utf-8").replace("\\\n", "")
 
 
-def test_the_container_takes_a_python_and_extras_that_there_are(project, container):
+def test_the_container_takes_a_python_and_extras_that_there_are(container):
     (python,) = re.findall(r"^ARG PYTHON=(\S+)$", container, re.MULTILINE)
-    assert f"Programming Language :: Python :: {python}" in project["project"]["classifiers"]
+    assert f"Programming Language :: Python :: {python}" in PROJECT["classifiers"]
     (extras,) = re.findall(r"^ARG EXTRAS=(\S+)$", container, re.MULTILINE)
-    assert set(extras.split(",")) <= set(project["project"]["optional-dependencies"])
+    assert set(extras.split(",")) <= set(PROJECT["optional-dependencies"])
 
 
 def test_the_container_runs_the_demo_of_the_makefile_and_not_as_root(container):
@@ -49,8 +39,8 @@ def test_the_container_runs_the_demo_of_the_makefile_and_not_as_root(container):
     assert container.rindex("\nRUN ") < user < container.index("\nENTRYPOINT ")
 
 
-def test_the_build_of_the_container_finds_what_the_build_reads(project):
+def test_the_build_of_the_container_finds_what_the_build_reads():
     taken = (REPOSITORY / ".dockerignore").read_text(encoding="utf-8").splitlines()
     allowed = {line[1:] for line in taken if line.startswith("!")}
-    needed = set(project["tool"]["hatch"]["build"]["targets"]["sdist"]["include"]) - {"CHANGELOG.md", "SECURITY.md"}
+    needed = set(PYPROJECT["tool"]["hatch"]["build"]["targets"]["sdist"]["include"]) - {"CHANGELOG.md", "SECURITY.md"}
     assert needed | {"pyproject.toml", "uv.lock", "LICENSE"} <= allowed

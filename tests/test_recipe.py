@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import re
-import sys
-from importlib import import_module
 from typing import Any
 
 import pytest
@@ -13,14 +11,7 @@ from packaging.requirements import Requirement
 
 from linkwright.cli import main
 from tests.places import REPOSITORY
-
-tomllib: Any = import_module("tomllib" if sys.version_info >= (3, 11) else "tomli")
-
-
-@pytest.fixture(scope="module")
-def project() -> dict[str, Any]:
-    found: dict[str, Any] = tomllib.loads((REPOSITORY / "pyproject.toml").read_text(encoding="utf-8"))
-    return found
+from tests.toml_files import PROJECT, PYPROJECT
 
 
 @pytest.fixture(scope="module")
@@ -37,28 +28,28 @@ def bounds(requirements: list[str]) -> dict[str, str]:
     return {requirement.name: str(requirement.specifier) for requirement in parsed}
 
 
-def test_the_recipe_needs_what_the_project_needs(project, recipe):
+def test_the_recipe_needs_what_the_project_needs(recipe):
     interpreter, *needed = recipe["requirements"]["run"]
-    assert bounds(needed) == bounds(project["project"]["dependencies"])
+    assert bounds(needed) == bounds(PROJECT["dependencies"])
     assert interpreter == "python >=${{ python_min }}"
-    assert project["project"]["requires-python"] == f">={recipe['context']['python_min']}"
+    assert PROJECT["requires-python"] == f">={recipe['context']['python_min']}"
 
 
-def test_the_recipe_builds_with_what_the_build_needs(project, recipe, monkeypatch):
+def test_the_recipe_builds_with_what_the_build_needs(recipe, monkeypatch):
     pinned, installer, *needed = recipe["requirements"]["host"]
     assert (pinned, installer) == ("python ${{ python_min }}.*", "pip")
     hook = (REPOSITORY / "hatch_build.py").read_text(encoding="utf-8")
     ours = re.findall(r'"([a-z]+>=[\d.]+)"', hook.partition("*([]")[0])
     assert len(ours) == 2  # what the stubs and the catalogues take; the source distribution has the page
-    assert bounds(needed) == bounds([*project["build-system"]["requires"], *ours])
+    assert bounds(needed) == bounds([*PYPROJECT["build-system"]["requires"], *ours])
 
 
-def test_the_recipe_says_of_the_project_what_that_says_of_itself(project, recipe):
+def test_the_recipe_says_of_the_project_what_that_says_of_itself(recipe):
     version = (REPOSITORY / "src" / "linkwright" / "_version.py").read_text(encoding="utf-8")
     assert f'__version__ = "{recipe["context"]["version"]}"' in version
-    assert recipe["about"]["summary"] == project["project"]["description"]
-    assert recipe["about"]["license"] == project["project"]["license"]
-    scripts = [f"{name} = {target}" for name, target in project["project"]["scripts"].items()]
+    assert recipe["about"]["summary"] == PROJECT["description"]
+    assert recipe["about"]["license"] == PROJECT["license"]
+    scripts = [f"{name} = {target}" for name, target in PROJECT["scripts"].items()]
     assert recipe["build"]["python"]["entry_points"] == scripts
 
 

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import re
-import sys
 from collections.abc import Iterator
-from importlib import import_module
 from typing import Any
 
 import pytest
@@ -14,8 +12,7 @@ from packaging.tags import Tag, compatible_tags, cpython_tags, mac_platforms
 from packaging.utils import parse_wheel_filename
 
 from tests.places import REPOSITORY
-
-tomllib: Any = import_module("tomllib" if sys.version_info >= (3, 11) else "tomli")
+from tests.toml_files import read_toml
 
 PYTHONS = ("3.10", "3.11", "3.12", "3.13", "3.14", "3.15")
 SYSTEMS = {
@@ -38,7 +35,7 @@ PLAIN_IF_NEED_BE = {"pyyaml": "3.15"}
 @pytest.fixture(scope="module")
 def lock() -> dict[str, list[dict[str, Any]]]:
     packages: dict[str, list[dict[str, Any]]] = {}
-    for package in tomllib.loads((REPOSITORY / "uv.lock").read_text(encoding="utf-8"))["package"]:
+    for package in read_toml((REPOSITORY / "uv.lock").read_text(encoding="utf-8"))["package"]:
         packages.setdefault(package["name"], []).append(package)
     return packages
 

@@ -4,6 +4,7 @@ import asyncio
 import threading
 from collections.abc import Callable, Iterator
 from importlib.util import find_spec
+from typing import TypeVar
 
 import pytest
 
@@ -25,6 +26,9 @@ def variables(monkeypatch: pytest.MonkeyPatch, domain: int, router_port: int) ->
     for name in (ATTEMPTS, ROUTER_FILE, SESSION_FILE, "RMW_IMPLEMENTATION"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setenv(OVERRIDES, f'connect/endpoints=["tcp/localhost:{router_port}"]')
+
+
+ClosableT = TypeVar("ClosableT", Process, ZenohProcess, "Bridge")
 
 
 class Bridge:
@@ -87,7 +91,7 @@ class Networks:
         for each in self._made:
             each.close()
 
-    def _kept(self, made):  # type: ignore[no-untyped-def]  # gives back what it is given
+    def _kept(self, made: ClosableT) -> ClosableT:
         self._made.append(made)
         return made
 

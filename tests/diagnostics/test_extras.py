@@ -18,12 +18,7 @@ from linkwright.images import BadImageError
 from linkwright.images.image_files import file_pixels
 from linkwright.lint.engine import examine
 from linkwright.urdf.diagram import render
-from tests.places import REPOSITORY
-
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
+from tests.toml_files import PROJECT
 
 
 @pytest.fixture
@@ -39,7 +34,7 @@ def without(monkeypatch):
 
 
 def test_the_table_is_what_the_distribution_declares():
-    extras = tomllib.loads((REPOSITORY / "pyproject.toml").read_text())["project"]["optional-dependencies"]
+    extras = PROJECT["optional-dependencies"]
     assert set(re.findall(r"\w+", extras["all"][0])) == {"linkwright", *(EXTRAS.keys() - APART)}
     assert EXTRAS.keys() <= extras.keys()
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import sys
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -15,10 +14,9 @@ from linkwright.messages import get_message
 from linkwright.viewer import RvizConfig
 from linkwright.viewer.displays import catalogue
 from tests.docs.pages import DOCS, blocks
+from tests.toml_files import read_toml
 from tests.viewer.contents import shown_markers
 from tests.viewer.scene import page, world
-
-tomllib: Any = import_module("tomllib" if sys.version_info >= (3, 11) else "tomli")
 
 PAGES = (DOCS / "own-displays.md", DOCS / "zh" / "own-displays.md")
 CLASS = "street_displays/TrackedObjects"
@@ -44,7 +42,7 @@ def street(request, tmp_path, monkeypatch):
     for name, text in made.items():
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text(text, encoding="utf-8")
-    project = tomllib.loads(made["street_displays/pyproject.toml"])["project"]
+    project = read_toml(made["street_displays/pyproject.toml"])["project"]
     facts = tmp_path / "street_displays" / "street_displays-1.0.dist-info"
     facts.mkdir()
     points = project["entry-points"]["linkwright.displays"]

@@ -15,13 +15,8 @@ from linkwright.cli.command import parser_for
 from tests.docs.pages import READMES
 from tests.places import REPOSITORY
 from tests.repository_tools import load_tool
+from tests.toml_files import PROJECT
 
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
-
-PROJECT = tomllib.loads((REPOSITORY / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 PICTURE = REPOSITORY / "docs" / "images" / "mbot.webp"
 
 

@@ -148,13 +148,21 @@ def test_our_folders_stand_once_on_the_path(tmp_path: Path, start: str) -> None:
     assert len(set(parts)) == len(parts)
 
 
+def in_shell(command: str, folder: Path) -> subprocess.Popen[str]:
+    """A command of sh in a shell of ours, in a session of its own, so that a Ctrl-C can be sent to both."""
+    return subprocess.Popen(
+        [sys.executable, "-m", "linkwright", "shell", "--", "sh", "-c", command],
+        stdout=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+        cwd=folder,
+    )
+
+
 def test_termination_is_passed_on_and_the_folder_of_programs_goes(tmp_path: Path) -> None:
     told = tmp_path / "told"
     command = f'trap "echo ended > {told}; exit 3" TERM; echo $LINKWRIGHT_SHELL; while :; do sleep 0.05; done'
-    process = subprocess.Popen(
-        [sys.executable, "-m", "linkwright", "shell", "--", "sh", "-c", command], stdout=subprocess.PIPE, text=True
-    )
-    with process:
+    with in_shell(command, tmp_path) as process:
         assert process.stdout is not None
         folder = Path(process.stdout.readline().strip())
         assert (folder / "ros2").exists()
@@ -166,14 +174,7 @@ def test_termination_is_passed_on_and_the_folder_of_programs_goes(tmp_path: Path
 
 def test_ctrl_c_is_for_the_command(tmp_path: Path) -> None:
     command = 'trap "exit 4" INT; echo ready; while :; do sleep 0.05; done'
-    process = subprocess.Popen(
-        [sys.executable, "-m", "linkwright", "shell", "--", "sh", "-c", command],
-        stdout=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-        cwd=tmp_path,
-    )
-    with process:
+    with in_shell(command, tmp_path) as process:
         assert process.stdout is not None
         process.stdout.readline()
         os.killpg(process.pid, signal.SIGINT)
@@ -183,14 +184,7 @@ def test_ctrl_c_is_for_the_command(tmp_path: Path) -> None:
 def test_an_interrupt_of_the_shell_alone_reaches_the_command(tmp_path: Path) -> None:
     """As from ``kill -INT``, or a program that started the shell. What is sent to all comes once."""
     command = "trap 'echo heard' INT; echo ready; while :; do sleep 0.05; done"
-    process = subprocess.Popen(
-        [sys.executable, "-m", "linkwright", "shell", "--", "sh", "-c", command],
-        stdout=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-        cwd=tmp_path,
-    )
-    with process:
+    with in_shell(command, tmp_path) as process:
         assert process.stdout is not None
         assert process.stdout.readline() == "ready\n"
         process.send_signal(signal.SIGINT)
@@ -204,14 +198,7 @@ def test_an_interrupt_of_the_shell_alone_reaches_the_command(tmp_path: Path) -> 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="only Linux tells a process that its parent was killed")
 def test_the_command_ends_when_the_shell_is_killed(tmp_path: Path) -> None:
-    process = subprocess.Popen(
-        [sys.executable, "-m", "linkwright", "shell", "--", "sh", "-c", "echo ready; exec sleep 600"],
-        stdout=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-        cwd=tmp_path,
-    )
-    with process:
+    with in_shell("echo ready; exec sleep 600", tmp_path) as process:
         assert process.stdout is not None
         assert process.stdout.readline() == "ready\n"
         process.kill()

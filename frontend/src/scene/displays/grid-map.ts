@@ -1,7 +1,7 @@
 import { BufferAttribute, BufferGeometry, DoubleSide, Matrix4, Mesh, MeshLambertMaterial, Vector3, type Box3 } from "three";
 import type { GridSurface } from "../../protocol";
 import { OPAQUE_FROM } from "../materials";
-import { ThinLines } from "../objects/thin-lines";
+import { joined, ThinLines } from "../objects/thin-lines";
 import { ContentDrawing } from "./content-drawing";
 import type { DrawingContext } from "./drawing";
 
@@ -114,14 +114,4 @@ function segmentsOf(content: GridSurface, pose: Matrix4): Float32Array {
     }
   }
   return Float32Array.from(result);
-}
-
-function joined(parts: readonly Float32Array[]): Float32Array {
-  const result = new Float32Array(parts.reduce((sum, part) => sum + part.length, 0));
-  let at = 0;
-  for (const part of parts) {
-    result.set(part, at);
-    at += part.length;
-  }
-  return result;
 }

@@ -15,15 +15,20 @@ from linkwright.viewer.displays.base.display import DisplayHost, Pose
 from linkwright.viewer.displays.base.stored_markers import StoredMarkersDisplay
 from linkwright.viewer.displays.base.topic_display import TRANSFORM
 from linkwright.viewer.displays.moveit.octree import BadOctreeError, Cells, read_octree
-from linkwright.viewer.displays.moveit.properties import BY_HEIGHT, BY_PROBABILITY, VOXELS, fraction
-from linkwright.viewer.displays.moveit.voxels import octomap_markers
+from linkwright.viewer.displays.moveit.properties import fraction
+from linkwright.viewer.displays.moveit.voxels import (
+    BY_PROBABILITY,
+    VOXEL_COLORING,
+    VOXEL_RENDERING,
+    octomap_markers,
+    rendered,
+)
 
 _TOPIC = "Octomap Topic"
 _MOST = 3.4028234663852886e38
 """Stands for infinity in properties."""
 
 _DEPTH = 16
-_LIKELY = 0.5
 _MAP = "Octomap"
 
 
@@ -36,14 +41,8 @@ class OctomapDisplay(StoredMarkersDisplay):
     TOPIC = (_TOPIC,)
     SCHEMA = (
         topic_spec(_TOPIC, description=MESSAGE, messages=(MESSAGE,)),
-        PropertySpec("Voxel Rendering", "enum", VOXELS[0], "Which cells are drawn.", options=VOXELS),
-        PropertySpec(
-            "Voxel Coloring",
-            "enum",
-            BY_HEIGHT,
-            "Whether colours tell how high a cell is, or how probable it is that it is occupied.",
-            options=(BY_HEIGHT, BY_PROBABILITY),
-        ),
+        VOXEL_RENDERING,
+        VOXEL_COLORING,
         fraction("Voxel Alpha", 1.0, "Opacity of the cells."),
         PropertySpec(
             "Max. Octree Depth",
@@ -117,9 +116,7 @@ class OctomapDisplay(StoredMarkersDisplay):
 
     def _chosen(self, cells: Cells, resolution: float) -> Cells:
         """The cells that properties ask for, made larger where the tree is to be looked at less deep."""
-        rendering = self.properties.text("Voxel Rendering")
-        if rendering != VOXELS[2]:
-            cells = cells.chosen((cells.probabilities > _LIKELY) == (rendering == VOXELS[0]))
+        cells = rendered(cells, self.properties.text("Voxel Rendering"))
         height = cells.centers[:, 2]
         lowest, highest = (self.properties.number(f"{which}. Height Display") for which in ("Min", "Max"))
         cells = cells.chosen((height >= lowest) & (height <= highest))

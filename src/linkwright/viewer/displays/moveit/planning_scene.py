@@ -13,7 +13,6 @@ from linkwright.viewer.config.schema import Path, Schema
 from linkwright.viewer.displays.base.display import DisplayHost, Pose
 from linkwright.viewer.displays.moveit.base import STATE, MoveItDisplay
 from linkwright.viewer.displays.moveit.properties import (
-    BY_PROBABILITY,
     DESCRIPTION_SPEC,
     GEOMETRY,
     GEOMETRY_SPEC,
@@ -22,21 +21,18 @@ from linkwright.viewer.displays.moveit.properties import (
     ROBOT,
     SCENE_TOPIC,
     SCENE_TOPIC_SPEC,
-    VOXELS,
     look,
     rgb,
     scene_robot_spec,
 )
 from linkwright.viewer.displays.moveit.robot import JointPositions, UnusableStateError
 from linkwright.viewer.displays.moveit.scene import Scene
-from linkwright.viewer.displays.moveit.voxels import octomap_markers
+from linkwright.viewer.displays.moveit.voxels import BY_PROBABILITY, octomap_markers, rendered
 from linkwright.viewer.protocol.displays import PropertyChanged
 from linkwright.viewer.protocol.markers import MarkerShape
 
 _SERVICE = "get_planning_scene"
 _HELD = "Scene Robot holds"
-_LIKELY = 0.5
-"""Cells that are more probably occupied than this are."""
 
 
 class PlanningSceneDisplay(MoveItDisplay):
@@ -152,12 +148,8 @@ class PlanningSceneDisplay(MoveItDisplay):
         octomap = self.scene.octomap
         if octomap is None:
             return []
-        rendering = self.properties.text(GEOMETRY, "Voxel Rendering")
-        cells = octomap.cells
-        if rendering != VOXELS[2]:
-            cells = cells.chosen((cells.probabilities > _LIKELY) == (rendering == VOXELS[0]))
         return octomap_markers(
-            cells,
+            rendered(octomap.cells, self.properties.text(GEOMETRY, "Voxel Rendering")),
             GEOMETRY,
             frame=octomap.frame,
             base=octomap.base,

@@ -8,6 +8,7 @@ from linkwright.viewer.config.property_store import PropertyStore
 from linkwright.viewer.config.schema import Path, PropertySpec, alpha
 from linkwright.viewer.displays.moveit.robot import Look, PosableRobot
 from linkwright.viewer.displays.moveit.solids import Color
+from linkwright.viewer.displays.moveit.voxels import VOXEL_COLORING, VOXEL_RENDERING
 
 DESCRIPTION = "Robot Description"
 NAMESPACE = "Move Group Namespace"
@@ -19,9 +20,6 @@ ALL_LINKS = "All Links Enabled"
 
 SCENE_TOPIC = "Planning Scene Topic"
 TRAJECTORY_TOPIC = "Trajectory Topic"
-
-VOXELS = ("Occupied Voxels", "Free Voxels", "All Voxels")
-BY_HEIGHT, BY_PROBABILITY = "Z-Axis", "Cell Probability"
 
 
 def fraction(name: str, default: float, description: str) -> PropertySpec:
@@ -54,14 +52,8 @@ GEOMETRY_SPEC = PropertySpec(
         PropertySpec("Show Scene Geometry", "bool", True, "Draw the objects and the octomap."),
         fraction("Scene Alpha", 0.9, "Opacity of objects without a colour of their own, and of the octomap."),
         PropertySpec("Scene Color", "color", "#32e632", "Colour of objects that have none of their own."),
-        PropertySpec("Voxel Rendering", "enum", VOXELS[0], "Which cells of the octomap are drawn.", options=VOXELS),
-        PropertySpec(
-            "Voxel Coloring",
-            "enum",
-            BY_HEIGHT,
-            "Whether colours tell how high a cell is, or how probable it is that it is occupied.",
-            options=(BY_HEIGHT, BY_PROBABILITY),
-        ),
+        VOXEL_RENDERING,
+        VOXEL_COLORING,
         PropertySpec("Scene Display Time", "float", 0.01, "Least seconds between two updates.", minimum=0.0001),
     ),
 )

@@ -1,4 +1,4 @@
-"""The cells of octrees as markers."""
+"""The cells of octrees as markers, and the properties that say which cells and in what colours."""
 
 from __future__ import annotations
 
@@ -8,9 +8,33 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.geometry.single import Transform
+from linkwright.viewer.config.schema import PropertySpec
 from linkwright.viewer.displays.moveit.octree import Cells
 from linkwright.viewer.markers.shapes import made_marker
 from linkwright.viewer.protocol.markers import MarkerShape
+
+_OCCUPIED, _FREE, _ALL = "Occupied Voxels", "Free Voxels", "All Voxels"
+_BY_HEIGHT, BY_PROBABILITY = "Z-Axis", "Cell Probability"
+_LIKELY = 0.5
+"""Cells that are more probably occupied than this are."""
+
+VOXEL_RENDERING = PropertySpec(
+    "Voxel Rendering", "enum", _OCCUPIED, "Which cells of the octomap are drawn.", options=(_OCCUPIED, _FREE, _ALL)
+)
+VOXEL_COLORING = PropertySpec(
+    "Voxel Coloring",
+    "enum",
+    _BY_HEIGHT,
+    "Whether colours tell how high a cell is, or how probable it is that it is occupied.",
+    options=(_BY_HEIGHT, BY_PROBABILITY),
+)
+
+
+def rendered(cells: Cells, rendering: str) -> Cells:
+    """The cells that a value of `VOXEL_RENDERING` asks for."""
+    if rendering == _ALL:
+        return cells
+    return cells.chosen((cells.probabilities > _LIKELY) == (rendering == _OCCUPIED))
 
 
 def octomap_markers(

@@ -1,0 +1,21 @@
+"""Files of TOML, which Python itself reads from 3.11 on."""
+
+from __future__ import annotations
+
+import sys
+from importlib import import_module
+from typing import Any
+
+from tests.places import REPOSITORY
+
+_tomllib: Any = import_module("tomllib" if sys.version_info >= (3, 11) else "tomli")
+
+
+def read_toml(text: str) -> dict[str, Any]:
+    """What a text of TOML says."""
+    found: dict[str, Any] = _tomllib.loads(text)
+    return found
+
+
+PYPROJECT = read_toml((REPOSITORY / "pyproject.toml").read_text(encoding="utf-8"))
+PROJECT: dict[str, Any] = PYPROJECT["project"]
