@@ -11,6 +11,7 @@ from __future__ import annotations
 import re
 import sys
 from collections.abc import Iterator, Mapping
+from functools import cache
 from pathlib import Path
 
 from babel.messages.pofile import read_po
@@ -73,6 +74,7 @@ def generate() -> dict[Path, str]:
     return pages
 
 
+@cache
 def chinese_titles() -> dict[str, str]:
     """Code -> what the rule reports, in Chinese."""
     with CATALOGUE.open("rb") as file:

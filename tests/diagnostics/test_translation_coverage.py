@@ -64,6 +64,7 @@ def source() -> Any:
     return load_tool("catalogues").Source()
 
 
+@pytest.mark.slow  # reads all of the source, which is the same with each Python
 def test_the_catalogues_say_what_the_source_says(source: Any) -> None:
     tool = load_tool("catalogues")
     assert len(source.said) > 1000

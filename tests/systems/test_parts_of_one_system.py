@@ -59,6 +59,7 @@ KNOWN: dict[str, str] = {
 """Module -> what it uses of that. Whoever adds a line makes it work, or be left out, where that is not there."""
 
 
+@pytest.mark.slow  # reads all of the source, which is the same with each Python
 def test_each_module_that_uses_what_one_system_has_is_listed() -> None:
     found = {
         path.relative_to(ROOT).as_posix(): " ".join(sorted(set(used(path)))) for path in sorted(ROOT.rglob("*.py"))
