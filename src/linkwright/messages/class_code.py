@@ -31,6 +31,9 @@ def build_class(structure: Structure, base: type, classes: dict[str, type], modu
         "Array": array,
         "Range": range,
         "List": list,
+        "Set": set,
+        "Map": map,
+        "Type": type,
     }
     if any(field.type.is_numeric_array and field.type.container is Container.ARRAY for field in structure.fields):
         import numpy as np
@@ -106,12 +109,19 @@ class _FieldCode:
 
     def _checked(self) -> str:
         name, kind, primitive = self.name, self.kind, self.kind.primitive
+        if kind.is_numeric_array and kind.container is Container.ARRAY:
+            return f"    value = Checks.check_fixed_array({name!r}, value, K_{name})\n"
         if kind.is_numeric_array:
-            check = "check_fixed_array" if kind.container is Container.ARRAY else "check_sequence"
-            return f"    value = Checks.{check}({name!r}, value, K_{name})\n"
+            assert primitive is not None
+            usual = f"value.__class__ is Array and value.typecode == {primitive.array_code!r}" + self._usual_length()
+            return f"    if not ({usual}): value = Checks.check_sequence({name!r}, value, K_{name})\n"
         if kind.container is not Container.ONE:
             cls = f"C_{name}" if primitive is None else primitive.python.__name__
-            return f"    value = Checks.check_values({name!r}, value, K_{name}, {cls})\n"
+            check = f"value = Checks.check_values({name!r}, value, K_{name}, {cls})"
+            if kind.string_bound is not None:
+                return f"    {check}\n"
+            usual = f"value.__class__ is List and Set(Map(Type, value)) <= {{{cls}}}" + self._usual_length()
+            return f"    if not ({usual}): {check}\n"
         if primitive is None:
             check = f"check_message({name!r}, value, C_{name})"
         elif primitive.python is int:
@@ -125,6 +135,12 @@ class _FieldCode:
         else:
             check = f"check_text({name!r}, value, {kind.string_bound})"
         return f"    if not ({self._usual('value')}): value = Checks.{check}\n"
+
+    def _usual_length(self) -> str:
+        """The further test for several values whose number is bounded."""
+        if self.kind.size is None:
+            return ""
+        return f" and len(value) {'==' if self.kind.container is Container.ARRAY else '<='} {self.kind.size}"
 
     def _usual(self, value: str) -> str:
         """The test for the usual case of a single value, in which it is kept as it is."""

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 from math import isfinite
 from random import Random
 from typing import Literal
 
-from linkwright.graph import Node, run_logged
+from linkwright.graph import Node
+from linkwright.graph.log.logger import log_failure
 from linkwright.nodes.joint_positions import JointPositions
 from linkwright.nodes.joint_settings import Dependence
 from linkwright.urdf import JointType
@@ -91,7 +91,7 @@ class JointPanel:
         slider = next((row for row in self._sliders if row.name == name and row.mimic is None), None)
         if slider is None or not isfinite(value):
             return False
-        self._joints.set(name, self._joints.layout.ranges[name].clamp(value))
+        self._joints.set(name, value)
         self._moved()
         return True
 
@@ -106,7 +106,7 @@ class JointPanel:
         """Put every joint where it started: at its zero, which is not the middle of its range."""
         self._logger.info("Centering")
         for slider in self._free():
-            self._joints.set(slider.name, self._joints.layout.ranges[slider.name].clamp(slider.zero))
+            self._joints.set(slider.name, slider.zero)
         self._moved()
 
     def subscribe(self, callback: PanelCallback) -> Callable[[], None]:
@@ -172,4 +172,7 @@ class JointPanel:
 
     def _tell(self, change: PanelChange) -> None:
         for callback in tuple(self._subscribers):
-            run_logged(self._logger, "joint panel callback", partial(callback, change))
+            try:
+                callback(change)
+            except Exception as error:  # noqa: BLE001, PERF203  # one subscriber must not take the news from the others
+                log_failure(self._logger, "joint panel callback", error)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from array import array
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -99,8 +101,9 @@ class JointPositions:
             self._ahead = np.where(self._direction > 0.0, self._upper, self._lower)
 
     def set(self, name: str, position: float) -> None:
-        """Move a free joint; KeyError when there is none of that name."""
-        self._position.values[self._rows[name]] = position
+        """Move a free joint, within its limits; KeyError when there is none of that name."""
+        row = self._rows[name]
+        self._position.values[row] = min(max(position, self._lower[row]), self._upper[row])
 
     def published(self) -> Array:
         """Positions of all published joints in the order of messages; 0 for those without one."""
@@ -116,11 +119,11 @@ class JointPositions:
         if positions is None and self.layout.dependent:
             positions = np.zeros(len(self.layout.ranges))
         if positions is not None:
-            message.position = positions
+            message.position = array("d", positions.tobytes())
         if velocities is not None:
-            message.velocity = velocities
+            message.velocity = array("d", velocities.tobytes())
         if efforts is not None:
-            message.effort = efforts
+            message.effort = array("d", efforts.tobytes())
 
     def _free_states(self) -> Array:
         return np.array([self._position.values, self._velocity.values, self._effort.values])

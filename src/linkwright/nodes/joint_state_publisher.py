@@ -26,7 +26,7 @@ from linkwright.graph import (
     Timer,
 )
 from linkwright.input_files import read_text
-from linkwright.messages import Header, JointState, String
+from linkwright.messages import Header, JointState, String, Time
 from linkwright.nodes.joint_layout import layout_of
 from linkwright.nodes.joint_positions import JointPositions
 from linkwright.nodes.joint_settings import JointSettings, declare_settings, settings_from
@@ -214,7 +214,7 @@ class JointStatePublisher(SingleNode):
         self._publish()
 
     def _publish(self) -> None:
-        message = JointState(Header(self._clock.now().to_msg()))
+        message = JointState(Header(Time.from_nanoseconds(self._clock.now_ns())))
         self._joints.fill(message)
         if message.name:
             self._publisher.publish(message)

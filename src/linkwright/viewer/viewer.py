@@ -22,9 +22,8 @@ from linkwright.viewer.features.page_feature import PageFeature, make_features
 from linkwright.viewer.features.recording import RecordingFeature
 from linkwright.viewer.features.timeline import TimelineFeature
 from linkwright.viewer.frames.history import FrameHistory
-from linkwright.viewer.protocol.message import PageMessage, ServerMessage, encode
+from linkwright.viewer.protocol.message import ServerMessage, encode
 from linkwright.viewer.protocol.session import PROTOCOL_VERSION, Hello
-from linkwright.viewer.protocol.voice import SoundBlock
 from linkwright.viewer.visualization.manager import Managers, VisualizationManager
 from linkwright.viewer.web.access import Gate
 from linkwright.viewer.web.audience import Audience, Page
@@ -94,7 +93,8 @@ class Viewer:
             ParameterDescriptor(description="the frame that everything is shown in"),
         )
         config.options.set(("Fixed Frame",), frame.value)
-        self._audience = Audience(self._opening, self._receive, self._page_gone, self._node.get_logger())
+        self._receivers: dict[type, Callable[[Page, Any], object]] = {}
+        self._audience = Audience(self._opening, self._receivers, self._page_gone, self._node.get_logger())
         shared: dict[str, Any] = {}
         if beside is not None:  # what the server gives out, by names that none of its viewers has twice
             served = beside.context
@@ -112,7 +112,7 @@ class Viewer:
         self.managers = Managers(self.context, config, self)
         self._node.add_post_set_parameters_callback(self._take_parameters)
         self._features += make_features(self)
-        self._receivers = {cls: feature for feature in self._features for cls in feature.RECEIVES}
+        self._receivers.update((cls, feature.receive) for feature in self._features for cls in feature.RECEIVES)
         self._server: WebServer | None = None
 
     # --- life --------------------------------------------------------------------------------------------------
@@ -253,10 +253,6 @@ class Viewer:
         for feature in self._features:
             feature.page_gone(page)
         self.managers.leave(page)
-
-    def _receive(self, page: Page, message: PageMessage | SoundBlock) -> None:
-        if feature := self._receivers.get(type(message)):
-            feature.receive(page, message)
 
     # --- what happens to managers ------------------------------------------------------------------------------
 

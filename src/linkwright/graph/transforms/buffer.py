@@ -185,6 +185,10 @@ class TransformBuffer:
         poses = self._poses_in_roots()
         return compose(invert(poses[target_row]), poses[source_row])
 
+    def knows(self, frame: str) -> bool:
+        """Whether there is a frame of that name."""
+        return frame in self._rows
+
     def frames(self) -> tuple[str, ...]:
         """The names of all frames, in the order in which they were first seen."""
         return self._names

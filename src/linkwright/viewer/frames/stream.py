@@ -347,9 +347,9 @@ class FrameStream:
 
     def _snapshot(self, fixed_frame: str, now_ns: int) -> FrameSnapshot:
         """Where all frames are in the Fixed Frame, which a display may place."""
-        own = self._history.own(fixed_frame)
         # The buffer may know the frame before the history does.
-        if own is None or own.parent is None or fixed_frame in self._buffer.frames():
+        own = None if self._buffer.knows(fixed_frame) else self._history.own(fixed_frame)
+        if own is None or own.parent is None:
             return self._buffer.snapshot(fixed_frame, now_ns)
         snapshot = self._buffer.snapshot(own.parent, now_ns)
         return replace(snapshot, poses=compose(own.pose, snapshot.poses))

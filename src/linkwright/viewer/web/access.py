@@ -160,8 +160,11 @@ class Admission:
         self._strangers.pop(entrance.served, None)
 
 
+_PASSED_ON = ("data_received", "eof_received", "pause_writing", "resume_writing")
+
+
 class Entrance(asyncio.Protocol):
-    """Stands between a connection and what serves it."""
+    """Stands at the beginning and the end of a connection; what comes between goes to what serves it, at once."""
 
     def __init__(self, admission: Admission, served: asyncio.Protocol) -> None:
         self.served = served
@@ -169,6 +172,8 @@ class Entrance(asyncio.Protocol):
         self._transport: asyncio.BaseTransport | None = None
         self._counted = False
         self._deadline: asyncio.TimerHandle | None = None
+        for name in _PASSED_ON:  # in place of methods that would only hand on
+            setattr(self, name, getattr(served, name))
 
     def may_stay(self) -> None:
         """The connection is no longer waited for."""
@@ -204,19 +209,3 @@ class Entrance(asyncio.Protocol):
             self._counted = False
             self._admission.closed(self)
         self.served.connection_lost(exc)
-
-    def data_received(self, data: bytes) -> None:
-        """Pass it on."""
-        self.served.data_received(data)
-
-    def eof_received(self) -> bool | None:
-        """Pass it on."""
-        return self.served.eof_received()
-
-    def pause_writing(self) -> None:
-        """Pass it on."""
-        self.served.pause_writing()
-
-    def resume_writing(self) -> None:
-        """Pass it on."""
-        self.served.resume_writing()

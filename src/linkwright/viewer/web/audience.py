@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import asyncio
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from linkwright.graph import run_logged
+from linkwright.graph.log.logger import log_failure
 from linkwright.viewer.protocol.message import (
     BadMessageError,
     PageMessage,
@@ -197,7 +196,7 @@ class Audience(PageGroup):
 
     Args:
         opening: what a page is sent first, the whole state as it is.
-        receive: called with each message of a page.
+        receivers: what takes the messages of pages, by their classes; others are passed over.
         gone: called when a page has closed.
         logger: told of messages outside of the protocol.
     """
@@ -205,13 +204,13 @@ class Audience(PageGroup):
     def __init__(
         self,
         opening: Callable[[Page], list[Payload]],
-        receive: Callable[[Page, PageMessage | SoundBlock], None],
+        receivers: Mapping[type, Callable[[Page, Any], object]],
         gone: Callable[[Page], None],
         logger: Logger,
     ) -> None:
         super().__init__()
         self._opening = opening
-        self._receive = receive
+        self._receivers = receivers
         self._gone = gone
         self._logger = logger
         self._sockets: set[WebSocketResponse] = set()
@@ -285,7 +284,14 @@ class Audience(PageGroup):
                     self._hand_on(page, decoded)
 
     def _hand_on(self, page: Page, message: PageMessage | SoundBlock) -> None:
-        run_logged(self._logger, f"'{type(message).__name__}' of a page", partial(self._receive, page, message))
+        cls = type(message)
+        receive = self._receivers.get(cls)
+        if receive is None:
+            return
+        try:
+            receive(page, message)
+        except Exception as error:  # noqa: BLE001  # one page must not take the program from the others
+            log_failure(self._logger, f"'{cls.__name__}' of a page", error)
 
 
 _RATE = 1000.0
