@@ -87,13 +87,13 @@ class History:
         self._tracks: dict[str, _Track] = {}
         self._order: deque[_Track] = deque()
 
-    def add(self, topic: str, data: bytes) -> None:
-        """Keep a message that came now."""
+    def add(self, topic: str, data: bytes, at_ns: int | None = None) -> None:
+        """Keep a message that came now, or at another time after those that are kept."""
         size = _size(data)
         if size > self.most_bytes:
             return
         with self.lock:
-            self._newest_ns = max(self._newest_ns, self._now_ns())
+            self._newest_ns = max(self._newest_ns, self._now_ns() if at_ns is None else at_ns)
             track = self._tracks.get(topic)
             if track is None:
                 track = self._tracks[topic] = _Track(topic)

@@ -10,9 +10,9 @@ from linkwright.bag.qos import profile_for_playing
 from linkwright.bag.reading import BagReader, BagTopic
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import DurabilityPolicy, Node, Publisher, QoSProfile
+from linkwright.graph.simulated_time import CLOCK_TOPIC
 from linkwright.messages import Time, get_message
 
-CLOCK_TOPIC = "/clock"
 _CLOCK_TYPE = "rosgraph_msgs/msg/Clock"
 _LATCHED = frozenset({STATIC_TRANSFORMS, "/robot_description"})
 """Topics that listeners expect to be kept for them, whether or not the recording says so."""

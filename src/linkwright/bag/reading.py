@@ -10,6 +10,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from linkwright.bag.moments import Moments, Recorded
+from linkwright.bag.names import SUFFIXES
 from linkwright.bag.qos import from_bag
 from linkwright.bag.unfinished import FinishedFile, has_index, is_unfinished
 from linkwright.diagnostics import (
@@ -31,8 +32,6 @@ if TYPE_CHECKING:
     from linkwright.graph import QoSProfile
 
 T = TypeVar("T")
-
-_SUFFIXES = {".mcap": "mcap", ".db3": "sqlite3"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,7 +131,7 @@ class BagReader:
         """The files with the messages."""
         if self.path.is_file():
             return [self.path]
-        return sorted(each for each in self.path.iterdir() if _SUFFIXES.keys() & set(each.suffixes))
+        return sorted(each for each in self.path.iterdir() if SUFFIXES.keys() & set(each.suffixes))
 
     @property
     def start_ns(self) -> int:
@@ -216,13 +215,6 @@ class BagReader:
         self.close()
 
 
-def is_recording(path: Path) -> bool:
-    """Whether a path is that of a recording, by its names: of its file, or of the folder with its metadata or files."""
-    if not path.is_dir():
-        return path.suffix in _SUFFIXES
-    return (path / "metadata.yaml").exists() or any(each.suffix in _SUFFIXES for each in path.iterdir())
-
-
 def _storage_target(path: Path) -> Path:
     """What the library is to open: the folder, or its only file where the metadata are missing."""
     if not path.exists():
@@ -232,7 +224,7 @@ def _storage_target(path: Path) -> Path:
     if not path.is_dir():
         message = phrase("'{path}' is not a recording: it is neither a file nor a folder", path=display_path(path))
         raise LinkwrightError(Diagnostic("BAG102", message))
-    files = sorted(each for each in path.iterdir() if each.suffix in _SUFFIXES)
+    files = sorted(each for each in path.iterdir() if each.suffix in SUFFIXES)
     if len(files) == 1:
         return files[0]
     found = ", ".join(each.name for each in files) or phrase("none")
@@ -248,9 +240,9 @@ def _storage_target(path: Path) -> Path:
 
 def _storage_of(target: Path) -> str:
     if target.is_file():
-        return _SUFFIXES.get(target.suffix, target.suffix.lstrip("."))
+        return SUFFIXES.get(target.suffix, target.suffix.lstrip("."))
     suffixes = {suffix for each in target.iterdir() for suffix in each.suffixes}
-    return next((name for suffix, name in _SUFFIXES.items() if suffix in suffixes), "")
+    return next((name for suffix, name in SUFFIXES.items() if suffix in suffixes), "")
 
 
 def _profiles(connection: Any) -> list[Any]:

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from linkwright.bag.moments import Recorded
-from linkwright.bag.publishing import CLOCK_TOPIC
 from linkwright.bag.writing import BagWriter
 from linkwright.graph import QoSProfile
+from linkwright.graph.simulated_time import CLOCK_TOPIC
 from linkwright.messages import deserialize, get_message
 
 _TOLD_EVERY = 1000

@@ -14,6 +14,8 @@ from linkwright.graph.time.values import NANOSECONDS_PER_SECOND
 
 PARAMETER = "use_sim_time"
 
+CLOCK_TOPIC = "/clock"
+
 
 class SimulatedTime:
     """Keeps a node's clock by ``/clock`` while its parameter ``use_sim_time`` is true (rclpy ``TimeSource``).
@@ -71,7 +73,7 @@ class _ClockSubscription(Subscription[Any]):
     """Moves a clock by the messages of ``/clock``, in whatever thread they come."""
 
     def __init__(self, node: NodeHandle, clock: ROSClock) -> None:
-        super().__init__(node, "rosgraph_msgs/msg/Clock", node.resolve_topic_name("/clock"), CLOCK_QOS, self._move)
+        super().__init__(node, "rosgraph_msgs/msg/Clock", node.resolve_topic_name(CLOCK_TOPIC), CLOCK_QOS, self._move)
         self._ros_clock = clock
 
     def enqueue(self, message: Any, info: Any = None) -> None:

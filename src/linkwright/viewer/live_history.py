@@ -3,22 +3,30 @@
 from __future__ import annotations
 
 import asyncio
+import threading
 from collections.abc import Callable, Mapping
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from linkwright.bag.history import History
-from linkwright.bag.moments import Recorded
-from linkwright.bag.playback import Playback
-from linkwright.bag.publishing import CLOCK_TOPIC
-from linkwright.bag.saving import KeptTopic, in_simulated_time, last_reset_ns
 from linkwright.graph import DurabilityPolicy, MessageInfo
 from linkwright.graph.endpoints.subscription import Detailed
+from linkwright.graph.log.logger import log_failure
+from linkwright.graph.simulated_time import CLOCK_TOPIC
 from linkwright.messages import serialize
 
 if TYPE_CHECKING:
+    from linkwright.bag.history import History
+    from linkwright.bag.moments import Recorded
+    from linkwright.bag.playback import Playback
+    from linkwright.bag.saving import KeptTopic
     from linkwright.diagnostics import LinkwrightError
     from linkwright.graph import Subscription
     from linkwright.viewer.context import ViewerContext
+
+_BYTES = (bytes, bytearray, memoryview)
+
+_MOST_FRESH = 16
+"""Messages that wait to be written as bytes: while one is on its way to the page, it costs no more than its place."""
 
 
 class LiveHistory:
@@ -32,8 +40,6 @@ class LiveHistory:
         failed: called with an error of the playback.
 
     Attributes:
-        history: what is kept.
-        playback: shows it; its output are the subscriptions.
         live: whether the present is shown.
         begin_anew: has whoever shows something forget it, because time has gone back.
         changed: called when `live` has changed.
@@ -48,16 +54,54 @@ class LiveHistory:
         self.live = True
         self.begin_anew: Callable[[], object] = lambda: None
         self.changed: Callable[[], object] = lambda: None
-        self.history = History(most_bytes, self._handle.timebase.now_ns)
-        self.playback = Playback(self._handle, self.history, self, failed)
-        self.playback.begin_anew = self._begin_anew
+        self.most_bytes = most_bytes
+        self._failed = failed
+        self._now_ns = self._handle.timebase.now_ns
+        self._lock = threading.RLock()
+        self._fresh: list[tuple[str, int, Any]] = []
+        self._kept: History | None = None
         self._handle.intake = self._intake
+
+    @property
+    def history(self) -> History:
+        """What is kept, to the newest message."""
+        with self._lock:
+            return self._written()
+
+    @cached_property
+    def playback(self) -> Playback:
+        """Shows it; its output are the subscriptions. Made when another time than the present is first asked for."""
+        from linkwright.bag.playback import Playback
+
+        made = Playback(self._handle, self.history, self, self._failed)
+        made.begin_anew = self._begin_anew
+        made.changed.append(self.changed)
+        return made
+
+    @property
+    def has_playback(self) -> bool:
+        """Whether another time than the present was ever asked for."""
+        return "playback" in self.__dict__
+
+    @property
+    def span_ns(self) -> tuple[int, int]:
+        """The times of the oldest message and of the newest, nanoseconds since the epoch; now, where there is none."""
+        with self._lock:
+            if self._kept is not None:
+                return self._kept.start_ns, self._kept.end_ns
+            now = self._now_ns()
+            return self._fresh[0][1] if self._fresh else now, now
+
+    @property
+    def size(self) -> int:
+        """Bytes that it takes, but for the newest messages."""
+        return 0 if self._kept is None else self._kept.size
 
     def freeze(self) -> None:
         """Have everything stand as it is now, while messages go on being kept."""
         if not self.live:
             return
-        with self.history.lock:
+        with self._lock:
             self.live = False
             now = self.history.end_ns
         self._context.held_time.show(self._context.node.get_clock(), now)
@@ -79,6 +123,8 @@ class LiveHistory:
 
     def topics(self) -> dict[str, KeptTopic]:
         """The topics whose messages are kept, with the profiles of those who publish them now."""
+        from linkwright.bag.saving import KeptTopic
+
         graph = self._context.node.graph
         found = {}
         for name, keeper in list(self._keepers.items()):
@@ -96,6 +142,8 @@ class LiveHistory:
             simulated: whether messages get the times that ``/clock`` told; then those from before the last reset of
                 the simulation are left out, because time begins anew there.
         """
+        from linkwright.bag.saving import in_simulated_time, last_reset_ns
+
         messages = self.history.part(max(start_ns, self.history.start_ns), end_ns)
         if not simulated:
             return messages
@@ -110,7 +158,8 @@ class LiveHistory:
         """Keep nothing more."""
         self._handle.intake = None
         self._context.graph_changes.ignore(self._review)
-        self.playback.close()
+        if self.has_playback:
+            self.playback.close()
 
     # --- the output of the playback ---------------------------------------------------------------------------
 
@@ -144,10 +193,26 @@ class LiveHistory:
             return self.live
         if type(message) is Detailed:
             message = message.message
-        data = bytes(message) if isinstance(message, (bytes, bytearray, memoryview)) else serialize(message)
-        with self.history.lock:  # so that what comes while the present is gone back to is shown once, and in its order
-            self.history.add(topic, data)
+        with self._lock:  # so that what comes while the present is gone back to is shown once, and in its order
+            self._fresh.append((topic, self._now_ns(), message))
+            if not self.live or len(self._fresh) >= _MOST_FRESH:
+                self._written()
             return self.live
+
+    def _written(self) -> History:
+        """What is kept, once what just came was written too; what is published never changes, so that it can wait."""
+        if self._kept is None:
+            from linkwright.bag.history import History
+
+            self._kept = History(self.most_bytes, self._now_ns)
+        history, fresh = self._kept, self._fresh
+        self._fresh = []
+        for topic, at_ns, message in fresh:
+            try:
+                history.add(topic, bytes(message) if isinstance(message, _BYTES) else serialize(message), at_ns)
+            except Exception as error:  # noqa: BLE001, PERF203  # a message that is none is no reason to keep no other
+                log_failure(self._handle.logger, f"keeping a message of '{topic}'", error)
+        return history
 
     def _subscriptions(self) -> list[Subscription[Any]]:
         return list(self._context.node.subscriptions)
@@ -180,7 +245,7 @@ class LiveHistory:
         if self._went_back:
             self.begin_anew()
         subscriptions = self._subscriptions()
-        with self.history.lock:
+        with self._lock:
             for message in self.history.state_at({each.name for each in subscriptions}, self.history.end_ns):
                 self._give(subscriptions, *message)
             self.live = True

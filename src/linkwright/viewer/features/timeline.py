@@ -5,10 +5,8 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Iterable
 from math import isfinite
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
-from linkwright.bag.playback import FASTEST, SLOWEST, Playback
-from linkwright.bag.reading import BagReader
 from linkwright.diagnostics import Diagnostic, LinkwrightError
 from linkwright.diagnostics.translation import translated
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
@@ -27,6 +25,10 @@ from linkwright.viewer.protocol.timeline import (
     TimelineTopic,
 )
 from linkwright.viewer.web.audience import Page
+
+if TYPE_CHECKING:
+    from linkwright.bag.playback import Playback
+    from linkwright.bag.reading import BagReader
 
 _PERIOD = 0.1
 """Seconds between two times that pages are told while a recording is played."""
@@ -54,7 +56,7 @@ class TimelineFeature(PageFeature):
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
-        self._playback: Playback | None = None
+        self._recorded: Playback | None = None
         self._timeline: Timeline | None = None
         self._problem = ""
         self._begun = False
@@ -74,7 +76,7 @@ class TimelineFeature(PageFeature):
         self._timeline = Timeline(bag.path.name, bag.start_ns / _SECOND, bag.end_ns / _SECOND, topics, live=False)
         if bag.finding is not None:
             self._problem = _text([bag.finding])
-        self._playback = playback
+        self._recorded = playback
         playback.begin_anew = self._begin_anew
         playback.changed.append(self._changed)
         self.context.graph_changes.listen(playback.review)
@@ -86,8 +88,6 @@ class TimelineFeature(PageFeature):
         self._live = LiveHistory(self.context, most_bytes, self.failed)
         self._live.begin_anew = self._begin_anew
         self._live.changed = self._changed
-        self._playback = self._live.playback
-        self._playback.changed.append(self._changed)
         return self._live
 
     def failed(self, error: LinkwrightError) -> None:
@@ -98,11 +98,11 @@ class TimelineFeature(PageFeature):
 
     def opening(self) -> list[ServerMessage]:
         """The recording, and where it is."""
-        playback = self._playback
+        playback = self._recorded
         if self._live is not None:
             kept = self._kept(self._live)
             self._tell_kept_later()
-            return [Timeline("", kept.start, kept.end, [], live=True), kept, self._playhead(self._live.playback)]
+            return [Timeline("", kept.start, kept.end, [], live=True), kept, self._live_playhead(self._live)]
         if playback is None or self._timeline is None:
             return []
         if not self._begun:
@@ -113,7 +113,9 @@ class TimelineFeature(PageFeature):
 
     def receive(self, page: Page, message: Play | SeekTime | StepTime | SetPlayback | GoLive) -> None:
         """Do what a page asks for."""
-        playback = self._playback
+        from linkwright.bag.playback import FASTEST, SLOWEST
+
+        playback = self._recorded if self._live is None else self._live.playback
         if playback is None:
             return
         self._problem = ""
@@ -144,9 +146,9 @@ class TimelineFeature(PageFeature):
             self._telling.cancel()
         if self._live is not None:
             self._live.close()
-        elif self._playback is not None:
-            self.context.graph_changes.ignore(self._playback.review)
-            self._playback.close()
+        elif self._recorded is not None:
+            self.context.graph_changes.ignore(self._recorded.review)
+            self._recorded.close()
 
     # -----------------------------------------------------------------------------------------------------------
 
@@ -165,13 +167,14 @@ class TimelineFeature(PageFeature):
         live = self._live
         if live is not None and not live.live:
             playing = live.playback.playing
-            caught_up = live.history.end_ns - live.playback.position_ns < _PRESENT_NS
+            caught_up = live.span_ns[1] - live.playback.position_ns < _PRESENT_NS
             if self._was_playing and not playing and caught_up:
                 live.go_live()
             self._was_playing = playing
-        if self._playback is not None:
-            self.context.pages.publish(self._playhead(self._playback))
-            if self._playback.playing:
+        playback = self._recorded if live is None else live.playback
+        if playback is not None:
+            self.context.pages.publish(self._playhead(playback))
+            if playback.playing:
                 self._timer = self._loop.call_later(_PERIOD, self._changed)
 
     def _playhead(self, playback: Playback) -> Playhead:
@@ -179,9 +182,14 @@ class TimelineFeature(PageFeature):
         live = self._live is not None and self._live.live
         return Playhead(position, playback.playing, playback.speed, playback.loop, playback.seeks, self._problem, live)
 
+    def _live_playhead(self, live: LiveHistory) -> Playhead:
+        if live.has_playback:
+            return self._playhead(live.playback)
+        return Playhead(live.span_ns[0] / _SECOND, False, 1.0, False, 0, self._problem, live=True)
+
     def _kept(self, live: LiveHistory) -> Kept:
-        history = live.history
-        return Kept(history.start_ns / _SECOND, history.end_ns / _SECOND, history.size, history.most_bytes)
+        start_ns, end_ns = live.span_ns
+        return Kept(start_ns / _SECOND, end_ns / _SECOND, live.size, live.most_bytes)
 
     def _tell_kept_later(self) -> None:
         if self._telling is None:
