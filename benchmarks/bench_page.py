@@ -16,7 +16,17 @@ from pathlib import Path
 from playwright.sync_api import Browser
 
 from benchmarks.measure import Row
-from benchmarks.page_programs import Core, answered, chromium, opened, showing, started, viewer_url
+from benchmarks.page_programs import (
+    Core,
+    answered,
+    chromium,
+    opened,
+    plain_chromium,
+    showing,
+    started,
+    viewer_url,
+    watched,
+)
 from benchmarks.page_questions import (
     frames_drawn,
     images_shown,
@@ -28,6 +38,7 @@ from benchmarks.page_questions import (
     transform_age,
     wheel_latency,
 )
+from benchmarks.plain_browser import PlainBrowser
 from benchmarks.robots import write_arm_sweep, write_sweep
 from linkwright.packages import PackageFinder
 
@@ -84,25 +95,25 @@ def latencies(browser: Browser, package: Path) -> list[Row]:
     ]
 
 
-def robots(browser: Browser, links: int, *, server: str, page_rate: str) -> list[Row]:
+def robots(browser: PlainBrowser, links: int, *, server: str, page_rate: str) -> list[Row]:
     """While every joint of a robot of boxes moves at 30 Hz."""
     with tempfile.TemporaryDirectory() as folder:
         launch = write_sweep(Path(folder), links, 30)
         return moving(browser, launch, f"{links} links moving at 30 Hz", server=server, page_rate=page_rate)
 
 
-def meshes(browser: Browser) -> list[Row]:
+def meshes(browser: PlainBrowser) -> list[Row]:
     """The same of an arm whose shapes are meshes."""
     with tempfile.TemporaryDirectory() as folder:
         launch = write_arm_sweep(Path(folder), 30)
         return moving(browser, launch, "an arm of 96 000 triangles moving at 30 Hz", server="", page_rate="30")
 
 
-def moving(browser: Browser, launch: Path, what: str, *, server: str, page_rate: str) -> list[Row]:
+def moving(browser: PlainBrowser, launch: Path, what: str, *, server: str, page_rate: str) -> list[Row]:
     """While the joints of a launch file move: what the server uses, and how often the page draws."""
     with ExitStack() as stack:
         process, _, _ = stack.enter_context(started("launch", str(launch)))
-        page = stack.enter_context(opened(browser, viewer_url(process)))
+        page = stack.enter_context(watched(browser, viewer_url(process)))
         time.sleep(SETTLES)
         core = Core(process)
         rate = rate_of(frames_drawn, page, SECONDS)
@@ -113,14 +124,14 @@ def moving(browser: Browser, launch: Path, what: str, *, server: str, page_rate:
     ]
 
 
-def many_pages(browser: Browser, links: int) -> list[Row]:
+def many_pages(browser: PlainBrowser, links: int) -> list[Row]:
     """Several pages at once: each gets the newest transforms, however few frames it can draw."""
     what = f"{PAGES} browsers at once, {links} links at 30 Hz"
     with tempfile.TemporaryDirectory() as folder, ExitStack() as stack:
         launch = write_sweep(Path(folder), links, 30)
         process, _, _ = stack.enter_context(started("launch", str(launch)))
         url = viewer_url(process)
-        pages = [stack.enter_context(opened(browser, url)) for _ in range(PAGES)]
+        pages = [stack.enter_context(watched(browser, url)) for _ in range(PAGES)]
         time.sleep(1)
         core = Core(process)
         rate = rate_of(frames_drawn, pages[0], SECONDS)
@@ -133,9 +144,9 @@ def many_pages(browser: Browser, links: int) -> list[Row]:
     ]
 
 
-def data(browser: Browser, scene: str, what: str, *, server: str = "", page_rate: str = "") -> list[Row]:
+def data(browser: PlainBrowser, scene: str, what: str, *, server: str = "", page_rate: str = "") -> list[Row]:
     """A display of data: the server's cost, how often the page draws, and how soon it heeds the mouse."""
-    with showing(scene) as process, opened(browser, viewer_url(process), "window.linkwright?.framesDrawn > 5") as page:
+    with showing(scene) as process, watched(browser, viewer_url(process), "window.linkwright?.framesDrawn > 5") as page:
         time.sleep(2)
         core = Core(process)
         rate = rate_of(frames_drawn, page, SECONDS)
@@ -148,11 +159,11 @@ def data(browser: Browser, scene: str, what: str, *, server: str = "", page_rate
     ]
 
 
-def images(browser: Browser) -> list[Row]:
+def images(browser: PlainBrowser) -> list[Row]:
     """Images are shown in a panel; the scene beside it is not drawn for them."""
     what = "image 640x480 at 30 Hz"
     shown = "window.linkwright?.displays[0]?.drawn?.images > 5"
-    with showing("image") as process, opened(browser, viewer_url(process), shown) as page:
+    with showing("image") as process, watched(browser, viewer_url(process), shown) as page:
         time.sleep(2)
         core = Core(process)
         rate = rate_of(images_shown, page, SECONDS)
@@ -186,16 +197,18 @@ def rows() -> list[Row]:
     """Measure everything."""
     package = PackageFinder().share("my_robot_description")
     with chromium() as browser:
+        starts = [*start_up(browser, str(package / "launch" / "display.launch.py")), *latencies(browser, package)]
+        still = nothing(browser, package / "urdf" / "mbot_base.urdf")
+    with plain_chromium() as plain:
         return [
-            *start_up(browser, str(package / "launch" / "display.launch.py")),
-            *latencies(browser, package),
-            *robots(browser, 12, server="3", page_rate="30"),
-            *robots(browser, 500, server="5", page_rate="30"),
-            *meshes(browser),
-            *many_pages(browser, 12),
-            *data(browser, "points", "100 000 points at 10 Hz", page_rate="10"),
-            *data(browser, "markers", "1000 markers at 10 Hz", page_rate="10"),
-            *images(browser),
-            *data(browser, "scan", "500 links at 30 Hz and a scan"),
-            *nothing(browser, package / "urdf" / "mbot_base.urdf"),
+            *starts,
+            *robots(plain, 12, server="3", page_rate="30"),
+            *robots(plain, 500, server="5", page_rate="30"),
+            *meshes(plain),
+            *many_pages(plain, 12),
+            *data(plain, "points", "100 000 points at 10 Hz", page_rate="10"),
+            *data(plain, "markers", "1000 markers at 10 Hz", page_rate="10"),
+            *images(plain),
+            *data(plain, "scan", "500 links at 30 Hz and a scan"),
+            *still,
         ]

@@ -17,8 +17,11 @@ from contextlib import contextmanager
 import psutil
 from playwright.sync_api import Browser, Page, sync_playwright
 
+from benchmarks.plain_browser import PlainBrowser, PlainPage, running
+
 FLAGS = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking")
 SIZE = {"width": 1280, "height": 800}
+READY = "window.linkwright?.ready === true"
 
 
 @contextmanager
@@ -97,20 +100,38 @@ class Core:
         return times.user + times.system
 
 
-@contextmanager
-def chromium() -> Iterator[Browser]:
-    """A Chromium that draws in software."""
+def _program() -> str:
     path = os.environ.get("LINKWRIGHT_CHROMIUM") or shutil.which("chromium")
     if path is None:
         raise SystemExit("no Chromium: set LINKWRIGHT_CHROMIUM or put one on the PATH")
+    return path
+
+
+@contextmanager
+def chromium() -> Iterator[Browser]:
+    """A Chromium that draws in software, driven by Playwright."""
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=path, args=list(FLAGS))
+        browser = playwright.chromium.launch(executable_path=_program(), args=list(FLAGS))
         yield browser
         browser.close()
 
 
 @contextmanager
-def opened(browser: Browser, url: str, ready: str = "window.linkwright?.ready === true") -> Iterator[Page]:
+def plain_chromium() -> Iterator[PlainBrowser]:
+    """The same, with nothing that listens to what it does."""
+    with running(_program(), FLAGS) as browser:
+        yield browser
+
+
+@contextmanager
+def watched(browser: PlainBrowser, url: str, ready: str = READY) -> Iterator[PlainPage]:
+    """The page of a program, when it has drawn the robot (or another condition holds)."""
+    with browser.opened(url, ready, **SIZE) as page:
+        yield page
+
+
+@contextmanager
+def opened(browser: Browser, url: str, ready: str = READY) -> Iterator[Page]:
     """The page of a program, when it has drawn the robot (or another condition holds)."""
     # Conditions are evaluated as text, which the page's policy allows to nobody else.
     context = browser.new_context(viewport=SIZE, bypass_csp=True, locale="en-US")  # type: ignore[arg-type]  # a dict

@@ -9,6 +9,8 @@ from pathlib import Path
 
 from playwright.sync_api import Page
 
+from benchmarks.plain_browser import PlainPage
+
 _SLIDER = """
 async ([row, value]) => {
   const slider = document.querySelector(`[data-joint="${row}"] input[type=range]`);
@@ -86,39 +88,38 @@ def save_latency(page: Page, model: Path, saves: int) -> list[float]:
     return times
 
 
-def wheel_latency(page: Page, turns: int) -> list[float]:
+def wheel_latency(page: PlainPage, turns: int) -> list[float]:
     """Milliseconds from the browser's getting a turn of the mouse wheel to the frame drawn after it."""
     page.evaluate(_WATCH_WHEEL)
-    page.mouse.move(640, 400)
     for number in range(turns):
-        page.mouse.wheel(0, 20 if number % 2 else -20)
-        page.wait_for_timeout(97 + 13 * (number % 7))
+        page.wheel(640, 400, 20 if number % 2 else -20)
+        time.sleep((97 + 13 * (number % 7)) / 1000)
     times: list[float] = page.evaluate("() => window.turns")
     return times
 
 
-def frames_drawn(page: Page) -> int:
+def frames_drawn(page: Page | PlainPage) -> int:
     """How many frames the page has drawn."""
     count: int = page.evaluate(_DRAWN)
     return count
 
 
-def images_shown(page: Page) -> int:
+def images_shown(page: PlainPage) -> int:
     """How many images the first display has shown, in a panel of its own."""
     count: int = page.evaluate("() => window.linkwright.displays[0].drawn.images")
     return count
 
 
-def rate_of(counted: Callable[[Page], int], page: Page, seconds: float) -> float:
+def rate_of(counted: Callable[[PlainPage], int], page: PlainPage, seconds: float) -> float:
     """How much more there is of something that is counted, each second."""
     before, begin = counted(page), time.perf_counter()
     time.sleep(seconds)
     return (counted(page) - before) / (time.perf_counter() - begin)
 
 
-def transform_age(pages: list[Page], times: int) -> float:
+def transform_age(pages: list[PlainPage], times: int) -> float:
     """Milliseconds since the transforms came to be that pages have, in the median of the oldest among them."""
-    oldest = []
+    oldest: list[float] = []
     for number in range(times):
         time.sleep(0.1 + 0.013 * (number % 7))
         oldest.append(max(page.evaluate("() => Date.now() - 1000 * window.linkwright.stamp") for page in pages))

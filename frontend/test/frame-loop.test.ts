@@ -51,6 +51,20 @@ describe("the frame loop", () => {
     expect(loop.framesDrawn).toBeLessThan(62);
   });
 
+  it("draws as many frames as it is asked for when some come late", () => {
+    const loop = new FrameLoop(() => undefined);
+    loop.rate = 30;
+    run(1000, () => loop.invalidate());
+    const [before, began] = [loop.framesDrawn, now];
+    for (let round = 0; round < 10; round++) {
+      run(17, () => loop.invalidate(), 17);
+      run(300, () => loop.invalidate());
+    }
+    const possible = (30 * (now - began)) / 1000;
+    expect(loop.framesDrawn - before).toBeGreaterThan(possible - 2);
+    expect(loop.framesDrawn - before).toBeLessThan(possible + 2);
+  });
+
   it("draws the first frame coarsely, for speed, and a fine one soon after", () => {
     const fine: boolean[] = [];
     const loop = new FrameLoop(({ smooth }) => fine.push(smooth));
@@ -71,6 +85,18 @@ describe("the frame loop", () => {
     expect(fine.at(-1)).toBe(false);
     run(1000);
     expect(fine.at(-1)).toBe(true);
+  });
+
+  it("draws what moves coarsely from the start on a machine that is known to be slow", () => {
+    const moving: boolean[] = [];
+    const loop = new FrameLoop((detail) => moving.push(detail.moving));
+    loop.expectSlow();
+    run(1000, () => loop.invalidate());
+    expect(moving).not.toContain(false);
+    run(500);
+    expect(moving.at(-1)).toBe(false);
+    run(12_000, () => loop.invalidate());
+    expect(moving.at(-1)).toBe(false);
   });
 
   it("draws fewer pixels of what moves, and all of them again once the machine keeps up for long", () => {

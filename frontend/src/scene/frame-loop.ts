@@ -46,7 +46,8 @@ export class FrameLoop {
   private requestedAt: number | null = null;
   private readonly besides = new Set<() => void>();
   private ticks = false;
-  private lastMs = -Infinity;
+  /** When the next frame may be drawn. */
+  private dueMs = -Infinity;
   private lateness = 0;
   private timely = 0;
   private patience = TIMELY_FRAMES;
@@ -63,6 +64,11 @@ export class FrameLoop {
   /** Nothing changed since the last frame, beside the scene neither, and that was a fine one. */
   get settled(): boolean {
     return this.requestedAt === null && this.besides.size === 0 && this.lastIsFine;
+  }
+
+  /** Whoever draws is known to be slow: moving pictures are coarse from the first one on. */
+  expectSlow(): void {
+    this.level = Math.max(this.level, 1);
   }
 
   get framesDrawn(): number {
@@ -97,13 +103,14 @@ export class FrameLoop {
   private readonly tick = (): void => {
     const now = performance.now();
     const interval = 1000 / Math.max(1, this.rate);
+    const due = this.dueMs;
     this.ticks = false;
-    if (now - this.lastMs < interval - TOLERANCE_MS) {
+    if (now < due - TOLERANCE_MS) {
       this.askForTick();
       return;
     }
-    const due = this.lastMs + interval;
-    this.lastMs = now;
+    // One that comes late does not delay those after it, or each would cost a frame.
+    this.dueMs = Math.max(due, now - interval) + interval;
     const besides = [...this.besides];
     this.besides.clear();
     for (const show of besides) show();

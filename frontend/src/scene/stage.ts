@@ -183,6 +183,7 @@ export class Stage {
     const { session, loop } = this;
     const { displays, frames, view, selection } = session;
     session.pace.software = this.viewport.software;
+    if (this.viewport.software !== null) loop.expectSlow();
     loop.judged.on((late) => session.pace.frame(late));
     session.pace.changed.on(() => {
       this.viewport.foundSlow ||= session.pace.isSlow;

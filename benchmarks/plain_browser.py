@@ -1,0 +1,134 @@
+"""A Chromium of which nothing is asked but the values of expressions, by the DevTools protocol.
+
+Playwright has the browser tell it of every message of a WebSocket, with all its bytes, which for clouds of points cost
+as much as the page itself took. What is measured while data comes is measured in this one.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import re
+import subprocess
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import closing, contextmanager
+from typing import Any
+
+import aiohttp
+
+SECONDS = 60.0
+"""How long a page is waited for."""
+
+
+class PlainBrowser:
+    """A running Chromium.
+
+    Args:
+        address: of its own socket, ``ws://...``.
+    """
+
+    def __init__(self, address: str) -> None:
+        self._pages = address.rpartition("/devtools/")[0] + "/devtools/page/"
+        self._socket = Socket(address)
+
+    @contextmanager
+    def opened(self, url: str, ready: str, width: int, height: int) -> Iterator[PlainPage]:
+        """A page with storage of its own, from when a condition holds on it."""
+        context = self._socket.call("Target.createBrowserContext")["browserContextId"]
+        target = self._socket.call("Target.createTarget", url="about:blank", browserContextId=context)["targetId"]
+        with closing(PlainPage(Socket(self._pages + target))) as page:
+            page.open(url, ready, width, height)
+            yield page
+        self._socket.call("Target.disposeBrowserContext", browserContextId=context)
+
+    def close(self) -> None:
+        """Close the socket."""
+        self._socket.close()
+
+
+class PlainPage:
+    """A page of a `PlainBrowser`, with those methods of Playwright's that measuring needs."""
+
+    def __init__(self, socket: Socket) -> None:
+        self._socket = socket
+
+    def open(self, url: str, ready: str, width: int, height: int) -> None:
+        """Go there, at a size in pixels, and wait for a condition."""
+        self._socket.call(
+            "Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False
+        )
+        self._socket.call("Emulation.setFocusEmulationEnabled", enabled=True)
+        self._socket.call("Page.navigate", url=url)
+        end = time.monotonic() + SECONDS
+        while not self.evaluate(f"() => Boolean({ready})"):
+            if time.monotonic() > end:
+                raise SystemExit(f"not within {SECONDS:g} s: {ready}")
+            time.sleep(0.05)
+
+    def evaluate(self, function: str) -> Any:
+        """What a JavaScript function without arguments returns."""
+        told = self._socket.call("Runtime.evaluate", expression=f"({function})()", returnByValue=True)
+        if "exceptionDetails" in told:
+            raise RuntimeError(told["exceptionDetails"]["text"])
+        return told["result"].get("value")
+
+    def wheel(self, x: float, y: float, distance: float) -> None:
+        """Turn the mouse wheel over a place of the page."""
+        self._socket.call("Input.dispatchMouseEvent", type="mouseWheel", x=x, y=y, deltaX=0, deltaY=distance)
+
+    def close(self) -> None:
+        """Close the socket."""
+        self._socket.close()
+
+
+class Socket:
+    """Commands of the DevTools protocol, each with its answer."""
+
+    def __init__(self, address: str) -> None:
+        self._number = 0
+        self._loop = asyncio.new_event_loop()
+        self._loop.run_until_complete(self._open(address))
+
+    def call(self, method: str, **parameters: Any) -> dict[str, Any]:
+        """The result of a command."""
+        return self._loop.run_until_complete(asyncio.wait_for(self._call(method, parameters), SECONDS))
+
+    def close(self) -> None:
+        """Close it."""
+        self._loop.run_until_complete(self._session.close())
+        self._loop.close()
+
+    async def _open(self, address: str) -> None:
+        self._session = aiohttp.ClientSession()
+        self._socket = await self._session.ws_connect(address, max_msg_size=0)
+
+    async def _call(self, method: str, parameters: dict[str, Any]) -> dict[str, Any]:
+        self._number += 1
+        await self._socket.send_json({"id": self._number, "method": method, "params": parameters})
+        while True:
+            answer: dict[str, Any] = json.loads(await self._socket.receive_str())
+            if answer.get("id") != self._number:
+                continue
+            if "error" in answer:
+                raise RuntimeError(f"{method}: {answer['error']['message']}")
+            return answer["result"]  # type: ignore[no-any-return]  # JSON
+
+
+@contextmanager
+def running(program: str, flags: tuple[str, ...]) -> Iterator[PlainBrowser]:
+    """A Chromium, from its start to its end, with a profile of its own that goes then."""
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
+        own = ("--headless", "--remote-debugging-port=0", f"--user-data-dir={profile}", "--no-first-run")
+        process = subprocess.Popen([program, *flags, *own, "about:blank"], stderr=subprocess.PIPE, text=True)
+        try:
+            assert process.stderr is not None
+            found = next(filter(None, (re.search(r"listening on (ws://\S+)", line) for line in process.stderr)), None)
+            if found is None:
+                raise SystemExit("the browser ended without saying where it listens")
+            with closing(PlainBrowser(found[1])) as browser:
+                yield browser
+        finally:
+            process.terminate()
+            process.wait(timeout=SECONDS)
