@@ -66,7 +66,7 @@ def launch(tmp_path: Path) -> Callable[..., object]:
         out, err = io.StringIO(), io.StringIO()
         finder = finder or PackageFinder(start=tmp_path, environment={})
         with use_finder(finder):
-            options = SessionOptions(port=0, open_browser=False, **session_options)
+            options = SessionOptions(**{"port": 0, "open_browser": False, **session_options})
             session = LaunchSession(finder, options, LaunchLog(out, err))
             session.context.launch_configurations.update(configurations)
             succeeded = await session.run(LaunchDescription(entities))

@@ -27,6 +27,7 @@ class ViewerHost:
         self._session = session
         self._viewers: dict[str, tuple[HostedPlan, Viewer]] = {}
         self._findings: list[Diagnostic] = []
+        self._at_given_port = ""
 
     def __bool__(self) -> bool:
         return bool(self._viewers)
@@ -88,7 +89,7 @@ class ViewerHost:
             finder=session.finder,
             config=config,
             host=session.options.host,
-            port=session.options.port,
+            port=self._port_for(plan),
             title=session.options.title,
             options=plan.node_options(session.descriptions.library),
             history=session.options.history,
@@ -109,8 +110,18 @@ class ViewerHost:
         for running in nodes:
             _attach_panel(viewer, running)
 
+    def _port_for(self, plan: HostedPlan) -> int | None:
+        """The port that was asked for; None, the next that is free, where another page has it."""
+        port = self._session.options.port
+        if port and self._at_given_port not in ("", plan.process_name):
+            return None
+        self._at_given_port = plan.process_name
+        return port
+
     def take(self, plan: HostedPlan) -> Viewer:
         """A viewer that is to be ended, which this host then holds no longer."""
+        if plan.process_name == self._at_given_port:
+            self._at_given_port = ""
         return self._viewers.pop(plan.process_name)[1]
 
     async def stop(self, plan: HostedPlan, viewer: Viewer) -> None:

@@ -49,7 +49,7 @@ async def is_served(node: Node, client: Client[Any, Any], seconds: float | None,
     come: asyncio.Future[None] = loop.create_future()
 
     def look() -> None:
-        if not come.done() and client.service_is_ready() is wanted:
+        if not client.destroyed and not come.done() and client.service_is_ready() is wanted:
             come.set_result(None)
 
     def changed() -> None:

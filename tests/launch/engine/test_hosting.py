@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import asyncio
+import re
+import socket
 import time
 from collections.abc import Callable
 from itertools import pairwise
@@ -242,3 +244,14 @@ class TestNetwork:
         began = time.monotonic()
         await launch(talker(), Node(package="rviz2", executable="rviz2"), ends_when(lambda _: joined))
         assert joined[0] - began > 0.7
+
+
+async def test_the_port_that_is_asked_for_is_that_of_one_page(launch) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+    two = [Node(package="rviz2", executable="rviz2", name=name) for name in ("one", "other")]
+    done = await launch(*two, ends_when(printed("Viewer: ", times=2)), session_options={"port": port})
+    assert done.succeeded, done.err
+    pages = re.findall(r"Viewer: http://127\.0\.0\.1:(\d+)/", done.out)
+    assert str(port) in pages
+    assert len(set(pages)) == 2

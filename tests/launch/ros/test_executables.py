@@ -13,6 +13,7 @@ from launch_ros.substitutions import ExecutableInPackage
 from launch import LaunchContext
 from linkwright.diagnostics import LinkwrightError
 from linkwright.launch import builtin_packages, executables_of
+from linkwright.launch.errors.unavailable import is_unavailable
 from linkwright.launch.ros.executables import Origin, find_executable
 from linkwright.packages import PackageFinder, use_finder
 from linkwright.packages.programs.interpreters import needs_our_interpreter
@@ -130,6 +131,29 @@ class TestSources:
         assert diagnostic.message == "executable 'driver' of package 'p' is a compiled program that was not built"
         assert diagnostic.hint is not None
         assert diagnostic.hint.startswith("build it with 'colcon build --packages-select p'")
+
+    @pytest.mark.parametrize("cmake", [None, "project(p)\ninclude(cmake/programs.cmake)\n"])
+    def test_a_program_of_which_the_sources_tell_nothing(
+        self, write: Write, finder: PackageFinder, cmake: str | None
+    ) -> None:
+        write("ws/src/p/package.xml", "<package><name>p</name></package>")
+        if cmake is not None:
+            write("ws/src/p/CMakeLists.txt", cmake)
+        with pytest.raises(LinkwrightError) as caught:
+            find_executable(finder, "p", "motion_control")
+        assert caught.value.diagnostics[0].message == "executable 'motion_control' of package 'p' is not here"
+        assert is_unavailable(caught.value)
+
+    def test_a_name_that_is_nearly_that_of_another_program_is_misspelt(
+        self, write: Write, finder: PackageFinder
+    ) -> None:
+        write("ws/src/p/package.xml", "<package><name>p</name></package>")
+        write(
+            "ws/src/p/CMakeLists.txt", "project(p)\nadd_executable(driver driver.cpp)\ninclude(cmake/programs.cmake)\n"
+        )
+        with pytest.raises(LinkwrightError, match="has no executable") as caught:
+            find_executable(finder, "p", "drivr")
+        assert not is_unavailable(caught.value)
 
     def test_the_nearest_name_counts_compiled_programs_too(self, write: Write, finder: PackageFinder) -> None:
         write("ws/src/p/package.xml", "<package><name>p</name></package>")

@@ -266,6 +266,8 @@ def _not_in_sources(package: str, name: str, share: Path) -> LinkwrightError:
             package=package,
         )
         return unavailable(_lookup_error(message, (), advice))
+    if not programs.is_complete and not is_misspelt(name, programs.names()):
+        return unavailable(_not_known_from_sources(package, name, share))
     notes = (Note(phrase("read the entry points and installed programs of {share}", share=display_path(share))),)
     hint = did_you_mean(name, programs.names())
     if hint is None and programs.names():
@@ -275,6 +277,16 @@ def _not_in_sources(package: str, name: str, share: Path) -> LinkwrightError:
     return _lookup_error(
         phrase("package '{package}' has no executable '{name}'", package=package, name=name), notes, hint
     )
+
+
+def _not_known_from_sources(package: str, name: str, share: Path) -> LinkwrightError:
+    """A program that the package may have all the same: what is here of it does not tell."""
+    message = phrase("executable '{name}' of package '{package}' is not here", name=name, package=package)
+    note = Note(phrase("what is in {share} does not tell which programs it builds", share=display_path(share)))
+    advice = phrase(
+        "build it with 'colcon build --packages-select {package}' where all of its sources are", package=package
+    )
+    return _lookup_error(message, (note,), advice)
 
 
 def _lookup_error(message: Phrase, notes: tuple[Note, ...], hint: Phrase) -> LinkwrightError:

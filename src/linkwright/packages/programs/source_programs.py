@@ -29,6 +29,7 @@ from linkwright.packages.readers.entry_points import (
 )
 
 _PYTHON_PACKAGE = re.compile(r"^\s*ament_python_install_package\s*\(", re.MULTILINE | re.IGNORECASE)
+BUILD_FILES = ("setup.py", "setup.cfg", "pyproject.toml", "CMakeLists.txt")
 NOT_FOR_PROGRAMS = frozenset({"setup", "conftest", "test", "tests"})
 _ASK_SECONDS = 10.0
 _ASK = """
@@ -55,12 +56,15 @@ class SourcePrograms:
         entry_points: by the program's name.
         scripts: files by the program's name.
         compiled: names of programs that have to be built first.
+        is_complete: whether it has no others; not known where the files that say how it is built are not here, or do
+            so by commands that are not known.
     """
 
     folder: Path
     entry_points: dict[str, EntryPoint] = field(default_factory=dict)
     scripts: dict[str, Path] = field(default_factory=dict)
     compiled: set[str] = field(default_factory=set)
+    is_complete: bool = True
 
     def names(self) -> list[str]:
         """The names of all programs, built or not, sorted."""
@@ -70,6 +74,7 @@ class SourcePrograms:
 def source_programs(folder: Path) -> SourcePrograms:
     """The programs of a source package."""
     found = SourcePrograms(folder)
+    found.is_complete = any((folder / name).is_file() for name in BUILD_FILES)
     _read_configurations(found)
     _read_setup_py(found)
     _read_cmake(found)
@@ -154,6 +159,7 @@ def _read_cmake(found: SourcePrograms) -> None:
     for name, relative in file.programs.items():
         _add_script(found, relative, name)
     found.compiled |= file.executables - set(file.programs)
+    found.is_complete &= file.is_complete
 
 
 def _add_entry(found: SourcePrograms, line: Any) -> None:

@@ -1,0 +1,28 @@
+from __future__ import annotations
+
+import asyncio
+
+from linkwright.graph import Graph
+from linkwright.messages import get_service
+from linkwright.nodes.answers import is_served
+
+TRIGGER = "std_srvs/srv/Trigger"
+
+
+async def test_who_waits_for_a_service_may_be_ended_while_others_come_and_go() -> None:
+    faults: list[str] = []
+    loop = asyncio.get_running_loop()
+    loop.set_exception_handler(lambda _, context: faults.append(str(context.get("exception"))))
+    graph = Graph()
+    node = graph.create_node("waiting")
+    client = node.create_client(get_service(TRIGGER), "answer")
+    waiting = loop.create_task(is_served(node, client, None))
+    await asyncio.sleep(0)
+    graph.create_node("another").create_service(get_service(TRIGGER), "other", lambda _, answer: answer)
+    waiting.cancel()
+    node.destroy_node()
+    await asyncio.gather(waiting, return_exceptions=True)
+    await asyncio.sleep(0)
+    loop.set_exception_handler(None)
+    assert not faults
+    await graph.close()
