@@ -233,7 +233,7 @@ def test_links_and_joints_that_urdf_cannot_have():
 
 def test_what_is_wrong_in_gazebo_is_told_at_its_place():
     text = (
-        '<robot name="r"><link name="a"/>\n<gazebo reference="a">\n'
+        f'<robot name="r"><link name="a">{INERTIAL}</link>\n<gazebo reference="a">\n'
         "<mu1>much</mu1>\n"
         '<sensor name="s" type="camera"><update_rate>fast</update_rate></sensor>\n'
         "<plugin filename='p.so'/>\n</gazebo></robot>"
@@ -248,7 +248,7 @@ def test_what_is_wrong_in_gazebo_is_told_at_its_place():
 
 def test_a_gazebo_element_that_is_too_deep_is_left_out():
     deep = "<model>" * 300 + "</model>" * 300
-    robot = examine(f'<robot name="r"><link name="a"/><gazebo>{deep}</gazebo></robot>').robot
+    robot = examine(f'<robot name="r">{link("a")}<gazebo>{deep}</gazebo></robot>').robot
     conversion = model_from_robot(robot, lump_fixed_joints=False)
     assert [each.code for each in conversion.diagnostics] == ["SDF133"]
     assert conversion.model.models == ()
@@ -330,7 +330,7 @@ def test_links_without_mass_are_left_out_only_when_lumping():
     )  # fmt: skip
     kept = model_from_robot(robot, lump_fixed_joints=False)
     assert [each.name for each in kept.model.links] == ["footprint", "base", "ghost", "tip"]
-    assert kept.diagnostics == ()
+    assert [each.code for each in kept.diagnostics] == ["SDF172"]
     lumped = model_from_robot(robot, lump_fixed_joints=True)
     assert [each.name for each in lumped.model.links] == ["footprint"]
     assert [(each.code, str(each.message)) for each in lumped.diagnostics] == [
@@ -428,3 +428,11 @@ def test_a_link_without_mass_that_is_kept_weighs_nothing_beside_one_that_has_a_m
     a, b, c, d = model_from_robot(examine(text).robot, lump_fixed_joints=False).model.links
     assert [each.inertial.mass for each in (a, b, c)] == [1e-6, 2.0, 1e-6]
     assert d.inertial is None
+
+
+def test_links_that_move_and_have_no_mass_are_told_once():
+    arms = "".join(link(name, inertial="") + joint(f"{name}_joint", "a", name, kind="floating") for name in "bc")
+    robot = robot_of(link("a") + link("plate", inertial="") + joint("fixed_joint", "a", "plate") + arms)
+    (finding,) = model_from_robot(robot, lump_fixed_joints=False).diagnostics
+    assert finding.code == "SDF172"
+    assert str(finding.message).endswith("gz leaves them out: 'b', 'c'")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from linkwright.simulation.server.standing import stand_up
+from linkwright.simulation.server.standing import stand_up, touches_nothing
 from tests.simulation.worlds import GROUND, box, model, simulated
 
 PLATE = (
@@ -47,3 +47,13 @@ def test_it_comes_to_rest_there() -> None:
     simulation.advance(500_000_000)
     x, y, z, *_ = simulation.model_pose("crate")
     assert (x, y, z) == pytest.approx((0.0, 0.0, 0.15), abs=1e-3)
+
+
+def test_a_model_that_touches_nothing_is_told():
+    visual = '<visual name="v"><geometry><box><size>1 1 1</size></box></geometry></visual>'
+    simulation = simulated(GROUND)
+    for name, link in (("seen", visual), ("still", f"{visual}<gravity>false</gravity>")):
+        simulation.spawn(model(f'<model name="{name}"><link name="link">{link}</link></model>'), name)
+    simulation.spawn(model(box("crate", "0 0 2 0 0 0", "0.2 0.2 0.2")), "crate")
+    assert [each.code for each in touches_nothing(simulation, "seen")] == ["SIM143"]
+    assert touches_nothing(simulation, "still") == touches_nothing(simulation, "crate") == []

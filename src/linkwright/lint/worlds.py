@@ -20,6 +20,7 @@ from linkwright.lint.rules.inertia_tensor import (
     TriangleInequality,
 )
 from linkwright.lint.tensors import flaw_of
+from linkwright.sdf.figures import figure_of
 from linkwright.sdf.links import Collision, Inertial, Link, Visual
 from linkwright.sdf.models import Model
 from linkwright.sdf.report import described
@@ -32,6 +33,7 @@ from linkwright.xmltree import Element
 _FLAWS = {
     rule.kind: rule for rule in (NonPositiveMoment(), ExcessiveProduct(), IndefiniteInertia(), TriangleInequality())
 }
+_ADDRESSES = ("uri", "filename")
 _ZERO_MASS, _NEGATIVE_MASS = ZeroMass(), NegativeMass()
 
 
@@ -45,7 +47,8 @@ def check_sdf(sdf: Sdf, finder: ResourceFinder) -> Iterator[Diagnostic]:
     told: set[tuple[object, str]] = set()
     models = [*sdf.models, *(model for world in sdf.worlds for model in world.models)]
     found = (each for model in models for each in _model(model, static=False))
-    for finding in (*_steps(sdf), *found, *_missing_meshes(models, finder)):
+    actors = [*sdf.actors, *(actor for world in sdf.worlds for actor in world.actors)]
+    for finding in (*_steps(sdf), *found, *_missing_meshes([*models, *map(figure_of, actors)], finder)):
         key = (finding.span, str(finding.message))
         if key not in told:
             told.add(key)
@@ -97,9 +100,8 @@ def _missing_meshes(models: Iterable[Model], finder: ResourceFinder) -> Iterator
                 owner=described(element),
                 reason=found.reason,
             )
-            place = next(
-                (each for each in element.walk() if each.tag == "uri" and each.text().strip() == geometry.uri), element
-            )
+            named = (each for each in element.walk() if each.tag in _ADDRESSES)
+            place = next((each for each in named if each.text().strip() == geometry.uri), element)
             yield _warning("SDF162", message, place, found.hint)
 
 

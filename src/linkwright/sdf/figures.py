@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import atan2, hypot
 
-from linkwright.geometry.shapes import Box, Cylinder
+from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere
 from linkwright.geometry.single import Pose
 from linkwright.geometry.vectors import Vector3
 from linkwright.sdf.actors import Actor
@@ -22,16 +22,33 @@ _THICKNESS = 0.01
 _ASPHALT = Material(ambient=(0.2, 0.2, 0.2, 1.0), diffuse=(0.25, 0.25, 0.25, 1.0))
 
 
-def figure_of(actor: Actor, hips: Vector3 = (0.0, 0.0, 0.0)) -> Model:
+_SKIN_COLOR = Material(ambient=(0.5, 0.4, 0.35, 1.0), diffuse=(0.75, 0.6, 0.5, 1.0))
+_CLOTHES = Material(ambient=(0.15, 0.2, 0.35, 1.0), diffuse=(0.25, 0.35, 0.6, 1.0))
+_PERSON: tuple[tuple[Capsule | Sphere, Vector3, Material], ...] = (
+    (Capsule(0.1, 0.7), (0.0, 0.1, -0.55), _CLOTHES),
+    (Capsule(0.1, 0.7), (0.0, -0.1, -0.55), _CLOTHES),
+    (Capsule(0.18, 0.3), (0.0, 0.0, 0.2), _CLOTHES),
+    (Sphere(0.13), (0.0, 0.0, 0.64), _SKIN_COLOR),
+)
+"""Legs, trunk and head of somebody of 1.8 m, from the hips, which are 1 m above the feet: sizes and places in m."""
+
+
+def figure_of(actor: Actor, hips: Vector3 | None = (0.0, 0.0, 0.0)) -> Model:
     """The figure of an actor: what its links look like, and its skin.
 
     Args:
         actor: what is written about it.
         hips: where the first joint of the skeleton is in the mesh of the skin, in its metres: Gazebo puts that at the
-            pose of the actor.
+            pose of the actor. None where the skin is not there: a plain figure as large as a person stands for it.
     """
     links = [Link(link.name, pose=link.pose, visuals=link.visuals, element=link.element) for link in actor.links]
-    if actor.skin is not None:
+    if actor.skin is not None and hips is None:
+        visuals = tuple(
+            Visual(f"{_SKIN}{number}", shape, RawPose(Pose(place)), material, element=actor.element)
+            for number, (shape, place, material) in enumerate(_PERSON)
+        )
+        links.append(Link(_SKIN, visuals=visuals, element=actor.element))
+    elif actor.skin is not None and hips is not None:
         scale = actor.skin.scale
         x, y, z = (-scale * each for each in hips)
         mesh = Mesh(actor.skin.filename, (scale, scale, scale))

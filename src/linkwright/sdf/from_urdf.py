@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
-from linkwright.diagnostics import Diagnostic, phrase
+from linkwright.diagnostics import Diagnostic, phrase, quoted_names
 from linkwright.geometry.single import Pose, Transform, compose
 from linkwright.sdf import shapes
 from linkwright.sdf.bodies import Body, Part, bodies_of
@@ -84,6 +84,7 @@ class _Converter:
         parts = [part for body in bodies for part in body.parts]
         told = {part.link.name: self._extensions.link(part.link) for part in parts}
         joints = [self._joint(body, body.joint) for body in bodies if body.joint is not None]
+        self._tell_of_usual_mass(bodies)
         known = self._extensions.model(self._robot)
         return replace(
             known,
@@ -124,6 +125,21 @@ class _Converter:
         if body.children:
             message = phrase("link '{name}' has no mass, so it is left out with all that hangs from it", name=body.name)
         self._report.warning("SDF170", message, element, hint=phrase("give it an <inertial> with a mass"))
+
+    def _tell_of_usual_mass(self, bodies: list[Body]) -> None:
+        """Tell of what moves by itself and has no mass: SDF gives it one, where gz leaves it out."""
+        if self._lumps:
+            return
+        links = [each.parts[0].link for each in bodies if each.joint is None or each.joint.type != "fixed"]
+        without = [link for link in links if link.inertial is None and self._weightless(link) is None]
+        element = next((link.element for link in without if link.element is not None), None)
+        if element is not None:
+            message = phrase(
+                "links without a mass have the 1 kg that SDF gives them, and gz leaves them out: {names}",
+                names=quoted_names(link.name for link in without),
+            )
+            hint = phrase("give each an <inertial>: `linkwright inertia` works them out")
+            self._report.warning("SDF172", message, element, hint=hint)
 
     def _link(self, body: Body, told: dict[str, LinkExtension]) -> Link:
         said = told[body.name].link

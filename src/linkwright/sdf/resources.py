@@ -288,9 +288,18 @@ def _version_in(place: Path, rest: list[str]) -> Path | None:
     return chosen.joinpath(*inside)
 
 
+def _kind(path: Path) -> str:
+    """What files that may be taken for each other have in common."""
+    suffix = path.suffix.lower()
+    return ".sdf" if suffix == ".world" else suffix
+
+
 def _no_file(path: Path) -> Missing:
     hint = None
     with suppress(OSError):
-        names = sorted(each.name for each in path.parent.iterdir())
-        hint = did_you_mean(path.name, names) or phrase("there are: {names}", names=joined(names[:8]))
+        kind = _kind(path)
+        names = sorted(each.name for each in path.parent.iterdir() if _kind(each) == kind)
+        hint = did_you_mean(path.name, names)
+        if names and hint is None:
+            hint = phrase("there are: {names}", names=joined(names[:8]))
     return Missing(phrase("there is no '{path}'", path=str(path)), hint)

@@ -109,10 +109,18 @@ def test_a_skin_stands_where_its_skeleton_begins(tmp_path: Path, matrix, begins)
     assert skeleton_begins(file) == pytest.approx(begins)
 
 
+def test_a_plain_figure_stands_for_a_skin_that_is_not_there():
+    skin = "<skin><filename>walk.dae</filename></skin>"
+    simulation = simulated(GROUND, ACTOR.replace(LINK, skin).replace("0 0 0 0 0 0</pose></w", "0 1 0 0 0 0</pose></w"))
+    assert [each.code for each in simulation.scene.diagnostics] == ["SIM112"]
+    (figure,) = simulation.scene.figures
+    assert simulation.model.body(figure.links[0].name).geomnum == len(figure.model.links[0].visuals) > 1
+
+
 def test_what_is_not_simulated_is_named_once():
     more = (
         '<model name="m"><static>true</static><link name="l"><projector name="p"/><projector name="q"/></link></model>'
     )
     walker = ACTOR.replace("<script>", '<animation name="walk"/><plugin name="p" filename="libwalk.so"/><script>')
     found = unsimulated(simulated(GROUND, more, walker).world)
-    assert found == ["<animation> in <actor>", "<plugin> in <actor>", "<projector>"]
+    assert found == ["<animation> in <actor>", "<projector>", "libwalk.so in <actor>"]

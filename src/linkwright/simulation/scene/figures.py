@@ -138,12 +138,14 @@ def _put(place: int, pose: Transform, data: Any) -> None:
     data.mocap_quat[place] = qw, qx, qy, qz
 
 
-def _hips(actor: Actor, meshes: MeshLibrary) -> Vector3:
-    """Where the skeleton of a skin begins, in the metres of its mesh; its origin where it has none."""
+def _hips(actor: Actor, meshes: MeshLibrary) -> Vector3 | None:
+    """Where the skeleton of a skin begins, in the metres of its mesh; its origin where it has none, None without it."""
     if actor.skin is None:
         return (0.0, 0.0, 0.0)
     path = meshes.file(actor.skin.filename, actor.element)
-    return skeleton_begins(path) if path is not None and path.suffix.lower() == ".dae" else (0.0, 0.0, 0.0)
+    if path is None:
+        return None
+    return skeleton_begins(path) if path.suffix.lower() == ".dae" else (0.0, 0.0, 0.0)
 
 
 def skeleton_begins(path: Path) -> Vector3:

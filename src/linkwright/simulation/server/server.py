@@ -28,8 +28,8 @@ from linkwright.simulation.plugins.ros_element import node_of
 from linkwright.simulation.scene.scene import SceneModel
 from linkwright.simulation.server.carrying import motion_of, resume
 from linkwright.simulation.server.changes import Coming, changes_to, check, come_into, surroundings
-from linkwright.simulation.server.standing import stand_up
-from linkwright.simulation.server.unsimulated import unsimulated
+from linkwright.simulation.server.standing import stand_up, touches_nothing
+from linkwright.simulation.server.unsimulated import unsimulated, unsimulated_in
 from linkwright.simulation.simulation import Simulation
 
 _WORLD = ""
@@ -88,10 +88,8 @@ class SimulationServer:
 
     def start(self) -> None:
         """Load the plugins of the world and of its models."""
-        self._tell(self.simulation.scene.diagnostics)
-        names = unsimulated(self.simulation.world)
-        if names:
-            self.node.get_logger().info(phrase("elements that are not simulated: {names}", names=joined(names)))
+        self.tell(self.simulation.scene.diagnostics)
+        self._tell_unsimulated(unsimulated(self.simulation.world))
         self._load(_WORLD, of_world(self.simulation.world), "")
         for scene_model in tuple(self.simulation.scene.models.values()):
             self._load(scene_model.name, of_model(self.simulation.world, scene_model.model, scene_model.name), "")
@@ -126,6 +124,8 @@ class SimulationServer:
             raise LinkwrightError(Diagnostic("SIM102", phrase("there is already a model '{name}'", name=name)))
         self._exchange((), (Coming(model, name, pose, namespace),))
         stand_up(self.simulation, name)
+        self.tell(touches_nothing(self.simulation, name))
+        self._tell_unsimulated(unsimulated_in(model))
 
     def renew(self, model: Model, name: str) -> None:
         """Take another model in the place of one: it goes on where that is, as fast, its joints as they are.
@@ -183,7 +183,7 @@ class SimulationServer:
         for each in coming:
             if each.motion is not None:
                 resume(simulation, each.name, each.motion, here=each.here)
-        self._tell(simulation.scene.diagnostics[told:])
+        self.tell(simulation.scene.diagnostics[told:])
         for each in coming:
             self._namespaces[each.name] = each.namespace
             places = of_model(simulation.world, each.model, each.name)
@@ -289,7 +289,7 @@ class SimulationServer:
         parameters, findings = parameters_from(
             kind.PARAMETERS, place.plugin.element if place.plugin else None, kind.IGNORED
         )
-        self._tell(findings)
+        self.tell(findings)
         node = self._node(place, namespace)
         name = node.name
         plugin = kind(place, node, parameters, self)
@@ -325,15 +325,21 @@ class SimulationServer:
         node.graph.makers[node.get_logger().name] = self.node.get_logger().name
         return PluginNode(node, self.exchange, owned=True, qos=described.qos, usual=None)
 
+    def _tell_unsimulated(self, elements: Iterable[str]) -> None:
+        new = [each for each in elements if each not in self._told]
+        self._told.update(new)
+        if new:
+            self.node.get_logger().info(phrase("elements that are not simulated: {names}", names=joined(new)))
+
     @contextmanager
     def _telling(self) -> Iterator[None]:
         """Log what one plugin has that is wrong; the others go on."""
         try:
             yield
         except LinkwrightError as error:
-            self._tell(error.diagnostics)
+            self.tell(error.diagnostics)
 
-    def _tell(self, findings: Iterable[Diagnostic]) -> None:
+    def tell(self, findings: Iterable[Diagnostic]) -> None:
         """Log what is wrong, each thing once."""
         for each in findings:
             text = f"{each.span}: {each.message}" if each.span else str(each.message)

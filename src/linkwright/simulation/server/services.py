@@ -117,6 +117,7 @@ class Services:
         placed = compose(pose, transform_of(entity.model.pose.pose))
         name = name or entity.model.name
         self._server.spawn(entity.model, name, placed, namespace)
+        self._server.tell(entity.diagnostics)
         return name
 
     def renew(self, text: str, name: str) -> None:

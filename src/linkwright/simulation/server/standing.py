@@ -7,6 +7,7 @@ fast enough to throw a light one over.
 
 from __future__ import annotations
 
+from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.simulation import Simulation
 
@@ -30,6 +31,23 @@ def stand_up(simulation: Simulation, name: str) -> None:
     x, y, z, *rotation = simulation.model_pose(name)
     qx, qy, qz, qw = rotation
     simulation.place({name: (x, y, z + height, qx, qy, qz, qw)})
+
+
+def touches_nothing(simulation: Simulation, name: str) -> list[Diagnostic]:
+    """What to tell of a model that falls and has nothing to fall on with: SIM143, at most once.
+
+    Raises:
+        KeyError: there is no such model.
+    """
+    held = simulation.scene.models[name].structure.links
+    links = [each.link.link for each in held]
+    if any(link.collisions for link in links) or not any(link.gravity for link in links):
+        return []
+    if not simulation.free_links(name):
+        return []
+    message = phrase("no link of '{name}' has a <collision>: it touches nothing, and falls", name=name)
+    hint = phrase("`linkwright drive FILE` gives a robot masses and collisions, and tells which")
+    return [Diagnostic("SIM143", message, severity=Severity.WARNING, hint=hint)]
 
 
 def _depth(simulation: Simulation, name: str) -> float:

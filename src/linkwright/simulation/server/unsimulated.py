@@ -2,22 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from linkwright.sdf.models import Model
 from linkwright.sdf.reader import OPEN
 from linkwright.sdf.worlds import World
+from linkwright.simulation.plugins.registry import needs_nothing
 from linkwright.xmltree import Element
 
 _NOWHERE = frozenset({"audio_source", "fluid_added_mass", "gripper", "particle_emitter", "projector", "soft_contact"})
-_IN = frozenset({("actor", "animation"), ("actor", "plugin"), ("geometry", "image")})
+_IN = frozenset({("actor", "animation"), ("geometry", "image"), ("world", "joint")})
 """What is simulated elsewhere, with the element in which it is not."""
+_WITHOUT_PLUGINS = frozenset({"actor", "visual"})
 
 
 def unsimulated(world: World) -> list[str]:
-    """The elements of a world with its models that are not simulated, each kind once, as ``<projector>``."""
+    """What of a world with its models is not simulated, each kind once: ``<projector>``, ``libwalk.so in <actor>``."""
+    return _named(_roots(world))
+
+
+def unsimulated_in(model: Model) -> list[str]:
+    """The same of a model that comes into a world."""
+    elements = (each.element for each in (model, *_inside(model)))
+    return _named(each for each in elements if each is not None)
+
+
+def _named(roots: Iterable[Element]) -> list[str]:
     found: dict[str, None] = {}
-    for root in _roots(world):
+    for root in roots:
         pending = [root]
         while pending:
             element = pending.pop()
@@ -26,6 +38,10 @@ def unsimulated(world: World) -> list[str]:
                     found[f"<{child.tag}>"] = None
                 elif (element.tag, child.tag) in _IN:
                     found[f"<{child.tag}> in <{element.tag}>"] = None
+                elif child.tag == "plugin" and element.tag in _WITHOUT_PLUGINS:
+                    filename = child.attributes.get("filename", "")
+                    if not needs_nothing(filename):
+                        found[f"{filename} in <{element.tag}>"] = None
                 elif child.tag not in OPEN and child.tag != "state":
                     pending.append(child)
     return sorted(found)
