@@ -50,7 +50,7 @@ def is_stopped(page: Page, count: int) -> None:
 def topics(page: Page) -> dict[str, int]:
     """The topics of the newest file, and how many messages they have."""
     with BagReader(state(page, "recording")["files"][0]) as bag:
-        assert bag.finding is None
+        assert not bag.findings
         return {each.name: each.count for each in bag.topics}
 
 

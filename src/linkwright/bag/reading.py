@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from linkwright.bag.moments import Moments, Recorded
 from linkwright.bag.names import SUFFIXES
 from linkwright.bag.qos import from_bag
-from linkwright.bag.unfinished import FinishedFile, has_index, is_unfinished
+from linkwright.bag.unfinished import is_unfinished, made_readable
 from linkwright.diagnostics import (
     Diagnostic,
     LinkwrightError,
@@ -32,6 +32,9 @@ if TYPE_CHECKING:
     from linkwright.graph import QoSProfile
 
 T = TypeVar("T")
+
+_OURS = "cdr"
+"""How messages of ROS 2 are written; topics that are written otherwise are left out."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,24 +89,36 @@ class BagReader:
         self.storage = _storage_of(target)
         self._moments = Moments(self._reader)
         self._make_types_known()
+        self._others = {
+            each.topic: form or "?" for each in self._reader.connections if (form := _format_of(each)) != _OURS
+        }
         self.topics = [
             BagTopic(
                 name,
                 info.msgtype or "",
                 info.msgcount,
-                getattr(info.connections[0].ext, "serialization_format", "cdr"),
+                _format_of(info.connections[0]),
                 tuple(from_bag(qos) for each in info.connections for qos in _profiles(each)),
             )
             for name, info in self._reader.topics.items()
+            if name not in self._others
         ]
+        if self._others and not self.topics:
+            self.close()
+            message = phrase(
+                "'{path}' is not a recording of ROS 2: {topics}", path=display_path(self.path), topics=self._left_out()
+            )
+            raise LinkwrightError(
+                Diagnostic("BAG102", message, hint=phrase("in brackets: how messages of the topic are written"))
+            )
 
     def _finished(self, target: Path) -> Any:
-        """What is to be opened: the target, or its file with the end and the index that it lacks."""
+        """What is to be opened: the target, or its file with what it lacks, and without what the library refuses."""
         files = sorted(target.glob("*.mcap")) if target.is_dir() else [target]
         if len(files) != 1 or files[0].suffix != ".mcap":
             return target
         self._is_cut_off = is_unfinished(files[0])
-        return FinishedFile(files[0]) if self._is_cut_off or not has_index(files[0]) else target
+        return made_readable(files[0]) or target
 
     def _make_types_known(self) -> None:
         from rosbags.interfaces import MessageDefinitionFormat
@@ -115,16 +130,26 @@ class BagReader:
                 add_definitions(each.msgtype, text, origin, idl=form is MessageDefinitionFormat.IDL)
 
     @property
-    def finding(self) -> Diagnostic | None:
-        """That the recording has no end (BAG109): it was killed, or cut off in a copy."""
-        if not self._is_cut_off:
-            return None
-        return Diagnostic(
-            "BAG109",
-            phrase("recording '{path}' has no end: it was killed, or cut off in a copy", path=display_path(self.path)),
-            severity=Severity.WARNING,
-            hint=phrase("what is whole in it is read; what came after that is lost"),
-        )
+    def findings(self) -> list[Diagnostic]:
+        """That it has no end (BAG109), as it was killed or cut off in a copy; topics that are not ROS 2's (BAG112)."""
+        found = []
+        if self._is_cut_off:
+            message = phrase(
+                "recording '{path}' has no end: it was killed, or cut off in a copy", path=display_path(self.path)
+            )
+            hint = phrase("what is whole in it is read; what came after that is lost")
+            found.append(Diagnostic("BAG109", message, severity=Severity.WARNING, hint=hint))
+        if self._others:
+            message = phrase(
+                "topics of '{path}' are left out, for their messages are none of ROS 2's: {topics}",
+                path=display_path(self.path),
+                topics=self._left_out(),
+            )
+            found.append(Diagnostic("BAG112", message, severity=Severity.WARNING))
+        return found
+
+    def _left_out(self) -> str:
+        return ", ".join(f"{name} ({form})" for name, form in sorted(self._others.items()))
 
     @property
     def files(self) -> list[Path]:
@@ -153,9 +178,10 @@ class BagReader:
         Raises:
             LinkwrightError: BAG102, the rest cannot be read; BAG103, a topic is not in the recording.
         """
+        known = {each.name for each in self.topics}
         for name in topics:
-            if name not in self._reader.topics:
-                hint = did_you_mean(name, self._reader.topics)
+            if name not in known:
+                hint = did_you_mean(name, known)
                 raise LinkwrightError(
                     Diagnostic(
                         "BAG103",
@@ -163,7 +189,11 @@ class BagReader:
                         hint=hint,
                     )
                 )
-        connections = [each for each in self._reader.connections if not topics or each.topic in topics]
+        connections = [
+            each
+            for each in self._reader.connections
+            if each.topic not in self._others and (not topics or each.topic in topics)
+        ]
         return self._read(self._reader.messages(connections, start=start_ns))
 
     def state_at(self, topics: Collection[str], at_ns: int) -> list[Recorded]:
@@ -245,15 +275,23 @@ def _storage_of(target: Path) -> str:
     return next((name for suffix, name in SUFFIXES.items() if suffix in suffixes), "")
 
 
+def _format_of(connection: Any) -> str:
+    return str(getattr(connection.ext, "serialization_format", _OURS))
+
+
 def _profiles(connection: Any) -> list[Any]:
     return list(getattr(connection.ext, "offered_qos_profiles", ()))
 
 
 def _unreadable(path: Path, error: Exception) -> LinkwrightError:
+    hint = None
+    if path.suffix == ".bag":
+        hint = phrase("a recording of ROS 1 becomes one of ROS 2 by 'rosbags-convert --src X.bag --dst X'")
     reason = str(error).strip().rstrip(".") or type(error).__name__
     return LinkwrightError(
         Diagnostic(
             "BAG102",
             phrase("'{path}' cannot be read as a recording: {reason}", path=display_path(path), reason=foreign(reason)),
+            hint=hint,
         )
     )

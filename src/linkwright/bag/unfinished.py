@@ -2,7 +2,7 @@
 
 A file is a row of records, each with its kind and length (the MCAP specification). All that are whole are good. What is
 missing, the summary that lists the chunks, is made in memory; readers see it after the file's own bytes. So nothing is
-copied, and such a file is as fast to seek in as others.
+copied, and such a file is as fast to seek in as others. What is not ROS 2's in a file is hidden the same way.
 """
 
 from __future__ import annotations
@@ -10,17 +10,17 @@ from __future__ import annotations
 import io
 import struct
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO, cast
 
+from linkwright.bag.foreign import FOOTER_BODY, HEAD, MAGIC, header_patch, known_schema, patches_of, schema_patch
+
 if TYPE_CHECKING:
     from typing_extensions import Buffer
 
-_MAGIC = b"\x89MCAP0\r\n"
-_HEAD = struct.Struct("<BQ")
 _HEADER, _FOOTER, _SCHEMA, _CHANNEL, _MESSAGE, _CHUNK, _MESSAGE_INDEX, _CHUNK_INDEX = range(0x01, 0x09)
 _STATISTICS, _DATA_END = 0x0B, 0x0F
 _SUMMARY_KINDS = frozenset({_FOOTER, _CHUNK_INDEX, _STATISTICS, 0x0D, 0x0E, _DATA_END})
@@ -28,7 +28,6 @@ _SUMMARY_KINDS = frozenset({_FOOTER, _CHUNK_INDEX, _STATISTICS, 0x0D, 0x0E, _DAT
 
 _CHUNK_HEAD = struct.Struct("<QQQII")
 """Of a chunk: times of first and last message, unpacked size, checksum, length of the compression's name."""
-_FOOTER_BODY = struct.Struct("<QQI")
 _NUMBER, _PAIR, _ENTRY, _WORD = struct.Struct("<H"), struct.Struct("<HQ"), struct.Struct("<QQ"), struct.Struct("<I")
 _LONG = struct.Struct("<Q")
 _MESSAGE_HEAD = struct.Struct("<HIQ")
@@ -38,42 +37,56 @@ _COUNTS = struct.Struct("<QHIIIIQQ")
 def is_unfinished(path: Path) -> bool:
     """Whether an MCAP file begins as one but does not end as one."""
     with path.open("rb") as file:
-        if file.read(len(_MAGIC)) != _MAGIC:
+        if file.read(len(MAGIC)) != MAGIC:
             return False
         size = path.stat().st_size
-        if size < 2 * len(_MAGIC):
+        if size < 2 * len(MAGIC):
             return True
-        file.seek(-len(_MAGIC), 2)
-        return file.read() != _MAGIC
+        file.seek(-len(MAGIC), 2)
+        return file.read() != MAGIC
 
 
 def has_index(path: Path) -> bool:
     """Whether the end of a finished MCAP file says where its summary is."""
-    length = _HEAD.size + _FOOTER_BODY.size
+    length = HEAD.size + FOOTER_BODY.size
     with path.open("rb") as file:
-        if path.stat().st_size < length + 2 * len(_MAGIC):
+        if path.stat().st_size < length + 2 * len(MAGIC):
             return False
-        file.seek(-length - len(_MAGIC), 2)
+        file.seek(-length - len(MAGIC), 2)
         footer = file.read(length)
-    return bool(_FOOTER_BODY.unpack_from(footer, _HEAD.size)[0])
+    return bool(FOOTER_BODY.unpack_from(footer, HEAD.size)[0])
 
 
-class FinishedFile:
+def made_readable(path: Path) -> ReadableFile | None:
+    """What the library is to open in place of an MCAP file; None where that can be read as it is."""
+    if not is_unfinished(path) and has_index(path):
+        patches = patches_of(path)
+        return ReadableFile(path, path.stat().st_size, b"", patches) if patches else None
+    with path.open("rb") as file:
+        scan = _scan(file, path.stat().st_size)
+        tail = _summary_of(scan, file)
+        return ReadableFile(path, scan.end, tail, header_patch(file) | scan.patches)
+
+
+class ReadableFile:
     """The whole records of an MCAP file, with a summary; for the library, in place of a path.
 
     Args:
         path: the file, which is only read.
+        size: how many bytes of it are seen.
+        tail: what is seen after them.
+        patches: what is seen elsewise: offset -> bytes.
 
     Attributes:
         name: of the file.
         suffix: ``.mcap``.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, size: int, tail: bytes, patches: Mapping[int, bytes]) -> None:
         self.name = path.name
         self.suffix = path.suffix
         self._path = path
-        self._size, self._tail = _summarized(path)
+        self._size, self._tail, self._patches = size, tail, patches
 
     def __str__(self) -> str:
         return str(self._path)
@@ -89,16 +102,17 @@ class FinishedFile:
     def open(self, mode: str = "rb") -> BinaryIO:
         """The bytes of the file and of the summary."""
         assert mode == "rb"
-        return cast("BinaryIO", io.BufferedReader(_WithTail(self._path, self._size, self._tail), 1 << 16))
+        return cast("BinaryIO", io.BufferedReader(_Patched(self._path, self._size, self._tail, self._patches), 1 << 16))
 
 
-class _WithTail(io.RawIOBase):
-    """The beginning of a file, and bytes that follow it."""
+class _Patched(io.RawIOBase):
+    """The beginning of a file, in which some bytes are others, and bytes that follow it."""
 
-    def __init__(self, path: Path, size: int, tail: bytes) -> None:
+    def __init__(self, path: Path, size: int, tail: bytes, patches: Mapping[int, bytes]) -> None:
         self._file = path.open("rb", buffering=0)
         self._size = size
         self._tail = tail
+        self._patches = patches
         self._at = 0
 
     def readable(self) -> bool:
@@ -117,6 +131,10 @@ class _WithTail(io.RawIOBase):
         if self._at < self._size:
             self._file.seek(self._at)
             count = self._file.readinto(into[: self._size - self._at]) or 0
+            for offset, patch in self._patches.items():
+                begin, end = max(offset, self._at), min(offset + len(patch), self._at + count)
+                if begin < end:
+                    into[begin - self._at : end - self._at] = patch[begin - offset : end - offset]
         else:
             part = self._tail[self._at - self._size :][: len(into)]
             into[: len(part)] = part
@@ -149,30 +167,30 @@ class _Chunk:
 class _Scan:
     """What a file has in it."""
 
-    end: int = len(_MAGIC)
+    end: int = len(MAGIC)
     chunks: list[_Chunk] = field(default_factory=list)
     schemas: dict[int, bytes] = field(default_factory=dict)
     channels: dict[int, bytes] = field(default_factory=dict)
+    patches: dict[int, bytes] = field(default_factory=dict)
     has_loose_messages: bool = False
 
     def declare(self, kind: int, body: bytes) -> None:
         """Take note of a schema or channel."""
         into = self.schemas if kind == _SCHEMA else self.channels
-        into.setdefault(_NUMBER.unpack_from(body)[0], _record(kind, body))
+        known = known_schema(body) if kind == _SCHEMA else body
+        into.setdefault(_NUMBER.unpack_from(body)[0], _record(kind, known))
 
 
-def _summarized(path: Path) -> tuple[int, bytes]:
-    """How many bytes of the file are whole records with data, and what has to follow them."""
-    with path.open("rb") as file:
-        scan = _scan(file, path.stat().st_size)
-        if scan.has_loose_messages or not scan.chunks:
-            # The library reads such a file from one end to the other, whatever a summary says.
-            return scan.end, _record(_DATA_END, bytes(4)) + _record(_FOOTER, bytes(_FOOTER_BODY.size)) + _MAGIC
-        made = bytearray()
-        for chunk in scan.chunks:
-            if not chunk.indexes or not scan.channels.keys() >= chunk.indexes.keys():
-                _look_into(file, chunk, scan, made)
-    return scan.end, _tail(scan, bytes(made))
+def _summary_of(scan: _Scan, file: BinaryIO) -> bytes:
+    """What has to follow the whole records of a file."""
+    if scan.has_loose_messages or not scan.chunks:
+        # The library reads such a file from one end to the other, whatever a summary says.
+        return _record(_DATA_END, bytes(4)) + _record(_FOOTER, bytes(FOOTER_BODY.size)) + MAGIC
+    made = bytearray()
+    for chunk in scan.chunks:
+        if not chunk.indexes or not scan.channels.keys() >= chunk.indexes.keys():
+            _look_into(file, chunk, scan, made)
+    return _tail(scan, bytes(made))
 
 
 def _scan(file: BinaryIO, size: int) -> _Scan:
@@ -180,25 +198,28 @@ def _scan(file: BinaryIO, size: int) -> _Scan:
     scan = _Scan()
     while True:
         file.seek(scan.end)
-        head = file.read(_HEAD.size)
-        if len(head) < _HEAD.size:
+        head = file.read(HEAD.size)
+        if len(head) < HEAD.size:
             return scan
-        kind, length = _HEAD.unpack(head)
-        if kind == 0 or kind in _SUMMARY_KINDS or scan.end + _HEAD.size + length > size:
+        kind, length = HEAD.unpack(head)
+        if kind == 0 or kind in _SUMMARY_KINDS or scan.end + HEAD.size + length > size:
             return scan
         if kind == _CHUNK and length >= _CHUNK_HEAD.size:
-            scan.chunks.append(_chunk(file, scan.end, _HEAD.size + length))
+            scan.chunks.append(_chunk(file, scan.end, HEAD.size + length))
         elif kind == _MESSAGE_INDEX and scan.chunks:
             channel, entries = _NUMBER.unpack(file.read(2))[0], _WORD.unpack(file.read(4))[0]
             chunk = scan.chunks[-1]
             if entries:
                 chunk.indexes[channel], chunk.counts[channel] = scan.end, entries // _ENTRY.size
-            chunk.indexes_end = scan.end + _HEAD.size + length
+            chunk.indexes_end = scan.end + HEAD.size + length
         elif kind in (_SCHEMA, _CHANNEL):
-            scan.declare(kind, file.read(length))
+            body = file.read(length)
+            scan.declare(kind, body)
+            if kind == _SCHEMA:
+                scan.patches |= schema_patch(scan.end + HEAD.size, body)
         elif kind == _MESSAGE:
             scan.has_loose_messages = True
-        scan.end += _HEAD.size + length
+        scan.end += HEAD.size + length
 
 
 def _chunk(file: BinaryIO, offset: int, length: int) -> _Chunk:
@@ -216,7 +237,7 @@ def _look_into(file: BinaryIO, chunk: _Chunk, scan: _Scan, made: bytearray) -> N
     data = decompress(file.read(chunk.compressed_size), chunk.compression.decode(), chunk.size, 0)
     entries: dict[int, list[bytes]] = defaultdict(list)
     for kind, place, length in _records(data):
-        body = data[place + _HEAD.size : place + _HEAD.size + length]
+        body = data[place + HEAD.size : place + HEAD.size + length]
         if kind in (_SCHEMA, _CHANNEL):
             scan.declare(kind, body)
         elif kind == _MESSAGE:
@@ -234,10 +255,10 @@ def _look_into(file: BinaryIO, chunk: _Chunk, scan: _Scan, made: bytearray) -> N
 def _records(data: bytes) -> Iterator[tuple[int, int, int]]:
     """The records of an unpacked chunk: kind, place, length of what follows the head."""
     place = 0
-    while place + _HEAD.size <= len(data):
-        kind, length = _HEAD.unpack_from(data, place)
+    while place + HEAD.size <= len(data):
+        kind, length = HEAD.unpack_from(data, place)
         yield kind, place, length
-        place += _HEAD.size + length
+        place += HEAD.size + length
 
 
 def _tail(scan: _Scan, made: bytes) -> bytes:
@@ -266,8 +287,8 @@ def _tail(scan: _Scan, made: bytes) -> bytes:
             _record(_STATISTICS, statistics + _WORD.pack(len(counts)) + counts),
         )
     )
-    footer = _record(_FOOTER, _FOOTER_BODY.pack(scan.end + len(before), 0, 0))
-    return before + summary + footer + _MAGIC
+    footer = _record(_FOOTER, FOOTER_BODY.pack(scan.end + len(before), 0, 0))
+    return before + summary + footer + MAGIC
 
 
 def _chunk_index(chunk: _Chunk) -> bytes:
@@ -287,4 +308,4 @@ def _chunk_index(chunk: _Chunk) -> bytes:
 
 
 def _record(kind: int, body: bytes) -> bytes:
-    return _HEAD.pack(kind, len(body)) + body
+    return HEAD.pack(kind, len(body)) + body

@@ -66,8 +66,7 @@ class BagView(ModelView):
 
     def _publish(self) -> bool:
         """Have its topics ready."""
-        if self._bag.finding is not None:
-            self.log.diagnostics([self._bag.finding])
+        self.log.diagnostics(self._bag.findings)
         self._output = PublishedRecording(self._player, self._bag)
         return True
 

@@ -132,7 +132,7 @@ async def test_a_recording_ends_well_when_the_program_does():
         made.move_arm(1.0)
         await made.settle()
     with BagReader(state["path"]) as bag:
-        assert bag.finding is None
+        assert not bag.findings
         assert len(list(bag.messages())) == 1
 
 
@@ -206,7 +206,7 @@ async def test_a_disk_with_little_room_is_left_to_others(monkeypatch: pytest.Mon
         stopped = await ended(client)
         assert "less than 256 MB left" in stopped["problem"]
         with BagReader(state["path"]) as bag:
-            assert bag.finding is None, "it has its end"
+            assert not bag.findings, "it has its end"
         await client.send("record_topics", topics=[])
         while not (refused := await client.until("recording_state"))["problem"].startswith("there is too little room"):
             pass

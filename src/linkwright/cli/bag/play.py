@@ -105,8 +105,7 @@ def run_play(arguments: argparse.Namespace) -> int:
     remappings = [_remapping(rule) for rule in arguments.remap]
 
     with BagReader(arguments.bag) as bag:
-        if bag.finding is not None:
-            print_diagnostics([bag.finding], sys.stderr)
+        print_diagnostics(bag.findings, sys.stderr)
 
         async def job(session: Session) -> int:
             from linkwright.bag import Player

@@ -24,8 +24,7 @@ def run_info(arguments: argparse.Namespace) -> int:
     from linkwright.bag import BagReader, summary_text
 
     with BagReader(arguments.bag) as bag:
-        if bag.finding is not None:
-            print_diagnostics([bag.finding], sys.stderr)
+        print_diagnostics(bag.findings, sys.stderr)
         sys.stdout.write(summary_text(bag, topic_names_only=arguments.topic_name))
     return 0
 

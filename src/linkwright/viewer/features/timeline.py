@@ -74,8 +74,8 @@ class TimelineFeature(PageFeature):
             self._live.close()
             self._live = None
         self._timeline = Timeline(bag.path.name, bag.start_ns / _SECOND, bag.end_ns / _SECOND, topics, live=False)
-        if bag.finding is not None:
-            self._problem = _text([bag.finding])
+        if bag.findings:
+            self._problem = _text(bag.findings)
         self._recorded = playback
         playback.begin_anew = self._begin_anew
         playback.changed.append(self._changed)

@@ -1,0 +1,93 @@
+"""MCAP files that hold more than ROS 2, as Foxglove and programs of one's own write them.
+
+The library refuses a file as a whole whose profile is not ``ros2``, or which has a schema in a language that is none of
+ROS 2's (JSON, Protobuf, ROS 1 ...). It is therefore shown such records otherwise, in as many bytes: the profile's name,
+and schemas that say nothing. Topics of other encodings are left out by `BagReader`, which says so.
+"""
+
+from __future__ import annotations
+
+import struct
+from pathlib import Path
+from typing import BinaryIO
+
+MAGIC = b"\x89MCAP0\r\n"
+HEAD = struct.Struct("<BQ")
+"""Of a record: its kind, and how many bytes follow."""
+FOOTER_BODY = struct.Struct("<QQI")
+
+_HEADER, _SCHEMA = 0x01, 0x03
+_PROFILE = b"ros2"
+_LANGUAGES = (b"ros2msg", b"ros2idl", b"omgidl", b"")
+_LENGTH, _ID = struct.Struct("<I"), 2
+
+
+def patches_of(path: Path) -> dict[int, bytes]:
+    """What the library is to see elsewise of a finished file with an index: offset -> bytes."""
+    with path.open("rb") as file:
+        patches = header_patch(file)
+        file.seek(-HEAD.size - FOOTER_BODY.size - len(MAGIC), 2)
+        end = file.tell()
+        (place, *_) = FOOTER_BODY.unpack_from(file.read(), HEAD.size)
+        while place + HEAD.size <= end:
+            file.seek(place)
+            kind, length = HEAD.unpack(file.read(HEAD.size))
+            place += HEAD.size
+            if kind == _SCHEMA:
+                patches |= schema_patch(place, file.read(length))
+            place += length
+    return patches
+
+
+def header_patch(file: BinaryIO) -> dict[int, bytes]:
+    """The patch that makes the profile ``ros2``; it takes the room of the name of the program that wrote the file."""
+    file.seek(len(MAGIC))
+    head = file.read(HEAD.size)
+    if len(head) < HEAD.size:
+        return {}
+    kind, length = HEAD.unpack(head)
+    parts = _texts(file.read(min(length, 1 << 16)), 0, 2)
+    if kind != _HEADER or parts is None or parts[0] == _PROFILE:
+        return {}
+    rest = b"".join(parts)[: -len(_PROFILE)]
+    if len(rest) + len(_PROFILE) != sum(map(len, parts)):
+        return {}
+    return {len(MAGIC) + HEAD.size: _text(_PROFILE) + _text(rest)}
+
+
+def schema_patch(place: int, body: bytes) -> dict[int, bytes]:
+    """The patch that takes a schema's text away where it is in a language that is none of ROS 2's.
+
+    Args:
+        place: of its body in the file.
+        body: of its record.
+    """
+    parts = _texts(body, _ID, 3)
+    if parts is None or parts[1] in _LANGUAGES:
+        return {}
+    name, language, text = parts
+    return {place + _ID: _text(name) + _text(b"") + _text(b" " * (len(language) + len(text)))}
+
+
+def known_schema(body: bytes) -> bytes:
+    """The body of a schema's record as the library is to see it."""
+    return body[:_ID] + schema_patch(0, body).get(_ID, body[_ID:])
+
+
+def _texts(body: bytes, place: int, count: int) -> list[bytes] | None:
+    """Texts that follow one another, each behind its length; None where they are not whole."""
+    found = []
+    for _ in range(count):
+        if place + _LENGTH.size > len(body):
+            return None
+        (length,) = _LENGTH.unpack_from(body, place)
+        place += _LENGTH.size
+        if place + length > len(body):
+            return None
+        found.append(body[place : place + length])
+        place += length
+    return found
+
+
+def _text(text: bytes) -> bytes:
+    return _LENGTH.pack(len(text)) + text
