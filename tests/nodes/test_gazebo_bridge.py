@@ -12,6 +12,7 @@ from linkwright.graph import DurabilityPolicy, QoSProfile
 from linkwright.messages import get_message
 from linkwright.nodes import NodeOptions
 from linkwright.nodes.gazebo.bridge import BridgedTopic, ImageBridge, ParameterBridge, topic_of_word, topics_of_file
+from linkwright.simulation.plugins.bridged import gz_side
 from tests.outside import Outside, Stranger
 from tests.places import GAZEBO_PACKAGE
 
@@ -112,7 +113,7 @@ async def test_messages_go_both_ways_and_not_round(stage):
 
 
 async def test_a_twist_with_a_header_becomes_one_without(stage, tmp_path: Path):
-    twists = heard(stage, "geometry_msgs/msg/Twist", "/cmd_vel")
+    twists = heard(stage, "geometry_msgs/msg/Twist", gz_side("/cmd_vel"))
     path = tmp_path / "bridge.yaml"
     path.write_text(
         "- topic_name: cmd_vel\n  ros_type_name: geometry_msgs/msg/TwistStamped\n"
@@ -125,6 +126,7 @@ async def test_a_twist_with_a_header_becomes_one_without(stage, tmp_path: Path):
     publisher(stage, "geometry_msgs/msg/TwistStamped", "/cmd_vel").publish(stamped)
     await stage.graph.settle()
     assert [message.linear.x for message in twists] == [0.25]
+    assert stage.graph.topics()["/cmd_vel"] == ["geometry_msgs/msg/TwistStamped"]
 
 
 async def test_a_type_that_is_not_known_is_named_and_the_rest_is_bridged(stage, said):

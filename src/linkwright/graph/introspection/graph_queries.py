@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from linkwright.graph.endpoints.bus import Bus
@@ -42,8 +42,11 @@ class GraphQueries:
 
     def endpoints(self) -> list[EndpointInfo]:
         """The endpoints of this process and, as far as discovery has come, of others."""
-        outside = self._transport.remote_endpoints() if self._transport is not None else ()
-        return [*(endpoint.info() for endpoint in self.bus.endpoints()), *outside]
+        return [*(endpoint.info() for endpoint in self.bus.endpoints()), *self.remote_endpoints()]
+
+    def remote_endpoints(self) -> Sequence[EndpointInfo]:
+        """The endpoints of other processes, as far as discovery has come."""
+        return self._transport.remote_endpoints() if self._transport is not None else ()
 
     def node_names(self) -> list[str]:
         """Full names of the nodes of this process, sorted."""

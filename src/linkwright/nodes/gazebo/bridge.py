@@ -25,6 +25,7 @@ from linkwright.nodes.gazebo.compressed import compressed
 from linkwright.nodes.gazebo.conversions import TYPES_OF_GZ, conversion
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 from linkwright.nodes.teleop.standstill import VELOCITIES, send_stop
+from linkwright.simulation.plugins.bridged import gz_side
 
 _DIRECTIONS = {"[": "GZ_TO_ROS", "]": "ROS_TO_GZ", "@": "BIDIRECTIONAL"}
 _IMAGE = ("sensor_msgs/msg/Image", "gz.msgs.Image")
@@ -111,6 +112,8 @@ class _Bridge(SingleNode):
         if (same_name and topic.ros_type == gz_type) or topic.ros_type == _CLOCK:  # the simulation publishes /clock
             return
         to_ros, to_gz = (topic.direction in (way, "BIDIRECTIONAL") for way in ("GZ_TO_ROS", "ROS_TO_GZ"))
+        if same_name and to_gz:  # in ROS the name is the bridge's, with its type
+            gz_topic = gz_side(gz_topic)
         ros, gz = (self._node, topic.ros_topic, topic.ros_type), (self._gz_node, gz_topic, gz_type)
         if to_ros and not (same_name and to_gz):
             self._hand_on(topic, gz, ros)

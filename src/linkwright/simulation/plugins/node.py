@@ -13,9 +13,11 @@ from linkwright.graph.endpoints.base import Endpoint
 from linkwright.graph.endpoints.commander import Commander, who_was_lost
 from linkwright.graph.endpoints.info import EndpointInfo
 from linkwright.graph.endpoints.publisher import Publisher
+from linkwright.graph.endpoints.subscription import Subscription
 from linkwright.graph.qos.profile import QoSProfile
 from linkwright.messages import get_service
 from linkwright.simulation.exchange import Exchange
+from linkwright.simulation.plugins.bridged import BridgedTopics, gz_side
 from linkwright.simulation.plugins.ros_element import overridden
 from linkwright.xmltree import Element
 
@@ -87,6 +89,7 @@ class PluginNode:
         owned: whether the node is the plugin's own, and ends with it.
         qos: what overrides qualities of service (`NodeDescription.qos`).
         usual: the usual names of topics that are still to be had; None where topics have their own names only.
+        bridged: for plugins of gz, what tells which of their topics a bridge has under another type.
     """
 
     def __init__(
@@ -97,12 +100,15 @@ class PluginNode:
         owned: bool,
         qos: Mapping[tuple[str, str], Element],
         usual: set[str] | None,
+        bridged: BridgedTopics | None = None,
     ) -> None:
         self._node = node
         self._exchange = exchange
         self._owned = owned
         self._qos = {(node.handle.resolve_topic_name(topic), side): each for (topic, side), each in qos.items()}
         self._usual = usual
+        self._bridged = bridged
+        self._untold: list[Callable[[], None]] = []
         self._endpoints: list[Endpoint] = []
         self._names: list[str] = []
 
@@ -163,10 +169,15 @@ class PluginNode:
             received = commander.taking(received)
         for name in self._both(topic, usual):
             profile = self._profile(name, "subscriber", qos)
-            subscription = self._node.create_subscription(msg_type, name, received, profile)
-            self._endpoints.append(subscription)
-            if commander is not None:
-                commander.watch(subscription)
+
+            def listen(name: str, profile: QoSProfile = profile) -> Endpoint:
+                subscription: Subscription[Any] = self._node.create_subscription(msg_type, name, received, profile)
+                self._endpoints.append(subscription)
+                if commander is not None:
+                    commander.watch(subscription)
+                return subscription
+
+            self._listen(self._node.handle.resolve_topic_name(name), listen)
 
     def commander(self, rest: Callable[[], bool]) -> Commander:
         """For topics of commands that hold until the next one: takes that of a publisher back that is lost.
@@ -197,6 +208,8 @@ class PluginNode:
 
     def close(self) -> None:
         """Take what was made out of the graph."""
+        for forget in self._untold:
+            forget()
         if self._owned:
             self._node.destroy_node()
         else:
@@ -204,6 +217,22 @@ class PluginNode:
                 endpoint.destroy()
         if self._usual is not None:
             self._usual.difference_update(self._names)
+
+    def _listen(self, topic: str, listen: Callable[[str], Endpoint]) -> None:
+        """Listen to a topic, or to the side of gz of a bridge that has it under another type, now or later."""
+        bridged = self._bridged
+        if bridged is None or bridged.has(topic):
+            listen(topic if bridged is None else gz_side(topic))
+            return
+        subscription = listen(topic)
+
+        def move() -> None:
+            self._endpoints.remove(subscription)
+            subscription.destroy()
+            listen(gz_side(topic))
+
+        bridged.tell(topic, move)
+        self._untold.append(partial(bridged.forget, topic, move))
 
     def _both(self, topic: str, usual: str) -> list[str]:
         topic = _FIRST_DIGIT.sub("_", _NO_TOPIC.sub("_", topic))

@@ -19,6 +19,7 @@ from linkwright.sdf.resources import ResourceFinder
 from linkwright.sdf.saved import as_saved
 from linkwright.sdf.worlds import World
 from linkwright.simulation.exchange import Exchange
+from linkwright.simulation.plugins.bridged import BridgedTopics
 from linkwright.simulation.plugins.node import PluginNode
 from linkwright.simulation.plugins.parameters import parameters_from
 from linkwright.simulation.plugins.places import of_model, of_world
@@ -79,6 +80,7 @@ class SimulationServer:
         self.on_reset: list[Callable[[], None]] = []
         self._options = options or ServerOptions()
         self._usual: set[str] | None = set() if self._options.usual_names else None
+        self._bridged = BridgedTopics(node, self.exchange)
         self._plugins: dict[str, list[SimulatedPlugin[object]]] = {}
         self.left: dict[str, Any] = {}
         self._namespaces: dict[str, str] = {}
@@ -234,6 +236,7 @@ class SimulationServer:
 
     def close(self) -> None:
         """End all plugins."""
+        self._bridged.close()
         self._end(self._running())
         self._plugins.clear()
 
@@ -304,7 +307,7 @@ class SimulationServer:
     def _node(self, place: PluginPlace, namespace: str) -> PluginNode:
         """The node of a plugin: that of the simulator for those of gz and for sensors without a plugin."""
         if is_shared(place):
-            return PluginNode(self.node, self.exchange, owned=False, qos={}, usual=self._usual)
+            return PluginNode(self.node, self.exchange, owned=False, qos={}, usual=self._usual, bridged=self._bridged)
         described = node_of(place.name, place.element, namespace)
         full_name = described.full_name
         if full_name in self._node_names:

@@ -1,0 +1,72 @@
+"""Topics of gz that a bridge has in ROS with another type: their own name is the bridge's there.
+
+Topics of gz are topics of the graph under their names. A bridge from ``geometry_msgs/msg/TwistStamped`` to
+``gz.msgs.Twist`` of one name, as Jazzy's robots have it, would make a topic with two types of that. So the side of gz
+has a hidden name as soon as there is such a bridge, in this process or in another one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from linkwright.graph import EndpointKind, Node
+from linkwright.simulation.exchange import Exchange
+
+_HIDDEN = "/_gz"
+
+
+def gz_side(topic: str) -> str:
+    """The hidden name of the side of gz of a topic; absolute names."""
+    return _HIDDEN + topic
+
+
+class BridgedTopics:
+    """Tells the plugins of a simulation that a bridge takes the name of a topic they listen to.
+
+    Args:
+        node: that of the simulator.
+        exchange: by which it is told, in the thread of the simulation.
+    """
+
+    def __init__(self, node: Node, exchange: Exchange) -> None:
+        self._graph = node.graph
+        self._exchange = exchange
+        self._moves: dict[str, list[Callable[[], None]]] = {}
+        self._is_due = False
+        self._graph.watch(self._changed)
+
+    def close(self) -> None:
+        """Tell nobody any more."""
+        self._graph.unwatch(self._changed)
+
+    def has(self, topic: str) -> bool:
+        """Whether a bridge has a topic under another type."""
+        return topic in self._bridged([topic])
+
+    def tell(self, topic: str, move: Callable[[], None]) -> None:
+        """Have a function called when a bridge comes that has a topic under another type."""
+        self._moves.setdefault(topic, []).append(move)
+
+    def forget(self, topic: str, move: Callable[[], None]) -> None:
+        """Call a function no more."""
+        moves = self._moves.get(topic, [])
+        if move in moves:
+            moves.remove(move)
+        if not moves:
+            self._moves.pop(topic, None)
+
+    def _changed(self) -> None:
+        if self._moves and not self._is_due:
+            self._is_due = True
+            self._exchange.post(self._review)
+
+    def _review(self) -> None:
+        self._is_due = False
+        for topic in self._bridged(list(self._moves)):
+            for move in self._moves.pop(topic):
+                move()
+
+    def _bridged(self, topics: list[str]) -> list[str]:
+        """Those that something is published to by their hidden name."""
+        outside = {each.name for each in self._graph.remote_endpoints() if each.kind is EndpointKind.PUBLISHER}
+        return [each for each in topics if gz_side(each) in outside or self._graph.bus.publishers(gz_side(each))]
