@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import logging
+import struct
 import warnings
 from collections.abc import Iterator
 from io import BytesIO
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,6 +20,10 @@ from linkwright.geometry.stl import read_stl
 
 MESH_ENDINGS = (".stl", ".dae", ".obj", ".glb", ".gltf")
 """The formats that are read, as RViz and Gazebo read them."""
+_STL_HEADER, _STL_TRIANGLE = 84, 50
+"""Bytes of a binary STL, before its triangles and for each."""
+_FACE_LINES = {".stl": b"facet normal", ".obj": b"\nf "}
+"""What stands once for each triangle, or polygon, of files of text."""
 
 
 class PlacedMesh(NamedTuple):
@@ -89,6 +95,25 @@ def placed_meshes(data: bytes, kind: str, **options: Any) -> list[PlacedMesh]:
                 phrase("a triangle has corner {corner}, and there are {count}", corner=corner, count=count)
             )
     return found
+
+
+def told_triangles(path: Path) -> int | None:
+    """How many triangles a file says that it has, found without parsing it, as that of a large one takes a minute.
+
+    At least as many are read from it. None for what only parsing tells (COLLADA, glTF), and for what cannot be read.
+    """
+    kind = path.suffix.lower()
+    try:
+        with path.open("rb") as file:
+            head = file.read(_STL_HEADER)
+            if kind == ".stl" and len(head) == _STL_HEADER:
+                (said,) = struct.unpack_from("<I", head, _STL_HEADER - 4)
+                if path.stat().st_size == _STL_HEADER + said * _STL_TRIANGLE:
+                    return int(said)
+            mark = _FACE_LINES.get(kind)
+            return None if mark is None else (head + file.read()).count(mark)
+    except OSError:
+        return None
 
 
 def _parsed(data: bytes, kind: str, **options: Any) -> Iterator[PlacedMesh]:

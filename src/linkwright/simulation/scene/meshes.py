@@ -11,7 +11,7 @@ import numpy as np
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, display_path, phrase
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.decomposition import convex_pieces, thickened
-from linkwright.geometry.mesh_files import BadMeshError, beside
+from linkwright.geometry.mesh_files import BadMeshError, beside, told_triangles
 from linkwright.geometry.mesh_parts import MeshPart, Triangles, read_parts
 from linkwright.geometry.meshes import read_mesh, unreadable
 from linkwright.geometry.polygon import triangulated
@@ -109,6 +109,7 @@ class MeshLibrary:
         if not isinstance(shape, Mesh) or path is None:
             return []
         try:
+            _bounded(path, told_triangles(path) or 0)
             if shape.submesh is not None:
                 parts = [part.triangles for part in self._parts(shape, path)]
                 vertices, faces = _joined(parts)
@@ -156,6 +157,7 @@ class MeshLibrary:
             material.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = texture.name
 
     def _parts(self, shape: Mesh, path: Path) -> list[MeshPart]:
+        _bounded(path, told_triangles(path) or 0)
         try:
             parts = read_parts(path, resolver=beside(str(path)))
         except BadMeshError as error:
