@@ -7,6 +7,7 @@ import itertools
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from linkwright.descriptions import DescriptionLibrary
 from linkwright.diagnostics import Diagnostic, Severity
@@ -114,6 +115,7 @@ class ViewerContext:
         downloads: files that were made for a page, to be fetched once.
         held_time: whether its clock shows the past.
         display_ids: ids that no display of the viewer has had.
+        folder: in which the program was started; files that pages ask for go there.
     """
 
     node: Node
@@ -126,6 +128,7 @@ class ViewerContext:
     downloads: Downloads = field(default_factory=Downloads)
     held_time: HeldTime = field(default_factory=HeldTime)
     display_ids: Iterator[str] = field(default_factory=lambda: map("display-{}".format, itertools.count(1)))
+    folder: Path = field(default_factory=Path.cwd)
 
     def report(self, diagnostic: Diagnostic) -> None:
         """Show a finding in the terminal."""

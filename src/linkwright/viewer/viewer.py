@@ -16,10 +16,8 @@ from linkwright.viewer.config.locations import keep_unsaved
 from linkwright.viewer.config.rviz_config import RvizConfig
 from linkwright.viewer.context import GraphChanges, ViewerContext
 from linkwright.viewer.displays.base.display import ViewerDisplay
-from linkwright.viewer.features.comparison.feature import ComparisonFeature
 from linkwright.viewer.features.joints import JointsFeature
-from linkwright.viewer.features.page_feature import PageFeature, make_features
-from linkwright.viewer.features.recording import RecordingFeature
+from linkwright.viewer.features.page_feature import F, PageFeature, make_features
 from linkwright.viewer.features.timeline import TimelineFeature
 from linkwright.viewer.frames.history import FrameHistory
 from linkwright.viewer.protocol.message import ServerMessage, encode
@@ -34,6 +32,7 @@ if TYPE_CHECKING:
     from linkwright.descriptions.pairs import Pair
     from linkwright.graph import Node
     from linkwright.nodes.joint_panel import JointPanel
+    from linkwright.viewer.live_history import LiveHistory
     from linkwright.viewer.web.server import WebServer
     from linkwright.viewer.web.uploads import Guests
 
@@ -109,10 +108,12 @@ class Viewer:
             **shared,
         )
         self._features: list[PageFeature] = []
+        self._is_started = False
         self.managers = Managers(self.context, config, self)
         self._node.add_post_set_parameters_callback(self._take_parameters)
-        self._features += make_features(self)
-        self._receivers.update((cls, feature.receive) for feature in self._features for cls in feature.RECEIVES)
+        self.live: LiveHistory | None = None
+        for feature in make_features(self):
+            self._take_in(feature)
         self._server: WebServer | None = None
 
     # --- life --------------------------------------------------------------------------------------------------
@@ -127,8 +128,9 @@ class Viewer:
             if self._beside is None:
                 await self._serve()
             if self._history:
-                self._recording.use(self._timeline.keep(self._history))
+                self.live = self._timeline.keep(self._history)
             self.managers.shared.start()
+            self._is_started = True
             for feature in self._features:
                 feature.start()
         except BaseException:  # cancelled, too: whoever ends the program does not know this viewer yet
@@ -199,10 +201,11 @@ class Viewer:
 
     def attach_joint_panel(self, panel: JointPanel | None) -> None:
         """Show sliders for the joints of a panel; None takes them away."""
-        next(each for each in self._features if isinstance(each, JointsFeature)).attach(panel)
+        self.add_feature(JointsFeature).attach(panel)
 
     def attach_recording(self, playback: Playback, bag: BagReader) -> None:
         """Have pages show a recording's timeline."""
+        self.live = None
         self._timeline.attach(playback, bag)
         for feature in self._features:
             feature.recording_shown()
@@ -213,15 +216,27 @@ class Viewer:
 
     def attach_comparison(self, pair: Pair, node: Node) -> Callable[[str], None]:
         """Have pages see how two descriptions differ; see `ComparisonFeature.attach`."""
-        return next(each for each in self._features if isinstance(each, ComparisonFeature)).attach(pair, node)
+        from linkwright.viewer.features.comparison.feature import ComparisonFeature
+
+        return self.add_feature(ComparisonFeature).attach(pair, node)
 
     @property
     def _timeline(self) -> TimelineFeature:
-        return next(each for each in self._features if isinstance(each, TimelineFeature))
+        return self.add_feature(TimelineFeature)
 
-    @property
-    def _recording(self) -> RecordingFeature:
-        return next(each for each in self._features if isinstance(each, RecordingFeature))
+    def add_feature(self, cls: type[F]) -> F:
+        """A feature of a class, told of all that features are told from now on; the one there is, if any."""
+        found = next((each for each in self._features if type(each) is cls), None)
+        if found is None:
+            found = cls(self)
+            self._take_in(found)
+            if self._is_started:
+                found.start()
+        return found
+
+    def _take_in(self, feature: PageFeature) -> None:
+        self._features.append(feature)
+        self._receivers.update((message, feature.receive) for message in feature.RECEIVES)
 
     def show_diagnostics(self, diagnostics: Sequence[Diagnostic]) -> None:
         """Show what is wrong with the description; none clears the list."""

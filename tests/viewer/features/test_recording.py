@@ -43,7 +43,7 @@ def mcap(recording: str) -> Path:
 
 
 def feature(made: World) -> RecordingFeature:
-    return next(each for each in made.viewer._features if isinstance(each, RecordingFeature))
+    return made.viewer.add_feature(RecordingFeature)
 
 
 async def begun(client: Client, *topics: str) -> dict:

@@ -1,4 +1,7 @@
-"""Features that do nothing before a page asks for them; their modules are imported with the first question."""
+"""Features that are made when there is something for them to do: a page asks, or a topic of theirs is published.
+
+Their modules are imported then. Until then pages are told what there is without them.
+"""
 
 from __future__ import annotations
 
@@ -6,8 +9,26 @@ from importlib import import_module
 from typing import Any, ClassVar
 
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
+from linkwright.viewer.protocol.displays import SetProperty
 from linkwright.viewer.protocol.editing import ApplyEdit, AskEditableParts, PreviewEdit, RedoEdit, UndoEdit
 from linkwright.viewer.protocol.export import AskExport
+from linkwright.viewer.protocol.images import PictureSize
+from linkwright.viewer.protocol.markers import MarkerFeedback
+from linkwright.viewer.protocol.message import ServerMessage
+from linkwright.viewer.protocol.modelling import (
+    NO_WORLD,
+    AddThing,
+    AskModels,
+    ChangeThings,
+    CopyThings,
+    DeleteThings,
+    GroupThings,
+    RedoWorld,
+    SaveWorld,
+    SetModelling,
+    UndoWorld,
+    UngroupThing,
+)
 from linkwright.viewer.protocol.monitor import (
     AimTeleop,
     AskFields,
@@ -21,6 +42,17 @@ from linkwright.viewer.protocol.monitor import (
     WatchTopics,
 )
 from linkwright.viewer.protocol.navigation import CommandNavigation, WatchNavigation
+from linkwright.viewer.protocol.points import AskPoint
+from linkwright.viewer.protocol.recording import NOTHING_RECORDED, RecordTopics, SaveMinutes, StopRecording
+from linkwright.viewer.protocol.robot import MeshStatus
+from linkwright.viewer.protocol.simulation import (
+    NO_SIMULATION,
+    ControlSimulation,
+    DeleteModel,
+    DragModel,
+    PushLink,
+    SpawnModel,
+)
 from linkwright.viewer.protocol.voice import SayCommand, SoundBlock, Talk, WatchVoice
 from linkwright.viewer.protocol.voice_words import (
     AskWordsFile,
@@ -33,62 +65,117 @@ from linkwright.viewer.protocol.voice_words import (
 )
 from linkwright.viewer.web.audience import Page
 
-_ANSWERED_BY: dict[type, str] = {
-    AimTeleop: "monitor.teleop:TeleopFeature",
-    AskExport: "export.feature:ExportFeature",
-    CommandNavigation: "monitor.navigation:NavigationFeature",
-    AskFields: "monitor.plots:PlotsFeature",
-    Drive: "monitor.teleop:TeleopFeature",
-    DumpParameters: "monitor.parameters:ParametersFeature",
-    SayCommand: "voice.feature:VoiceFeature",
-    SetParameter: "monitor.parameters:ParametersFeature",
-    SoundBlock: "voice.feature:VoiceFeature",
-    Talk: "voice.feature:VoiceFeature",
-    WatchLog: "monitor.log:LogFeature",
-    WatchNavigation: "monitor.navigation:NavigationFeature",
-    WatchNodeGraph: "monitor.node_graph:NodeGraphFeature",
-    WatchParameters: "monitor.parameters:ParametersFeature",
-    WatchSeries: "monitor.plots:PlotsFeature",
-    WatchTopics: "monitor.topics:TopicsFeature",
-    WatchVoice: "voice.feature:VoiceFeature",
-    **dict.fromkeys(
-        (ApplyEdit, AskEditableParts, PreviewEdit, RedoEdit, UndoEdit),
-        "editing.feature:EditingFeature",
+_SIMULATION = "simulation:SimulationFeature"
+_MODELLING = "modelling.feature:ModellingFeature"
+_RECORDING = "recording:RecordingFeature"
+
+_ANSWERED_BY: dict[str, tuple[type, ...]] = {
+    "displays:DisplaysFeature": (SetProperty, MeshStatus, MarkerFeedback, PictureSize),
+    "displays:PointsFeature": (AskPoint,),
+    "editing.feature:EditingFeature": (ApplyEdit, AskEditableParts, PreviewEdit, RedoEdit, UndoEdit),
+    "export.feature:ExportFeature": (AskExport,),
+    _MODELLING: (
+        AddThing,
+        AskModels,
+        ChangeThings,
+        CopyThings,
+        DeleteThings,
+        GroupThings,
+        RedoWorld,
+        SaveWorld,
+        SetModelling,
+        UndoWorld,
+        UngroupThing,
     ),
-    **dict.fromkeys(
-        (AskWordsFile, BeginTake, EndTake, ImportWords, RemoveWord, RenameWord, WatchWords),
-        "voice.feature:VoiceFeature",
+    "monitor.log:LogFeature": (WatchLog,),
+    "monitor.navigation:NavigationFeature": (CommandNavigation, WatchNavigation),
+    "monitor.node_graph:NodeGraphFeature": (WatchNodeGraph,),
+    "monitor.parameters:ParametersFeature": (DumpParameters, SetParameter, WatchParameters),
+    "monitor.plots:PlotsFeature": (AskFields, WatchSeries),
+    "monitor.teleop:TeleopFeature": (AimTeleop, Drive),
+    "monitor.topics:TopicsFeature": (WatchTopics,),
+    _RECORDING: (RecordTopics, StopRecording, SaveMinutes),
+    _SIMULATION: (ControlSimulation, SpawnModel, DeleteModel, DragModel, PushLink),
+    "voice.feature:VoiceFeature": (
+        AskWordsFile,
+        BeginTake,
+        EndTake,
+        ImportWords,
+        RemoveWord,
+        RenameWord,
+        SayCommand,
+        SoundBlock,
+        Talk,
+        WatchVoice,
+        WatchWords,
     ),
 }
-"""Module and class, below this package."""
+"""What pages ask each of them: by its module and class, below this package."""
+
+_WOKEN_BY = {"/simulation_state": _SIMULATION, "/world_description": _MODELLING}
+"""Topics on which a publisher means that there is something to tell pages."""
+
+_WITHOUT: dict[str, ServerMessage] = {_MODELLING: NO_WORLD, _RECORDING: NOTHING_RECORDED, _SIMULATION: NO_SIMULATION}
+"""What pages are told while a feature is not made."""
 
 
 class OnDemandFeatures(PageFeature):
-    """The live panels, the Voice panel, editing and the export.
+    """Makes each of them, once, and hands it what a page asked; what comes after that goes to it at once."""
 
-    They speak only to pages that have asked, so they are told of questions, of pages that go, and of the end.
-    """
-
-    RECEIVES: ClassVar[tuple[type, ...]] = tuple(_ANSWERED_BY)
+    RECEIVES: ClassVar[tuple[type, ...]] = tuple(message for asked in _ANSWERED_BY.values() for message in asked)
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
-        self._made: dict[str, PageFeature] = {}
+        self._made: set[str] = set()
+        self._asleep = dict(_WOKEN_BY)
+        self._listening = False
+
+    def opening(self) -> list[ServerMessage]:
+        """What there is without those that are not made; listens for their topics while there are pages."""
+        if not self._listening and self._asleep:
+            self._listening = True
+            self.context.graph_changes.listen(self._review)
+        self._review()
+        return [told for where, told in _WITHOUT.items() if where not in self._made]
 
     def receive(self, page: Page, message: Any) -> None:
-        """Hand a question to its feature."""
-        where = _ANSWERED_BY[type(message)]
-        if where not in self._made:
-            module, _, name = where.partition(":")
-            self._made[where] = getattr(import_module(f"{__package__}.{module}"), name)(self.viewer)
-        self._made[where].receive(page, message)
+        """Make what answers the first question of its kind, and ask it."""
+        self._make(next(where for where, asked in _ANSWERED_BY.items() if type(message) in asked)).receive(
+            page, message
+        )
+
+    def recording_shown(self) -> None:
+        """Make those that say that something is not possible beside a recording; they are told next."""
+        for where in (_SIMULATION, _RECORDING):
+            self._make(where)
 
     def page_gone(self, page: Page) -> None:
-        """Have the page forgotten."""
-        for feature in self._made.values():
-            feature.page_gone(page)
+        """Stop listening after the last page."""
+        if self._listening and len(self.context.pages) == 0:
+            self._stop()
 
     def close(self) -> None:
-        """End them for good."""
-        for feature in self._made.values():
-            feature.close()
+        """Make nothing more."""
+        self._stop()
+
+    def _stop(self) -> None:
+        self._listening = False
+        self.context.graph_changes.ignore(self._review)
+
+    def _review(self) -> None:
+        """Make those whose topics are there now."""
+        for topic, where in list(self._asleep.items()):
+            if self.context.node.count_publishers(topic):
+                self._make(where)
+
+    def _make(self, where: str) -> PageFeature:
+        module, _, name = where.partition(":")
+        feature: PageFeature = self.viewer.add_feature(getattr(import_module(f"{__package__}.{module}"), name))
+        if where not in self._made:
+            self._made.add(where)
+            self._asleep = {topic: each for topic, each in self._asleep.items() if each != where}
+            for message in feature.opening():
+                self.context.pages.publish(message)
+            if not self._asleep:
+                self._stop()
+        return feature

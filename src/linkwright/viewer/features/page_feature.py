@@ -6,7 +6,7 @@ They are found through the entry points ``linkwright.page_features``.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, ClassVar, Protocol
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeVar
 
 from linkwright.diagnostics import Diagnostic
 from linkwright.extensions import extensions
@@ -16,6 +16,11 @@ from linkwright.viewer.visualization.manager import Managers, VisualizationManag
 from linkwright.viewer.web.audience import Page
 from linkwright.viewer.web.outbox import Payload
 
+if TYPE_CHECKING:
+    from linkwright.viewer.live_history import LiveHistory
+
+F = TypeVar("F", bound="PageFeature")
+
 
 class FeatureHost(Protocol):
     """The viewer, as its features see it.
@@ -23,10 +28,15 @@ class FeatureHost(Protocol):
     Attributes:
         context: what all of the viewer works with.
         managers: what pages see: one configuration that they share, and those of single pages.
+        live: keeps what came in the last minutes; None where nothing does.
     """
 
     context: ViewerContext
     managers: Managers
+    live: LiveHistory | None
+
+    def add_feature(self, cls: type[F]) -> F:
+        """A feature of a class, told of all that features are told from now on; the one there is, if any."""
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
         """The messages of all features about a configuration."""

@@ -58,7 +58,7 @@ class RecordingFeature(PageFeature):
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
-        self.folder = Path.cwd()
+        self.folder = self.context.folder
         self.left_free = LEFT_FREE
         self._possible = True
         self._running: _Running | None = None
@@ -67,12 +67,7 @@ class RecordingFeature(PageFeature):
         self._timer: asyncio.TimerHandle | None = None
         self._problem = ""
         self._files: list[RecordedFile] = []
-        self._live: LiveHistory | None = None
         self._loop = asyncio.get_running_loop()
-
-    def use(self, live: LiveHistory) -> None:
-        """Have pages save what it keeps."""
-        self._live = live
 
     def recording_shown(self) -> None:
         """Record nothing."""
@@ -92,9 +87,9 @@ class RecordingFeature(PageFeature):
                 self._attempt(lambda: self._begin(topics))
             case StopRecording():
                 self._end()
-            case SaveMinutes(start, end) if self._saving is None and self._live is not None:
+            case SaveMinutes(start, end) if self._saving is None and self.viewer.live is not None:
                 if all(each is None or isfinite(each) for each in (start, end)):
-                    self._attempt(partial(self._save, self._live, start, end))
+                    self._attempt(partial(self._save, self.viewer.live, start, end))
 
     def close(self) -> None:
         """End what is being recorded."""

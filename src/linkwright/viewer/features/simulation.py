@@ -24,6 +24,7 @@ from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
 from linkwright.viewer.features.simulation_services import SimulationServices, refuse
 from linkwright.viewer.protocol.message import ServerMessage
 from linkwright.viewer.protocol.simulation import (
+    NO_SIMULATION,
     ControlSimulation,
     DeleteModel,
     DragModel,
@@ -41,7 +42,6 @@ _VELOCITIES = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
 _PUSH_NS = 50_000_000
 """How long a push lasts; pages repeat it while the user pulls."""
 
-_ABSENT = SimulationStatus(present=False, drivable=False, paused=False, time=None, real_time_factor=None)
 _EMPTY = "std_srvs/srv/Empty"
 _ACTIONS = {
     "play": (_EMPTY, "/unpause_physics"),
@@ -72,7 +72,7 @@ class SimulationFeature(PageFeature):
         self._recorded = False
         self._subscriptions: list[Any] = []
         self._services = SimulationServices(self.context)
-        self._status = _ABSENT
+        self._status = NO_SIMULATION
         self._drags: dict[Page, _Drag] = {}
         self._spawning: set[asyncio.Task[None]] = set()
 
@@ -133,7 +133,7 @@ class SimulationFeature(PageFeature):
             ]
         elif not present:
             self._leave()
-        now = self._status if present == self._status.present else replace(_ABSENT, present=present)
+        now = self._status if present == self._status.present else replace(NO_SIMULATION, present=present)
         self._tell(replace(now, drivable=present and self._is_drivable()))
 
     def _is_drivable(self) -> bool:
@@ -158,7 +158,7 @@ class SimulationFeature(PageFeature):
         self._listening = False
         self.context.graph_changes.ignore(self._review)
         self._leave()
-        self._status = _ABSENT
+        self._status = NO_SIMULATION
 
     def _leave(self) -> None:
         with suppress(ValueError):  # the node may have been destroyed before

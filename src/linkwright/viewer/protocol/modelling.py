@@ -51,6 +51,11 @@ class ModellingState(ServerMessage):
     things: list[WorldThing]
 
 
+NO_WORLD = ModellingState(
+    available=False, active=False, file=None, unsaved=False, can_undo=False, can_redo=False, things=[]
+)
+
+
 class ModelChoice(Record):
     """A model on the search path, and the address that includes it."""
 

@@ -32,6 +32,9 @@ class RecordingState(ServerMessage):
     files: list[RecordedFile]
 
 
+NOTHING_RECORDED = RecordingState(possible=True, path="", length=0.0, size=0, saved=None, problem="", files=[])
+
+
 class RecordTopics(PageMessage):
     """The user has topics recorded; without any, all that there are and those to come."""
 

@@ -21,6 +21,9 @@ class SimulationStatus(ServerMessage):
     real_time_factor: float | None
 
 
+NO_SIMULATION = SimulationStatus(present=False, drivable=False, paused=False, time=None, real_time_factor=None)
+
+
 class SimulationNotice(ServerMessage):
     """Why the simulation did not do what the page asked for."""
 
