@@ -8,16 +8,19 @@ Source: gazebo_ros2_control and gz_ros2_control (interfaces, what is held, texts
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from math import nan
-from typing import Protocol
+from types import MappingProxyType
+from typing import Any, Protocol
 
 import numpy as np
 
 from linkwright.control.hardware.component import Hardware
 from linkwright.control.hardware.description import HardwareDescription
 from linkwright.control.hardware.interfaces import EFFORT, POSITION, VELOCITY
+from linkwright.control.motion.pid import Pid
 from linkwright.control.simulated.joints import SimulatedJoint
+from linkwright.control.simulated.pids import pids_of
 from linkwright.control.simulated.sensors import SimulatedSensor, sensors_of, simulated_sensor
 from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.graph.log.logger import Logger
@@ -49,6 +52,10 @@ class SimulatedSystem(Hardware):
         plugin: the plugin in whose model it is.
         holds: whether joints are held where they are while nothing commands them.
         gain: how much of what is missing to a position joints go with each update; NaN for all at once.
+        values: parameters of the plugin's node, which may have gains of PID controllers.
+
+    Attributes:
+        has_pids: whether `push` is to be called after each step of the world.
     """
 
     def __init__(
@@ -59,8 +66,11 @@ class SimulatedSystem(Hardware):
         *,
         holds: bool,
         gain: float = nan,
+        values: Mapping[str, Any] = MappingProxyType({}),
     ) -> None:
+        description, gains = pids_of(description, values, logger)
         super().__init__(description, logger)
+        self.has_pids = bool(gains)
         self._joints: dict[str, SimulatedJoint] = {}
         for each in description.joints:
             try:
@@ -82,6 +92,7 @@ class SimulatedSystem(Hardware):
                 },
                 holds=holds,
                 gain=gain,
+                pids={kind: Pid(each_gains) for (joint, kind), each_gains in gains.items() if joint == each.name},
             )
         self._sensors = self._found_sensors(plugin)
 
@@ -134,3 +145,8 @@ class SimulatedSystem(Hardware):
         """Move the joints."""
         for joint in self._joints.values():
             joint.write(period_s)
+
+    def push(self, period_s: float) -> None:
+        """Push the joints that PID controllers drive, after each step of the world."""
+        for joint in self._joints.values():
+            joint.push(period_s)

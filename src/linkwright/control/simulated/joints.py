@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from math import inf, isfinite, isnan, nan
+from collections.abc import Mapping
+from math import inf, isfinite, isnan, nan, remainder, tau
+from types import MappingProxyType
 
 from linkwright.control.hardware.description import ComponentDescription
 from linkwright.control.hardware.interfaces import EFFORT, POSITION, VELOCITY, CommandInterface, StateInterface
+from linkwright.control.motion.pid import Pid
 from linkwright.simulation.simulation import Motor, Servo, Simulation
 
 _GAIN = 20.0
@@ -18,7 +21,7 @@ class SimulatedJoint:
     """A joint that hardware reads and moves.
 
     Positions are held by a constraint, as Gazebo puts joints where they are commanded; velocities by a motor with the
-    effort limit of the joint; efforts push.
+    effort limit of the joint; efforts push, and so do PID controllers.
 
     Args:
         simulation: the world.
@@ -27,6 +30,7 @@ class SimulatedJoint:
         states, commands: its interfaces, by kind.
         holds: whether it is held where it is while nothing commands it.
         gain: how much of what is missing to a position it goes with each update; NaN for all at once.
+        pids: PID controllers that push it to its commands, by the kind of the command.
     """
 
     def __init__(
@@ -39,6 +43,7 @@ class SimulatedJoint:
         *,
         holds: bool,
         gain: float = nan,
+        pids: Mapping[str, Pid] = MappingProxyType({}),
     ) -> None:
         self._simulation = simulation
         self._name = name
@@ -47,16 +52,20 @@ class SimulatedJoint:
         self._position, self._velocity = states.get(POSITION), states.get(VELOCITY)
         self._effort = states.get(EFFORT)
         self._commands = commands
+        self._pids = pids
+        self._target = 0.0
         self._mode = ""
         placed = simulation.scene.joints[name]
         simulation.keep_awake(placed.child)
         limit = placed.axes[0][0].limit.effort
-        greatest = limit if isfinite(limit) and limit > 0.0 else inf
+        self._greatest = limit if isfinite(limit) and limit > 0.0 else inf
+        self._is_endless = placed.joint.type == "continuous"
+        self._pushed = bool(pids) or EFFORT in commands
         self._motor: Motor | None = None
         self._servo: Servo | None = None
-        if VELOCITY in commands:
-            self._motor = simulation.add_velocity_motor(name, _GAIN, greatest)
-        if POSITION in commands or (EFFORT in commands and VELOCITY not in commands and holds):
+        if VELOCITY in commands and VELOCITY not in pids:
+            self._motor = simulation.add_velocity_motor(name, _GAIN, self._greatest)
+        if (POSITION in commands and POSITION not in pids) or (self._pushed and self._motor is None and holds):
             self._servo = simulation.add_servo(name, _FASTEST)
         self.begin()
 
@@ -72,11 +81,14 @@ class SimulatedJoint:
         before, self._mode = self._mode, kind
         if before in (VELOCITY, EFFORT) and self._motor is not None:  # else it holds 0, and to say so costs a new model
             self._motor.target = 0.0
-        if EFFORT in self._commands:
+        if self._pushed:
             self._simulation.push_joint(self._name, 0.0)
+        if kind in self._pids:
+            self._pids[kind].reset()
+            self._target = self._simulation.joint_state(self._name)[0] if kind == POSITION else 0.0
         if self._servo is not None:
             self._servo.restart()
-            if kind not in ("", POSITION) or (not kind and not self._holds):
+            if kind not in ("", POSITION) or kind in self._pids or (not kind and not self._holds):
                 self._servo.release()
 
     @property
@@ -103,7 +115,7 @@ class SimulatedJoint:
                 self._motor.release()
             return
         value = command.value
-        if value != value:
+        if value != value or self._mode in self._pids:
             return
         if self._mode == POSITION and self._servo is not None:
             if isfinite(self._gain):
@@ -115,3 +127,20 @@ class SimulatedJoint:
             if self._motor is not None:
                 self._motor.release()
             self._simulation.push_joint(self._name, value)
+
+    def push(self, period_s: float) -> None:
+        """Push it towards its command where a PID controller does so, after each step of the world."""
+        pid = self._pids.get(self._mode)
+        if pid is None:
+            return
+        command = self._commands[self._mode].value
+        if command == command:  # until there is a number it stays where it is
+            self._target = command
+        if self._motor is not None:
+            self._motor.release()
+        position, velocity = self._simulation.joint_state(self._name)
+        error = self._target - (velocity if self._mode == VELOCITY else position)
+        if self._is_endless and self._mode == POSITION:
+            error = remainder(error, tau)
+        force = pid.command(error, period_s)
+        self._simulation.push_joint(self._name, min(max(force, -self._greatest), self._greatest))

@@ -62,6 +62,7 @@ class SimulatedControl(SimulatedPlugin[Parameters]):
         for path in self.parameters.parameters:
             rules.add(read_parameter_file(path))
         described = node_of(self.place.name, self.place.element, namespace)
+        self._values = {**rules.for_node(self.node.name), **described.parameters}
         name = self.parameters.controller_manager_name
         values = {"use_sim_time": True, **rules.for_node(join(namespace, name)), **described.parameters}
         node = Node(
@@ -128,8 +129,10 @@ class SimulatedControl(SimulatedPlugin[Parameters]):
 
     def _system(self, description: HardwareDescription, logger: Logger) -> Hardware:
         holds = self.parameters.hold_joints
-        system = SimulatedSystem(description, logger, self, holds=holds, gain=self._gain)
+        system = SimulatedSystem(description, logger, self, holds=holds, gain=self._gain, values=self._values)
         self._systems.append(system)
+        if system.has_pids:
+            self.every(0.0, lambda: system.push(self.simulation.step / NANOSECONDS))
         return system
 
     def _update(self) -> None:

@@ -1,0 +1,93 @@
+"""Joints that a PID controller of the simulator's hardware pushes to their commands, as gazebo_ros2_control has them.
+
+The command interface is called ``position_pid`` or ``velocity_pid`` in the description, with the gains ``pos_kp``,
+``vel_ki``, ... among the parameters of its joint; or it has its usual name, and the gains are parameters of the
+plugin's node, ``pid_gains.position.JOINT.kp``. Controllers find it as ``JOINT/position`` or ``JOINT/velocity``.
+
+Source: gazebo_ros2_control's GazeboSystem (names). Without ``min_integral_error`` the bound is that of the other side
+with its sign turned round, where GazeboSystem keeps the integral from becoming negative.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from math import inf
+from typing import Any
+
+from linkwright.control.hardware.description import ComponentDescription, HardwareDescription
+from linkwright.control.hardware.interfaces import POSITION, VELOCITY
+from linkwright.control.motion.pid import CLAMPED, NONE, PidGains
+from linkwright.diagnostics import phrase
+from linkwright.graph.log.logger import Logger
+
+_PREFIXES = {POSITION: "pos_", VELOCITY: "vel_"}
+_SUFFIX = "_pid"
+_TRUE = ("true", "True", True)
+
+
+def pids_of(
+    description: HardwareDescription, values: Mapping[str, Any], logger: Logger
+) -> tuple[HardwareDescription, dict[tuple[str, str], PidGains]]:
+    """The hardware with command interfaces by the names that controllers use, and which of them have a PID controller.
+
+    Args:
+        description: what is written.
+        values: parameters of the plugin's node, by names with dots.
+        logger: told of what is no number.
+
+    Returns:
+        The description, and gains by joint and kind of command.
+    """
+    gains: dict[tuple[str, str], PidGains] = {}
+    joints = []
+    for joint in description.joints:
+        commands = []
+        for command in joint.commands:
+            kind = command.name.removesuffix(_SUFFIX)
+            if kind in _PREFIXES:
+                found = _given(joint, kind, values, is_pid=kind != command.name)
+                if found is not None:
+                    gains[joint.name, kind] = _gains(joint.name, found, logger)
+                commands.append(replace(command, name=kind))
+            else:
+                commands.append(command)
+        joints.append(replace(joint, commands=tuple(commands)))
+    return replace(description, joints=tuple(joints)), gains
+
+
+def _given(
+    joint: ComponentDescription, kind: str, values: Mapping[str, Any], *, is_pid: bool
+) -> Mapping[str, Any] | None:
+    """What is said of a PID controller, by names without prefix; None where there is none."""
+    start = f"pid_gains.{kind}.{joint.name}."
+    found = {name.removeprefix(start): each for name, each in values.items() if name.startswith(start)}
+    if found or not is_pid:
+        return found or None
+    prefix = _PREFIXES[kind]
+    return {name.removeprefix(prefix): each for name, each in joint.parameters.items() if name.startswith(prefix)}
+
+
+def _gains(joint: str, given: Mapping[str, Any], logger: Logger) -> PidGains:
+    def number(name: str, default: float) -> float:
+        try:
+            return float(given.get(name, default))
+        except (TypeError, ValueError):
+            told = phrase(
+                "the PID controller of joint '{joint}': {name} is no number: '{value}'",
+                joint=joint,
+                name=name,
+                value=str(given[name]),
+            )
+            logger.warning(told)
+            return default
+
+    greatest = number("max_integral_error", inf)
+    return PidGains(
+        p=number("kp", 0.0),
+        i=number("ki", 0.0),
+        d=number("kd", 0.0),
+        i_max=greatest,
+        i_min=number("min_integral_error", -greatest),
+        antiwindup=CLAMPED if given.get("antiwindup") in _TRUE else NONE,
+    )
