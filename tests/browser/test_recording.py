@@ -140,6 +140,17 @@ def test_a_part_is_marked_by_keys_and_unmarked(page: Page):
     becomes(lambda: state(page, "recording")["mark"], None)
 
 
+def test_a_viewer_that_keeps_no_minutes_records(start, open_page, tmp_path: Path):
+    (tmp_path / "arm.urdf").write_text(MODEL)
+    page = open_page(start("view", "arm.urdf", "--history", "0"))
+    choose(page, "Record all topics")
+    until(page, "lw.recording.path !== ''")
+    stop(page)
+    is_stopped(page, 1)
+    assert "/robot_description" in topics(page)
+    expect(page.get_by_role("dialog")).to_contain_text("linkwright view rosbag2_")
+
+
 def test_a_folder_that_is_gone_is_said_on_the_page(start, open_page, tmp_path: Path):
     folder = tmp_path / "here"
     folder.mkdir()

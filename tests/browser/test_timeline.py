@@ -188,4 +188,4 @@ def test_a_viewer_that_keeps_nothing_has_no_timeline(start, open_page, tmp_path:
     page = open_page(start("view", str(model), "--history", "0"), wait=False)
     until(page, "lw.frames && lw.robot")
     assert state(page, "timeline") is None
-    assert page.locator(".timeline-bar").is_hidden()
+    assert page.locator(".timeline-track").is_hidden()

@@ -2,6 +2,7 @@ import { button, coalesced, h } from "../dom";
 import { icon } from "../icons";
 import { TAKES_LETTERS } from "../scene/keyboard";
 import type { Session } from "../state/session";
+import type { RecordingControl } from "../state/recording";
 import { SPEEDS, type TimelineState } from "../state/timeline";
 import { strings } from "../strings";
 import { RecordButton } from "./record-button";
@@ -10,7 +11,10 @@ import { agoText, clockText, densities, keptText, passedText } from "./timeline-
 /** Parts of the whole that Page Up and Page Down go. */
 const PAGE = 0.1;
 
-/** Along the foot of the page while a recording is shown, or the last minutes are kept: play, step, speed, loop, and a line of its time to drag on. */
+/**
+ * Along the foot of the page while a recording is shown, or the last minutes are kept: play, step, speed, loop, and a line of its time to drag on.
+ * Where neither is, only what records.
+ */
 export class TimelineBar {
   readonly element: HTMLElement;
   private readonly play: HTMLButtonElement;
@@ -29,10 +33,12 @@ export class TimelineBar {
   private readonly problem = h("span", { class: "timeline-problem", role: "alert" });
 
   private readonly timeline: TimelineState;
+  private readonly recording: RecordingControl;
 
   constructor(session: Session) {
     const { timeline } = session;
     this.timeline = timeline;
+    this.recording = session.recording;
     const words = strings.timeline;
     this.play = button(words.play, () => timeline.play(!timeline.playing), "tool bare", icon("play"));
     this.loop = button(words.loop, () => timeline.setLoop(!timeline.loop), "tool bare", icon("loop"));
@@ -65,6 +71,7 @@ export class TimelineBar {
       this.live,
     );
     timeline.changed.on(() => this.show());
+    session.recording.changed.on(() => this.showAtAll());
     timeline.moved.on(coalesced(() => this.move()));
     new ResizeObserver(() => this.drawMarks()).observe(this.track);
     this.takeKeys();
@@ -75,7 +82,7 @@ export class TimelineBar {
     const { timeline, playing, speed, loop, problem } = this.timeline;
     const words = strings.timeline;
     const minutes = timeline?.live ?? false;
-    this.element.hidden = timeline === null;
+    this.showAtAll();
     this.element.classList.toggle("minutes", minutes);
     this.live.hidden = !minutes;
     this.live.setAttribute("aria-pressed", String(this.timeline.live));
@@ -95,6 +102,12 @@ export class TimelineBar {
     this.problem.title = problem;
     this.drawMarks();
     this.move();
+  }
+
+  private showAtAll(): void {
+    const without = this.timeline.timeline === null;
+    this.element.hidden = without && !this.recording.possible;
+    this.element.classList.toggle("recorder-only", without);
   }
 
   private move(): void {
