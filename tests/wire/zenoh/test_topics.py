@@ -3,11 +3,13 @@ from __future__ import annotations
 import signal
 import subprocess
 import sys
+import threading
 import time
 
 import zenoh
 
-from linkwright.graph.endpoints.info import EndpointInfo
+from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
+from linkwright.graph.names.identity import NodeIdentity
 from linkwright.graph.qos.profile import (
     LivelinessPolicy,
     QoSProfile,
@@ -17,6 +19,9 @@ from linkwright.graph.time.values import Duration
 from linkwright.messages import String, serialize, type_hash
 from linkwright.wire.zenoh.session import open_session
 from linkwright.wire.zenoh.settings import read_settings
+from linkwright.wire.zenoh.tokens import Token
+from linkwright.wire.zenoh.topics import OutgoingTopic
+from tests.waiting import SECONDS, wait_until
 from tests.wire.programs import linkwright
 from tests.wire.test_topics import (  # noqa: F401 - the same over Zenoh
     EVERYTHING,
@@ -111,6 +116,36 @@ def test_the_quality_of_service_of_others_is_known_and_keeps_nobody_apart(proces
     publisher.publish(String(data="hej"))
     b.spin_until(lambda: got == ["hej"])
     assert not [text for text in (*a.warnings(), *b.warnings()) if "incompatible" in text]
+
+
+def test_closing_a_publisher_that_keeps_messages_waits_for_no_callback(processes):
+    """A callback in a thread of Zenoh that needs Python's lock is not waited for by who has that lock: it took 10 s."""
+    node = processes("ours", join_now=False).node
+    told = threading.Event()
+
+    def changed() -> None:
+        told.set()
+        time.sleep(0.3)  # and then needs the lock
+
+    with open_session(read_settings()) as ours, open_session(read_settings()) as theirs:
+
+        def announced(name: str, number: str, qos: QoSProfile) -> OutgoingTopic:
+            publisher = node.create_publisher(String, name, qos)
+            names = (EndpointKind.PUBLISHER, name, "std_msgs::msg::dds_::String_", "RIHS01_00")
+            token = Token(0, str(ours.zid()), "0", number, NodeIdentity("ours", "/"), *names)
+            return OutgoingTopic(publisher, token, ours, changed)
+
+        keeping, other = announced("/kept", "1", LASTING), announced("/other", "2", QoSProfile(10))
+        known = f"{keeping.token.data_key}/@adv/**"
+        wait_until(lambda: list(theirs.liveliness().get(known)))
+        listener = theirs.declare_subscriber(other.token.data_key)
+        assert told.wait(SECONDS)
+        began = time.monotonic()
+        keeping.close()
+        assert time.monotonic() - began < 5.0
+        wait_until(lambda: not list(theirs.liveliness().get(known)))
+        other.close()
+        listener.undeclare()
 
 
 def test_nodes_and_topics_of_others_come_and_go(processes):

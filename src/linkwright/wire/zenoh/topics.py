@@ -69,7 +69,7 @@ class OutgoingTopic:
             self._zenoh = session.declare_publisher(token.data_key, **options)
             # Called by a thread of Zenoh: with its own handlers each would have a thread of Python's.
             self._listener = self._zenoh.declare_matching_listener(Callback(lambda _: changed(), indirect=False))
-        self._send = self._sender()
+        self._send: Callable[[Any], None] | None = self._sender()
 
     def review(self, count: int) -> None:
         """Send while somebody listens, or may come late.
@@ -82,11 +82,16 @@ class OutgoingTopic:
         self._publisher.set_outside_count(count if listened_to else 0)
 
     def close(self) -> None:
-        """Withdraw it."""
+        """Withdraw it.
+
+        One that keeps messages is let go, which withdraws it, too. Its `undeclare` waits with Python's lock held, 10 s
+        at most, for a thread of Zenoh that may itself be waiting for that lock in a callback.
+        """
         self.abandon()
         if self._listener is not None:
             self._listener.undeclare()
-        self._zenoh.undeclare()
+            self._zenoh.undeclare()
+        self._send, self._zenoh = None, None
 
     def abandon(self) -> None:
         """Send nothing any more, without calling Zenoh."""
