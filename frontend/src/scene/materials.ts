@@ -17,6 +17,8 @@ import {
   type MeshStandardMaterialParameters,
   type Texture,
 } from "three";
+import { filmic } from "./filmic-tone";
+import type { Lighting } from "./light";
 
 /** How a surface reflects lamps: roughness and metalness from 0 to 1, and images of these and of its normals. */
 export interface Surface {
@@ -69,16 +71,20 @@ export const errorMaterial = new MeshBasicMaterial({ color: 0xffffff, side: Doub
 
 /** Hands out materials; many links of one colour make one material. */
 export class MaterialPool {
-  /** Whether lights that stand in the scene shine on the surfaces, so that each is to be drawn by itself. */
-  isLit = false;
+  lighting: Lighting = "Camera";
   private readonly materials = new Map<string, MeshLambertMaterial | MeshStandardMaterial>();
   private readonly used = new Set<string>();
+
+  /** Whether lights that stand in the scene shine on the surfaces, so that each is to be drawn by itself. */
+  get isLit(): boolean {
+    return this.lighting !== "Camera";
+  }
 
   get(look: Look): Material {
     const surface = (this.isLit && look.surface) || null;
     const maps = [look.map, surface?.normalMap, surface?.roughnessMap, surface?.metalnessMap].map((map) => map?.uuid);
     const numbers = [look.alpha, surface?.roughness, surface?.metalness];
-    const key = [...look.color, ...numbers, ...maps, look.vertexColors, look.doubleSided, look.behind].join();
+    const key = [...look.color, ...numbers, ...maps, look.vertexColors, look.doubleSided, look.behind, this.lighting].join();
     this.used.add(key);
     let material = this.materials.get(key);
     if (!material) {
@@ -94,6 +100,7 @@ export class MaterialPool {
         ...behind(look.behind === true),
       };
       material = surface ? reflecting(style, surface) : new MeshLambertMaterial(style);
+      if (this.lighting === "Studio") filmic(material);
       this.materials.set(key, material);
     }
     return material;

@@ -14,7 +14,7 @@ import {
 /** A surface that faces a light of this strength has exactly its own colour. */
 export const FULL = Math.PI;
 /** Strength of the lamp of the studio, and the direction in which it shines on worlds. */
-export const STUDIO_KEY = 0.62;
+export const STUDIO_KEY = 0.74;
 export const STUDIO_DIRECTION = new Vector3(0.45, 0.6, -1).normalize();
 /** Robots look along x, and are looked at first from between x and y: the lamp is before them, at that side. */
 const ROBOT_DIRECTION = new Vector3(-0.8, -0.15, -1).normalize();

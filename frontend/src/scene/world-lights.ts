@@ -13,10 +13,8 @@ import {
 } from "three";
 import type { LightScene, WorldScene } from "../protocol";
 import type { PropertyRows } from "../state/properties";
+import type { Lighting } from "./light";
 import { aimSun, castShadows, FULL, shade, STUDIO_DIRECTION, STUDIO_KEY, studioSky } from "./studio-light";
-
-/** What lights the scene: the camera, a studio, or the lights of the world. */
-export type Lighting = "Camera" | "Studio" | "World";
 
 /** Shadows are drawn this far around the middle of what is drawn at most, m. */
 const LARGEST_RADIUS = 25;
@@ -32,7 +30,7 @@ export class WorldLights {
   readonly root = new Group();
   private placed: { light: Light; said: LightScene }[] = [];
   private made = "";
-  private lighting: Lighting = "Camera";
+  private chosen: Lighting = "Camera";
   private shadowed = false;
 
   constructor(private readonly affordsStudio: () => boolean) {
@@ -41,20 +39,24 @@ export class WorldLights {
 
   /** Takes what the display's properties and its world say. */
   style(rows: PropertyRows, scene: WorldScene): void {
-    const chosen = rows.text("Automatic", "Light");
-    this.lighting = chosen === "Studio" || chosen === "World" || chosen === "Camera" ? chosen : this.affordsStudio() ? "Studio" : "Camera";
-    this.shadowed = this.lighting !== "Camera" && rows.bool(true, "Shadows") && (this.lighting === "Studio" || scene.shadows);
-    const key = [this.lighting, this.shadowed, scene.revision].join();
+    const said = rows.text("Automatic", "Light");
+    this.chosen = said === "Studio" || said === "World" || said === "Camera" ? said : this.affordsStudio() ? "Studio" : "Camera";
+    this.shadowed = this.chosen !== "Camera" && rows.bool(true, "Shadows") && (this.chosen === "Studio" || scene.shadows);
+    const key = [this.chosen, this.shadowed, scene.revision].join();
     if (key === this.made) return;
     this.made = key;
     this.clear();
-    if (this.lighting === "Studio") this.buildStudio();
-    else if (this.lighting === "World") this.buildWorld(scene);
+    if (this.chosen === "Studio") this.buildStudio();
+    else if (this.chosen === "World") this.buildWorld(scene);
   }
 
   /** Whether the light at the camera is not needed. */
   get isLit(): boolean {
-    return this.lighting !== "Camera";
+    return this.chosen !== "Camera";
+  }
+
+  get lighting(): Lighting {
+    return this.chosen;
   }
 
   get castsShadows(): boolean {
@@ -63,7 +65,7 @@ export class WorldLights {
 
   /** Whether its own lights are lit. */
   get isOfWorld(): boolean {
-    return this.lighting === "World";
+    return this.chosen === "World";
   }
 
   /** The colour behind the world. */
@@ -94,7 +96,7 @@ export class WorldLights {
   /** What is lit, for tests. */
   tell(): object {
     const shadows = this.placed.filter(({ light }) => light.castShadow).length;
-    return { lighting: this.lighting, lights: this.placed.length, shadows };
+    return { lighting: this.chosen, lights: this.placed.length, shadows };
   }
 
   dispose(): void {

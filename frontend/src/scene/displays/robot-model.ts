@@ -86,7 +86,7 @@ export class RobotModelDrawing implements Drawing {
   update(): void {
     if (this.styleIsOld && this.shown) {
       const { display, session } = this.context;
-      this.shown.style(display.rows, this.contrast, this.lit, (link) => session.comparison.instead(display.id, link));
+      this.shown.style(display.rows, this.contrast, this.lit ? "Studio" : "Camera", (link) => session.comparison.instead(display.id, link));
       shade(this.shown.root, this.lit && !session.comparison.isOld(display.id));
     }
     this.styleIsOld = false;

@@ -74,7 +74,7 @@ export class WorldDrawing implements Drawing {
     if (this.placed?.data.pose === null) this.poseIsOld = true; // it follows its frame
     if (this.styleIsOld && this.scene) {
       this.lights.style(context.display.rows, this.scene);
-      shown.style(context.display.rows, context.session.inspect.current.contrast, this.lights.isLit);
+      shown.style(context.display.rows, context.session.inspect.current.contrast, this.lights.lighting);
       this.lights.shade(shown.root);
       this.sensors.style(context.display.rows);
     }

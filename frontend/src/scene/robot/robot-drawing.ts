@@ -4,6 +4,7 @@ import type { Instead } from "../../state/comparison";
 import type { PropertyRows } from "../../state/properties";
 import type { Described, Hit, SelectionBox } from "../picking";
 import { describedPose } from "../described-pose";
+import type { Lighting } from "../light";
 import { MaterialPool } from "../materials";
 import type { MeshLibrary } from "../meshes/mesh-library";
 import { MovingMeshes, type MovingPicture, type MovingPiece } from "./moving-meshes";
@@ -114,11 +115,10 @@ export class RobotDrawing {
   }
 
   /**
-   * `contrast` draws collisions over pale visuals; `isLit`: in the light of lamps in the scene, not of the camera;
-   * `instead`: what a link has in place of its own colours.
+   * `contrast` draws collisions over pale visuals; `instead`: what a link has in place of its own colours.
    */
-  style(rows: PropertyRows, contrast: boolean, isLit = false, instead: InsteadOf = () => null): void {
-    this.pool.isLit = isLit;
+  style(rows: PropertyRows, contrast: boolean, lighting: Lighting = "Camera", instead: InsteadOf = () => null): void {
+    this.pool.lighting = lighting;
     this.pool.renew(() => this.styleLinks(rows, contrast, instead));
     this.extras.style(rows);
   }

@@ -1,0 +1,25 @@
+import { MeshLambertMaterial, ShaderLib } from "three";
+import { expect, test } from "vitest";
+import { filmic } from "../src/scene/filmic-tone";
+import { MaterialPool, type Look } from "../src/scene/materials";
+
+const LOOK: Look = { color: [1, 1, 1], alpha: 1, map: null, vertexColors: false, doubleSided: true };
+
+test("it is put into the shader where three.js has the tone of pictures", () => {
+  const material = filmic(new MeshLambertMaterial());
+  const shader = { ...ShaderLib.lambert };
+  material.onBeforeCompile(shader as never, null as never);
+  expect(shader.fragmentShader).not.toContain("tonemapping_fragment");
+  expect(shader.fragmentShader).toContain("vec3 shoulder");
+});
+
+test("only the studio has it: the camera's light and that of worlds show colours as they are", () => {
+  const pool = new MaterialPool();
+  const toned = new Map(
+    (["Camera", "Studio", "World"] as const).map((lighting) => {
+      pool.lighting = lighting;
+      return [lighting, pool.get(LOOK).customProgramCacheKey() === "filmic"];
+    }),
+  );
+  expect(Object.fromEntries(toned)).toEqual({ Camera: false, Studio: true, World: false });
+});
