@@ -193,7 +193,7 @@ export function publishInspection(
       return stage?.loop.framesDrawn ?? 0;
     },
     get robotsReach() {
-      return stage?.robotsReach ?? 0;
+      return stage?.room.robotsReach ?? 0;
     },
   };
   Object.defineProperty(window, "linkwright", { value: Object.freeze(inspection), enumerable: true });

@@ -128,7 +128,7 @@ function start(app: HTMLElement): void {
   session.editing.wanted.on(() => dock.open("editing"));
 
   const stage = makeStage(scene.container, session, dock.displayPanels);
-  if (stage) scene.column.lieOver(stage);
+  if (stage) scene.lieOver(stage.room);
   commands.takeKeys();
   const toolbox = stage && takeTools(stage, session, (event) => {
     if (handles?.pointer(event)) return null;

@@ -2,6 +2,7 @@ import { OrthographicCamera, PerspectiveCamera } from "three";
 import { expect, test } from "vitest";
 import { reachOf } from "../src/scene/screen-reach";
 
+const CANVAS = { width: 800, height: 400 };
 const BOX = { min: [-1, -1, -1], max: [1, 1, 1] } as const;
 
 function from(distance: number): PerspectiveCamera {
@@ -13,23 +14,32 @@ function from(distance: number): PerspectiveCamera {
 
 test("the nearest corners reach farthest", () => {
   // The front is 1 m off, where the canvas is 4 m wide.
-  expect(reachOf(BOX, from(2), 800)).toBeCloseTo(600);
-  expect(reachOf(BOX, from(5), 800)).toBeCloseTo(450);
+  expect(reachOf(BOX, from(2), CANVAS).right).toBeCloseTo(600);
+  expect(reachOf(BOX, from(5), CANVAS).right).toBeCloseTo(450);
 });
 
 test("what is shifted on the canvas reaches less far", () => {
   const camera = from(2);
   camera.setViewOffset(800, 400, 100, 0, 800, 400);
-  expect(reachOf(BOX, camera, 800)).toBeCloseTo(500);
+  expect(reachOf(BOX, camera, CANVAS).right).toBeCloseTo(500);
 });
 
 test("what is behind the eye, too, is everywhere", () => {
-  expect(reachOf(BOX, from(0.5), 800)).toBe(Infinity);
+  expect(reachOf(BOX, from(0.5), CANVAS).right).toBe(Infinity);
 });
 
 test("without perspective only the box counts", () => {
   const camera = new OrthographicCamera(-2, 2, 1, -1, 0, 100);
   camera.position.z = 50;
   camera.updateMatrixWorld();
-  expect(reachOf(BOX, camera, 800)).toBeCloseTo(600);
+  expect(reachOf(BOX, camera, CANVAS).right).toBeCloseTo(600);
+});
+
+test("it is told between which heights something is seen", () => {
+  const { top, bottom } = reachOf(BOX, from(2), CANVAS);
+  expect([top, bottom]).toEqual([expect.closeTo(0), expect.closeTo(400)]);
+  const camera = from(5);
+  const above = reachOf(BOX, camera, CANVAS).top;
+  camera.setViewOffset(800, 400, 0, -50, 800, 400);
+  expect(reachOf(BOX, camera, CANVAS).top).toBeCloseTo(above + 50);
 });

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import io
 from itertools import combinations
 
 import pytest
+from PIL import Image
 
 from linkwright.graph import DESCRIPTION_QOS
 from linkwright.messages import String
@@ -119,6 +121,45 @@ def test_the_card_does_not_lie_over_the_robot(start, open_page, tmp_path, width,
     card.wait_for(state="hidden")
     page.keyboard.press("Shift+F")
     becomes(lambda: state(page, "robotsReach"), pytest.approx(before, abs=1))
+
+
+TALL = """\
+<robot name="tall">
+  <link name="base"><visual><origin xyz="0 0 1"/><geometry><box size="0.2 0.2 2"/></geometry></visual></link>
+  <link name="head"><visual><geometry><sphere radius="0.15"/></geometry>
+    <material name="green"><color rgba="0 1 0 1"/></material></visual></link>
+  <joint name="neck" type="fixed"><origin xyz="0 0 2.1"/><parent link="base"/><child link="head"/></joint>
+</robot>
+"""
+
+
+@pytest.mark.parametrize(("width", "height"), SIZES)
+def test_a_tall_robot_goes_below_the_banner_and_comes_back(start, open_page, tmp_path, width, height):
+    file = tmp_path / "tall.urdf"
+    file.write_text(TALL)
+    page = open_page(start("view", str(file)))
+    page.set_viewport_size({"width": width, "height": height})
+    page.keyboard.press("Shift+F")
+
+    def head() -> int:
+        """How many pixels of the head are seen."""
+        until(page, "lw.settled")
+        box = page.locator(".scene-box").bounding_box()
+        with Image.open(io.BytesIO(page.screenshot(clip=box))) as picture:
+            return sum(count for count, (r, g, b) in picture.convert("RGB").getcolors(1 << 24) if g > 60 > max(r, b))
+
+    whole = head()
+    assert whole > 300
+    file.write_text(TALL.replace("</robot>", "<link/></robot>"))
+    page.locator(".banner").wait_for()
+    if height > 600:
+        becomes(lambda: head() > 0.98 * whole, True)
+    page.keyboard.press("Shift+F")  # where going down is not enough
+    becomes(lambda: head() > 0.15 * whole, True)
+    file.write_text(TALL)
+    page.locator(".banner").wait_for(state="hidden")
+    page.keyboard.press("Shift+F")
+    becomes(head, whole)
 
 
 def test_fit_shows_all_of_the_robot_again(start, open_page, tmp_path):

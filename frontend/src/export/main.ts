@@ -44,7 +44,7 @@ function start(app: HTMLElement, recorded: HTMLElement): void {
   const scene = h("main", { class: "scene-box" }, container, overlay);
   app.append(scene);
   const stage = makeStage(container, session, new RecordedFiles(recording.files));
-  if (stage) column.lieOver(stage);
+  if (stage) column.lieOver(stage.room);
   const actions = {
     lookFrom: (side: Parameters<typeof lookFrom>[0]): void => {
       if (stage) lookFrom(side, session, stage);

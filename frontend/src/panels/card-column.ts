@@ -8,6 +8,8 @@ export interface Below {
   readonly robotsReach: number;
   /** What is looked at goes to the middle of what nothing lies over. */
   makeRoom(): void;
+  /** What stands as high as something that lies over the upper edge, pixels, goes below it. */
+  makeRoomAbove(height: number): void;
 }
 
 /** The cards over the scene at its right, one below the other: they share the height that there is. */

@@ -1,7 +1,7 @@
 import { h } from "../dom";
 import type { Session } from "../state/session";
 import { strings } from "../strings";
-import { CardColumn } from "./card-column";
+import { CardColumn, type Below } from "./card-column";
 import { ConnectionNotice } from "./connection-notice";
 import { DiagnosticsBanner } from "./diagnostics-banner";
 import { InspectMenu } from "./inspect-menu";
@@ -27,7 +27,8 @@ export class ScenePanel implements Panel {
   readonly container = h("div", { class: "canvas-box", role: "region", aria: { label: strings.scene.label } });
   /** The scene and what lies over it: what full screen shows. */
   readonly box: HTMLElement;
-  readonly column = new CardColumn();
+  private readonly column = new CardColumn();
+  private readonly notices = h("div", { class: "notices" });
   private readonly waiting = h("div", { class: "waiting" }, h("span", { class: "pulse" }), strings.scene.waiting);
 
   constructor(session: Session, commands: WorldCommands, fit: () => void, showDiagnostics: () => void, showKeys: () => void) {
@@ -38,14 +39,14 @@ export class ScenePanel implements Panel {
     const inspect = new InspectMenu(session, this.column.changed);
     const sign = new OrientationSign(session);
     const simulation = new SimulationBar(session.simulation, session.modelling, commands);
-    const notices = h("div", { class: "notices" }, simulation.element, notice.element, banner.element);
+    this.notices.append(simulation.element, notice.element, banner.element);
     const told = [new LineNotice(session), new OwnerNotice(session), new MeshNotice(session.meshProgress), new VoiceNotice(session.voice)];
     this.column.element.append(inspect.element, card.element, ...told.map((each) => each.element));
     this.box = h(
       "div",
       { class: "scene-box" },
       this.container,
-      h("div", { class: "overlay" }, notices, this.column.element, this.waiting, sign.element),
+      h("div", { class: "overlay" }, this.notices, this.column.element, this.waiting, sign.element),
     );
     showSceneMenus(this.box, session.sceneMenu);
     this.element = h("div", { class: "scene-panel" }, toolbar.element, this.box);
@@ -56,5 +57,11 @@ export class ScenePanel implements Panel {
     session.robotChanged.on(update);
     session.displays.treeChanged.on(update);
     session.displays.enabledChanged.on(update);
+  }
+
+  /** What lies over a scene makes room there for itself. */
+  lieOver(scene: Below): void {
+    this.column.lieOver(scene);
+    new ResizeObserver(() => scene.makeRoomAbove(this.notices.offsetHeight > 0 ? this.notices.offsetTop + this.notices.offsetHeight : 0)).observe(this.notices);
   }
 }

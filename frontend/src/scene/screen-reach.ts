@@ -1,12 +1,21 @@
 import { Vector3, type Camera } from "three";
+import type { ViewSize } from "../state/views/camera";
 import type { Span } from "../state/views/fit";
 
-/** How far from the left edge of a canvas a box reaches, pixels: to infinity where a part of it is behind the eye. */
-export function reachOf({ min, max }: Span, camera: Camera, width: number): number {
-  const xs = [0, 1, 2, 3, 4, 5, 6, 7].map((corner) => {
-    const point = new Vector3(...([0, 1, 2] as const).map((axis) => ((corner >> axis) & 1 ? max : min)[axis]));
-    if (point.applyMatrix4(camera.matrixWorldInverse).z >= 0) return Infinity;
-    return ((point.applyMatrix4(camera.projectionMatrix).x + 1) / 2) * width;
+/** Where a box is on a canvas: how far from the left edge it reaches, and from where to where below the upper edge, pixels. */
+export interface ScreenReach {
+  readonly right: number;
+  readonly top: number;
+  readonly bottom: number;
+}
+
+/** Where a box is on a canvas; everywhere, without bounds, where a part of it is behind the eye. */
+export function reachOf({ min, max }: Span, camera: Camera, { width, height }: ViewSize): ScreenReach {
+  const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((corner) => {
+    return new Vector3(...([0, 1, 2] as const).map((axis) => ((corner >> axis) & 1 ? max : min)[axis])).applyMatrix4(camera.matrixWorldInverse);
   });
-  return Math.max(...xs);
+  if (corners.some(({ z }) => z >= 0)) return { right: Infinity, top: -Infinity, bottom: Infinity };
+  const seen = corners.map((corner) => corner.applyMatrix4(camera.projectionMatrix));
+  const ys = seen.map(({ y }) => ((1 - y) / 2) * height);
+  return { right: Math.max(...seen.map(({ x }) => ((x + 1) / 2) * width)), top: Math.min(...ys), bottom: Math.max(...ys) };
 }

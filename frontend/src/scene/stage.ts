@@ -1,7 +1,6 @@
 import { Box3, Group, type Camera, type Object3D } from "three";
 import type { DisplayState } from "../state/displays";
 import type { Session } from "../state/session";
-import type { ViewSize } from "../state/views/camera";
 import type { Span } from "../state/views/fit";
 import type { PanelHost } from "./displays/display-panel";
 import type { Drawing, DrawnScene } from "./displays/drawing";
@@ -12,6 +11,7 @@ import { WorldDrawing } from "./displays/world";
 import { Flash } from "./flash";
 import { FocalShape } from "./focal-shape";
 import { lookFirst, spanOf } from "./first-look";
+import { FreeRoom } from "./free-room";
 import { FINEST, FrameLoop, type Detail } from "./frame-loop";
 import { InspectLayer } from "./inspect/inspect-layer";
 import { SERVED, type MeshFiles } from "./meshes/mesh-files";
@@ -20,15 +20,12 @@ import type { StandIns } from "./meshes/stand-ins";
 import { Outline } from "./outline";
 import { Picker } from "./picker";
 import type { Interaction } from "./picking";
-import { reachOf } from "./screen-reach";
 import { StudioLight } from "./studio-light";
 import type { OwnLight } from "./surroundings";
 import { Viewport } from "./viewport";
 
 /** A robot whose links have no places yet is waited for no longer: some never get a transform. */
 const WAITS_FOR_PLACES_MS = 5000;
-/** The share of the canvas's width that may be left out when the camera looks at all of something. */
-const MOST_COVERED = 0.6;
 const UNSMOOTHED: Detail = { ...FINEST, smooth: false };
 
 interface DrawnDisplay {
@@ -57,8 +54,8 @@ export class Stage {
   private robotSettled = false;
   /** When the robot was drawn with all meshes, though nothing of it has a place. */
   private placelessSince: number | null = null;
-  /** How many pixels at the right of the canvas something lies over. */
-  covered: () => number = () => 0;
+  /** What nothing lies over. */
+  readonly room: FreeRoom;
 
   constructor(
     container: HTMLElement,
@@ -70,6 +67,7 @@ export class Stage {
     this.meshes = new MeshLibrary(session.meshProgress, files, standIns);
     // A resized canvas is empty until it is drawn: at once, or it would flicker.
     this.viewport = new Viewport(container, () => this.draw(UNSMOOTHED));
+    this.room = new FreeRoom(this.viewport, () => this.boundsOfRobots(), () => this.viewport.aim(session.view), () => this.loop.invalidate());
     this.picker = new Picker(this.viewport, session, () => this.enabled());
     this.outline = new Outline(this.viewport);
     const invalidate = (): void => this.loop.invalidate();
@@ -136,35 +134,13 @@ export class Stage {
   /** Looks at all of what is selected, or of what is drawn when nothing is, from the side that the camera is at. */
   fit(): void {
     const box = this.picker.boundsOfSelection() ?? this.boundsOfAll();
-    if (box) this.session.view.fit(box, this.freeSize());
+    if (box) this.session.view.fit(box, this.room.take());
   }
 
   /** Looks at all of the robots, from the side that the camera is at. */
   fitRobots(): void {
     const box = this.boundsOfRobots();
-    if (box) this.session.view.fit(box, this.freeSize());
-  }
-
-  /** What the camera looks at goes to the middle of what nothing lies over. */
-  makeRoom(): void {
-    const before = this.viewport.aside;
-    this.freeSize();
-    if (this.viewport.aside !== before) this.loop.invalidate();
-  }
-
-  /** How far from the left edge of the canvas robots reach, pixels: 0 without one. */
-  get robotsReach(): number {
-    const box = this.boundsOfRobots();
-    this.viewport.aim(this.session.view);
-    return box ? reachOf(box, this.viewport.camera, this.viewport.size.width) : 0;
-  }
-
-  /** The size of the part of the canvas that nothing lies over; from now on its middle is where the camera looks. */
-  private freeSize(): ViewSize {
-    const { width, height } = this.viewport.size;
-    const covered = Math.min(this.covered(), width * MOST_COVERED);
-    this.viewport.aside = covered / 2;
-    return { width: width - covered, height };
+    if (box) this.session.view.fit(box, this.room.take());
   }
 
   /** Tells the drawings whether their things can be moved now. */
@@ -317,7 +293,7 @@ export class Stage {
       const seen = robots.flatMap((robot) => robot.seen || []).join(";");
       if (seen === "" || !view.awaitsFit(seen)) return;
       const box = this.boundsOfRobots();
-      if (box) view.fitFirst(box, this.freeSize(), seen);
+      if (box) view.fitFirst(box, this.room.take(), seen);
       if (box && settled) view.measured(box);
     }
     this.viewport.aim(view);

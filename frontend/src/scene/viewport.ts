@@ -45,6 +45,8 @@ export class Viewport {
   private part = 1;
   /** How far left of the middle of the canvas is what the camera looks at, pixels. */
   aside = 0;
+  /** How far below it, pixels. */
+  below = 0;
   private readonly ambient = new AmbientLight(0xffffff, AMBIENT * Math.PI);
   private readonly around = new SkyAndFog(this.scene);
   private ownBackground = "#303030";
@@ -173,7 +175,7 @@ export class Viewport {
 
   private shift(): void {
     const { width, height } = this.size;
-    if (this.aside !== 0) this.inUse.setViewOffset(width, height, this.aside, 0, width, height);
+    if (this.aside !== 0 || this.below !== 0) this.inUse.setViewOffset(width, height, this.aside, -this.below, width, height);
     else if (this.inUse.view?.enabled === true) this.inUse.clearViewOffset();
   }
 
