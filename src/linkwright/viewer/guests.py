@@ -12,14 +12,13 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
-from linkwright.bag import BagReader, Playback, PublishedRecording
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.graph import Graph
 from linkwright.nodes.options import NodeOptions
-from linkwright.viewer.recording_config import recording_config
 from linkwright.viewer.viewer import Viewer
 
 if TYPE_CHECKING:
+    from linkwright.bag import BagReader
     from linkwright.viewer.web.audience import Audience
 
 PATIENCE = 60.0
@@ -61,6 +60,9 @@ class GuestRecordings:
         Raises:
             LinkwrightError: BAG101, BAG102, BAG107, see `BagReader`; BAG111, as many are shown as may be.
         """
+        from linkwright.bag import BagReader, Playback, PublishedRecording  # few viewers are ever given a recording
+        from linkwright.viewer.recording_config import recording_config
+
         if len(self._guests) >= _MOST:
             raise LinkwrightError(
                 Diagnostic(

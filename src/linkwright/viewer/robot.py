@@ -19,7 +19,8 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError
 from linkwright.geometry.arrays import quaternion_from_matrix
 from linkwright.geometry.single import quaternion_of
 from linkwright.graph import DurabilityPolicy, MessageInfo
-from linkwright.graph.introspection.answers import TopicEndpointInfo
+from linkwright.graph.endpoints.info import EndpointInfo
+from linkwright.graph.introspection.answers import UNKNOWN_NODE
 from linkwright.messages import String
 from linkwright.urdf import Box, Capsule, Collision, Cylinder, Inertial, Link, Material, Mesh, Robot, Sphere, Visual
 from linkwright.viewer.config.property_store import PropertyStore, qos_of
@@ -123,9 +124,10 @@ class DescriptionSource:
 
     def publishers(self) -> dict[bytes, str]:
         """Whose descriptions came, by GIDs, without those who are gone: node, and machine where that is told."""
-        topic = self._properties.text(TOPIC).strip()
-        infos = self._context.node.get_publishers_info_by_topic(topic) if self._subscriptions else []
-        return {gid: _node_text(info) for info in infos if (gid := bytes(info.endpoint_gid)) in self._heard}
+        if not self._heard:
+            return {}
+        endpoints = self._context.node.graph.endpoints()
+        return {each.gid: _node_text(each) for each in endpoints if each.gid in self._heard}
 
     def _received(self, message: String, info: MessageInfo) -> None:
         self.publisher = info.publisher_gid
@@ -148,9 +150,9 @@ class DescriptionSource:
         self._on_text(self._context.library.remember(description))
 
 
-def _node_text(info: TopicEndpointInfo) -> str:
-    name = f"{info.node_namespace.rstrip('/')}/{info.node_name}"
-    return f"{name} on {info.host}" if info.host else name
+def _node_text(publisher: EndpointInfo) -> str:
+    name = (publisher.node or UNKNOWN_NODE).full_name
+    return f"{name} on {publisher.host}" if publisher.host else name
 
 
 def link_inertia(inertial: Inertial | None) -> LinkInertia | None:
