@@ -37,6 +37,29 @@ async def test_what_a_timer_causes_comes_before_the_next_timer(graph, clock):
     assert order == ["timer", "message", "later"]
 
 
+async def test_a_timer_that_is_reset_again_and_again_sets_an_alarm_a_period(monkeypatch):
+    clock = JumpClock()
+    alarms = []
+    monkeypatch.setattr(
+        clock, "call_at", lambda loop, at, call: (alarms.append(at), JumpClock.call_at(clock, loop, at, call))[1]
+    )
+    graph = Graph(clock=clock)
+    calls = []
+    timer = graph.create_node("node").create_timer(0.1, lambda: calls.append(clock.steady_ns() / 1e9))
+    for _ in range(100):
+        await clock.advance(0.01)
+        timer.reset()
+    assert calls == []
+    assert len(alarms) <= 12
+    await clock.advance(0.25)
+    assert calls == pytest.approx([1.1, 1.2])
+    timer.timer_period_ns = 30_000_000
+    timer.reset()
+    await clock.advance(0.04)
+    assert calls[-1] == pytest.approx(1.28)
+    await graph.close()
+
+
 async def test_a_cancelled_timer_is_silent_until_it_is_reset(graph, clock):
     calls = []
     timer = graph.create_node("node").create_timer(0.1, lambda: calls.append(clock.steady_ns()))

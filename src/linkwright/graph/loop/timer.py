@@ -77,6 +77,7 @@ class Timer(Entity):
         self.clock = clock
         self._period_ns = int(period_ns)
         self._alarm: Alarm | None = None
+        self._alarm_ns = 0
         self._due = False
         self._running = autostart
         self._last_ns = clock.timer_ns()
@@ -131,11 +132,14 @@ class Timer(Entity):
             InvalidHandleError: the timer was destroyed.
         """
         self.check_alive()
-        self._disarm()
+        self._due = False
         self._running = True
         self._last_ns = self.clock.timer_ns()
         self._due_ns = self._last_ns + self._period_ns
-        self._arm()
+        # An alarm that comes too early sets itself anew: what is reset with each message does not set one each time.
+        if self._alarm is None or self._alarm_ns > self._due_ns:
+            self._disarm_alarm()
+            self._arm()
 
     def time_since_last_call(self) -> int:
         """Nanoseconds since the last call, or since the start when there was none."""
@@ -211,6 +215,7 @@ class Timer(Entity):
     def _arm(self) -> None:
         dispatcher = self.dispatcher
         if dispatcher is not None:
+            self._alarm_ns = self._due_ns
             self._alarm = self.clock.call_at(dispatcher, self._due_ns, self._fire)
 
     def _disarm(self) -> None:
@@ -224,9 +229,13 @@ class Timer(Entity):
 
     def _fire(self) -> None:
         self._alarm = None
-        if self._running:
-            self._due = True
-            self.announce()
+        if not self._running:
+            return
+        if self._alarm_ns < self._due_ns:
+            self._arm()
+            return
+        self._due = True
+        self.announce()
 
 
 def _check_period(period_ns: int) -> None:
