@@ -19,6 +19,7 @@ from linkwright.hosting.plans import HostOptions
 from linkwright.hosting.simulated import SimulatedView, SimulatedWorld
 from linkwright.nodes.simulator import Simulator
 from linkwright.packages import PackageFinder
+from linkwright.simulation.server.loading import WorldLoader
 from linkwright.simulation.server.server import SimulationServer
 from linkwright.simulation.simulation import Simulation
 from tests.hosting.test_driven import MBOT, drive_of
@@ -52,10 +53,20 @@ class Shown:
         self.err = err
 
     @property
+    def simulator(self) -> Simulator:
+        """The node that simulates."""
+        running = [each for _, each in self.view.host._running.values()]
+        return next(each for each in running if isinstance(each, Simulator))
+
+    @property
     def server(self) -> SimulationServer:
         """What moves, in its own thread."""
-        running = [each for _, each in self.view.host._running.values()]
-        return next(each.server for each in running if isinstance(each, Simulator))
+        return self.simulator.server
+
+    @property
+    def worlds(self) -> WorldLoader:
+        """What takes other worlds."""
+        return self.simulator.services.worlds
 
     async def look(self, function: Callable[[Simulation], Any]) -> Any:
         """What a function says in the thread of the simulation."""
@@ -124,6 +135,22 @@ async def test_a_world_that_is_saved_comes_and_what_is_the_same_stays(tmp_path):
         await it.when(has("ground", "falling", "new"))
         assert (await it.look(lambda simulation: simulation.model_pose("falling")))[:3] == (1.0, 2.0, 3.0)
         assert f"reloaded {tmp_path / 'a.world'}" in it.err.getvalue()
+
+
+async def test_a_world_that_is_edited_is_not_replaced_by_its_file(tmp_path):
+    file = tmp_path / "a.world"
+    file.write_text(world(FALLING))
+    async with shown(SimulatedWorld(str(file), file)) as it:
+        edited = world(FALLING, box("edited", "5 5 1 0 0 0"))
+        await it.look(lambda _: it.worlds.load(str(file), edited))
+        file.write_text(world(box("other", "5 5 1 0 0 0")))
+        await it.until("has changed, and the world that is edited goes on")
+        assert await it.look(has("ground", "falling", "edited"))
+        before = it.worlds.loaded
+        file.write_text(edited)
+        await it.until("", lambda: it.worlds.loaded is not before)
+        file.write_text(world(box("other", "5 5 1 0 0 0")))
+        await it.when(has("ground", "other"))
 
 
 async def test_a_broken_world_is_told_and_what_runs_goes_on(tmp_path):

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING
 
-from linkwright.diagnostics import Diagnostic, foreign, phrase
+from linkwright.diagnostics import Diagnostic, Severity, foreign, phrase
 from linkwright.hosting.plans import Supervisor
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ def follow_files(running: RunningNode, session: Supervisor, launcher: Callable[[
     loop, world = asyncio.get_running_loop(), running.services.worlds.loaded
     if world.path.is_file():
         call = session.descriptions.begin_with(world)
-        session.reload.bind(call, lambda path: session.spawn(_load_world(call, path, session, launcher())))
+        session.reload.bind(call, lambda path: session.spawn(_load_world(call, path, session, launcher(), running)))
     followed: set[tuple[XacroCall, str]] = set()
 
     def follow(name: str, text: str) -> None:
@@ -58,10 +58,15 @@ def _renew(simulator: Simulator, name: str, text: str) -> None:
         simulator.services.renew(text, name)
 
 
-async def _load_world(call: WorldCall, path: str, session: Supervisor, node: Node) -> None:
-    """Have the simulator take the world of a file, which was saved."""
+async def _load_world(call: WorldCall, path: str, session: Supervisor, node: Node, simulator: Simulator) -> None:
+    """Have the simulator take the world of a file, which was saved; not over changes that were made in the page."""
     from linkwright.messages import get_service
 
+    if simulator.services.worlds.is_unsaved:
+        message = phrase("'{path}' has changed, and the world that is edited goes on without that", path=path)
+        hint = phrase("save the edited world as another file, or take its changes back")
+        session.reload.report(call, [Diagnostic("SIM154", message, severity=Severity.WARNING, hint=hint)])
+        return
     client = node.create_client(get_service(_LOAD_WORLD), "/load_world")
     request = client.srv_type.Request(ignore_missing_or_unsupported_assets=True)
     request.world_resource.uri = path

@@ -36,7 +36,7 @@ USUAL: dict[ShapeKind, NewShape] = {
     "cylinder": NewShape((0.25, 0.5), (0.2, 0.5, 0.8)),
     "sphere": NewShape((0.25,), (0.3, 0.7, 0.3)),
     "wall": NewShape((2.0, 0.1, 1.0), (0.8, 0.8, 0.75), None),
-    "ramp": NewShape((1.5, 1.0, 0.3), (0.6, 0.6, 0.65), None),
+    "ramp": NewShape((1.5, 1.0, 0.3), (0.85, 0.65, 0.35), None),
 }
 _LIGHTS: dict[LightKind, tuple[Element, ...]] = {
     "point": (

@@ -17,6 +17,8 @@ from linkwright.messages import get_message
 from linkwright.simulation.plugins.entities import told
 from linkwright.simulation.server.server import SimulationServer
 from linkwright.simulation.server.worlds import LoadedWorld, load_world
+from linkwright.xmltree.decoding import decoded
+from linkwright.xmltree.reader import read_bytes
 
 _OK, _NOT_FOUND, _FAILED = 1, 2, 4
 """Of simulation_interfaces/msg/Result."""
@@ -51,6 +53,18 @@ class WorldLoader:
     def __init__(self, server: SimulationServer, loaded: LoadedWorld) -> None:
         self.loaded = loaded
         self._server = server
+        self._text: str | None = None
+
+    @property
+    def is_unsaved(self) -> bool:
+        """Whether the world that runs is that of a text which its file has not, or not any more."""
+        if self._text is None:
+            return False
+        path = self.loaded.path
+        try:
+            return decoded(read_bytes(path), str(path)).text != self._text
+        except LinkwrightError:
+            return True
 
     def load(self, uri: str, text: str = "", *, refused: Sequence[str] = ()) -> None:
         """Make the world that runs that of a file or text.
@@ -83,6 +97,7 @@ class WorldLoader:
         allow(loaded.diagnostics)
         self._server.load(loaded.world, loaded.finder, allow)
         self.loaded = loaded
+        self._text = text or None
 
     def answer(self, request: Any, response: Any) -> Any:
         """Answer ``/load_world``."""
