@@ -81,7 +81,7 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
         self._topics = OdometryTopics(said.odometry_frame, said.robot_base_frame, odometry, transforms, variances)
         self._way = node.publisher("std_msgs/msg/Float32", "distance", 1) if said.publish_distance else None
         commander = node.commander(self._rest)
-        node.subscribe("geometry_msgs/msg/Twist", "cmd_vel", self._commanded, 1, commander=commander)
+        node.subscribe("geometry_msgs/msg/Twist", "cmd_vel", self._commanded, 1, commander=commander, rest=self._rest)
         self._begin()
         self.every(said.update_rate, self._update)
 

@@ -179,7 +179,9 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
         self._topics = OdometryTopics(said.odometry_frame, said.robot_base_frame, odometry, transforms, variances)
         self._sees_world = said.odometry_source.strip().lower() in (str(_WORLD), "world")
         commander = node.commander(self._rest)
-        node.subscribe("geometry_msgs/msg/Twist", said.command_topic, self._commanded, 1, commander=commander)
+        node.subscribe(
+            "geometry_msgs/msg/Twist", said.command_topic, self._commanded, 1, commander=commander, rest=self._rest
+        )
         self.every(said.update_rate, self._update)
         if said.publish_wheel_tf:
             self.every(said.update_rate, partial(self._publish_wheels, transforms or transforms_topic(node)))

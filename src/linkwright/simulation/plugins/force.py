@@ -48,7 +48,9 @@ class ClassicForce(SimulatedPlugin[ForceParameters]):
         self.simulation.keep_awake(self._link)
         self._wrench = _STILL
         commander = self.node.commander(self._rest)
-        self.node.subscribe("geometry_msgs/msg/Wrench", said.topic_name, self._told, commander=commander)
+        self.node.subscribe(
+            "geometry_msgs/msg/Wrench", said.topic_name, self._told, commander=commander, rest=self._rest
+        )
         self.every(0.0, self._push)
 
     def reset(self) -> None:

@@ -106,7 +106,7 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
     def _listen_to_angles(self) -> None:
         said = self.parameters
         topic = said.topic or f"/model/{self.place.path}/{said.sub_topic or 'steer_angle'}"
-        self.node.subscribe("std_msgs/msg/Float64", topic, self._told_angle)
+        self.node.subscribe("std_msgs/msg/Float64", topic, self._told_angle, rest=lambda: None)
 
     def _told_angle(self, message: Any) -> None:
         self._angle = float(message.data)

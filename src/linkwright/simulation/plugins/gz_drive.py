@@ -90,5 +90,7 @@ def connected(plugin: SimulatedPlugin[Any], said: GzDriveParameters, commands: D
     transforms = transforms_topic(node, said.tf_topic or f"/model/{model}/tf", "/tf")
     topic = said.topic or f"/model/{model}/cmd_vel"
     commander = node.commander(commands.rest)
-    node.subscribe("geometry_msgs/msg/Twist", topic, commands.take, usual="/cmd_vel", commander=commander)
+    node.subscribe(
+        "geometry_msgs/msg/Twist", topic, commands.take, usual="/cmd_vel", commander=commander, rest=commands.rest
+    )
     return OdometryTopics(frame, child, odometry, transforms)

@@ -102,7 +102,7 @@ class _JointController(SimulatedPlugin[P], Generic[P]):
         said = self.parameters
         topic = said.topic or f"/model/{self.place.path}/{said.sub_topic or f'joint/{said.joint_name[0]}/{leaf}'}"
         commander = self.node.commander(self._rest)
-        self.node.subscribe("std_msgs/msg/Float64", topic, self._commanded, commander=commander)
+        self.node.subscribe("std_msgs/msg/Float64", topic, self._commanded, commander=commander, rest=self._rest)
         self._begin()
 
     def _commanded(self, message: Any) -> None:

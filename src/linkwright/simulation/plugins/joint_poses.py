@@ -35,7 +35,9 @@ class ClassicJointPoses(SimulatedPlugin[JointPoseParameters]):
     def start(self) -> None:
         """Listen."""
         self.reset()
-        self.node.subscribe("trajectory_msgs/msg/JointTrajectory", self.parameters.topic_name, self._told, 1)
+        self.node.subscribe(
+            "trajectory_msgs/msg/JointTrajectory", self.parameters.topic_name, self._told, 1, rest=lambda: None
+        )
         self.every(self.parameters.update_rate, self._move)
 
     def reset(self) -> None:

@@ -135,7 +135,7 @@ class GzJointTrajectory(SimulatedPlugin[TrajectoryParameters]):
             simulation.keep_awake(simulation.scene.joints[joint].child)
         topic = said.topic or f"/model/{self.place.path}/joint_trajectory"
         self._progress = self.node.publisher("std_msgs/msg/Float32", f"{topic}_progress")
-        self.node.subscribe("trajectory_msgs/msg/JointTrajectory", topic, self._commanded)
+        self.node.subscribe("trajectory_msgs/msg/JointTrajectory", topic, self._commanded, rest=lambda: None)
         self.reset()
         self.every(0.0, self._move)
 

@@ -18,10 +18,12 @@ from linkwright.graph.qos.profile import QoSProfile
 from linkwright.messages import get_service
 from linkwright.simulation.exchange import Exchange
 from linkwright.simulation.plugins.bridged import BridgedTopics, gz_side
+from linkwright.simulation.plugins.entities import has_numbers
 from linkwright.simulation.plugins.ros_element import overridden
 from linkwright.xmltree import Element
 
 _NO_TOPIC = re.compile(r"[^A-Za-z0-9_/~]")
+_WARN_SECONDS = 1.0
 _FIRST_DIGIT = re.compile(r"(?<=/)(?=[0-9])")
 
 
@@ -158,12 +160,16 @@ class PluginNode:
         *,
         usual: str = "",
         commander: Commander | None = None,
+        rest: Callable[[], object] | None = None,
     ) -> None:
         """Have a function called with each message of a topic.
 
         The arguments are those of `publisher`; for commands that hold until the next one, ``commander`` is one that
-        the method of this name gave.
+        the method of this name gave. ``rest`` is called in place of the function where a number of the message is none
+        (NaN or infinite), which is logged: the world would be unstable with it.
         """
+        if rest is not None:
+            callback = partial(self._sound, callback, rest, topic)
         received: Callable[..., object] = partial(self._received, callback)
         if commander is not None:
             received = commander.taking(received)
@@ -251,6 +257,17 @@ class PluginNode:
     def _rest(self, rest: Callable[[], bool], publisher: EndpointInfo) -> None:
         if rest():
             self.logger.warning(phrase("{who}: what it moved is stopped", who=who_was_lost(publisher)))
+
+    def _sound(self, callback: Callable[[Any], object], rest: Callable[[], object], topic: str, message: Any) -> None:
+        """Take a command whose numbers are numbers; come to rest with any other."""
+        if has_numbers(message):
+            callback(message)
+            return
+        rest()
+        told = phrase(
+            "'{topic}': a command with NaN or an infinite number is no command: what it moves stops", topic=topic
+        )
+        self.logger.warning(told, throttle_duration_sec=_WARN_SECONDS)
 
     def _received(self, callback: Callable[[Any], object], message: Any) -> None:
         self._exchange.post(partial(callback, message))

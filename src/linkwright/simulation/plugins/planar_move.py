@@ -84,7 +84,9 @@ class PlanarMove(PlanarDrive[PlanarMoveParameters]):
         variances = planar_variances(said.covariance_x, said.covariance_y, said.covariance_yaw)
         self._topics = OdometryTopics(said.odometry_frame, said.robot_base_frame, odometry, transforms, variances)
         commander = node.commander(self._rest)
-        node.subscribe("geometry_msgs/msg/Twist", said.command_topic, self._commanded, 1, commander=commander)
+        node.subscribe(
+            "geometry_msgs/msg/Twist", said.command_topic, self._commanded, 1, commander=commander, rest=self._rest
+        )
         self.every(0.0, self._move)
         if odometry is not None or transforms is not None:
             self.every(said.publish_rate, self._publish)

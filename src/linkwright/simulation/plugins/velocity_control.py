@@ -40,7 +40,9 @@ class GzVelocityControl(PlanarDrive[VelocityControlParameters]):
         self.reset()
         topic = self.parameters.topic or f"/model/{self.place.path}/cmd_vel"
         commander = self.node.commander(self._rest)
-        self.node.subscribe("geometry_msgs/msg/Twist", topic, self._told, usual="/cmd_vel", commander=commander)
+        self.node.subscribe(
+            "geometry_msgs/msg/Twist", topic, self._told, usual="/cmd_vel", commander=commander, rest=self._rest
+        )
         self.every(0.0, self._move)
 
     def reset(self) -> None:

@@ -1,0 +1,31 @@
+"""Commands with a number that is none: what obeys them comes to rest, the log says why, and the world goes on."""
+
+from __future__ import annotations
+
+from math import inf, nan
+
+import pytest
+
+from linkwright.messages import get_message
+from tests.simulation.test_lost_commanders import DRIVES, advance, forward, speed, warnings
+from tests.simulation.test_plugins import served
+from tests.simulation.worlds import GROUND
+
+
+@pytest.mark.parametrize("strange", [nan, inf], ids=str)
+@pytest.mark.parametrize("model", DRIVES.values(), ids=DRIVES.keys())
+async def test_a_drive_stops_at_a_command_that_is_no_number_and_obeys_the_next(model: str, strange: float) -> None:
+    async with served(GROUND, model) as (server, graph, log):
+        driver = graph.create_node("driver").create_publisher(get_message("geometry_msgs/msg/Twist"), "/cmd_vel", 10)
+        driver.publish(forward(0.3))
+        await advance(server, graph, 1.5)
+        assert speed(server) == pytest.approx(0.3, abs=0.02)
+        driver.publish(forward(strange))
+        await advance(server, graph, 1.5)
+        assert speed(server) == pytest.approx(0.0, abs=0.01)
+        assert warnings(log) == [
+            "'cmd_vel': a command with NaN or an infinite number is no command: what it moves stops"
+        ]
+        driver.publish(forward(0.3))
+        await advance(server, graph, 1.5)
+        assert speed(server) == pytest.approx(0.3, abs=0.02)
