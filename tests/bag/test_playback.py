@@ -122,11 +122,34 @@ def test_a_recording_without_an_index_is_given_one(tmp_path: Path, way: str, com
         assert {each.name: each.count for each in bag.topics} == {name: sum(row) for name, row in counts.items()}
 
 
-def test_messages_are_counted_by_the_parts_of_a_recording_without_reading_them(tmp_path: Path) -> None:
-    with BagReader(recorded(tmp_path, chunk=1)) as bag:
+@pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
+def test_messages_are_counted_by_the_parts_of_a_recording_without_reading_them(tmp_path: Path, storage: str) -> None:
+    with BagReader(recorded(tmp_path, storage, chunk=1)) as bag:
         counts = bag.counts(2)
     assert counts["/a"] == [10, 10]
     assert counts["/robot_description"] == [1, 0]
+
+
+@pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
+def test_any_moment_is_found_as_if_all_were_read(tmp_path: Path, storage: str) -> None:
+    """Also before and after all, where topics pause for long, and where messages came at one time."""
+    stamps = [0, 1, 1, 5, 9_000, 9_001, 9_001, 500_000_000, 500_000_001, 7 * SECOND, 90 * SECOND]
+    topics = ("/a", "/b", "/tf", "/tf_static")
+    with BagWriter(tmp_path / "bag", storage) as writer:
+        for name in topics:
+            writer.add_topic(name, TF if "tf" in name else STRING, [DEFAULT_QOS])
+        for number, stamp in enumerate(stamps):
+            for topic in topics[: 1 + number % 4]:
+                writer.write(topic, START + stamp, transform(f"{number}") if "tf" in topic else text(f"{number}"))
+    with BagReader(tmp_path / "bag") as bag:
+        whole = list(bag.messages())
+        for at in sorted({START + stamp + step for stamp in stamps for step in (-1, 0, 1)}):
+            before = [each for each in whole if each[1] <= at]
+            moving = [each for each in before if each[0] == "/tf" and each[1] >= at - 2 * SECOND]
+            last = [[each for each in before if each[0] == topic][-1:] for topic in ("/a", "/b")]
+            static = [each for each in before if each[0] == "/tf_static"]
+            assert sorted(bag.state_at(topics, at)) == sorted([*static, *moving, *last[0], *last[1]])
+            assert bag.time_before(topics, at) == max((each[1] for each in whole if each[1] < at), default=None)
 
 
 class Shown:

@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 _KEPT_BYTES = 64 << 20
 """Of unpacked chunks, so that several messages of one chunk unpack it once."""
 
+_MOST_CHUNKS = 64
+"""Of more chunks only the first and the last are read: some nodes repeat their static transforms for ever."""
+
 _CHUNK_HEAD = struct.Struct("<BQQQQI")
 """Of a chunk: kind, length, times of first and last message, unpacked size, checksum; then its compression follows."""
 _INDEX_HEAD = struct.Struct("<BQHI")
@@ -53,22 +56,13 @@ class McapLookup:
                     best = entries[place][0], chunk, entries[place][1]
         return None if best is None else (best[0], self._message(best[1], best[2]))
 
-    def between(
-        self, channels: Collection[int], start_ns: int, end_ns: int, most_chunks: int
-    ) -> list[tuple[int, bytes]]:
-        """The messages of some channels from one time to another, both included, with their times, in their order.
-
-        Args:
-            channels: their numbers.
-            start_ns: the earlier time, nanoseconds.
-            end_ns: the later time.
-            most_chunks: of more chunks only the first and the last half are read.
-        """
+    def between(self, channels: Collection[int], start_ns: int, end_ns: int) -> list[tuple[int, bytes]]:
+        """The messages of some channels from one time to another, both included, with their times, in their order."""
         found = []
         for channel in channels:
             chunks = [each for each, _ in self._of(channel).backwards(end_ns) if each.message_end_time >= start_ns]
-            if len(chunks) > most_chunks:
-                chunks = [*chunks[: most_chunks // 2], *chunks[-(most_chunks // 2) :]]
+            if len(chunks) > _MOST_CHUNKS:
+                chunks = [*chunks[: _MOST_CHUNKS // 2], *chunks[-(_MOST_CHUNKS // 2) :]]
             for chunk in chunks:
                 found += [
                     (stamp, chunk, offset)
@@ -78,9 +72,18 @@ class McapLookup:
         found.sort(key=lambda each: (each[0], each[1].chunk_start_offset, each[2]))
         return [(stamp, self._message(chunk, offset)) for stamp, chunk, offset in found]
 
-    def times(self, chunk: ChunkInfo, channel: int) -> list[int]:
-        """The times of the messages of a channel in a chunk."""
-        return [stamp for stamp, _ in self._entries(chunk, channel)]
+    def counts(self, channel: int, *, exact: bool) -> Iterator[tuple[int, int, int]]:
+        """How many messages of a channel came in a time: its beginning and end, nanoseconds, and the number.
+
+        Args:
+            channel: its number.
+            exact: tell of each message by itself, and not of each chunk.
+        """
+        for chunk in self._of(channel).chunks:
+            if exact:
+                yield from ((stamp_ns, stamp_ns, 1) for stamp_ns, _ in self._entries(chunk, channel))
+            else:
+                yield chunk.message_start_time, chunk.message_end_time, chunk.channel_count.get(channel, 0)
 
     def _of(self, channel: int) -> _ChannelChunks:
         if channel not in self._chunks:
@@ -122,13 +125,13 @@ class _ChannelChunks:
     """The chunks that have messages of a channel, in the order of their first messages."""
 
     def __init__(self, chunks: Collection[ChunkInfo]) -> None:
-        self._chunks = sorted(chunks, key=lambda each: each.message_start_time)
-        self._starts = [each.message_start_time for each in self._chunks]
+        self.chunks = sorted(chunks, key=lambda each: each.message_start_time)
+        self._starts = [each.message_start_time for each in self.chunks]
         self._latest_ends: list[int] = []
-        for each in self._chunks:
+        for each in self.chunks:
             self._latest_ends.append(max(each.message_end_time, self._latest_ends[-1] if self._latest_ends else 0))
 
     def backwards(self, at_ns: int) -> Iterator[tuple[ChunkInfo, int]]:
         """Those that begin up to a time, from the last one back; with each the latest end of it and those before it."""
         for place in range(bisect_right(self._starts, at_ns) - 1, -1, -1):
-            yield self._chunks[place], self._latest_ends[place]
+            yield self.chunks[place], self._latest_ends[place]

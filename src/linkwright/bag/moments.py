@@ -8,6 +8,7 @@ from math import ceil
 from typing import TYPE_CHECKING, Any
 
 from linkwright.bag.lookup import McapLookup
+from linkwright.bag.rows import RowLookup
 
 if TYPE_CHECKING:
     from rosbags.interfaces import Connection
@@ -17,8 +18,6 @@ TRANSFORMS, STATIC_TRANSFORMS = "/tf", "/tf_static"
 TRANSFORMS_NS = 2_000_000_000
 """How long before a moment transforms are of use: each message has only some of the frames."""
 
-_STATIC_CHUNKS = 64
-"""Of more chunks with static transforms only the first and the last are read: some nodes repeat theirs for ever."""
 _MOST_COUNTED = 100_000
 """Messages whose times are looked up, so that they are counted in the part of the recording in which they came."""
 
@@ -66,7 +65,7 @@ class Moments:
     def counts(self, parts: int) -> dict[str, list[int]]:
         """How many messages each topic has in equal parts of the recording; empty for a file without an index.
 
-        Of a long recording the messages of a chunk count as if they were spread evenly over its time.
+        Of a long recording the messages of a chunk, or of a short time, count as if they were spread evenly over it.
         """
         start, duration = self._reader.start_time, max(1, self._reader.duration)
 
@@ -76,31 +75,27 @@ class Moments:
         exact = self._reader.message_count <= _MOST_COUNTED
         found: dict[str, list[float]] = {}
         for storage, lookup in self._lookups:
-            names = {each.id: each.topic for each in storage.connections}
-            for chunk in storage.chunks:
-                first, last = part(chunk.message_start_time), part(chunk.message_end_time)
-                for channel, count in chunk.channel_count.items():
-                    row = found.setdefault(names[channel], [0.0] * parts)
-                    if exact and last > first:
-                        for stamp in lookup.times(chunk, channel):
-                            row[part(stamp)] += 1
-                        continue
+            for connection in storage.connections:
+                for first_ns, last_ns, count in lookup.counts(connection.id, exact=exact):
+                    row = found.setdefault(connection.topic, [0.0] * parts)
+                    first, last = part(first_ns), part(last_ns)
                     for each in range(first, last + 1):
                         row[each] += count / (last - first + 1)
         return {name: [ceil(each) for each in row] for name, row in found.items()}
 
-    @property
-    def _indexed(self) -> list[Any]:
+    @cached_property
+    def _lookups(self) -> list[tuple[Any, McapLookup | RowLookup]]:
         """The files with an index, if all of them have one and their messages are not packed singly; else none."""
         storage: Any = self._reader.storage
-        storages = getattr(storage, "storages", [storage])
-        if self._reader.compression_mode == "message" or not all(getattr(each, "chunks", ()) for each in storages):
-            return []
-        return list(storages)
-
-    @cached_property
-    def _lookups(self) -> list[tuple[Any, McapLookup]]:
-        return [(each, McapLookup(each)) for each in self._indexed]
+        found: list[tuple[Any, McapLookup | RowLookup]] = []
+        for each in getattr(storage, "storages", [storage]):
+            if hasattr(each, "dbconn"):
+                found.append((each, RowLookup(each)))
+            elif each.chunks:
+                found.append((each, McapLookup(each)))
+            else:
+                return []
+        return [] if self._reader.compression_mode == "message" else found
 
     def _latest(self, topics: Collection[str], at_ns: int) -> list[Recorded]:
         if not self._lookups:
@@ -121,7 +116,7 @@ class Moments:
         return [
             (topic, *each)
             for storage, lookup in self._lookups
-            for each in lookup.between(_channels(storage, topic), start_ns, end_ns, _STATIC_CHUNKS)
+            for each in lookup.between(_channels(storage, topic), start_ns, end_ns)
         ]
 
     def _latest_without_index(self, topics: Collection[str], at_ns: int) -> Iterator[Recorded]:
