@@ -42,11 +42,11 @@ def _open_dds(domain_id: int | None, bridge_id: str, logger: Logger) -> Backgrou
     settings = replace(read_dds_settings(domain_id=domain_id), enclave=f"{ENCLAVE}/{bridge_id}")
     for warning in settings.warnings:
         logger.warning(warning)
-    return dds.DdsTransport(settings, logger)
+    return dds.DdsTransport(settings, logger, must_join=True)
 
 
 def _open_zenoh(domain_id: int | None, _bridge_id: str, logger: Logger) -> BackgroundTransport:
-    return zenoh.ZenohTransport(read_zenoh_settings(domain_id=domain_id), logger)
+    return zenoh.ZenohTransport(read_zenoh_settings(domain_id=domain_id), logger, must_join=True)
 
 
 _KINDS = {

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 _HIDDEN = "_ros2cli"
+_LONGEST_JOINING = 10.0
 _LONGEST_DISCOVERY = 3.0
 _POLL = 0.01
 
@@ -157,7 +158,7 @@ async def graph_session(
         only_looks: whether the verb asks what there is and speaks to nobody; its node is not seen outside then.
 
     Raises:
-        LinkwrightError: CLI401, there is no DDS to reach other processes with.
+        LinkwrightError: see `join_others`.
     """
     graph = open_graph()
     try:
@@ -219,13 +220,13 @@ async def join_others(graph: Graph, spin_time: float | None, *, only_looks: bool
 
     Raises:
         LinkwrightError: CLI401, there is neither DDS nor Zenoh; DDS101, ROS_DOMAIN_ID is no domain; DDS111, a
-            setting of Zenoh is not well formed.
+            setting of Zenoh is not well formed; DDS102, DDS112, the domain cannot be joined.
     """
     from linkwright.wire.joining import available, check_settings, join, why_not
 
     if available():
         check_settings()  # raises what joining would only log
-    transport = join(graph, only_looks=only_looks) if available() else None
+    transport = join(graph, only_looks=only_looks, must_join=True) if available() else None
     if transport is None:
         raise LinkwrightError(
             Diagnostic(
@@ -235,7 +236,9 @@ async def join_others(graph: Graph, spin_time: float | None, *, only_looks: bool
                 hint=phrase("unset LINKWRIGHT_DDS") if os.environ.get("LINKWRIGHT_DDS") else None,
             )
         )
-    await asyncio.to_thread(transport.wait_until_ready, _LONGEST_DISCOVERY)
+    await asyncio.to_thread(transport.wait_until_ready, _LONGEST_JOINING)
+    if transport.problem is not None:
+        raise transport.problem
     if spin_time is not None:
         await asyncio.sleep(spin_time)
     else:

@@ -115,15 +115,24 @@ class BackgroundTransport(ABC):
         logger: for what there is to tell.
         only_looks: whether it only finds out what there is outside: nobody outside hears of the graph's nodes and
             endpoints, which saves making them there.
+        must_join: whether `problem` is raised by who joins, who has no use for a graph alone; it is not logged then.
     """
 
     def __init__(
-        self, domain_id: int, outside: Outside, departures: Departed, logger: Logger, *, only_looks: bool = False
+        self,
+        domain_id: int,
+        outside: Outside,
+        departures: Departed,
+        logger: Logger,
+        *,
+        only_looks: bool = False,
+        must_join: bool = False,
     ) -> None:
         self.domain_id = domain_id
         self._outside = outside
         self._departed = departures
         self._only_looks = only_looks
+        self._must_join = must_join
         self._logger = logger
         self._engine: Engine | None = None
         self._work: Work = deque()
@@ -302,7 +311,8 @@ class BackgroundTransport(ABC):
         except LinkwrightError as error:
             self.problem = error
             self._work.clear()
-            log_join_failure(self._logger, error)
+            if not self._must_join:
+                log_join_failure(self._logger, error)
         except RuntimeError:
             # From Python 3.12 on no thread can be started any more once the main one has ended.
             if threading.main_thread().is_alive():
@@ -362,6 +372,9 @@ class JoinOptions(TypedDict, total=False):
 
     only_looks: bool
     """Whether the graph sees other processes and is not seen by them."""
+
+    must_join: bool
+    """Whether who joins raises the transport's `problem`, which is not logged then."""
 
 
 def join_with(

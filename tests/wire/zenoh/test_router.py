@@ -80,6 +80,19 @@ def test_that_there_is_no_router_is_told_to_who_asks(processes, by_router_alone,
     assert "linkwright run rmw_zenoh_cpp rmw_zenohd" in text
 
 
+@pytest.mark.parametrize("verb", [["topic", "list"], ["topic", "echo", "/chatter", "std_msgs/msg/String"], ["doctor"]])
+def test_a_verb_that_reaches_nobody_fails_and_says_why_once(monkeypatch, router_port, verb):
+    settings = f'mode="client";connect/endpoints=["tcp/localhost:{router_port}"];connect/timeout_ms=0'
+    monkeypatch.setenv(OVERRIDES, settings)
+    result = subprocess.run(
+        [sys.executable, "-m", "linkwright", *verb], check=False, capture_output=True, text=True, timeout=60
+    )
+    assert result.returncode == 1
+    assert not result.stdout
+    assert result.stderr.startswith("error[DDS112]: a session of Zenoh cannot be opened")
+    assert result.stderr.count("DDS112") == 1
+
+
 def test_a_second_router_says_why_it_cannot_be_one(start_router, router_port):
     start_router()
     settings = f'listen/endpoints=["tcp/localhost:{router_port}"]'

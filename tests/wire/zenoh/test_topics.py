@@ -17,6 +17,7 @@ from linkwright.graph.qos.profile import (
 )
 from linkwright.graph.time.values import Duration
 from linkwright.messages import String, serialize, type_hash
+from linkwright.wire.zenoh import transport
 from linkwright.wire.zenoh.session import open_session
 from linkwright.wire.zenoh.settings import read_settings
 from linkwright.wire.zenoh.tokens import Token
@@ -158,6 +159,15 @@ def test_nodes_and_topics_of_others_come_and_go(processes):
     b.close()
     a.spin_until(lambda: "b" not in a.node.get_node_names())
     assert a.node.count_publishers("/far/chatter") == 0
+
+
+def test_discovery_does_not_settle_before_somebody_is_linked(processes, monkeypatch):
+    monkeypatch.setattr(transport, "_ALONE_AFTER", float("inf"))
+    a = processes("a")
+    assert not a.transport.wait_for_discovery(2 * transport.SETTLED_AFTER)
+    processes("b")
+    assert a.transport.wait_for_discovery(SECONDS)
+    assert "b" in a.node.get_node_names()
 
 
 def test_domains_keep_apart(processes, monkeypatch, domain):

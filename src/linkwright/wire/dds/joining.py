@@ -54,4 +54,5 @@ def _make(logger: Logger, options: JoinOptions) -> DdsTransport:
     settings = read_settings(options.get("environment"), domain_id=options.get("domain_id"))
     for warning in settings.warnings:
         logger.warning(warning)
-    return DdsTransport(settings, logger, only_looks=options.get("only_looks", False))
+    looks, must_join = options.get("only_looks", False), options.get("must_join", False)
+    return DdsTransport(settings, logger, only_looks=looks, must_join=must_join)

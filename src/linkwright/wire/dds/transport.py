@@ -25,13 +25,18 @@ class DdsTransport(BackgroundTransport):
         settings: the domain and how to join it.
         logger: for what there is to tell.
         only_looks: see `BackgroundTransport`.
+        must_join: see `BackgroundTransport`.
     """
 
-    def __init__(self, settings: Settings, logger: Logger, *, only_looks: bool = False) -> None:
+    def __init__(
+        self, settings: Settings, logger: Logger, *, only_looks: bool = False, must_join: bool = False
+    ) -> None:
         self._settings = settings
         self._remote = RemoteGraph()
         self._departures = Departures(self._remote)
-        super().__init__(settings.domain_id, self._remote, self._departures, logger, only_looks=only_looks)
+        super().__init__(
+            settings.domain_id, self._remote, self._departures, logger, only_looks=only_looks, must_join=must_join
+        )
 
     def _make_engine(self) -> Engine:
         # Imported in the thread that joins because loading Cyclone takes 0.15 s.

@@ -93,6 +93,11 @@ class Engine:
         """Look at the work soon; from any thread."""
         self._wake.set()
 
+    def has_neighbours(self) -> bool:
+        """Whether another session, or a router, is linked to this one."""
+        info = self._session.info
+        return bool(info.peers_zid() or info.routers_zid())
+
     def close(self) -> None:
         """End. Others are told that our nodes leave, unless the process ends because of an error."""
         self._ended.set()

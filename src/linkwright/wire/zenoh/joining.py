@@ -51,4 +51,5 @@ def join(graph: Graph, **options: Unpack[JoinOptions]) -> ZenohTransport | None:
 
 def _make(logger: Logger, options: JoinOptions) -> ZenohTransport:
     settings = read_settings(options.get("environment"), domain_id=options.get("domain_id"))
-    return ZenohTransport(settings, logger, only_looks=options.get("only_looks", False))
+    looks, must_join = options.get("only_looks", False), options.get("must_join", False)
+    return ZenohTransport(settings, logger, only_looks=looks, must_join=must_join)

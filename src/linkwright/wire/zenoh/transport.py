@@ -2,14 +2,23 @@
 
 from __future__ import annotations
 
+import time
+from typing import TYPE_CHECKING
+
 from linkwright.graph.log.logger import Logger
 from linkwright.wire.background import BackgroundTransport, Engine
 from linkwright.wire.zenoh.departures import Departures
 from linkwright.wire.zenoh.remote import RemoteGraph
 from linkwright.wire.zenoh.settings import Settings
 
+if TYPE_CHECKING:
+    from linkwright.wire.zenoh.engine import Engine as ZenohEngine
+
 SETTLED_AFTER = 0.4
-"""Seconds without news after which discovery counts as complete."""
+"""Seconds without news after which discovery counts as complete, where another session is linked to this one."""
+
+_ALONE_AFTER = 1.4
+"""The same where none is. Who is there is asked at once and again after a second."""
 
 
 class ZenohTransport(BackgroundTransport):
@@ -19,18 +28,31 @@ class ZenohTransport(BackgroundTransport):
         settings: the domain and how to join it.
         logger: for what there is to tell.
         only_looks: see `BackgroundTransport`.
+        must_join: see `BackgroundTransport`.
     """
 
-    def __init__(self, settings: Settings, logger: Logger, *, only_looks: bool = False) -> None:
+    def __init__(
+        self, settings: Settings, logger: Logger, *, only_looks: bool = False, must_join: bool = False
+    ) -> None:
         self._settings = settings
         self._remote = RemoteGraph()
         self._departures = Departures(self._remote)
-        super().__init__(settings.domain_id, self._remote, self._departures, logger, only_looks=only_looks)
+        self._zenoh_engine: ZenohEngine | None = None
+        self._linked_at = 0.0
+        super().__init__(
+            settings.domain_id, self._remote, self._departures, logger, only_looks=only_looks, must_join=must_join
+        )
 
     def _make_engine(self) -> Engine:
         from linkwright.wire.zenoh.engine import Engine as ZenohEngine
 
-        return ZenohEngine(self._settings, self._remote, self._departures, self._work, self._logger)
+        engine = ZenohEngine(self._settings, self._remote, self._departures, self._work, self._logger)
+        self._zenoh_engine = engine
+        return engine
 
     def _has_settled(self, quiet: float) -> bool:
-        return quiet >= SETTLED_AFTER
+        engine = self._zenoh_engine
+        if engine is None or not engine.has_neighbours():
+            return quiet >= _ALONE_AFTER
+        self._linked_at = self._linked_at or time.monotonic()
+        return min(quiet, time.monotonic() - self._linked_at) >= SETTLED_AFTER
