@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 
 from linkwright.graph import DESCRIPTION_QOS
+from linkwright.messages import String, TFMessage, deserialize
 from tests.skipping import skipping
 from tests.viewer.features.test_time import arrived, config
 from tests.viewer.scene import World, page, world
@@ -87,6 +88,39 @@ async def test_who_subscribes_while_time_stands_still_is_shown_what_was_then():
         await client.until("playhead", live=True)
         await made.settle()
         assert heard[-1] == "<robot name='late'/>"
+
+
+async def test_what_came_is_written_when_somebody_asks_for_it():
+    async with world(config(), history=KEPT) as made:
+        live = made.viewer.live
+        for x in range(3):
+            moved(made, float(x))
+        assert live.size == 0
+        assert not live.has_playback
+        began, end = live.span_ns
+        assert began <= end
+        kept = [deserialize(data, TFMessage).batch.poses[0, 0] for _, _, data in live.history.part(began, end)]
+        assert kept == [0.0, 1.0, 2.0]
+        assert live.size > 0
+
+
+async def test_what_came_does_not_wait_for_long():
+    async with world(config(), history=KEPT) as made:
+        for x in range(20):
+            moved(made, float(x))
+        assert made.viewer.live.size > 0
+
+
+async def test_a_message_that_cannot_be_written_is_told_of_and_the_others_are_kept():
+    async with world(config(), history=KEPT) as made:
+        began = moved(made, 1.0)
+        wrong = String()
+        wrong._data = 7  # as no setter would let it be
+        made.viewer.context.node.create_subscription(String, "words", lambda _: None, 10)
+        made.graph.create_node("speaker").create_publisher(String, "words", 10).publish(wrong)
+        end = moved(made, 2.0)
+        assert [topic for topic, _, _ in made.viewer.live.history.part(began, end)] == ["/tf", "/tf"]
+        assert any("keeping a message of '/words' failed" in record.text for record in made.log)
 
 
 @skipping

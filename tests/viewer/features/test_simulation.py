@@ -75,6 +75,22 @@ async def test_pages_hear_of_no_simulation_where_there_is_none():
         assert (await client.opened())["simulation_status"]["present"] is False
 
 
+async def test_what_serves_a_simulation_is_made_when_its_topic_comes_or_a_page_asks():
+    def kinds(viewer) -> set[str]:
+        return {type(each).__name__ for each in viewer._features}
+
+    async with world() as made, page(made.viewer) as client:
+        assert not (await client.opened())["modelling_state"]["available"]
+        needless = {"SimulationFeature", "ModellingFeature", "RecordingFeature", "ComparisonFeature", "PointsFeature"}
+        assert not needless & kinds(made.viewer)
+        Simulation(made).state.publish(STATE(state=1))
+        await client.until("simulation_status", present=True)
+        assert needless & kinds(made.viewer) == {"SimulationFeature"}
+        await client.send("stop_recording")
+        await client.until("recording_state", path="")
+        assert needless & kinds(made.viewer) == {"SimulationFeature", "RecordingFeature"}
+
+
 async def test_pages_hear_whether_time_passes_and_how_fast():
     async with simulated() as (simulation, client):
         simulation.state.publish(STATE(state=2))
