@@ -9,9 +9,11 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
-from linkwright.messages import String
+from linkwright.messages import String, get_interface
 from linkwright.wire.zenoh.settings import ATTEMPTS, OVERRIDES
+from tests.wire.test_topics import EVERYTHING, LASTING
 
+AddTwoInts = get_interface("example_interfaces/srv/AddTwoInts")
 COMMAND = [sys.executable, "-m", "linkwright.node_program", "rmw_zenoh_cpp", "rmw_zenohd"]
 
 
@@ -60,6 +62,60 @@ def test_processes_find_each_other_by_a_router_and_go_on_without_it(processes, s
     assert router.wait(60) == 0
     publisher.publish(String(data="without"))
     b.spin_until(lambda: got == ["with", "without"])
+
+
+def test_all_is_there_again_when_a_router_was_killed_and_comes_back(processes, start_router, monkeypatch, router_port):
+    """Clients have no link but that to their router: they lose the graph with it, and then get it back."""
+    monkeypatch.setenv(OVERRIDES, f'mode="client";connect/endpoints=["tcp/localhost:{router_port}"]')
+    router = start_router()
+    a, b = processes("a"), processes("b")
+    heard: list[str] = []
+    described: list[str] = []
+    chatter = a.node.create_publisher(String, "chatter", EVERYTHING)
+    a.node.create_publisher(String, "described", LASTING).publish(String(data="robot"))
+    b.node.create_subscription(String, "chatter", lambda message: heard.append(message.data), EVERYTHING)
+    b.node.create_subscription(String, "described", lambda message: described.append(message.data), LASTING)
+
+    def add(request, response):
+        response.sum = request.a + request.b
+        return response
+
+    a.node.create_service(AddTwoInts, "add", add)
+    client = b.node.create_client(AddTwoInts, "add")
+
+    def sees_all() -> bool:
+        return (
+            "b" in a.node.get_node_names()
+            and "a" in b.node.get_node_names()
+            and chatter.get_subscription_count() == 1
+            and client.service_is_ready()
+        )
+
+    def spin_both(condition: Callable[[], object]) -> None:
+        a.spin_until(lambda: condition() or b.executor.spin_once(timeout_sec=0.01) or condition())
+
+    for number, (word, first) in enumerate((("before", 1), ("after", 2), ("and again", 3))):
+        if number:
+            router.kill()
+            router.wait()
+            spin_both(lambda: "a" not in b.node.get_node_names() and "b" not in a.node.get_node_names())
+            assert not client.service_is_ready()
+            assert chatter.get_subscription_count() == 0
+            router = start_router()
+        spin_both(sees_all)
+        chatter.publish(String(data=word))
+        spin_both(lambda word=word: word in heard)
+        future = client.call_async(AddTwoInts.Request(a=first, b=10))
+        spin_both(future.done)
+        assert future.result().sum == first + 10
+        late = processes(f"late{number}")
+        got: list[str] = []
+        late.node.create_subscription(String, "described", lambda message, got=got: got.append(message.data), LASTING)
+        late.spin_until(lambda got=got: got)
+        assert got == ["robot"]
+        late.close()
+    assert heard == ["before", "after", "and again"]
+    assert described == ["robot"]
 
 
 def test_who_waits_for_a_router_finds_one_that_comes_late(processes, start_router, by_router_alone, monkeypatch):
