@@ -233,6 +233,19 @@ async def test_a_mesh_of_the_robot_that_is_saved_is_read_again(tmp_path):
         await it.when(lambda simulation: _extent(simulation) > 2.0)
 
 
+async def test_a_mesh_of_the_world_that_is_saved_is_read_again(tmp_path):
+    (tmp_path / "part.stl").write_text(f"solid part\n{CUBE}endsolid part\n")
+    mesh = '<visual name="v"><geometry><mesh><uri>part.stl</uri></mesh></geometry></visual>'
+    part = f'<model name="part"><static>true</static><link name="l">{mesh}</link></model>'
+    (tmp_path / "a.world").write_text(world(FALLING, part))
+    async with shown(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world")) as it:
+        await it.look(lambda simulation: simulation.set_model_pose("falling", (1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0)))
+        assert await it.look(_extent) < 1.5
+        (tmp_path / "part.stl").write_text(f"solid part\n{CUBE.replace('1 0 0', '3 0 0')}endsolid part\n")
+        await it.when(lambda simulation: _extent(simulation) > 2.0)
+        assert (await it.look(lambda simulation: simulation.model_pose("falling")))[:3] == (1.0, 2.0, 3.0)
+
+
 def _extent(simulation: Simulation) -> float:
     """The greatest extent of all meshes in m."""
     return float(np.ptp(simulation.model.mesh_vert, axis=0).max())

@@ -69,6 +69,7 @@ class Descriptions:
         self._calls: dict[str, XacroCall] = {}
         self._files: dict[XacroCall, tuple[Path, ...]] = {}
         self._robots: dict[XacroCall, Robot] = {}
+        self._worlds: dict[XacroCall, LoadedWorld] = {}
         self._meshes: dict[XacroCall, tuple[Path, ...]] = {}
         self._known: set[tuple[str, str]] = set()
         self._library: DescriptionLibrary | None = None
@@ -95,8 +96,12 @@ class Descriptions:
         call = WorldCall(world.path.absolute())
         self._read_ns[call] = world.read_ns
         self._known |= {_essence(each) for each in world.diagnostics}
-        self._files[call] = world.files
+        self._take_world(call, world)
         return call
+
+    def _take_world(self, call: WorldCall, world: LoadedWorld) -> None:
+        self._files[call], self._worlds[call] = world.files, world
+        self._meshes.pop(call, None)
 
     def read(self, call: XacroCall) -> Any:
         """Expand and read, without remembering anything; may run in another thread.
@@ -142,7 +147,7 @@ class Descriptions:
         The text is None where there is no robot.
         """
         if isinstance(call, WorldCall):
-            self._files[call] = description.files
+            self._take_world(call, description)
             return str(call.path), self._new(description.diagnostics)
         text = self.remember(call, description)
         return (None if description.robot is None else text), description.diagnostics
@@ -163,6 +168,11 @@ class Descriptions:
         """The files that the last good expansion read, and meshes; the model file alone while there was none."""
         if call in self._robots and call not in self._meshes:
             self._meshes[call] = _mesh_files(self._robots[call], self.finder, call.path.parent)
+        if call in self._worlds and call not in self._meshes:
+            from linkwright.sdf.mesh_files import mesh_files
+
+            loaded = self._worlds[call]
+            self._meshes[call] = mesh_files(loaded.world.models, loaded.finder)
         return (*self._files.get(call, (call.path,)), *self._meshes.get(call, ()))
 
     def _read_world(self, call: WorldCall) -> LoadedWorld:

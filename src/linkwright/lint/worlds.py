@@ -22,6 +22,7 @@ from linkwright.lint.rules.inertia_tensor import (
 from linkwright.lint.tensors import flaw_of
 from linkwright.sdf.figures import figure_of
 from linkwright.sdf.links import Collision, Inertial, Link, Visual
+from linkwright.sdf.mesh_files import shapes_of
 from linkwright.sdf.models import Model
 from linkwright.sdf.report import described
 from linkwright.sdf.resources import Missing, ResourceFinder
@@ -69,7 +70,7 @@ def _model(model: Model, *, static: bool) -> Iterator[Diagnostic]:
     for link in model.links:
         if not static and link.inertial is not None and not link.inertial.auto:
             yield from _inertial(link, link.inertial)
-    for shape in _shapes(replace(model, models=())):
+    for shape in shapes_of(replace(model, models=())):
         yield from _size(shape)
     for joint in model.joints:
         for axis, tag in ((joint.axis, "axis"), (joint.axis2, "axis2")):
@@ -85,7 +86,7 @@ def _model(model: Model, *, static: bool) -> Iterator[Diagnostic]:
 def _missing_meshes(models: Iterable[Model], finder: ResourceFinder) -> Iterator[Diagnostic]:
     """Meshes and heightmaps that are not there, each address once."""
     known: set[str] = set()
-    for shape in (shape for model in models for shape in _shapes(model)):
+    for shape in (shape for model in models for shape in shapes_of(model)):
         geometry, element = shape.geometry, shape.element
         if not isinstance(geometry, Mesh | Heightmap) or element is None or element.source is None:
             continue
@@ -103,14 +104,6 @@ def _missing_meshes(models: Iterable[Model], finder: ResourceFinder) -> Iterator
             named = (each for each in element.walk() if each.tag in _ADDRESSES)
             place = next((each for each in named if each.text().strip() == geometry.uri), element)
             yield _warning("SDF162", message, place, found.hint)
-
-
-def _shapes(model: Model) -> Iterator[Visual | Collision]:
-    for link in model.links:
-        yield from link.visuals
-        yield from link.collisions
-    for inner in model.models:
-        yield from _shapes(inner)
 
 
 def _inertial(link: Link, inertial: Inertial) -> Iterator[Diagnostic]:

@@ -42,11 +42,13 @@ class MeshLibrary:
     Attributes:
         spec: the specification that gets them.
         diagnostics: what could not be had.
+        used: the files that were asked for since this was cleared, and when they were changed, in ns since the epoch.
     """
 
     def __init__(self, finder: ResourceFinder) -> None:
         self.spec: Any = None
         self.diagnostics: list[Diagnostic] = []
+        self.used: dict[Path, int] = {}
         self._finder = finder
         self._files: dict[tuple[str, Path], Path | None] = {}
         self._assets: dict[Hashable, list[str]] = {}
@@ -208,7 +210,10 @@ class MeshLibrary:
 
     def _path(self, shape: Shape, element: Element | None) -> Path | None:
         """The file of a shape; None for a shape without one, or one that is not there, which is told once."""
-        return self.file(shape.uri, element) if isinstance(shape, Mesh | Heightmap) else None
+        path = self.file(shape.uri, element) if isinstance(shape, Mesh | Heightmap) else None
+        if path is not None:
+            self.used[path] = changed_at(path)
+        return path
 
     def file(self, uri: str, element: Element | None) -> Path | None:
         """The file that an element names; None for one that is not there, which is told once."""
@@ -267,7 +272,12 @@ def _flat(values: Any, kind: Any = np.float32) -> list[Any]:
 
 def _version(path: Path | None) -> tuple[Path | None, int]:
     """A file, and when it was changed: one that is saved is read anew for what comes anew."""
+    return path, 0 if path is None else changed_at(path)
+
+
+def changed_at(path: Path) -> int:
+    """When a file was changed, in ns since the epoch; 0 for one that is not there."""
     try:
-        return path, 0 if path is None else path.stat().st_mtime_ns
+        return path.stat().st_mtime_ns
     except OSError:
-        return path, 0
+        return 0

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import combinations
 from math import inf, isfinite
+from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
@@ -20,7 +21,7 @@ from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.scene.bodies import SECOND_AXIS, BodyWriter, hinge_anchors
 from linkwright.simulation.scene.couplings import geared, threaded
 from linkwright.simulation.scene.figures import draw, figures_of
-from linkwright.simulation.scene.meshes import MeshLibrary
+from linkwright.simulation.scene.meshes import MeshLibrary, changed_at
 from linkwright.simulation.scene.shapes import set_pose
 from linkwright.simulation.scene.structure import HeldLink, PlacedJoint, Structure, structure_of
 from linkwright.simulation.scene.wheels import SKIDDING_GRIP, make_omnidirectional, make_rolling, make_sliding
@@ -55,6 +56,7 @@ class SceneModel:
         structure: its links and joints.
         parts: what the specification has of it, in the order in which it was added: bodies, without those that hang on
             others, constraints and actuators.
+        files: those of its meshes, and when they were changed, in ns since the epoch.
     """
 
     name: str
@@ -62,6 +64,12 @@ class SceneModel:
     pose: Transform
     structure: Structure
     parts: list[Any] = field(default_factory=list)
+    files: dict[Path, int] = field(default_factory=dict)
+
+    @property
+    def is_outdated(self) -> bool:
+        """Whether a file of its meshes has changed since it came."""
+        return any(changed_at(path) != changed for path, changed in self.files.items())
 
 
 class Scene:
@@ -189,10 +197,12 @@ class Scene:
         structure = structure_of(model, name, pose)
         added = self.models[name] = SceneModel(name, model, pose, structure)
         poses = {held.link.name: held.link.pose for held in structure.links}
+        self._meshes.used.clear()
         for held in structure.links:
             body = self._add_link(held, poses)
             if body.parent == self.spec.worldbody:
                 added.parts.append(body)
+        added.files = dict(self._meshes.used)
         for held in structure.links:
             added.parts += self._mimicry(held.joint, name)
             if held.joint is not None and held.joint.name in self.joints:

@@ -99,7 +99,7 @@ def changes_to(world: World, running: Mapping[str, SceneModel], owned: Collectio
             message = phrase("there is already a model '{name}'", name=model.name)
             hint = phrase("it was put into the running simulation: delete it there, or give this one another name")
             raise LinkwrightError(Diagnostic("SIM102", message, span, hint=hint))
-        elif not alike(_unplaced(before.model), _unplaced(model)):
+        elif before.is_outdated or not alike(_unplaced(before.model), _unplaced(model)):
             renewed.append(Coming(model, model.name, pose, here=pose == before.pose))
         elif pose != before.pose:
             moved[model.name] = pose
