@@ -9,8 +9,8 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from linkwright.cli.calls import node_names
-from linkwright.cli.lookup import absolute, unknown
-from linkwright.cli.names_listing import add_count_argument, add_types_argument, print_names_and_types
+from linkwright.cli.lookup import absolute
+from linkwright.cli.names_listing import Kind, add_count_argument, add_types_argument, print_names_and_types
 from linkwright.cli.nested import SubVerb, configure_nested, run_nested
 from linkwright.cli.numbers import positive_float
 from linkwright.cli.session import add_session_arguments, run_in_graph
@@ -85,24 +85,13 @@ def configure_type(parser: argparse.ArgumentParser) -> None:
 
 def run_type(arguments: argparse.Namespace) -> int:
     """Print the types of the action, a line each."""
-    name = absolute(arguments.action_name)
-
-    async def job(session: Session) -> int:
-        found = dict(session.node.get_action_names_and_types())
-        if name not in found:
-            nothing = phrase("`linkwright action list` lists them")
-            raise unknown(
-                "CLI429",
-                phrase("Unknown action '{action_name}'", action_name=arguments.action_name),
-                name,
-                found,
-                nothing,
-            )
-        for each in found[name]:
-            print(each)
-        return 0
-
-    return run_in_graph(arguments, job, only_looks=True)
+    actions = Kind(
+        lambda session: session.node.get_action_names_and_types(),
+        "CLI429",
+        lambda given: phrase("Unknown action '{action_name}'", action_name=given),
+        phrase("`linkwright action list` lists them"),
+    )
+    return actions.print_types(arguments, arguments.action_name)
 
 
 def configure_send_goal(parser: argparse.ArgumentParser) -> None:

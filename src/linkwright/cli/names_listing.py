@@ -1,13 +1,69 @@
-"""What the verbs share that list names of the graph: their options, and how they print what they found."""
+"""What the verbs share that ask for names of the graph and their types: options, answers, what is said of none."""
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+from linkwright.cli.lookup import absolute, unknown, visible
+from linkwright.cli.session import run_in_graph
 
 if TYPE_CHECKING:
     from linkwright.cli.lookup import NamesAndTypes
+    from linkwright.cli.session import Session
+    from linkwright.diagnostics import Phrase
+
+
+@dataclass(frozen=True, slots=True)
+class Kind:
+    """What has names and types in the graph: topics, services or actions.
+
+    Attributes:
+        found: those that there are.
+        code: of the error that one is not there.
+        missing: what that error says of a name, as it was given.
+        hint: what it says where no name is near.
+    """
+
+    found: Callable[[Session], NamesAndTypes]
+    code: str
+    missing: Callable[[str], Phrase]
+    hint: Phrase
+
+    def types_of(self, session: Session, given: str, *, hidden: bool = True) -> list[str]:
+        """The types of what the command line names.
+
+        Raises:
+            LinkwrightError: with `code`, there is none of that name.
+            InvalidNameError: it is no name.
+        """
+        name = absolute(given)
+        found = dict(visible(self.found(session), hidden=hidden))
+        if name not in found:
+            raise unknown(self.code, self.missing(given), name, found, self.hint)
+        return found[name]
+
+    def print_types(self, arguments: argparse.Namespace, given: str, *, hidden: bool = True) -> int:
+        """Print the types of what the command line names, a line each; returns the exit status."""
+        absolute(given)  # what is no name is refused before the graph is joined
+
+        async def job(session: Session) -> int:
+            print("\n".join(self.types_of(session, given, hidden=hidden)))
+            return 0
+
+        return run_in_graph(arguments, job, only_looks=True)
+
+    def print_of_type(self, arguments: argparse.Namespace, wanted: str, *, hidden: bool) -> int:
+        """Print the names of what has a type; returns the exit status."""
+
+        async def job(session: Session) -> int:
+            found = visible(self.found(session), hidden=hidden)
+            print_names([name for name, types in found if wanted in types], arguments)
+            return 0
+
+        return run_in_graph(arguments, job, only_looks=True)
 
 
 def add_types_argument(parser: argparse.ArgumentParser, *, types_help: str) -> None:

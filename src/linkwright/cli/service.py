@@ -8,12 +8,12 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 from linkwright.cli.echo_format import EchoFormat, add_format_arguments
-from linkwright.cli.lookup import absolute, unknown, visible
+from linkwright.cli.lookup import absolute, visible
 from linkwright.cli.names_listing import (
+    Kind,
     add_count_argument,
     add_hidden_argument,
     add_types_argument,
-    print_names,
     print_names_and_types,
 )
 from linkwright.cli.nested import SubVerb, configure_nested, run_nested
@@ -38,25 +38,12 @@ def add_service_arguments(parser: argparse.ArgumentParser) -> None:
     add_hidden_argument(parser, "--include-hidden-services", hidden_help="consider hidden services as well")
 
 
-def types_of_service(session: Session, arguments: argparse.Namespace) -> list[str]:
-    """The types of the service that the command line names.
-
-    Raises:
-        LinkwrightError: CLI427, there is no such service.
-        InvalidNameError: it is no name.
-    """
-    name = absolute(arguments.service_name)
-    services = dict(session.node.get_service_names_and_types())
-    if name not in services:
-        nothing = phrase("`linkwright service list` lists them")
-        raise unknown(
-            "CLI427",
-            phrase("Unknown service '{service_name}'", service_name=arguments.service_name),
-            name,
-            services,
-            nothing,
-        )
-    return list(services[name])
+_SERVICES = Kind(
+    lambda session: session.node.get_service_names_and_types(),
+    "CLI427",
+    lambda given: phrase("Unknown service '{service_name}'", service_name=given),
+    phrase("`linkwright service list` lists them"),
+)
 
 
 def configure_list(parser: argparse.ArgumentParser) -> None:
@@ -88,13 +75,7 @@ def configure_find(parser: argparse.ArgumentParser) -> None:
 
 def run_find(arguments: argparse.Namespace) -> int:
     """Print the names of the services."""
-
-    async def job(session: Session) -> int:
-        services = visible(session.node.get_service_names_and_types(), hidden=arguments.include_hidden_services)
-        print_names([name for name, types in services if arguments.service_type in types], arguments)
-        return 0
-
-    return run_in_graph(arguments, job, only_looks=True)
+    return _SERVICES.print_of_type(arguments, arguments.service_type, hidden=arguments.include_hidden_services)
 
 
 def configure_info(parser: argparse.ArgumentParser) -> None:
@@ -107,7 +88,7 @@ def run_info(arguments: argparse.Namespace) -> int:
     name = absolute(arguments.service_name)
 
     async def job(session: Session) -> int:
-        types = types_of_service(session, arguments)
+        types = _SERVICES.types_of(session, arguments.service_name)
         print(f"Type: {types[0] if len(types) == 1 else types}")
         print(f"Clients count: {session.node.count_clients(name)}")
         print(f"Services count: {session.node.count_services(name)}")
@@ -123,12 +104,7 @@ def configure_type(parser: argparse.ArgumentParser) -> None:
 
 def run_type(arguments: argparse.Namespace) -> int:
     """Print the types of the service, a line each."""
-
-    async def job(session: Session) -> int:
-        print("\n".join(types_of_service(session, arguments)))
-        return 0
-
-    return run_in_graph(arguments, job, only_looks=True)
+    return _SERVICES.print_types(arguments, arguments.service_name)
 
 
 def configure_call(parser: argparse.ArgumentParser) -> None:
@@ -211,7 +187,7 @@ def run_echo(arguments: argparse.Namespace) -> int:
         from linkwright.graph.endpoints.service_introspection import EVENT_TOPIC_SUFFIX
         from linkwright.messages import get_service
 
-        kind = get_service(arguments.service_type or types_of_service(session, arguments)[0])
+        kind = get_service(arguments.service_type or _SERVICES.types_of(session, arguments.service_name)[0])
         topic = name + EVENT_TOPIC_SUFFIX
         if not session.node.get_publishers_info_by_topic(topic):
             print(

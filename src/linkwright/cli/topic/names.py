@@ -6,12 +6,12 @@ import argparse
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from linkwright.cli.lookup import absolute, unknown, visible
+from linkwright.cli.lookup import absolute, visible
 from linkwright.cli.names_listing import (
+    Kind,
     add_count_argument,
     add_hidden_argument,
     add_types_argument,
-    print_names,
     print_names_and_types,
 )
 from linkwright.cli.session import add_session_arguments, run_in_graph
@@ -20,6 +20,13 @@ from linkwright.diagnostics import phrase
 if TYPE_CHECKING:
     from linkwright.cli.session import Session
     from linkwright.graph import QoSProfile
+
+_TOPICS = Kind(
+    lambda session: session.node.get_topic_names_and_types(),
+    "CLI411",
+    lambda given: phrase("Unknown topic '{topic_name}'", topic_name=given),
+    phrase("`linkwright topic list` lists them"),
+)
 
 _INFINITE_NS = 0x7FFFFFFF_FFFFFFFF
 """From this many nanoseconds on (rmw: 9223372036.854775807 s) a duration counts as endless."""
@@ -75,11 +82,7 @@ def run_info(arguments: argparse.Namespace) -> int:
 
     async def job(session: Session) -> int:
         node = session.node
-        topics = dict(node.get_topic_names_and_types())
-        if name not in topics:
-            message = phrase("Unknown topic '{topic_name}'", topic_name=arguments.topic_name)
-            raise unknown("CLI411", message, name, topics, phrase("`linkwright topic list` lists them"))
-        types = list(topics[name])
+        types = _TOPICS.types_of(session, arguments.topic_name)
         end = "\n\n" if arguments.verbose else "\n"
         print(f"Type: {types[0] if len(types) == 1 else types}", end=end)
         print(f"Publisher count: {node.count_publishers(name)}", end=end)
@@ -105,13 +108,7 @@ def configure_find(parser: argparse.ArgumentParser) -> None:
 
 def run_find(arguments: argparse.Namespace) -> int:
     """Print the names of the topics."""
-
-    async def job(session: Session) -> int:
-        topics = visible(session.node.get_topic_names_and_types(), hidden=arguments.include_hidden_topics)
-        print_names([name for name, types in topics if arguments.topic_type in types], arguments)
-        return 0
-
-    return run_in_graph(arguments, job, only_looks=True)
+    return _TOPICS.print_of_type(arguments, arguments.topic_type, hidden=arguments.include_hidden_topics)
 
 
 def configure_type(parser: argparse.ArgumentParser) -> None:
@@ -122,23 +119,7 @@ def configure_type(parser: argparse.ArgumentParser) -> None:
 
 def run_type(arguments: argparse.Namespace) -> int:
     """Print the types in use on the topic, a line each."""
-    name = absolute(arguments.topic_name)
-
-    async def job(session: Session) -> int:
-        topics = dict(visible(session.node.get_topic_names_and_types(), hidden=arguments.include_hidden_topics))
-        if name not in topics:
-            raise unknown(
-                "CLI411",
-                phrase("Unknown topic '{name}'", name=name),
-                name,
-                topics,
-                phrase("`linkwright topic list` lists them"),
-            )
-        for each in topics[name]:
-            print(each)
-        return 0
-
-    return run_in_graph(arguments, job, only_looks=True)
+    return _TOPICS.print_types(arguments, arguments.topic_name, hidden=arguments.include_hidden_topics)
 
 
 def endpoint_text(info: Any) -> str:
