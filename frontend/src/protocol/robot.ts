@@ -28,6 +28,8 @@ export interface Surface {
   normal_map: string | null;
   roughness_map: string | null;
   metalness_map: string | null;
+  emissive_map: string | null;
+  occlusion_map: string | null;
 }
 
 /** A shape to draw, posed in its link's frame. */

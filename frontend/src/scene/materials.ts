@@ -20,13 +20,26 @@ import {
 import { filmic } from "./filmic-tone";
 import type { Lighting } from "./light";
 
-/** How a surface reflects lamps: roughness and metalness from 0 to 1, and images of these and of its normals. */
+/**
+ * How a surface reflects lamps: roughness and metalness from 0 to 1, and images of these and of its normals; what it gives
+ * off by itself, and where (red) light from all sides does not reach it.
+ */
 export interface Surface {
   readonly roughness: number;
   readonly metalness: number;
   readonly normalMap: Texture | null;
   readonly roughnessMap: Texture | null;
   readonly metalnessMap: Texture | null;
+  readonly emissive: readonly [number, number, number];
+  readonly emissiveMap: Texture | null;
+  readonly aoMap: Texture | null;
+}
+
+/** The images of a surface. */
+export function mapsOf(surface: Surface | null | undefined): (Texture | null)[] {
+  if (!surface) return [];
+  const { normalMap, roughnessMap, metalnessMap, emissiveMap, aoMap } = surface;
+  return [normalMap, roughnessMap, metalnessMap, emissiveMap, aoMap];
 }
 
 /** What a surface looks like; equal looks share one material. */
@@ -82,8 +95,8 @@ export class MaterialPool {
 
   get(look: Look): Material {
     const surface = (this.isLit && look.surface) || null;
-    const maps = [look.map, surface?.normalMap, surface?.roughnessMap, surface?.metalnessMap].map((map) => map?.uuid);
-    const numbers = [look.alpha, surface?.roughness, surface?.metalness];
+    const maps = [look.map, ...mapsOf(surface)].map((map) => map?.uuid);
+    const numbers = [look.alpha, surface?.roughness, surface?.metalness, ...(surface?.emissive ?? [])];
     const key = [...look.color, ...numbers, ...maps, look.vertexColors, look.doubleSided, look.behind, this.lighting].join();
     this.used.add(key);
     let material = this.materials.get(key);
@@ -126,7 +139,8 @@ export class MaterialPool {
 /** A material that reflects lamps, and as far as it is of metal a grey room. */
 function reflecting(style: MeshStandardMaterialParameters, surface: Surface): MeshStandardMaterial {
   const envMap = surface.metalness > 0 ? room() : null;
-  const material = new MeshStandardMaterial({ ...style, ...surface, envMap, envMapIntensity: surface.metalness });
+  const emissive = new Color(...surface.emissive);
+  const material = new MeshStandardMaterial({ ...style, ...surface, emissive, envMap, envMapIntensity: surface.metalness });
   material.envMapRotation.x = Math.PI / 2; // the picture has y up
   return material;
 }

@@ -197,8 +197,7 @@ class _Builder:
             shape.texture = self._located(link, image, IMAGE_TYPES)
         workflow = material.pbr.metal if material and material.pbr else None
         if workflow and _reflects(workflow):
-            maps = (workflow.normal_map, workflow.roughness_map, workflow.metalness_map)
-            urls = [self._located(link, each, IMAGE_TYPES) if each else None for each in maps]
+            urls = [self._located(link, each, IMAGE_TYPES) if each else None for each in _maps(workflow)]
             shape.surface = Surface(workflow.roughness, workflow.metalness, *urls)
 
     def _located(self, link: str, uri: str, types: dict[str, str]) -> str | None:
@@ -213,11 +212,16 @@ class _Builder:
             problems.append(text)
 
 
+def _maps(workflow: Workflow) -> tuple[str, ...]:
+    """The images of a surface but for that of its colour, in the order of `Surface`."""
+    reflecting = (workflow.normal_map, workflow.roughness_map, workflow.metalness_map)
+    return (*reflecting, workflow.emissive_map, workflow.ambient_occlusion_map)
+
+
 def _reflects(workflow: Workflow) -> bool:
     """Whether a material says how it reflects light, and not only which image it wears."""
     usual = Workflow()
-    said = workflow.normal_map or workflow.roughness_map or workflow.metalness_map
-    return bool(said) or (workflow.roughness, workflow.metalness) != (usual.roughness, usual.metalness)
+    return any(_maps(workflow)) or (workflow.roughness, workflow.metalness) != (usual.roughness, usual.metalness)
 
 
 def _look(material: Material) -> tuple[Sequence[float] | None, str]:

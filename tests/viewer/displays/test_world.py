@@ -250,12 +250,15 @@ async def test_how_a_surface_reflects_is_sent_where_its_material_says_so(tmp_pat
     visual = "<visual name='{}'>" + ball + "<material><pbr><metal>{}</metal></pbr></material></visual>"
     albedo = f"<albedo_map>{bumps}</albedo_map>"
     metal = f"<metalness>1</metalness><roughness>0.2</roughness><normal_map>{bumps}</normal_map>"
-    visuals = visual.format("plain", albedo) + visual.format("metal", albedo + metal)
+    lamp = f"<emissive_map>{bumps}</emissive_map><ambient_occlusion_map>{bumps}</ambient_occlusion_map>"
+    said = {"plain": albedo, "metal": albedo + metal, "lamp": albedo + lamp}
+    visuals = "".join(visual.format(name, each) for name, each in said.items())
     text = f"<sdf version='1.9'><model name='ball'><link name='l'>{visuals}</link></model></sdf>"
     async with world(config("world")) as made:
         await Simulation(made).describe(text, links=1)
         (link,) = sent(made, "world_scene").fields["links"]
-        plain, shining = link["visuals"]
+        plain, shining, lamp = link["visuals"]
+        assert lamp["surface"]["emissive_map"] == lamp["surface"]["occlusion_map"] == plain["texture"]
         assert plain["surface"] is None
         surface = shining["surface"]
         assert (surface["roughness"], surface["metalness"], surface["roughness_map"]) == (0.2, 1.0, None)

@@ -9,7 +9,7 @@ import {
   type Texture,
 } from "three";
 import { strings } from "../../strings";
-import type { Surface } from "../materials";
+import { mapsOf, type Surface } from "../materials";
 import { MeshError } from "./mesh-error";
 import { collapseUnreal, unrealProblem, type Unreal } from "./mesh-numbers";
 
@@ -97,7 +97,10 @@ function ownMaterial(material: Material): OwnMaterial {
   };
 }
 
-function surfaceOf({ roughness, metalness, normalMap, roughnessMap, metalnessMap }: MeshStandardMaterial): Surface {
-  for (const map of [normalMap, roughnessMap, metalnessMap]) if (map) map.colorSpace = NoColorSpace;
-  return { roughness, metalness, normalMap, roughnessMap, metalnessMap };
+function surfaceOf(material: MeshStandardMaterial): Surface {
+  const { roughness, metalness, normalMap, roughnessMap, metalnessMap, emissiveMap, aoMap } = material;
+  const { r, g, b } = material.emissive.clone().multiplyScalar(material.emissiveIntensity);
+  const surface = { roughness, metalness, normalMap, roughnessMap, metalnessMap, emissive: [r, g, b], emissiveMap, aoMap } as const;
+  for (const map of mapsOf(surface)) if (map) map.colorSpace = NoColorSpace;
+  return surface;
 }

@@ -110,10 +110,11 @@ export class ShapeDrawing {
     };
     this.texture = await wear(texture);
     if (surface) {
-      const { roughness, metalness, normal_map, roughness_map, metalness_map } = surface;
-      const maps = [wear(normal_map), wear(roughness_map), wear(metalness_map)] as const;
-      const [normalMap, roughnessMap, metalnessMap] = await Promise.all(maps);
-      this.surface = { roughness, metalness, normalMap, roughnessMap, metalnessMap };
+      const { roughness, metalness, normal_map, roughness_map, metalness_map, emissive_map, occlusion_map } = surface;
+      const maps = [normal_map, roughness_map, metalness_map, emissive_map, occlusion_map] as const;
+      const [normalMap = null, roughnessMap = null, metalnessMap = null, emissiveMap = null, aoMap = null] = await Promise.all(maps.map(wear));
+      const emissive = emissiveMap ? ([1, 1, 1] as const) : ([0, 0, 0] as const);
+      this.surface = { roughness, metalness, normalMap, roughnessMap, metalnessMap, emissive, emissiveMap, aoMap };
     }
     return problems.length > 0 ? problems.join("; ") : null;
   }

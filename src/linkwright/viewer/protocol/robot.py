@@ -25,13 +25,18 @@ class Submesh(Record):
 
 
 class Surface(Record):
-    """How a shape of a world reflects light: roughness and metalness from 0 to 1, and addresses of images."""
+    """How a shape of a world reflects light: roughness and metalness from 0 to 1, and addresses of images.
+
+    `emissive_map` is what it gives off by itself, `occlusion_map` where (red) light from all sides does not reach it.
+    """
 
     roughness: float
     metalness: float
     normal_map: str | None = None
     roughness_map: str | None = None
     metalness_map: str | None = None
+    emissive_map: str | None = None
+    occlusion_map: str | None = None
 
 
 class Shape(Record):
