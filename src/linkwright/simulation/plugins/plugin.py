@@ -114,6 +114,9 @@ class Environment(Protocol):
     def random(self, name: str) -> np.random.Generator:
         """Random numbers of its own for whatever has a name; the same for the same seed."""
 
+    def plugins(self, model: str) -> tuple[SimulatedPlugin[Any], ...]:
+        """What runs of the plugins and sensors of a model."""
+
 
 class SimulatedPlugin(Generic[P]):
     """A plugin or a sensor that runs.

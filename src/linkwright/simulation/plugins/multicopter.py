@@ -1,0 +1,278 @@
+"""Flying: ``gz-sim-multicopter-motor-model-system``, a rotor, and ``gz-sim-multicopter-control-system``, velocities.
+
+A rotor pulls along the z axis of its link with the square of its speed, turns what carries it the other way, and drags
+in the air that it moves through. The controller tilts the model so that it gets the velocity that it is told.
+
+Source: gz-sim (parameters, topics, formulas); T. Lee, M. Leok, N. H. McClamroch, "Geometric tracking control of a
+quadrotor UAV on SE(3)", 2010.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import exp, hypot, inf
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from linkwright.diagnostics import phrase
+from linkwright.geometry.arrays import rotation_matrix
+from linkwright.geometry.vectors import Vector3
+from linkwright.sdf.poses import SEPARATOR
+from linkwright.simulation.plugins.entities import numbers
+from linkwright.simulation.plugins.parameters import parameter
+from linkwright.simulation.plugins.plugin import SimulatedPlugin
+from linkwright.simulation.simulation import NANOSECONDS
+from linkwright.xmltree import Element
+
+Array = npt.NDArray[np.float64]
+
+_SPIN_GAIN = 1e-3
+"""Torque in N m for each rad/s that a rotor turns too slowly: what is seen of it; its pull does not depend on that."""
+_PARALLEL = 1e-3
+
+
+@dataclass(frozen=True, kw_only=True)
+class MotorParameters:
+    """Of a rotor."""
+
+    joint_name: str = parameter(aliases=("jointName",))
+    link_name: str = parameter(aliases=("linkName",))
+    turning_direction: str = parameter("ccw", aliases=("turningDirection",))
+    motor_type: str = parameter("velocity", aliases=("motorType",))
+    actuator_number: int = parameter(0, aliases=("motorNumber",))
+    max_rot_velocity: float = parameter(838.0, aliases=("maxRotVelocity",))
+    motor_constant: float = parameter(8.54858e-06, aliases=("motorConstant",))
+    moment_constant: float = parameter(0.016, aliases=("momentConstant",))
+    rotor_drag_coefficient: float = parameter(1.0e-4, aliases=("rotorDragCoefficient",))
+    rolling_moment_coefficient: float = parameter(1.0e-6, aliases=("rollingMomentCoefficient",))
+    slowdown: float = parameter(10.0, aliases=("rotorVelocitySlowdownSim",))
+    time_constant_up: float = parameter(1.0 / 80.0, aliases=("timeConstantUp",))
+    time_constant_down: float = parameter(1.0 / 40.0, aliases=("timeConstantDown",))
+
+
+class GzMulticopterMotor(SimulatedPlugin[MotorParameters]):
+    """A rotor; it turns as fast as a controller of its model says, with the delay of a motor.
+
+    Attributes:
+        wanted: how fast it is to turn, in rad/s.
+        speed: how fast it turns.
+    """
+
+    PARAMETERS = MotorParameters
+    IGNORED = ("commandSubTopic", "motorSpeedPubTopic")
+    CARRIED = ("wanted", "speed")
+
+    def start(self) -> None:
+        """Find the rotor.
+
+        Raises:
+            LinkwrightError: SIM133, SIM134 there is no such link or joint; SIM160 the motor is of another type.
+        """
+        said = self.parameters
+        if said.motor_type != "velocity":
+            raise self.refused(
+                phrase("plugin '{plugin}': <motorType> is 'velocity' here and nothing else", plugin=self.place.name)
+            )
+        self._link = self.link(said.link_name)
+        joint = self.joint(said.joint_name)
+        self._parent = self.simulation.scene.joints[joint].parent
+        self._sign = -1.0 if said.turning_direction.strip().lower() == "cw" else 1.0
+        self._spin = self.simulation.add_velocity_motor(joint, _SPIN_GAIN, inf)
+        self.simulation.keep_awake(self._link)
+        self.reset()
+        self.every(0.0, self._pull)
+
+    def reset(self) -> None:
+        """Stand still."""
+        self.wanted = self.speed = 0.0
+
+    def _pull(self) -> None:
+        said, simulation = self.parameters, self.simulation
+        wanted = min(max(self.wanted, 0.0), said.max_rot_velocity)
+        constant = said.time_constant_up if wanted > self.speed else said.time_constant_down
+        share = exp(-simulation.step / NANOSECONDS / constant) if constant > 0.0 else 0.0
+        self.speed = share * self.speed + (1.0 - share) * wanted
+        thrust = said.motor_constant * self.speed**2
+        axis = rotation_matrix(simulation.link_pose(self._link)[3:])[:, 2]
+        velocity, _ = simulation.link_velocity(self._link)
+        across = self.speed * (velocity - velocity @ axis * axis)
+        force = thrust * axis - said.rotor_drag_coefficient * across
+        torque = -self._sign * thrust * said.moment_constant * axis - said.rolling_moment_coefficient * across
+        me = self.place.name + said.joint_name
+        simulation.push(self._link, force.tolist(), by=me)
+        simulation.push(self._parent, (0.0, 0.0, 0.0), torque.tolist(), by=me)
+        self._spin.target = self._sign * self.speed / said.slowdown
+
+
+@dataclass(frozen=True, kw_only=True)
+class ControlParameters:
+    """Of the controller."""
+
+    com_link_name: str = parameter(aliases=("comLinkName",))
+    command_topic: str = parameter("cmd_vel", aliases=("commandSubTopic",))
+    enable_topic: str = parameter("enable", aliases=("enableSubTopic",))
+    velocity_gain: Vector3 = parameter(aliases=("velocityGain",))  # noqa: RUF009 - a field of the table
+    attitude_gain: Vector3 = parameter(aliases=("attitudeGain",))  # noqa: RUF009 - a field of the table
+    angular_rate_gain: Vector3 = parameter(aliases=("angularRateGain",))  # noqa: RUF009 - a field of the table
+    max_acceleration: Vector3 = parameter((inf, inf, inf), aliases=("maximumLinearAcceleration",))  # noqa: RUF009 - a field of the table
+    max_linear: Vector3 = parameter((inf, inf, inf), aliases=("maximumLinearVelocity",))  # noqa: RUF009 - a field of the table
+    max_angular: Vector3 = parameter((inf, inf, inf), aliases=("maximumAngularVelocity",))  # noqa: RUF009 - a field of the table
+
+
+class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
+    """A model flies with the velocity that it is told, in its own axes, and hovers when who told it is lost."""
+
+    PARAMETERS = ControlParameters
+    IGNORED = (
+        "rotorConfiguration",  # read below
+        "linearVelocityNoiseMean",
+        "linearVelocityNoiseStdDev",
+        "angularVelocityNoiseMean",
+        "angularVelocityNoiseStdDev",
+    )
+    CARRIED = ("_wanted", "_is_enabled")
+
+    def start(self) -> None:
+        """Find the rotors, and listen.
+
+        Raises:
+            LinkwrightError: SIM133, SIM134 there is no such link or joint; SIM160 its rotors cannot hold the model.
+        """
+        said, element = self.parameters, self.place.element
+        self._body = self.link(said.com_link_name)
+        self._find_rotors(element)
+        self._rotors: dict[str, GzMulticopterMotor] = {}
+        self.reset()
+        namespace = _text(element, "robotNamespace").strip("/")
+        start = f"/{namespace}/" if namespace else "/"
+        commander = self.node.commander(self._rest)
+        twist = "geometry_msgs/msg/Twist"
+        self.node.subscribe(twist, start + said.command_topic, self._told, commander=commander, rest=self._rest)
+        self.node.subscribe("std_msgs/msg/Bool", start + said.enable_topic, self._enable)
+        self.every(0.0, self._fly)
+
+    def reset(self) -> None:
+        """Wait for the first command."""
+        self._wanted: tuple[Array, float] | None = None
+        self._is_enabled = True
+
+    def _find_rotors(self, element: Element | None) -> None:
+        """Where rotors are, and which speeds of theirs give which turning and thrust."""
+        simulation = self.simulation
+        configuration = None if element is None else element.first("rotorConfiguration")
+        rotors = [] if configuration is None else list(configuration.elements("rotor"))
+        place = np.array(simulation.link_pose(self._body))
+        turn = rotation_matrix(place[3:])
+        columns = []
+        self._joints = []
+        for each in rotors:
+            joint = self.joint(_text(each, "jointName"))
+            at = turn.T @ (np.array(simulation.link_pose(simulation.scene.joints[joint].child)[:3]) - place[:3])
+            force, moment = self._number(each, "forceConstant"), self._number(each, "momentConstant")
+            direction = self._number(each, "direction")
+            arm = hypot(at[0], at[1])
+            across = (at[1], -at[0]) if arm else (0.0, 0.0)
+            columns.append((force * across[0], force * across[1], -direction * force * moment, force))
+            self._joints.append(joint)
+        allocation = np.array(columns).T
+        if len(rotors) < 4 or np.linalg.matrix_rank(allocation) < 4:
+            raise self.refused(phrase("plugin '{plugin}': its rotors cannot hold the model", plugin=self.place.name))
+        self._mass, inertia = self._inertial()
+        turning = np.eye(4)
+        turning[:3, :3] = inertia
+        self._speeds_of = np.linalg.pinv(allocation) @ turning
+        inverse = np.linalg.inv(inertia)
+        self._attitude_gain = np.array(self.parameters.attitude_gain) @ inverse
+        self._rate_gain = np.array(self.parameters.angular_rate_gain) @ inverse
+
+    def _number(self, rotor: Element, tag: str) -> float:
+        try:
+            return float(_text(rotor, tag))
+        except ValueError as error:
+            told = phrase("plugin '{plugin}': a <rotor> has no number in <{tag}>", plugin=self.place.name, tag=tag)
+            raise self.refused(told) from error
+
+    def _inertial(self) -> tuple[float, Array]:
+        """Mass of the model in kg, and its inertia about its centre of mass in the axes of its body, in kg m2."""
+        simulation = self.simulation
+        model, data = simulation.model, simulation.data
+        body = simulation.body(self._body)
+        root = int(model.body_rootid[body])
+        parts = [each for each in range(model.nbody) if int(model.body_rootid[each]) == root]
+        masses = model.body_mass[parts]
+        centre = masses @ data.xipos[parts] / masses.sum()
+        total = np.zeros((3, 3))
+        for each in parts:
+            axes, offset = data.ximat[each].reshape(3, 3), data.xipos[each] - centre
+            total += axes @ np.diag(model.body_inertia[each]) @ axes.T
+            total += model.body_mass[each] * (offset @ offset * np.eye(3) - np.outer(offset, offset))
+        turn = data.xmat[body].reshape(3, 3)
+        return float(masses.sum()), turn.T @ total @ turn
+
+    def _told(self, twist: Any) -> None:
+        most = np.array(self.parameters.max_linear)
+        turning = self.parameters.max_angular[2]
+        linear = np.clip(np.array(numbers(twist.linear)), -most, most)
+        self._wanted = (linear, min(max(float(twist.angular.z), -turning), turning))
+
+    def _rest(self) -> bool:
+        """Hover."""
+        before = self._wanted
+        if before is None:
+            return False
+        self._wanted = (np.zeros(3), 0.0)
+        return bool(before[0].any()) or before[1] != 0.0
+
+    def _enable(self, message: Any) -> None:
+        self._is_enabled = bool(message.data)
+
+    def _fly(self) -> None:
+        motors = self._motors()
+        if not self._is_enabled:
+            for motor in motors.values():
+                motor.wanted = 0.0
+        elif self._wanted is not None:
+            for joint, speed in zip(self._joints, self._speeds(*self._wanted), strict=True):
+                if joint in motors:
+                    motors[joint].wanted = float(speed)
+
+    def _motors(self) -> dict[str, GzMulticopterMotor]:
+        """The rotors of the model, by joint."""
+        if len(self._rotors) < len(self._joints):  # plugins of a model come one after the other
+            found = self._environment.plugins(self.place.path.partition(SEPARATOR)[0])
+            motors = [each for each in found if isinstance(each, GzMulticopterMotor)]
+            self._rotors = {self.joint(each.parameters.joint_name): each for each in motors}
+        return self._rotors
+
+    def _speeds(self, linear: Array, turning: float) -> Array:
+        """How fast each rotor is to turn, in rad/s."""
+        said, simulation = self.parameters, self.simulation
+        turn = rotation_matrix(simulation.link_pose(self._body)[3:])
+        velocity, rates = simulation.link_velocity(self._body)
+        error = (velocity - turn @ linear) * np.array(said.velocity_gain) / self._mass
+        most = np.array(said.max_acceleration)
+        acceleration = np.clip(error, -most, most) + simulation.model.opt.gravity
+        wanted = _attitude(turn, acceleration)
+        skew = 0.5 * (wanted.T @ turn - turn.T @ wanted)
+        tilt = np.array((skew[2, 1], skew[0, 2], skew[1, 0]))
+        rate_error = turn.T @ rates - turn.T @ wanted @ np.array((0.0, 0.0, turning))
+        angular = -tilt * self._attitude_gain - rate_error * self._rate_gain
+        thrust = -self._mass * float(acceleration @ turn[:, 2])
+        squares: Array = self._speeds_of @ np.array((*angular, thrust))
+        return np.sqrt(np.maximum(squares, 0.0))
+
+
+def _attitude(turn: Array, acceleration: Array) -> Array:
+    """The axes of a body that pulls against an acceleration, and looks where it looked."""
+    up = -acceleration / max(float(np.linalg.norm(acceleration)), 1e-9)
+    ahead = next((each for each in turn.T if np.sum(np.cross(each, up) ** 2) >= _PARALLEL), turn[:, 0])
+    left = np.cross(up, ahead)
+    left /= np.linalg.norm(left)
+    return np.column_stack((np.cross(left, up), left, up))
+
+
+def _text(element: Element | None, tag: str) -> str:
+    found = None if element is None else element.first(tag)
+    return "" if found is None else found.text().strip()

@@ -1,0 +1,139 @@
+"""A model that flies: rotors and the controller of velocities of gz."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from linkwright.messages import get_message
+from tests.outside import Outside, Stranger
+from tests.simulation.test_lost_commanders import advance, forward, warnings
+from tests.simulation.test_plugins import served
+from tests.simulation.worlds import GROUND
+
+FORCE, MOMENT = 8.54858e-06, 0.016
+PLACES = {"front_right": (0.13, -0.2, "ccw"), "back_left": (-0.13, 0.2, "ccw"), "front_left": (0.13, 0.2, "cw")}
+PLACES["back_right"] = (-0.13, -0.2, "cw")
+MASS = 1.5
+
+
+def rotor(name: str, x: float, y: float) -> str:
+    return (
+        f'<link name="{name}"><pose>{x} {y} 0.02 0 0 0</pose><inertial><mass>0.005</mass><inertia><ixx>9.75e-07</ixx>'
+        "<iyy>4.2e-05</iyy><izz>4.3e-05</izz></inertia></inertial></link>"
+        f'<joint name="{name}_joint" type="revolute"><parent>body</parent><child>{name}</child><axis><xyz>0 0 1</xyz>'
+        "<limit><lower>-1e16</lower><upper>1e16</upper></limit></axis></joint>"
+    )
+
+
+def motor(number: int, name: str, direction: str) -> str:
+    return (
+        '<plugin filename="gz-sim-multicopter-motor-model-system" name="gz::sim::systems::MulticopterMotorModel">'
+        f"<robotNamespace>X3</robotNamespace><jointName>{name}_joint</jointName><linkName>{name}</linkName>"
+        f"<turningDirection>{direction}</turningDirection><timeConstantUp>0.0125</timeConstantUp>"
+        f"<timeConstantDown>0.025</timeConstantDown><maxRotVelocity>800</maxRotVelocity>"
+        f"<motorConstant>{FORCE}</motorConstant><momentConstant>{MOMENT}</momentConstant>"
+        f"<actuator_number>{number}</actuator_number><rotorDragCoefficient>8.06428e-05</rotorDragCoefficient>"
+        "<rollingMomentCoefficient>1e-06</rollingMomentCoefficient><motorType>velocity</motorType></plugin>"
+    )
+
+
+def control(names: list[str]) -> str:
+    rotors = "".join(
+        f"<rotor><jointName>{name}_joint</jointName><forceConstant>{FORCE}</forceConstant><momentConstant>{MOMENT}"
+        f"</momentConstant><direction>{1 if PLACES[name][2] == 'ccw' else -1}</direction></rotor>"
+        for name in names
+    )
+    return (
+        '<plugin filename="gz-sim-multicopter-control-system" name="gz::sim::systems::MulticopterVelocityControl">'
+        "<robotNamespace>X3</robotNamespace><commandSubTopic>cmd_vel</commandSubTopic><enableSubTopic>enable"
+        "</enableSubTopic><comLinkName>body</comLinkName><velocityGain>2.7 2.7 2.7</velocityGain>"
+        "<attitudeGain>2 3 0.15</attitudeGain><angularRateGain>0.4 0.52 0.18</angularRateGain>"
+        f"<rotorConfiguration>{rotors}</rotorConfiguration></plugin>"
+    )
+
+
+def quadcopter(names: list[str] | None = None) -> str:
+    rotors = "".join(rotor(name, x, y) for name, (x, y, _) in PLACES.items())
+    motors = "".join(motor(number, name, way) for number, (name, (_, _, way)) in enumerate(PLACES.items()))
+    return (
+        f'<model name="x3"><pose>0 0 0.1 0 0 0</pose><link name="body"><inertial><mass>{MASS - 0.02}</mass><inertia>'
+        "<ixx>0.0347563</ixx><iyy>0.07</iyy><izz>0.0977</izz></inertia></inertial><collision name='c'><geometry><box>"
+        f"<size>0.47 0.47 0.11</size></box></geometry></collision></link>{rotors}{motors}"
+        f"{control(list(PLACES) if names is None else names)}</model>"
+    )
+
+
+def place(server) -> np.ndarray:
+    return np.array(server.simulation.model_pose("x3")[:3])
+
+
+def velocity(server) -> np.ndarray:
+    return server.simulation.link_velocity("x3::body")[0]
+
+
+def up(speed: float):
+    command = forward(0.0)
+    command.linear.z = speed
+    return command
+
+
+async def test_it_stands_until_it_is_told_rises_hovers_and_flies_ahead() -> None:
+    async with served(GROUND, quadcopter()) as (server, graph, log):
+        driver = graph.create_node("driver").create_publisher(get_message("geometry_msgs/msg/Twist"), "/X3/cmd_vel", 10)
+        await advance(server, graph, 0.5)
+        begin = place(server)
+        driver.publish(up(0.5))
+        await advance(server, graph, 4.0)
+        assert velocity(server) == pytest.approx([0.0, 0.0, 0.5], abs=0.02)
+        assert place(server)[2] - begin[2] > 1.0
+        driver.publish(up(0.0))
+        await advance(server, graph, 3.0)
+        assert velocity(server) == pytest.approx([0.0, 0.0, 0.0], abs=0.01)
+        motors = [each for each in server.plugins("x3") if hasattr(each, "speed")]
+        assert sum(FORCE * each.speed**2 for each in motors) == pytest.approx(MASS * 9.8, rel=1e-3)
+        driver.publish(forward(1.0))
+        await advance(server, graph, 4.0)
+        assert velocity(server)[0] == pytest.approx(1.0, abs=0.1)
+        assert abs(velocity(server)[1]) < 0.02
+        assert warnings(log) == []
+
+
+async def test_it_turns_and_flies_in_its_own_axes() -> None:
+    async with served(GROUND, quadcopter()) as (server, graph, _):
+        driver = graph.create_node("driver").create_publisher(get_message("geometry_msgs/msg/Twist"), "/X3/cmd_vel", 10)
+        driver.publish(up(0.5))
+        await advance(server, graph, 3.0)
+        turning = up(0.0)
+        turning.angular.z = 0.5
+        driver.publish(turning)
+        await advance(server, graph, 4.0)
+        assert server.simulation.link_velocity("x3::body")[1][2] == pytest.approx(0.5, abs=0.05)
+
+
+async def test_it_falls_when_it_is_switched_off_and_hovers_when_its_pilot_is_lost() -> None:
+    async with served(GROUND, quadcopter()) as (server, graph, log):
+        pilot = Stranger(Outside(graph), "/X3/cmd_vel")
+        pilot.send(up(0.5))
+        await advance(server, graph, 4.0)
+        pilot.be_lost()
+        await advance(server, graph, 4.0)
+        assert velocity(server) == pytest.approx([0.0, 0.0, 0.0], abs=0.02)
+        assert len(warnings(log)) == 1
+        switch = graph.create_node("switch").create_publisher(get_message("std_msgs/msg/Bool"), "/X3/enable", 10)
+        switch.publish(switch.msg_type(data=False))
+        await advance(server, graph, 0.3)
+        assert velocity(server)[2] < -1.0
+
+
+async def test_rotors_that_cannot_hold_it_are_refused() -> None:
+    async with served(GROUND, quadcopter(["front_right", "back_left", "front_left"])) as (_, __, log):
+        (told,) = warnings(log)
+        assert "its rotors cannot hold the model" in told
+
+
+async def test_a_rotor_without_numbers_is_told() -> None:
+    text = quadcopter().replace(f"<momentConstant>{MOMENT}</momentConstant><direction>", "<direction>")
+    async with served(GROUND, text) as (_, __, log):
+        (told,) = warnings(log)
+        assert "a <rotor> has no number in <momentConstant>" in told
