@@ -8,7 +8,7 @@ What goes over a topic or service has the key ``<domain>/<name>/<type>/<hash>``.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING
 
 from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
@@ -123,13 +123,21 @@ def read(key: str) -> Token | None:
     if mark not in KINDS or len(chunks) < _ENDPOINT_CHUNKS:
         return None
     topic, type_name, type_hash, qos = chunks[_NODE_CHUNKS:_ENDPOINT_CHUNKS]  # newer distributions may add chunks
-    try:
-        qos_text.read(qos)
-    except ValueError:
+    if not _is_profile(qos):
         return None
     return Token(
         int(domain), session, node_id, entity_id, node, KINDS[mark], _name(topic), _name(type_name), type_hash, qos
     )
+
+
+@lru_cache(maxsize=1024)
+def _is_profile(text: str) -> bool:
+    """Whether a chunk is a profile; graphs have few of them for many endpoints."""
+    try:
+        qos_text.read(text)
+    except ValueError:
+        return False
+    return True
 
 
 def _chunk(text: str) -> str:
