@@ -114,3 +114,15 @@ def test_a_port_in_use(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> No
     err = capsys.readouterr().err
     assert f"{port}" in err
     assert err.count("error[VIEW") == 1
+
+
+async def test_a_model_in_sdf_is_shown(tmp_path: Path) -> None:
+    box = "<geometry><box><size>1 1 1</size></box></geometry>"
+    link = f'<link name="base"><visual name="v">{box}</visual></link>'
+    (tmp_path / "crate.sdf").write_text(f'<sdf version="1.9"><model name="crate">{link}</model></sdf>')
+    async with shown(tmp_path / "crate.sdf") as (view, until):
+        assert "Unable to initialize" not in await until("Robot initialized")
+        known = view.descriptions.expand(XacroCall(tmp_path / "crate.sdf"))
+        robot = view.descriptions.library.read(known).robot
+        assert robot is not None
+        assert list(robot.links) == ["base"]

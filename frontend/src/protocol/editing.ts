@@ -2,9 +2,9 @@
 
 import type { DiagnosticItem } from "./description";
 
-export type EditedPart = "joint" | "axis" | "visual" | "collision";
+export type EditedPart = "joint" | "axis" | "visual" | "collision" | "inertial";
 
-/** Something with a place: the origin of a joint, visual or collision, or the axis of a joint. */
+/** Something with a place: the origin of a joint, visual, collision or inertial, or the axis of a joint. */
 export interface EditablePart {
   part: EditedPart;
   name: string;

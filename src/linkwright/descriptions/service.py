@@ -54,7 +54,7 @@ def examine(
     xacro: bool | None = None,
     partly: bool = False,
 ) -> Description:
-    """A URDF or xacro file or text with its robot and all findings about it; arguments as for `load`.
+    """A URDF or xacro file or text, or one in SDF, with its robot and all findings about it; arguments as for `load`.
 
     Args:
         path_or_text: see `load`.
@@ -74,6 +74,10 @@ def examine(
     text = str(path_or_text) if is_text else overlay.text(name) if overlay is not None else None
     if not xacro:
         document = parse_as_urdfdom(read_bytes(name) if text is None else text, name)
+        if document.root.tag == "sdf" and document.source is not None:
+            from linkwright.descriptions.worlds import robot_of_text
+
+            return Description(name, document, robot_of_text(document.source.text, name), overlay=overlay)
         if xacro is False or not (arguments or is_xacro(name, document.root)):
             return Description(name, document, read(document), overlay=overlay)
         text = document.source.text if is_text and document.source else text

@@ -119,7 +119,8 @@ class Descriptions:
 
         self.begin(call)
         try:
-            found = examine(call.path, arguments=dict(call.arguments), packages=self.finder, xacro=True, partly=True)
+            xacro = None if call.path.suffix == ".sdf" else True  # what is SDF may be shown, too
+            found = examine(call.path, arguments=dict(call.arguments), packages=self.finder, xacro=xacro, partly=True)
         except LinkwrightError as error:
             raise DescriptionError(call, error.diagnostics) from error
         if found.problems:

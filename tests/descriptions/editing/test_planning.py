@@ -290,6 +290,7 @@ def parts_of(found: Robot) -> list[tuple[Any, str, int]]:
     for link in found.links.values():
         parts += [("visual", link.name, i) for i in range(len(link.visuals))]
         parts += [("collision", link.name, i) for i in range(len(link.collisions))]
+        parts += [("inertial", link.name, 0)] if link.inertial is not None else []
     return parts
 
 
@@ -305,6 +306,10 @@ def with_edit(found: Robot, request: EditRequest) -> Robot:
         joint = replace(found.joints[name], origin=moved(found.joints[name].origin, request))
         return replace(found, joints={**found.joints, name: joint})
     link = found.links[name]
+    if request.part == "inertial":
+        assert link.inertial is not None
+        inertial = replace(link.inertial, origin=moved(link.inertial.origin, request))
+        return replace(found, links={**found.links, name: replace(link, inertial=inertial)})
     field = f"{request.part}s"
     shapes = list(getattr(link, field))
     shapes[i] = replace(shapes[i], origin=moved(shapes[i].origin, request))
@@ -333,7 +338,12 @@ def facts(found: Robot) -> Any:
         name: [[(s.name, s.origin.xyz, s.origin.rpy, repr(s.geometry)) for s in (*link.visuals, *link.collisions)]]
         for name, link in found.links.items()
     }
-    return rounded(joints), rounded(links)
+    masses = {
+        name: (link.inertial.mass, link.inertial.origin.xyz, link.inertial.origin.rpy)
+        for name, link in found.links.items()
+        if link.inertial is not None
+    }
+    return rounded(joints), rounded(links), rounded(masses)
 
 
 def unedited(root: Element) -> Iterator[tuple[str, dict[str, str], str]]:

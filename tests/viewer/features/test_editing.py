@@ -26,6 +26,8 @@ ROBOT = """\
   <link name="mast">
     <visual name="pole"><origin xyz="0 0 0.5"/><geometry><cylinder radius="0.1" length="1"/></geometry></visual>
     <collision><geometry><mesh filename="package://nowhere/mast.stl"/></geometry></collision>
+    <inertial><origin xyz="0 0 0.4"/><mass value="1.5"/>
+      <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
   </link>
   <joint name="turn" type="continuous">
     <origin xyz="0 0 ${height}" rpy="0 0 0.5"/><parent link="base"/><child link="mast"/><axis xyz="0 0 1"/>
@@ -87,14 +89,32 @@ async def test_the_parts_of_a_link_are_told_with_numbers_and_places(file: Path) 
             ("axis", "turn", "continuous", [0, 0, 1], []),
             ("visual", "mast", "pole", [0, 0, 0.5], [0, 0, 0]),
             ("collision", "mast", "mast.stl", [0, 0, 0], [0, 0, 0]),
+            ("inertial", "mast", "1.5 kg", [0, 0, 0.4], [0, 0, 0]),
         ]
         assert [each["written"] for each in told["parts"]] == [
             'xyz="0 0 ${height}" rpy="0 0 0.5"',
             'xyz="0 0 1"',
             'xyz="0 0 0.5"',
             "",
+            'xyz="0 0 0.4"',
         ]
-        assert {(each["file"], each["line"]) for each in told["parts"][:2]} == {(str(file), 17)}
+        assert {(each["file"], each["line"]) for each in told["parts"][:2]} == {(str(file), 19)}
+
+
+async def test_a_robot_in_sdf_is_not_edited_and_it_is_said_why(tmp_path: Path) -> None:
+    file = tmp_path / "crate.sdf"
+    box = "<geometry><box><size>1 1 1</size></box></geometry>"
+    file.write_text(
+        f'<sdf version="1.9"><model name="crate"><link name="base"><visual name="v">{box}</visual></link></model></sdf>'
+    )
+    async with world() as scene, page(scene.viewer) as client:
+        describe(scene, file)
+        await client.until("description_changed")
+        told = await parts(client, "base")
+        assert "described in SDF" in told["why_not"]
+        refused = await preview(client, 1, "visual", "base", xyz=[0, 0, 1])
+        assert refused["files"] == []
+        assert refused["refusal"]["message"] == told["why_not"]
 
 
 async def test_an_edit_is_shown_written_and_taken_back(file: Path) -> None:

@@ -148,7 +148,7 @@ export class PartHandles {
     const display = part && (editing.draft || part.part === "collision") ? (editing.current?.display ?? null) : null;
     if (this.previewed !== null && this.previewed !== display) this.robot(this.previewed)?.displace(null);
     this.previewed = display;
-    if (display === null || !part || !now || part.part === "axis") {
+    if (display === null || !part || !now || part.part === "axis" || part.part === "inertial") {
       if (display !== null) this.robot(display)?.displace(null);
       stage.loop.invalidate();
       return;

@@ -1,10 +1,10 @@
 export const editing = {
   panel: "Edit robot",
   edit: "Edit",
-  editHint: "Move and turn this link's joint, visuals and collisions, in the source",
+  editHint: "Move and turn this link's joint, visuals, collisions and mass, in the source",
   parts: "What can be edited",
-  selectLink: "Select a link to move and turn its joint, its visuals and its collisions.",
-  kinds: { joint: "Joint", axis: "Axis", visual: "Visual", collision: "Collision" },
+  selectLink: "Select a link to move and turn its joint, its visuals, its collisions and its mass.",
+  kinds: { joint: "Joint", axis: "Axis", visual: "Visual", collision: "Collision", inertial: "Mass" },
   choose: (kind: string, title: string): string => `Edit: ${kind}, ${title}`,
   notWritten: "not written: all zeros",
   position: "Position",

@@ -3,10 +3,10 @@ import type { editing as english } from "../en/editing";
 export const editing: typeof english = {
   panel: "编辑机器人",
   edit: "编辑",
-  editHint: "在源文件中移动和转动此连杆的关节、可视体和碰撞体",
+  editHint: "在源文件中移动和转动此连杆的关节、可视体、碰撞体和质量",
   parts: "可编辑的部分",
-  selectLink: "选择一个连杆，即可移动和转动它的关节、可视体和碰撞体。",
-  kinds: { joint: "关节", axis: "轴", visual: "可视体", collision: "碰撞体" },
+  selectLink: "选择一个连杆，即可移动和转动它的关节、可视体、碰撞体和质量。",
+  kinds: { joint: "关节", axis: "轴", visual: "可视体", collision: "碰撞体", inertial: "质量" },
   choose: (kind, title) => `编辑：${kind}，${title}`,
   notWritten: "没有写出：全为零",
   position: "位置",

@@ -9,7 +9,7 @@ from typing import Literal
 from linkwright.urdf import Robot
 from linkwright.xmltree import Element
 
-Part = Literal["joint", "axis", "visual", "collision"]
+Part = Literal["joint", "axis", "visual", "collision", "inertial"]
 
 WITHOUT_AXIS = ("fixed", "floating")
 """The types of joints whose axis urdfdom does not read."""
@@ -20,8 +20,8 @@ class EditRequest:
     """One edit: where something stands, or the axis of a joint.
 
     Attributes:
-        part: what is edited: the origin of a joint, visual or collision, or the axis of a joint.
-        name: of the joint, or of the link that the visual or collision is of.
+        part: what is edited: the origin of a joint, visual, collision or inertial, or the axis of a joint.
+        name: of the joint, or of the link that anything else is of.
         index: which of the link's visuals or collisions, from 0.
         xyz: where it shall be in metres, in the frame of the parent link or of the link; the axis for `axis`, in the
             joint's frame. None for what it is.
@@ -42,7 +42,7 @@ class EditRequest:
         return "axis" if self.part == "axis" else "origin"
 
     def owner(self, robot: Robot) -> Element | None:
-        """The joint, visual or collision in a robot; None where there is none."""
+        """The joint, visual, collision or inertial in a robot; None where there is none."""
         if self.part in ("joint", "axis"):
             joint = robot.joints.get(self.name)
             if joint is None or (self.part == "axis" and joint.type in WITHOUT_AXIS):
@@ -51,5 +51,7 @@ class EditRequest:
         link = robot.links.get(self.name)
         if link is None:
             return None
+        if self.part == "inertial":
+            return link.inertial.element if link.inertial is not None else None
         parts = link.visuals if self.part == "visual" else link.collisions
         return parts[self.index].element if 0 <= self.index < len(parts) else None

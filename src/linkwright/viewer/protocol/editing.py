@@ -1,7 +1,7 @@
 """Editing a robot: what of it can be edited, the changes of text that an edit comes to, writing them, taking them back.
 
-Positions are in metres, angles in radians, in the frame of the parent link for a joint, of the link for a visual or a
-collision. An axis is in its joint's frame.
+Positions are in metres, angles in radians, in the frame of the parent link for a joint, of the link for a visual, a
+collision or an inertial. An axis is in its joint's frame.
 """
 
 from __future__ import annotations
@@ -11,11 +11,11 @@ from typing import Literal
 from linkwright.viewer.protocol.description import DiagnosticItem
 from linkwright.viewer.protocol.message import PageMessage, Record, ServerMessage
 
-EditedPart = Literal["joint", "axis", "visual", "collision"]
+EditedPart = Literal["joint", "axis", "visual", "collision", "inertial"]
 
 
 class EditablePart(Record):
-    """Something with a place: the origin of a joint, visual or collision, or the axis of a joint.
+    """Something with a place: the origin of a joint, visual, collision or inertial, or the axis of a joint.
 
     `index` counts the visuals or collisions of the link `name`; `title` says which it is. `rpy` is empty for an axis.
     `written` is the text of the file, empty where nothing is written; `file` and `line` are where

@@ -139,6 +139,10 @@ def _planned(known: Description, message: editing.PreviewEdit) -> EditPlan:
 def _why_not(robot: Robot | None, known: Description | None) -> Phrase | None:
     if robot is None:
         return phrase("there is no robot")
+    if known is not None and known.document.root.tag == "sdf":
+        return phrase(
+            "this robot is described in SDF, and edits are made in URDF and xacro: `linkwright convert FILE --to urdf`"
+        )
     if known is None or known.name.startswith("<"):
         return phrase(
             "this description came as a text, and nobody here knows its file: open it with `linkwright view FILE`"

@@ -8,7 +8,7 @@ from pathlib import PurePosixPath
 
 from linkwright.descriptions.editing import WITHOUT_AXIS, EditPlan, EditRequest
 from linkwright.geometry.single import Pose, rpy_from_quaternion
-from linkwright.urdf import Collision, Joint, Mesh, Robot, Visual
+from linkwright.urdf import Collision, Inertial, Joint, Mesh, Robot, Visual
 from linkwright.viewer.protocol.editing import EditablePart, EditedFile, EditedPart, PreviewEdit
 from linkwright.xmltree import Element
 from linkwright.xmltree.positions import attribute_value_range
@@ -18,7 +18,7 @@ _AROUND = 1
 
 
 def parts_of(robot: Robot, link_name: str) -> list[EditablePart]:
-    """What can be edited of a link: the joint above it, its axis, its visuals and collisions."""
+    """What can be edited of a link: the joint above it, its axis, its visuals and collisions, and where its mass is."""
     link = robot.links.get(link_name)
     if link is None:
         return []
@@ -26,6 +26,7 @@ def parts_of(robot: Robot, link_name: str) -> list[EditablePart]:
         *(part for joint in robot.joints.values() if joint.child == link_name for part in _of_joint(joint)),
         *(_of_shape("visual", link_name, index, shape) for index, shape in enumerate(link.visuals)),
         *(_of_shape("collision", link_name, index, shape) for index, shape in enumerate(link.collisions)),
+        *(_of_inertial(link_name, each) for each in (link.inertial,) if each is not None),
     ]
 
 
@@ -56,6 +57,11 @@ def _of_shape(part: EditedPart, link: str, index: int, shape: Visual | Collision
     title = PurePosixPath(geometry.filename).name if isinstance(geometry, Mesh) else type(geometry).__name__.lower()
     xyz, rpy = _numbers(shape.origin)
     return EditablePart(part, link, index, shape.name or title, xyz, rpy, *_written(shape.element, "origin"))
+
+
+def _of_inertial(link: str, inertial: Inertial) -> EditablePart:
+    xyz, rpy = _numbers(inertial.origin)
+    return EditablePart("inertial", link, 0, f"{inertial.mass:g} kg", xyz, rpy, *_written(inertial.element, "origin"))
 
 
 def _numbers(origin: Pose) -> tuple[list[float], list[float]]:
