@@ -13,7 +13,7 @@ from playwright.sync_api import Browser, Page
 from linkwright.messages import get_message
 from tests.browser.arm import write_arm
 from tests.browser.axe import violations
-from tests.browser.conftest import SECONDS, until
+from tests.browser.conftest import SECONDS, state, until
 from tests.browser.live import LiveViewer, configuration
 from tests.browser.test_modelling import modelled
 
@@ -178,3 +178,46 @@ def test_an_exported_page(browser: Browser, tmp_path: Path):
         page.goto(out.as_uri())
         page.get_by_role("slider").first.wait_for()
         assert violations(page) == []
+
+
+def test_recording_and_a_recording_that_is_shown(start, open_page, tmp_path: Path):
+    page = open_page(start("view", str(write_arm(tmp_path))))
+    until(page, "lw.timeline?.live && lw.timeline.length > 2")
+    record = page.get_by_role("button", name="Record", exact=True)
+    record.click()
+    assert found_in_menu(page) == []
+    record.click()
+    page.get_by_role("menuitem", name="Record chosen topics…").click()
+    page.locator("dialog[open] [type=checkbox]").first.wait_for()
+    assert violations(page, "dialog") == []
+    page.keyboard.press("Escape")
+    record.click()
+    page.get_by_role("menuitem", name="Record all topics").click()
+    until(page, "lw.recording.length >= 1")
+    assert violations(page) == []
+    page.get_by_role("button", name="Stop recording").click()
+    page.get_by_role("dialog").get_by_role("button", name="Download").wait_for()
+    assert violations(page, "dialog") == []
+    (file,) = state(page, "recording")["files"]
+    shown = open_page(start("view", file), wait=False)
+    until(shown, "lw.timeline?.live === false && lw.timeline.length > 0.5")
+    assert violations(shown) == []
+
+
+def test_editing_a_robot_and_comparing_two(start, open_page, tmp_path: Path):
+    file = write_arm(tmp_path)
+    page = open_page(start("view", str(file)))
+    page.get_by_role("tab", name="Links").click()
+    page.get_by_text("fore", exact=True).first.click()
+    page.get_by_role("button", name="Move and turn this link").click()
+    for text in ("0.77", "1e400"):
+        page.locator("[data-number=xyz2]").fill(text)
+        page.locator("[data-number=xyz2]").press("Enter")
+        if text == "0.77":
+            page.locator(".edit-diff, .edit-refusal").first.wait_for()
+        assert found_in_panels(page, "Edit robot") == []
+    new = tmp_path / "new.xacro"
+    new.write_text(file.read_text().replace('name="fore"', 'name="lower"').replace('link="fore"', 'link="lower"'))
+    both = open_page(start("view", str(file), str(new)), wait=False)
+    both.locator(".difference-group").first.wait_for()
+    assert violations(both) == []

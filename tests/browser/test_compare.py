@@ -192,6 +192,14 @@ def test_a_commit_is_the_old_one(start, open_page, files):
     page.locator(".source-panel").get_by_text('"camera"').first.wait_for()
 
 
+def test_the_list_is_in_front_in_a_small_window(start, open_page, files):
+    page = open_page(start("view", *map(str, files)))
+    page.get_by_text("5 differences").wait_for()
+    page.set_viewport_size({"width": 800, "height": 600})
+    page.locator(".comparison-count:visible").wait_for()
+    assert page.get_by_role("tab", name="Compare").get_attribute("aria-selected") == "true"
+
+
 def test_the_panel_has_no_finding_of_axe_core(start, open_page, files):
     page = open_page(start("view", *map(str, files)))
     group(page, "camera").locator("button.difference-name").click()

@@ -79,6 +79,31 @@ def test_the_robot_is_drawn_and_moved(start, launch, tmp_path):
     assert browser.errors == []
 
 
+def test_two_robots_are_compared_and_one_is_edited(start, launch, tmp_path):
+    file = tmp_path / "crate.urdf"
+    file.write_text(CRATE)
+    (tmp_path / "old.urdf").write_text(CRATE.replace('size="1 1 1"', 'size="1 1 2"'))
+    program = start("view", str(tmp_path / "old.urdf"), str(file))
+    browser = launch(headless=False)
+    browser.goto(program.url)
+    browser.until("lw.ready && document.querySelector('.difference-name')")
+    assert browser.evaluate("document.querySelector('.comparison-count').innerText") == "1 difference"
+    browser.evaluate("document.querySelector('.difference-name').click()")
+    browser.until("document.querySelector('.selection-card .edit-link')")
+    browser.evaluate("document.querySelector('.selection-card .edit-link').click()")
+    browser.until("document.querySelector('.editing-part[aria-pressed=true]')")
+    browser.evaluate("document.querySelector('[data-number=xyz2]').focus()")
+    browser.press(*"0.25", ENTER)
+    browser.until(
+        "document.querySelector('.edit-diff .added') && !document.querySelector('.edit-bar .primary').disabled"
+    )
+    assert file.read_text() == CRATE
+    browser.evaluate("document.querySelector('.edit-bar .primary').click()")
+    wait_until(lambda: 'xyz="0 0 0.25"' in file.read_text(), what=file.read_text)
+    browser.until("document.querySelector('.comparison-count').innerText === '2 differences'")
+    assert browser.errors == []
+
+
 def test_without_webgl_the_page_says_so_and_its_panels_work(start, launch, tmp_path):
     program = start("view", str(write_arm(tmp_path)))
     browser = launch(headless=True)

@@ -123,6 +123,9 @@ const NARROW = 900;
 const ROOMY = 1280;
 const LEAST_SHARE = 0.7;
 
+/** Of all that share a group there, what comes to the front when it comes: the displays, and what the page was opened for. */
+const IN_FRONT: readonly PanelId[] = ["displays", "world", "comparison"];
+
 export function isNarrow(api: DockviewApi): boolean {
   return api.width <= NARROW;
 }
@@ -132,7 +135,7 @@ function narrowHome(api: DockviewApi, id: PanelId): Home {
   if (id === "scene") return HOMES.scene;
   const others = (Object.keys(HOMES) as PanelId[]).filter((each) => each !== "scene" && each !== id);
   const beside: Home["beside"] = [...others.map((each) => [each, "within"] as const), ["scene", "below"]];
-  return { beside, height: Math.round(api.height * 0.45), inactive: id !== "displays" };
+  return { beside, height: Math.round(api.height * 0.45), inactive: !IN_FRONT.includes(id) };
 }
 
 function wideHome(api: DockviewApi, id: PanelId): Home {
