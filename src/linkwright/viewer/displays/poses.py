@@ -145,6 +145,19 @@ class PoseWithCovarianceDisplay(RecentDisplay):
         return PoseMarks(np.array([row], dtype=np.float32), spread.astype(np.float32))
 
 
+_LOOK_OF_POSES = (
+    PropertySpec(
+        "Shape",
+        "enum",
+        "Arrow (Flat)",
+        "Whether poses are drawn as arrows of lines, as solid arrows or as axes.",
+        options=("Arrow (Flat)", "Arrow (3D)", "Axes"),
+    ),
+    PropertySpec("Color", "color", "#ff1900", "Colour of the arrows."),
+    alpha("Opacity of the arrows."),
+)
+
+
 class PoseArrayDisplay(RecentDisplay):
     """The poses of the last message of a topic."""
 
@@ -152,15 +165,7 @@ class PoseArrayDisplay(RecentDisplay):
     MESSAGE = "geometry_msgs/msg/PoseArray"
     SCHEMA = (
         topic_spec(description=MESSAGE, filter_size=10),
-        PropertySpec(
-            "Shape",
-            "enum",
-            "Arrow (Flat)",
-            "Whether poses are drawn as arrows of lines, as solid arrows or as axes.",
-            options=("Arrow (Flat)", "Arrow (3D)", "Axes"),
-        ),
-        PropertySpec("Color", "color", "#ff1900", "Colour of the arrows."),
-        alpha("Opacity of the arrows."),
+        *_LOOK_OF_POSES,
         length("Arrow Length", 0.3, "Length of the arrows, in metres.", _FLAT),
         length("Head Radius", 0.03, "Width of the arrows' heads, in metres.", _SOLID),
         length("Head Length", 0.07, "Length of the arrows' heads, in metres.", _SOLID),
@@ -183,15 +188,7 @@ class ParticleCloudDisplay(RecentDisplay):
     MESSAGE = "nav2_msgs/msg/ParticleCloud"
     SCHEMA = (
         topic_spec(description=MESSAGE, filter_size=10),
-        PropertySpec(
-            "Shape",
-            "enum",
-            "Arrow (Flat)",
-            "Whether poses are drawn as arrows of lines, as solid arrows or as axes.",
-            options=("Arrow (Flat)", "Arrow (3D)", "Axes"),
-        ),
-        PropertySpec("Color", "color", "#ff1900", "Colour of the arrows."),
-        alpha("Opacity of the arrows."),
+        *_LOOK_OF_POSES,
         length("Min Arrow Length", 0.02, "How long the arrow of a pose that is not likely is, in metres."),
         length("Max Arrow Length", 0.3, "How long that of one that is certain is, in metres."),
         PropertySpec("Arrow Height Scale", "float", 5.0, "Metres that what is certain is drawn higher.", minimum=0.0),
