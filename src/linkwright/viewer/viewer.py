@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import AsyncExitStack
 from typing import TYPE_CHECKING, Any
 
@@ -224,19 +224,24 @@ class Viewer:
     def _timeline(self) -> TimelineFeature:
         return self.add_feature(TimelineFeature)
 
-    def add_feature(self, cls: type[F]) -> F:
-        """A feature of a class, told of all that features are told from now on; the one there is, if any."""
+    def add_feature(self, cls: type[F], receives: Iterable[type] = ()) -> F:
+        """A feature of a class, told of all that features are told from now on; the one there is, if any.
+
+        Args:
+            cls: its class.
+            receives: what messages of pages it takes beside those that its class names.
+        """
         found = next((each for each in self._features if type(each) is cls), None)
         if found is None:
             found = cls(self)
-            self._take_in(found)
+            self._take_in(found, receives)
             if self._is_started:
                 found.start()
         return found
 
-    def _take_in(self, feature: PageFeature) -> None:
+    def _take_in(self, feature: PageFeature, receives: Iterable[type] = ()) -> None:
         self._features.append(feature)
-        self._receivers.update((message, feature.receive) for message in feature.RECEIVES)
+        self._receivers.update((message, feature.receive) for message in (*feature.RECEIVES, *receives))
 
     def show_diagnostics(self, diagnostics: Sequence[Diagnostic]) -> None:
         """Show what is wrong with the description; none clears the list."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
 from weakref import WeakKeyDictionary
 
 from linkwright.graph import DurabilityPolicy, Node, ReliabilityPolicy
@@ -22,8 +21,6 @@ from linkwright.viewer.web.audience import Page
 
 class DisplaysFeature(PageFeature):
     """Passes messages of pages on to displays."""
-
-    RECEIVES: ClassVar[tuple[type, ...]] = (SetProperty, MeshStatus, MarkerFeedback, PictureSize)
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -57,8 +54,6 @@ class DisplaysFeature(PageFeature):
 
 class PointsFeature(PageFeature):
     """Answers questions about points: pages have only places and colours."""
-
-    RECEIVES = (AskPoint,)
 
     def receive(self, page: Page, message: AskPoint) -> None:
         """Answer, if the point is still shown."""

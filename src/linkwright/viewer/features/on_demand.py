@@ -170,7 +170,9 @@ class OnDemandFeatures(PageFeature):
 
     def _make(self, where: str) -> PageFeature:
         module, _, name = where.partition(":")
-        feature: PageFeature = self.viewer.add_feature(getattr(import_module(f"{__package__}.{module}"), name))
+        feature: PageFeature = self.viewer.add_feature(
+            getattr(import_module(f"{__package__}.{module}"), name), _ANSWERED_BY[where]
+        )
         if where not in self._made:
             self._made.add(where)
             self._asleep = {topic: each for topic, each in self._asleep.items() if each != where}

@@ -5,7 +5,7 @@ They are found through the entry points ``linkwright.page_features``.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeVar
 
 from linkwright.diagnostics import Diagnostic
@@ -35,8 +35,13 @@ class FeatureHost(Protocol):
     managers: Managers
     live: LiveHistory | None
 
-    def add_feature(self, cls: type[F]) -> F:
-        """A feature of a class, told of all that features are told from now on; the one there is, if any."""
+    def add_feature(self, cls: type[F], receives: Iterable[type] = ()) -> F:
+        """A feature of a class, told of all that features are told from now on; the one there is, if any.
+
+        Args:
+            cls: its class.
+            receives: what messages of pages it takes beside those that its class names.
+        """
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
         """The messages of all features about a configuration."""
@@ -56,7 +61,7 @@ class PageFeature:
     """
 
     RECEIVES: ClassVar[tuple[type, ...]] = ()
-    """The messages of pages that come to `receive`."""
+    """The messages of pages that come to `receive`; of features that are made on demand `on_demand` names them."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         self.viewer = viewer
@@ -90,7 +95,7 @@ class PageFeature:
         """What is shown is a recording: nobody does what robots and simulations could be asked for."""
 
     def receive(self, page: Page, message: Any) -> None:
-        """Do what a page asks for; the message is of one of the classes in `RECEIVES`."""
+        """Do what a page asks for; the message is of one of the classes that it takes."""
 
     def page_gone(self, page: Page) -> None:
         """A page was closed."""

@@ -14,7 +14,7 @@ from datetime import datetime
 from functools import partial
 from math import isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, display_path, foreign, phrase
 from linkwright.diagnostics.translation import translated
@@ -53,8 +53,6 @@ class RecordingFeature(PageFeature):
         folder: where recordings go.
         left_free: bytes of the disk that are left to others.
     """
-
-    RECEIVES: ClassVar[tuple[type, ...]] = (RecordTopics, StopRecording, SaveMinutes)
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)

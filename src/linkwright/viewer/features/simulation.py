@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from functools import partial
 from math import isfinite
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
 from msgspec.structs import replace
 
@@ -63,8 +63,6 @@ class _Drag:
 
 class SimulationFeature(PageFeature):
     """Tells pages how a simulation in the graph goes, and asks of it what they want; listens while there are pages."""
-
-    RECEIVES: ClassVar[tuple[type, ...]] = (ControlSimulation, SpawnModel, DeleteModel, DragModel, PushLink)
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)

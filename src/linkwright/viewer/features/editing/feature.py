@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import asyncio
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
 from linkwright.descriptions import Description
 from linkwright.descriptions.editing import EditHistory, EditPlan, EditRefusedError, Workspace, plan_edit, read_again
@@ -22,13 +22,10 @@ from linkwright.viewer.protocol.message import PageMessage
 from linkwright.viewer.web.audience import Page
 
 _AXES = "xyz"
-_WRITING = (editing.PreviewEdit, editing.ApplyEdit, editing.UndoEdit, editing.RedoEdit)
 
 
 class EditingFeature(PageFeature):
     """Tells pages what can be edited, shows what edits come to, and writes them."""
-
-    RECEIVES: ClassVar[tuple[type, ...]] = (editing.AskEditableParts, *_WRITING)
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)

@@ -8,7 +8,6 @@ import traceback
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import ClassVar
 
 from linkwright.diagnostics import LinkwrightError, display_path
 from linkwright.diagnostics.translation import translated
@@ -67,8 +66,6 @@ def export_snapshot(snapshot: Snapshot, ending: str) -> bytes:
 
 class ExportFeature(PageFeature):
     """Makes files of what a page sees."""
-
-    RECEIVES: ClassVar[tuple[type, ...]] = (AskExport,)
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)

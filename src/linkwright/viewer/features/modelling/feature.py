@@ -10,7 +10,7 @@ import asyncio
 from collections.abc import Callable
 from contextlib import suppress
 from functools import partial
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.graph import DurabilityPolicy, QoSProfile
@@ -20,18 +20,12 @@ from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
 from linkwright.viewer.features.simulation_services import SimulationServices, refuse
 from linkwright.viewer.protocol.message import PageMessage, ServerMessage
 from linkwright.viewer.protocol.modelling import (
-    AddThing,
     AskModels,
-    ChangeThings,
-    CopyThings,
-    DeleteThings,
-    GroupThings,
     ModellingState,
     RedoWorld,
     SaveWorld,
     SetModelling,
     UndoWorld,
-    UngroupThing,
 )
 from linkwright.viewer.web.audience import Page
 
@@ -47,20 +41,6 @@ _PATIENCE = 30.0
 
 class ModellingFeature(PageFeature):
     """Tells pages what stands in the world, and edits it as they ask."""
-
-    RECEIVES: ClassVar[tuple[type, ...]] = (
-        AddThing,
-        AskModels,
-        ChangeThings,
-        CopyThings,
-        DeleteThings,
-        GroupThings,
-        RedoWorld,
-        SaveWorld,
-        SetModelling,
-        UndoWorld,
-        UngroupThing,
-    )
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)

@@ -53,8 +53,6 @@ class _Reader:
 class LogFeature(PageFeature):
     """Sends pages what nodes log."""
 
-    RECEIVES = (WatchLog,)
-
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
         self._readers: dict[Page, _Reader] = {}

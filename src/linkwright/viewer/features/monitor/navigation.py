@@ -55,8 +55,6 @@ _GOALS: dict[int, GoalState] = {
 class NavigationFeature(PageFeature):
     """Listens to nav2, and asks it, while a page shows the panel."""
 
-    RECEIVES = (WatchNavigation, CommandNavigation)
-
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
         self._pages: set[Page] = set()

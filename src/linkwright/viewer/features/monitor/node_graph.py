@@ -13,8 +13,6 @@ from linkwright.viewer.web.audience import Page
 class NodeGraphFeature(PageFeature):
     """Tells pages of the nodes and topics, and of every change."""
 
-    RECEIVES = (WatchNodeGraph,)
-
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
         self._told: dict[Page, NodeGraph] = {}

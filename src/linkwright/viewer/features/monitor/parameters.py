@@ -235,8 +235,6 @@ class _Wish:
 class ParametersFeature(PageFeature):
     """Shows pages the parameters of nodes, and sets them."""
 
-    RECEIVES = (WatchParameters, SetParameter, DumpParameters)
-
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
         self._wishes: dict[Page, _Wish] = {}

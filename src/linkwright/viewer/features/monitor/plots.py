@@ -176,8 +176,6 @@ class _Plots:
 class PlotsFeature(PageFeature):
     """Sends pages the numbers that they plot; a topic is subscribed to while a page has a series of it."""
 
-    RECEIVES = (AskFields, WatchSeries)
-
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
         self._pages: dict[Page, _Plots] = {}

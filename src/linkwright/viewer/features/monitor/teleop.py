@@ -19,8 +19,6 @@ _SILENCE = 0.4
 class TeleopFeature(PageFeature):
     """Publishes what pads of pages say; a publisher is there while a page has its pad open."""
 
-    RECEIVES = (AimTeleop, Drive)
-
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
         self._pads: dict[Page, _Pad] = {}

@@ -149,8 +149,6 @@ class _Gauge:
 class TopicsFeature(PageFeature):
     """Lists topics, and measures those that a page wants to have measured; there are no other subscriptions."""
 
-    RECEIVES = (WatchTopics,)
-
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
         self._wishes: dict[Page, _Wish] = {}

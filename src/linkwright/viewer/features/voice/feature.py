@@ -11,7 +11,7 @@ from linkwright.graph.endpoints.event_types import QoSPublisherMatchedInfo
 from linkwright.nodes.voice.audio_topics import NAMESPACE, AudioTopics
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
 from linkwright.viewer.features.voice.floor import Floor, SoundBudget
-from linkwright.viewer.features.voice.words import WORDS_MESSAGES, WordBook
+from linkwright.viewer.features.voice.words import WordBook
 from linkwright.viewer.protocol.voice import (
     SaidPart,
     SayCommand,
@@ -42,8 +42,6 @@ class VoiceFeature(PageFeature):
 
     The topics of sound are there while a page has its microphone open, the others while a page watches.
     """
-
-    RECEIVES = (WatchVoice, Talk, SayCommand, SoundBlock, *WORDS_MESSAGES)
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)

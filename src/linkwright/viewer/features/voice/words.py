@@ -30,8 +30,6 @@ from linkwright.viewer.web.audience import Page
 _LONGEST = 8 * RATE
 """Samples of a recording that are kept."""
 
-WORDS_MESSAGES = (WatchWords, BeginTake, EndTake, RemoveWord, RenameWord, ImportWords, AskWordsFile)
-
 
 class Recording:
     """A word that is being said.
