@@ -59,7 +59,7 @@ def points(world) -> list[list[float]]:
 async def test_a_point_is_drawn_where_it_was_in_the_fixed_frame():
     async with world(config()) as w:
         publisher = w.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
-        assert w.status("PointStamped") == {"Topic": ("warn", "No messages received")}
+        assert w.status("PointStamped") == {"Topic": ("warn", "No messages received: nobody publishes the topic")}
         w.move({("base", "tip"): (1, 2, 3, 0, 0, 2**-0.5, 2**-0.5)}, static=True)
         publisher.publish(point(1.0, "tip"))
         await w.settle()
@@ -224,6 +224,22 @@ async def test_the_last_count_of_messages_is_told_when_no_more_come(monkeypatch)
             return level, text.split(" at ")[0]
 
         await eventually(lambda: said() == ("ok", "4 messages received"))
+
+
+async def test_a_silent_topic_says_who_is_silent_and_where_such_messages_are(monkeypatch):
+    monkeypatch.setattr("linkwright.viewer.displays.base.topic_display._COUNT_PERIOD", 0.05)
+    async with world(config()) as w:
+
+        def said() -> str:
+            return w.status("PointStamped")["Topic"][1].removeprefix("No messages received: ")
+
+        assert said() == "nobody publishes the topic"
+        node = w.graph.create_node("clicks")
+        node.create_publisher(PointStamped, "/other", 5)
+        there = "nobody publishes the topic; there is geometry_msgs/msg/PointStamped on /other"
+        await eventually(lambda: said() == there, what=said)
+        node.create_publisher(PointStamped, "/clicked_point", 5)
+        await eventually(lambda: said() == "nothing came yet from clicks", what=said)
 
 
 async def test_a_topic_of_another_type_is_told(monkeypatch):

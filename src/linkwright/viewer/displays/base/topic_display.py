@@ -95,6 +95,9 @@ _LATE = 1.0
 _COUNT_PERIOD = 1.0
 """Seconds between two updates of the row that counts messages or says why there are none."""
 
+_MOST_OTHERS = 3
+"""Topics with such messages that are named where nobody publishes the one that is shown."""
+
 
 class TopicDisplay(DataDisplay, ABC):
     """A display of the messages of one type on one topic.
@@ -280,7 +283,7 @@ class TopicDisplay(DataDisplay, ABC):
             rate = f" at {self._count / seconds:.0f} hz." if self._count > 1 and seconds > 0 else ""
             self.say(self.TOPIC_ROW, "ok", f"{self._count} messages received{rate}")
             return
-        self.say(self.TOPIC_ROW, "warn", self._incompatibility or self._other_type() or "No messages received")
+        self.say(self.TOPIC_ROW, "warn", self._incompatibility or f"No messages received: {self._silence()}")
         self._tell_count_later()
 
     def _tell_count_later(self) -> None:
@@ -291,13 +294,24 @@ class TopicDisplay(DataDisplay, ABC):
         if self._telling is None:
             self._telling = asyncio.get_running_loop().call_later(_COUNT_PERIOD, tell)
 
-    def _other_type(self) -> str:
-        """That the topic carries messages of another type, if it carries no others."""
+    def _publishers(self, topic: str) -> list[tuple[str, str]]:
+        """Node and type of all that publish a topic besides this viewer, whose tools do."""
+        node = self.context.node
+        found = node.get_publishers_info_by_topic(topic)
+        return [(each.node_name, each.topic_type) for each in found if each.node_name != node.get_name()]
+
+    def _silence(self) -> str:
+        """Why nothing comes, as far as the graph knows, and where such messages are."""
         message, topic, _ = self.subscription()
-        types = {each.topic_type for each in self.context.node.get_publishers_info_by_topic(topic)}
-        if not types or message in types:
-            return ""
-        return f"No messages received: the topic carries {', '.join(sorted(types))}, not {message}"
+        publishers = self._publishers(topic)
+        types = {topic_type for _, topic_type in publishers}
+        if types and message not in types:
+            return f"the topic carries {', '.join(sorted(types))}, not {message}"
+        if publishers:
+            return f"nothing came yet from {', '.join(sorted({name for name, _ in publishers}))}"
+        names = (name for name, found in self.context.node.get_topic_names_and_types() if message in found)
+        there = ", ".join(sorted(name for name in names if self._publishers(name))[:_MOST_OTHERS])
+        return "nobody publishes the topic" + (f"; there is {message} on {there}" if there else "")
 
     # --- messages ----------------------------------------------------------------------------------------------
 
