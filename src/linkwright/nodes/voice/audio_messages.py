@@ -90,6 +90,7 @@ class AudioReader:
 
     def __init__(self, form: AudioForm | None = None) -> None:
         self._form = form or AudioForm()
+        self._is_as_engines_take_it = self._form == AudioForm()
         self._rest = b""
         self._resampler = None if self._form.rate == RATE else Resampler(self._form.rate)
 
@@ -101,6 +102,10 @@ class AudioReader:
     def read(self, data: bytes | bytearray | memoryview | NDArray[np.uint8] | Sequence[int]) -> Samples:
         """The samples that follow from the field ``data`` of the next AudioData; a cut sample waits for its rest."""
         whole = self._rest + bytes(data)
+        if self._is_as_engines_take_it:  # ten times a second, all day
+            used = len(whole) // 2 * 2
+            self._rest = whole[used:]
+            return np.frombuffer(whole[:used], "<i2").astype(np.int16)
         values = _values(whole, self._form)
         frames = len(values) // self._form.channels
         used = frames * self._form.channels * _sample_bytes(self._form)
