@@ -72,6 +72,12 @@ def test_what_was_not_enrolled_is_told_as_unknown(engine, phones):
     assert finals(engine, say(phones, silence=0.8, seed=11)) == [""]
 
 
+@pytest.mark.parametrize("phones", ["s.to.s", "s.to.t", "s.to.f", ".pae.s"])
+def test_what_differs_from_a_word_in_one_sound_is_no_command(engine, phones):
+    samples = say(phones, level=2000, silence=0.8, seed=9)
+    assert [one.text for one in heard(engine, samples) if one.text] == []
+
+
 @pytest.mark.parametrize("kind", ["silence", "noise", "hum", "click", "chirp"])
 def test_what_is_no_speech_is_no_command(engine, kind):
     rng = np.random.default_rng(12)

@@ -11,6 +11,7 @@ is raised to there, in takes and sound alike. So they look the same, whatever no
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +20,7 @@ from linkwright.speech.enrolled.words import Take
 from linkwright.speech.sound.spectra import BANDS, Powers
 
 _Array = NDArray[np.float32]
+_Float = TypeVar("_Float", np.float32, np.float64)
 
 _MASK = 2.0  # of the power of the noise
 _RANGE = 40.0  # dB below the loudest
@@ -29,6 +31,8 @@ _OF_CHANGE = 1.5  # weight of the differences
 _STAYING = np.float32(1.0)  # costs of a path that stays in a frame of a take: it waits in the background instead
 _FAR = np.float32(1e9)
 _BESIDE = 2  # frames on each side that differences are made of
+_MOST_OF_ONE_THREAD = 200_000  # multiplications: OpenBLAS shares the work of more than 262,144 among threads
+_STRETCH = 8  # frames: about a sound of speech
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,12 +44,16 @@ class Match:
         first: the frame of the sound with which the word begins.
         last: the frame with which it ends.
         background: mean distance of the frames from first to last to the background.
+        distances: of each frame of the sound to each frame of all takes, shape ``(frames, frames of all takes)``.
+        steps: by how many frames of its take each path went on, shape ``(frames, places)``.
     """
 
     cost: _Array
     first: NDArray[np.intp]
     last: NDArray[np.intp]
     background: _Array
+    distances: _Array
+    steps: NDArray[np.int8]
 
 
 class Templates:
@@ -81,40 +89,59 @@ class Templates:
         states = _features(loud * self._clean, mask)[self._inner]
         distances = _distances(sound, states)
         silent = np.sqrt(np.sum((sound - background) ** 2, axis=1))
-        cost, first, last = self._paths(distances, silent)
+        cost, first, last, steps = self._paths(distances, silent)
         waited = np.concatenate(([0.0], np.cumsum(silent)))
         beside = (waited[last + 1] - waited[first]) / (last + 1 - first)
-        return Match(cost, first, last, beside.astype(np.float32))
+        return Match(cost, first, last, beside.astype(np.float32), distances, steps)
 
-    def _paths(self, distances: _Array, silent: _Array) -> tuple[_Array, NDArray[np.intp], NDArray[np.intp]]:
-        """Costs, first and last frames of the best paths; they enter a take through two places before it."""
+    def worst(self, match: Match, take: int) -> float:
+        """Mean distance in the worst 80 ms of the best path through a take: where a word differs in one sound."""
+        place, own = int(self._lasts[take]), int(self.lengths[:take].sum()) - int(self._firsts[take])
+        found = []
+        for frame in range(int(match.last[take]), int(match.first[take]) - 1, -1):
+            if place < self._firsts[take]:  # a path may skip the first frames
+                break
+            found.append(match.distances[frame, place + own])
+            place -= int(match.steps[frame, place])
+        size = min(_STRETCH, len(found))
+        return float(np.convolve(found, np.full(size, 1.0 / size), "valid").max())
+
+    def _paths(
+        self, distances: _Array, silent: _Array
+    ) -> tuple[_Array, NDArray[np.intp], NDArray[np.intp], NDArray[np.int8]]:
+        """Costs, first and last frames and steps of the best paths; they enter a take through two places before it."""
         count, size = len(distances), int(self._lasts[-1]) + 1
         waited = np.concatenate((np.zeros(1, np.float32), np.cumsum(silent, dtype=np.float32)))
         entries = np.concatenate((self._firsts - 1, self._firsts - 2))
-        here = np.zeros(size, np.float32)
+        here = np.zeros((count, size), np.float32)
+        here[:, self._places] = distances
         past, found = np.full(size, _FAR, np.float32), np.empty(size, np.float32)
-        begun, begins = np.zeros(size, np.int32), np.empty(size, np.int32)
+        by_one, by_two = np.zeros((2, count, size), np.bool_)
         ends = np.empty((count, len(self.lengths)), np.float32)
-        firsts = np.empty((count, len(self.lengths)), np.intp)
         for frame in range(count):
             past[entries] = waited[frame]
-            begun[entries] = frame
-            here[self._places] = distances[frame]
             np.add(past, _STAYING, out=found)
-            np.copyto(begins, begun)
-            for step in (1, 2):
-                better = past[:-step] < found[step:]
-                np.copyto(found[step:], past[:-step], where=better)
-                np.copyto(begins[step:], begun[:-step], where=better)
-            found += here
+            for step, better in ((1, by_one), (2, by_two)):
+                np.less(past[:-step], found[step:], out=better[frame, step:])
+                np.minimum(past[:-step], found[step:], out=found[step:])
+            found += here[frame]
             ends[frame] = found[self._lasts]
-            firsts[frame] = begins[self._lasts]
-            past, found, begun, begins = found, past, begins, begun
+            past, found = found, past
+        steps = np.maximum(by_one.view(np.int8), 2 * by_two.view(np.int8))
         total = ends + (waited[-1] - waited[1:])[:, None]
         last = total.argmin(axis=0)
-        each = np.arange(len(self.lengths))
-        first = firsts[last, each]
-        return total[last, each] / (last + 1 - first), first, last
+        first = self._begins(steps, last)
+        return total[last, np.arange(len(self.lengths))] / (last + 1 - first), first, last, steps
+
+    def _begins(self, steps: NDArray[np.int8], last: NDArray[np.intp]) -> NDArray[np.intp]:
+        """The frames in which paths that end in these frames entered their takes."""
+        place, first = self._lasts.copy(), last.copy()
+        inside = np.arange(len(place))
+        while len(inside):
+            place[inside] -= steps[first[inside], place[inside]]
+            inside = inside[(place[inside] >= self._firsts[inside]) & (first[inside] > 0)]
+            first[inside] -= 1
+        return first
 
 
 def _inner(length: int) -> NDArray[np.bool_]:
@@ -129,7 +156,7 @@ def loudness(powers: Powers) -> float:
 
 def _features(powers: NDArray[np.float64], mask: NDArray[np.float64]) -> _Array:
     """Cepstra of masked powers and how they change, shape ``(frames, 2 * (_CEPSTRA + 1))``."""
-    cepstra = 10.0 * np.log10(np.maximum(powers, mask)) @ _COSINES
+    cepstra = _product(10.0 * np.log10(np.maximum(powers, mask)), _COSINES)
     padded = np.pad(cepstra, ((_BESIDE, _BESIDE), (0, 0)), "edge")
     changes = (2.0 * (padded[4:] - padded[:-4]) + (padded[3:-1] - padded[1:-3])) / 10.0
     features: _Array = np.concatenate((cepstra, _OF_CHANGE * changes), axis=1).astype(np.float32)
@@ -138,8 +165,14 @@ def _features(powers: NDArray[np.float64], mask: NDArray[np.float64]) -> _Array:
 
 def _distances(sound: _Array, states: _Array) -> _Array:
     """Euclidean, shape ``(frames of the sound, frames of all takes)``."""
-    squares = np.sum(sound**2, axis=1)[:, None] + np.sum(states**2, axis=1)[None] - 2.0 * (sound @ states.T)
+    squares = np.sum(sound**2, axis=1)[:, None] + np.sum(states**2, axis=1)[None] - 2.0 * _product(sound, states.T)
     return np.asarray(np.sqrt(np.maximum(squares, 0.0)), dtype=np.float32)
+
+
+def _product(left: NDArray[_Float], right: NDArray[_Float]) -> NDArray[_Float]:
+    """Of two matrices, in parts so small that OpenBLAS takes one thread: threads that wait for others take cores."""
+    rows = max(1, _MOST_OF_ONE_THREAD // right.size)
+    return np.concatenate([left[at : at + rows] @ right for at in range(0, len(left), rows)])
 
 
 def _cosines() -> NDArray[np.float64]:

@@ -1,10 +1,11 @@
 """Which enrolled word was said, and how sure that is.
 
 A word counts only where nothing else is nearer: no other word, not the background, and no take played backwards, which
-is speech of the same voice but no word. Then it is judged by logistic regression on what its best take costs relative
-to what the user's own takes of the word cost each other, to the background and to takes played backwards, and on how
-far the sound is above the noise: in noise all costs come near each other, and more is asked of a word. The cost by
-itself does not count: what is usual differs between voices and microphones.
+is speech of the same voice but no word. Then it is judged by logistic regression on how far the sound is from the best
+take where it is farthest, relative to how far the user's own takes of the word are from each other there: words that
+differ in one sound are told apart by it; on what the take costs relative to the background and to takes played
+backwards; and on how far the sound is above the noise: in noise all costs come near each other, and more is asked of a
+word. The cost by itself does not count: what is usual differs between voices and microphones.
 """
 
 from __future__ import annotations
@@ -34,14 +35,12 @@ class Guess:
         confidence: how likely it is that this word was said and nothing else, 0 to 1.
         first: the frame of the sound with which it begins.
         last: the frame with which it ends.
-        figures: what the confidence was made of, shape ``(4,)``.
     """
 
     name: str
     confidence: float
     first: int
     last: int
-    figures: NDArray[np.float64]
 
 
 class Recogniser:
@@ -58,7 +57,7 @@ class Recogniser:
         self._word = np.array([number for number, _ in takes] + [-1] * len(backwards))
         self._templates = Templates(tuple(take for _, take in takes) + tuple(backwards))
         self._takes = [words.takes(name) for name in self.names]
-        self._own: dict[int, float] = {}
+        self._own: dict[int, float] = {}  # see `_own_worst`
         self.longest = int(self._templates.lengths.max())
 
     def guess(self, powers: Powers, noise: NDArray[np.float64]) -> Guess:
@@ -74,11 +73,12 @@ class Recogniser:
         word = int(order[0])
         take = int(np.flatnonzero(self._word == word)[match.cost[self._word == word].argmin()])
         first, last = int(match.first[take]), int(match.last[take])
-        above_noise = 10.0 * log10(loudness(powers[first : last + 1]) / float(noise.sum()))
-        figures = self._figures(match, costs, word, take, above_noise)
         is_nearest = costs[word] < min(self._nonsense(match), float(match.background[take]))
-        confidence = _confidence(figures) if is_nearest else 0.0
-        return Guess(self.names[word], confidence, first, last, figures)
+        confidence = 0.0
+        if is_nearest:
+            above_noise = 10.0 * log10(loudness(powers[first : last + 1]) / float(noise.sum()))
+            confidence = _confidence(self._figures(match, float(costs[word]), word, take, above_noise))
+        return Guess(self.names[word], confidence, first, last)
 
     def compare(self, take: Take) -> tuple[dict[str, float], float]:
         """How far a take is from each word, and from the nearest of those played backwards, which are no words."""
@@ -89,16 +89,17 @@ class Recogniser:
     def prepare(self) -> None:
         """Compute beforehand what hearing a word for the first time would take longer for."""
         for word in range(len(self.names)):
-            self._own_cost(word)
+            self._own_worst(word)
 
-    def _own_cost(self, word: int) -> float:
-        """How far a word's own takes are from each other, in the middle."""
+    def _own_worst(self, word: int) -> float:
+        """How far a word's own takes are from each other where they are farthest, in the middle."""
         if word not in self._own:
             takes = self._takes[word]
             alone = Templates(takes)
-            matches = (alone.match(take.powers, take.noise) for take in takes)
-            costs = [float(np.sort(match.cost)[1]) for match in matches] if len(takes) > 1 else [_USUAL_COST]
-            self._own[word] = float(np.median(costs))
+            matches = [alone.match(take.powers, take.noise) for take in takes] if len(takes) > 1 else []
+            nearest = [int(np.argsort(match.cost)[1]) for match in matches]  # but for itself
+            found = [alone.worst(match, take) for match, take in zip(matches, nearest, strict=True)]
+            self._own[word] = float(np.median(found)) if found else _USUAL_WORST
         return self._own[word]
 
     def _costs(self, match: Match) -> NDArray[np.float32]:
@@ -108,13 +109,14 @@ class Recogniser:
         """What the nearest take that is played backwards costs."""
         return float(match.cost[self._word == -1].min())
 
-    def _figures(
-        self, match: Match, costs: NDArray[np.float32], word: int, take: int, above_noise: float
-    ) -> NDArray[np.float64]:
-        cost = max(float(costs[word]), _LEAST)
-        compared = (self._own_cost(word), float(match.background[take]), self._nonsense(match))
-        own, background, nonsense = (log(cost / max(against, _LEAST)) for against in compared)
-        return np.array([max(own, _NEARER), background, nonsense, min(max(above_noise, 0.0), _CLEAR)])
+    def _figures(self, match: Match, cost: float, word: int, take: int, above_noise: float) -> NDArray[np.float64]:
+        """What the confidence is made of, shape ``(4,)``."""
+        cost = max(cost, _LEAST)
+        worst = log(max(self._templates.worst(match, take), _LEAST) / max(self._own_worst(word), _LEAST))
+        background, nonsense = (
+            log(cost / max(against, _LEAST)) for against in (float(match.background[take]), self._nonsense(match))
+        )
+        return np.array([worst, background, nonsense, min(max(above_noise, 0.0), _CLEAR)])
 
 
 def _backwards(takes: tuple[Take, ...]) -> Take:
@@ -123,11 +125,10 @@ def _backwards(takes: tuple[Take, ...]) -> Take:
     return Take(take.powers[::-1], take.noise)
 
 
-_USUAL_COST = 10.0  # of a word that was said once
-_NEARER = -0.3  # to be still nearer than own takes are to each other says nothing more
+_USUAL_WORST = 15.0  # of a word that was said once
 _CLEAR = 30.0  # dB above the noise: more makes no difference
-_WEIGHTS = np.array([-8.2, -4.6, -1.1, 0.123])  # fitted to 17 synthetic voices of three languages, clean and in noise
-_OFFSET = -7.7
+_WEIGHTS = np.array([-5.29, -4.40, -3.06, 0.12])  # fitted to 16 synthetic voices of five languages, clean and in noise
+_OFFSET = -9.5
 
 
 def _confidence(figures: NDArray[np.float64]) -> float:
