@@ -82,3 +82,21 @@ def test_a_file_that_is_no_model_is_one_error(asked, tmp_path, capsys):
     assert main(["spawn", str(tmp_path / "robot.urdf")]) == 1
     assert capsys.readouterr().err.count("error[") == 1
     assert asked == []
+
+
+def test_addresses_lead_to_what_lies_beside_the_model(asked, tmp_path, monkeypatch, capsys):
+    for folder in ("models/robot", "models/common", "far/away"):
+        (tmp_path / folder).mkdir(parents=True)
+    (tmp_path / "models/common/part.stl").write_bytes(b"solid")
+    (tmp_path / "models/common/model.config").write_text("<model><sdf>model.sdf</sdf></model>")
+    shape = "<visual name='{0}'><geometry><mesh><uri>{1}</uri></mesh></geometry></visual>"
+    shapes = shape.format("a", "model://common/part.stl") + shape.format("b", "model://none/part.stl")
+    text = f"<sdf version='1.7'><model name='r'><link name='l'>{shapes}<colour/></link></model></sdf>"
+    (tmp_path / "models/robot/model.sdf").write_text(text)
+    monkeypatch.chdir(tmp_path / "far/away")
+    monkeypatch.setenv("HOME", str(tmp_path))
+    assert main(["spawn", str(tmp_path / "models/robot/model.sdf")]) == 0
+    (request,) = asked
+    assert (tmp_path / "models/common/part.stl").as_uri() in request.xml
+    assert "model://none/part.stl" in request.xml
+    assert "<colour> in <link> is not read" in capsys.readouterr().err

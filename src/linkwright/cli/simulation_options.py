@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from linkwright.bag import BagWriter
     from linkwright.descriptions import Description
     from linkwright.packages import PackageFinder
+    from linkwright.sdf.models import Model
 
 
 def add_simulation_options(parser: argparse.ArgumentParser) -> None:
@@ -117,12 +118,33 @@ def load_model(path: Path, values: Mapping[str, str], finder: PackageFinder) -> 
         if converted.sdf is None or not converted.sdf.models:
             print_diagnostics(converted.diagnostics or [_no_model(path)], sys.stderr)
             return None
-        return LoadedModel(save(converted.sdf.models[0]), converted.sdf.models[0].name, None)
+        if converted.diagnostics:
+            print_diagnostics(converted.diagnostics, sys.stderr)
+        model = _found_beside(converted.sdf.models[0], path.parent, finder)
+        return LoadedModel(save(model), model.name, None)
     description = examine(path, arguments=dict(values), packages=finder)
     if description.robot is None or not description.robot.links:
         print_diagnostics(description.diagnostics, sys.stderr)
         return None
     return LoadedModel(description.text, description.robot.name, description)
+
+
+def _found_beside(model: Model, folder: Path, finder: PackageFinder) -> Model:
+    """A model whose addresses lead to what only its own folder has: a text has none."""
+    from linkwright.descriptions.conversion import with_addresses
+    from linkwright.packages import PackageFinder
+    from linkwright.sdf.resources import Missing, ResourceFinder
+
+    here, beside = ResourceFinder(PackageFinder(start=[Path.cwd()])), ResourceFinder(finder)
+
+    def whole(written: str, written_in: Path) -> str:
+        if not written or not isinstance(here.file(written, Path.cwd()), Missing):
+            return written
+        found = beside.file(written, written_in)
+        return written if isinstance(found, Missing) else found.absolute().as_uri()
+
+    changed: Model = with_addresses(model, folder, whole)
+    return changed
 
 
 def _no_model(path: Path) -> Diagnostic:
