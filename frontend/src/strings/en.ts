@@ -7,6 +7,7 @@ import { description } from "./en/description";
 import { meshes } from "./en/meshes";
 import { modelling } from "./en/modelling";
 import { monitor } from "./en/monitor";
+import { plural } from "./en/plural";
 import { tools } from "./en/tools";
 import { sharing } from "./en/sharing";
 import { simulation } from "./en/simulation";
@@ -155,9 +156,5 @@ export const en = {
     noCameraInfo: "No CameraInfo",
   },
 };
-
-function plural(count: number, noun: string): string {
-  return `${count} ${noun}${count === 1 ? "" : "s"}`;
-}
 
 export type Strings = typeof en;

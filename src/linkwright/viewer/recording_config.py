@@ -33,13 +33,15 @@ _DISPLAYS = (
 
 
 def recording_config(bag: BagReader) -> RvizConfig:
-    """What is shown of a recording at first: its robot and transforms, and a display for each topic of the usual types.
+    """What is shown of a recording at first: its robot, and a display for each topic of the usual types.
+
+    Transforms are drawn where there is no robot, which their axes would cover.
 
     Args:
         bag: the recording.
     """
-    config = RvizConfig.for_model(_fixed_frame(bag), name=str(bag.path))
     described = next((each.name for each in bag.topics if each.name.rpartition("/")[2] == _DESCRIPTION), None)
+    config = RvizConfig.for_model(_fixed_frame(bag), frames=described is None, name=str(bag.path))
     for display in list(config.displays):
         kind = display.cls.rpartition("/")[2]
         if kind == "RobotModel" and described is None:

@@ -1,7 +1,9 @@
+import { plural } from "./plural";
+
 export const comparison = {
   panel: "Compare",
   list: "Differences",
-  count: (count: number): string => (count === 1 ? "1 difference" : `${count} differences`),
+  count: (count: number): string => plural(count, "difference"),
   same: "The two descriptions say the same.",
   old: "Old",
   new: "New",

@@ -1,3 +1,5 @@
+import { plural } from "./plural";
+
 /** The panels of the description, the marks of what is invisible, poses and sweeps. */
 export const description = {
   panels: {
@@ -11,7 +13,7 @@ export const description = {
   linksLabel: "Kinematic tree",
   expandAll: "Expand all",
   collapseAll: "Collapse all",
-  count: (links: number, joints: number): string => `${links} links, ${joints} joints`,
+  count: (links: number, joints: number): string => `${plural(links, "link")}, ${plural(joints, "joint")}`,
   kinds: {
     revolute: "revolute",
     continuous: "continuous",

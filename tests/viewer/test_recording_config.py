@@ -1,0 +1,42 @@
+"""What is shown of a recording at first."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from linkwright.bag import BagReader, BagWriter
+from linkwright.graph import DEFAULT_QOS, DESCRIPTION_QOS, SENSOR_DATA_QOS
+from linkwright.messages import String, TFMessage, get_message, serialize
+from linkwright.viewer.recording_config import recording_config
+
+START = 1_700_000_000_000_000_000
+LaserScan = get_message("sensor_msgs/msg/LaserScan")
+TransformStamped = get_message("geometry_msgs/msg/TransformStamped")
+
+
+def transform(parent: str, child: str) -> bytes:
+    message = TransformStamped(child_frame_id=child)
+    message.header.frame_id = parent
+    return serialize(TFMessage(transforms=[message]))
+
+
+@pytest.mark.parametrize("described", [True, False])
+def test_transforms_are_drawn_where_there_is_no_robot(tmp_path: Path, described: bool) -> None:
+    with BagWriter(tmp_path / "bag") as writer:
+        writer.add_topic("/tf", "tf2_msgs/msg/TFMessage", [DEFAULT_QOS])
+        writer.add_topic("/scan", "sensor_msgs/msg/LaserScan", [SENSOR_DATA_QOS])
+        writer.write("/tf", START, transform("odom", "base_link"))
+        writer.write("/scan", START + 1, serialize(LaserScan()))
+        if described:
+            writer.add_topic("/robot_description", "std_msgs/msg/String", [DESCRIPTION_QOS])
+            writer.write("/robot_description", START, serialize(String(data="<robot name='r'/>")))
+    with BagReader(tmp_path / "bag") as bag:
+        config = recording_config(bag)
+    shown = {display.cls.rpartition("/")[2]: display.checked for display in config.displays}
+    robot = {"RobotModel": True} if described else {}
+    assert shown == {"Grid": True, **robot, "TF": not described, "LaserScan": True}
+    assert config.options.text("Fixed Frame") == "odom"
+    (scan,) = [display for display in config.displays if display.cls.endswith("LaserScan")]
+    assert scan.section.text("Topic", "Reliability Policy") == "Best Effort"
