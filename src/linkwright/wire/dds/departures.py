@@ -25,7 +25,7 @@ GRACE = 0.4
 FAREWELL_WITHIN = 1.0
 """Seconds after an endpoint is gone within which it is heard that it was withdrawn, should that come late."""
 
-LOOK_AGAIN = 0.1
+LOOK_AGAIN = 0.2
 """Seconds after which processes are looked at again."""
 
 
