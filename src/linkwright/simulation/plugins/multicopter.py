@@ -261,7 +261,8 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
         angular = -tilt * self._attitude_gain - rate_error * self._rate_gain
         thrust = -self._mass * float(acceleration @ turn[:, 2])
         squares: Array = self._speeds_of @ np.array((*angular, thrust))
-        return np.sqrt(np.maximum(squares, 0.0))
+        speeds: Array = np.sqrt(np.maximum(squares, 0.0))
+        return speeds
 
 
 def _attitude(turn: Array, acceleration: Array) -> Array:
