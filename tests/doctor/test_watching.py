@@ -12,8 +12,11 @@ import pytest
 from linkwright.doctor import Observation, observe
 from linkwright.graph import EndpointInfo, EndpointKind, Graph, NodeIdentity, QoSProfile
 from linkwright.graph.endpoints.transport import Transport
+from linkwright.messages import get_message
 
 TWIST, TWIST_STAMPED = "geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"
+TRANSFORMS = "tf2_msgs/msg/TFMessage"
+Clock, TransformStamped = get_message("rosgraph_msgs/msg/Clock"), get_message("geometry_msgs/msg/TransformStamped")
 TELEOP = EndpointInfo(EndpointKind.PUBLISHER, NodeIdentity("teleop", "/"), "/cmd_vel", TWIST, QoSProfile(10), bytes(16))
 LATE = EndpointInfo(EndpointKind.SUBSCRIPTION, None, "/cmd_vel", TWIST_STAMPED, QoSProfile(10), bytes(16))
 
@@ -94,3 +97,37 @@ async def test_who_sends_velocities_is_written_down(joined: Graph) -> None:
         ("/arm/cmd_vel", ("/keys",)),
         ("/cmd_vel", ("/keys", "/planner")),
     ]
+
+
+async def test_two_commands_that_drive_are_written_down_and_not_what_else_they_send(joined: Graph) -> None:
+    first, second = joined.create_node("_ros2cli_7"), joined.create_node("_ros2cli_8")
+    publishers = [each.create_publisher(TWIST, "/cmd_vel", 10) for each in (first, second)]
+    publishers.append(first.create_publisher("sensor_msgs/msg/JointState", "/joint_states", 10))
+    watched = asyncio.ensure_future(seen_of(joined, Outside(), seconds=0.5))
+    while not watched.done():
+        for each in publishers:
+            each.publish(each.msg_type())
+        await asyncio.sleep(0.01)
+    (velocities,) = watched.result().velocities
+    assert velocities.senders == ("/_ros2cli_7", "/_ros2cli_8")
+    assert not watched.result().stamps
+
+
+async def test_a_simulators_own_stamps_and_poses_are_taken_for_what_they_are(joined: Graph) -> None:
+    """It makes the time that it stamps by, and tells where models are on a topic of transforms that are no frames."""
+    simulator = joined.create_node("gazebo")
+    clock = simulator.create_publisher("rosgraph_msgs/msg/Clock", "/clock", 10)
+    poses, frames = (simulator.create_publisher(TRANSFORMS, topic, 10) for topic in ("/world_poses", "/robot1/tf"))
+    watched = asyncio.ensure_future(seen_of(joined, Outside(), seconds=0.5))
+    message = frames.msg_type()
+    message.transforms = [TransformStamped(child_frame_id="base")]
+    message.transforms[0].header.frame_id = "odom"
+    message.transforms[0].header.stamp.sec = 5
+    while not watched.done():
+        clock.publish(Clock(clock=message.transforms[0].header.stamp))
+        for each in (poses, frames):
+            each.publish(message)
+        await asyncio.sleep(0.01)
+    seen = watched.result()
+    assert [(each.parent, each.child) for each in seen.transforms] == [("odom", "base")]
+    assert [(each.topic, each.behind_ns) for each in seen.stamps] == [("/robot1/tf", 0)]

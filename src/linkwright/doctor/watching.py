@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from linkwright.graph.node import Node
 
 _TF, _JOINT_STATE = "tf2_msgs/msg/TFMessage", "sensor_msgs/msg/JointState"
+_TRANSFORMS = ("tf", "tf_static")
 _STRING, _CLOCK = "std_msgs/msg/String", "rosgraph_msgs/msg/Clock"
 _ENVIRONMENT = (
     "ROS_DOMAIN_ID",
@@ -149,10 +150,16 @@ class _Watcher:
         return self._node.get_fully_qualified_name()
 
     def subscribe(self) -> None:
-        """Subscribe to topics of interest that were not there before."""
-        for endpoint in self.endpoints():
+        """Subscribe to topics of interest that were not there before; who drives may be a tool (``topic pub``)."""
+        for endpoint in self._graph.endpoints():
             key = (endpoint.name, endpoint.type_name)
-            if endpoint.kind is EndpointKind.PUBLISHER and key not in self._subscribed:
+            if _is_tool(node_of(endpoint)) and endpoint.type_name not in (TWIST, TWIST_STAMPED):
+                continue
+            if (
+                endpoint.kind is EndpointKind.PUBLISHER
+                and node_of(endpoint) != self._own
+                and key not in self._subscribed
+            ):
                 self._subscribed.add(key)
                 self._subscribe(endpoint)
 
@@ -160,7 +167,9 @@ class _Watcher:
         topic, kind = endpoint.name, endpoint.type_name
         last = topic.rpartition("/")[2]
         if kind == _TF:
-            is_static = "static" in last
+            if last not in _TRANSFORMS:  # such as the poses of a simulated world, which are of no frames
+                return
+            is_static = last == _TRANSFORMS[1]
             self._listen(endpoint, lambda message, info: self._on_transforms(topic, is_static, message, info))
         elif kind == _JOINT_STATE:
             self._listen(endpoint, lambda message, info: self._on_joints(topic, message, info))
@@ -176,8 +185,7 @@ class _Watcher:
 
     def _listen(self, endpoint: EndpointInfo, callback: Any, *, raw: bool = False) -> None:
         """Subscribe so that every publisher matches; latched ones are asked for what they keep."""
-        of_topic = [each for each in self.endpoints() if each.name == endpoint.name]
-        offers = [each.qos for each in of_topic if each.kind is EndpointKind.PUBLISHER]
+        offers = [each.qos for each in self._publishers(endpoint.name)]
         latched = all(offer.durability is DurabilityPolicy.TRANSIENT_LOCAL for offer in offers)
         reliable = all(offer.reliability is ReliabilityPolicy.RELIABLE for offer in offers)
         qos = QoSProfile(
@@ -192,12 +200,14 @@ class _Watcher:
         self._node.create_subscription(endpoint.type_name, endpoint.name, listen, qos, raw=raw)
 
     def _sender(self, topic: str, info: MessageInfo) -> str:
-        publishers = [each for each in self._graph.endpoints() if each.name == topic]
-        publishers = [each for each in publishers if each.kind is EndpointKind.PUBLISHER]
+        publishers = self._publishers(topic)
         for each in publishers:
             if each.gid == info.publisher_gid:
                 return node_of(each)
         return node_of(publishers[0]) if len(publishers) == 1 else UNKNOWN_NODE
+
+    def _publishers(self, topic: str) -> list[EndpointInfo]:
+        return [each for each in self._graph.endpoints() if each.name == topic and each.kind is EndpointKind.PUBLISHER]
 
     # --- what is heard -----------------------------------------------------------------------------------------------
 
@@ -267,10 +277,11 @@ class _Watcher:
         )
 
     def stamps_seen(self, sim_time: Mapping[str, bool]) -> tuple[StampSeen, ...]:
-        """The stamps against the clock that their sender goes by: simulated time, where it follows that."""
+        """The stamps against the clock that their sender goes by: simulated time, where it follows or makes that."""
         found = []
+        makers = {node_of(each) for each in self._publishers("/clock")}
         for (topic, sender), (stamp_ns, now_ns) in sorted(self._stamps.items()):
-            if sim_time.get(sender):
+            if sim_time.get(sender) or sender in makers:
                 if self.clock is None:
                     continue
                 now_ns = self.clock.last_ns
