@@ -49,6 +49,8 @@ CASES = [
     ("<a>&nope;</a>", "XML208", "the entity '&nope;' is not defined", 1, 4, AMPERSAND),
     ("<a/>\n<b/>", "XML207", "there is content after the end of the root element", 2, 1, "a file has one root element"),
     ("hello", "XML206", "this is not XML", 1, 1, None),
+    ("# A title\n\nand text", "XML206", "this is not XML", 1, 1, None),
+    ("{a: 1} <robot/>", "XML206", "this is not XML", 1, 1, None),
     (
         "\n<?xml version='1.0'?><a/>",
         "XML206",

@@ -123,8 +123,7 @@ class _Fault:
                 "XML203", phrase("this CDATA section is never closed"), 9, at=at, hint=phrase("close it with ']]>'")
             )
         if code == _SYNTAX and self._open == []:
-            hint = phrase("an XML file holds nothing but comments before its root element")
-            return self._diagnostic("XML206", phrase("this is not XML"), hint=hint)
+            return self._no_xml()
         return self._diagnostic("XML206", _words(error))
 
     def _diagnostic(
@@ -182,6 +181,11 @@ class _Fault:
         hint = phrase("look for a missing '>' or a missing quote")
         return self._diagnostic("XML203", phrase("this tag is never finished"), length, hint=hint)
 
+    def _no_xml(self) -> Diagnostic:
+        hint = phrase("an XML file holds nothing but comments before its root element")
+        begin = len(self._text) - len(self._text.lstrip())
+        return self._diagnostic("XML206", phrase("this is not XML"), at=begin, hint=hint)
+
     def _invalid_token(self) -> Diagnostic:
         text, at = self._text, self._offset
         character = text[at : at + 1]
@@ -190,6 +194,8 @@ class _Fault:
             return self._diagnostic(
                 "XML206", phrase("the character U+{ord:04X} is not allowed in XML", ord=ord(character))
             )
+        if character != "<" and "<" not in text[:at]:
+            return self._no_xml()
         ampersand = re.search(r"&[^\s;&<>\"']*$", before)
         if ampersand:
             start = at - len(ampersand[0])
