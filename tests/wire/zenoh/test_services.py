@@ -2,10 +2,16 @@ from __future__ import annotations
 
 import threading
 
+import zenoh
+
+from linkwright.graph.endpoints.info import EndpointKind
+from linkwright.graph.names.identity import NodeIdentity
 from linkwright.messages import get_service, type_hash
 from linkwright.wire.zenoh import attachment
+from linkwright.wire.zenoh.services import IncomingService
 from linkwright.wire.zenoh.session import open_session
 from linkwright.wire.zenoh.settings import read_settings
+from linkwright.wire.zenoh.tokens import Token
 from tests.wire.test_services import (  # noqa: F401 - the same over Zenoh
     flip,
     test_a_client_is_ready_while_the_server_is_there,
@@ -80,6 +86,40 @@ def test_a_request_that_comes_to_nothing_is_told_once(processes):
     assert "A request to service '/flip' was not answered" in text
     assert not future.done()
     assert not client.service_is_ready()
+
+
+class LateQuery:
+    """A request that Zenoh hands on after the service was closed, as far as it is looked at."""
+
+    payload = zenoh.ZBytes(b"\0\1\0\0\1")
+    attachment = zenoh.ZBytes(attachment.write(1, 2, bytes(16)))
+    dropped = False
+
+    def drop(self):
+        self.dropped = True
+
+
+class Declared:
+    """A session that keeps what takes its requests."""
+
+    def declare_queryable(self, key, handler, **options):
+        self.take = handler.callback
+        return self
+
+    def undeclare(self):
+        pass
+
+
+def test_a_request_that_was_on_its_way_when_the_service_closed_ends(processes):
+    """Undeclaring does not wait for it: its client waited for ten minutes."""
+    node = processes("ours", join_now=False).node
+    service = node.create_service(SetBool, "flip", flip)
+    names = (EndpointKind.SERVICE, "/flip", "std_srvs::srv::dds_::SetBool_", "RIHS01_00")
+    session, query = Declared(), LateQuery()
+    incoming = IncomingService(service, Token(0, "0", "0", "1", NodeIdentity("ours", "/"), *names), session)
+    incoming.close()
+    session.take(query)
+    assert query.dropped
 
 
 def test_a_request_that_does_not_say_whose_it_is_is_refused(processes):

@@ -133,12 +133,14 @@ class IncomingService:
         self._open: WeakSet[_Question] = WeakSet()
         """What waits for its reply. What nobody will answer any more, because the queue was full or the callback has
         failed, is not held: its client learns of it."""
+        self._closed = False
         self._lock = Lock()
 
     def close(self) -> None:
         """Answer other processes no more; who still waits learns that there will be no reply."""
         self._queryable.undeclare()
         with self._lock:
+            self._closed = True  # a request may be on its way here in a thread of Zenoh
             questions = list(self._open)
             self._open.clear()
         for each in questions:
@@ -157,7 +159,12 @@ class IncomingService:
             return
         question = _Question(query, about)
         with self._lock:
-            self._open.add(question)
+            closed = self._closed
+            if not closed:
+                self._open.add(question)
+        if closed:
+            question.drop()
+            return
         self._service.receive(request, partial(self._reply, question), RequestId(about.gid, about.number))
 
     def _reply(self, question: _Question, response: Any) -> None:
