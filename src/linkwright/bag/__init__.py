@@ -1,9 +1,9 @@
 """Recordings of topics: rosbag2's folders with MCAP or SQLite files."""
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from linkwright.bag.names import is_recording
+from linkwright.deferred import deferred
 
 if TYPE_CHECKING:
     from linkwright.bag.history import History
@@ -36,28 +36,18 @@ __all__ = [
     "summary_text",
 ]
 
-_ON_DEMAND = {
-    "History": "linkwright.bag.history",
-    "FASTEST": "linkwright.bag.playback",
-    "Output": "linkwright.bag.playback",
-    "Playback": "linkwright.bag.playback",
-    "Recording": "linkwright.bag.playback",
-    "SLOWEST": "linkwright.bag.playback",
-    "PlayOptions": "linkwright.bag.player",
-    "Player": "linkwright.bag.player",
-    "PublishedRecording": "linkwright.bag.publishing",
-    "BagReader": "linkwright.bag.reading",
-    "BagTopic": "linkwright.bag.reading",
-    "Recorder": "linkwright.bag.recorder",
-    "TopicSelection": "linkwright.bag.selection",
-    "summary_text": "linkwright.bag.summary",
-    "BagWriter": "linkwright.bag.writing",
-    "STORAGES": "linkwright.bag.writing",
-}
-
-
-def __getattr__(name: str) -> Any:
-    """All that reads, writes or plays: many only ask whether a file is a recording, and loading it takes a while."""
-    if name in _ON_DEMAND:
-        return getattr(import_module(_ON_DEMAND[name]), name)
-    raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
+__getattr__ = deferred(
+    __name__,
+    {
+        "history": ("History",),
+        "playback": ("FASTEST", "SLOWEST", "Output", "Playback", "Recording"),
+        "player": ("PlayOptions", "Player"),
+        "publishing": ("PublishedRecording",),
+        "reading": ("BagReader", "BagTopic"),
+        "recorder": ("Recorder",),
+        "selection": ("TopicSelection",),
+        "summary": ("summary_text",),
+        "writing": ("STORAGES", "BagWriter"),
+    },
+)
+"""All that reads, writes or plays: many only ask whether a file is a recording."""

@@ -1,8 +1,8 @@
 """The computation graph: nodes, topics, parameters, quality of service, time, logging and transforms."""
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from linkwright.deferred import deferred
 from linkwright.graph.actions.client import ActionClient, ClientGoalHandle
 from linkwright.graph.actions.goal import CancelResponse, GoalResponse, GoalStatus, ServerGoalHandle
 from linkwright.graph.actions.server import ActionServer
@@ -178,15 +178,11 @@ __all__ = [
     "run_logged",
 ]
 
-_WITH_NUMPY = {
-    "FrameSnapshot": "linkwright.graph.transforms.buffer",
-    "TransformBuffer": "linkwright.graph.transforms.buffer",
-    "TransformListener": "linkwright.graph.transforms.listener",
-}
-
-
-def __getattr__(name: str) -> Any:
-    """Those made of numpy's arrays, whose import takes longer than all else here, when somebody asks for them."""
-    if name in _WITH_NUMPY:
-        return getattr(import_module(_WITH_NUMPY[name]), name)
-    raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
+__getattr__ = deferred(
+    __name__,
+    {
+        "transforms.buffer": ("FrameSnapshot", "TransformBuffer"),
+        "transforms.listener": ("TransformListener",),
+    },
+)
+"""Those made of numpy's arrays, whose import takes longer than all else here."""

@@ -1,7 +1,8 @@
 """ROS 2 messages, services and actions: classes made from their definitions, and their bytes, hashes and texts."""
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from linkwright.deferred import deferred
 from linkwright.messages.catalogue import packages as shipped_packages
 from linkwright.messages.cdr import deserialize, serialize
 from linkwright.messages.classes import get_action, get_interface, get_message, get_service
@@ -71,10 +72,5 @@ __all__ = [
 ]
 
 
-def __getattr__(name: str) -> Any:
-    """Those made of numpy's arrays, whose import takes longer than all else here, when somebody asks for them."""
-    if name in ("TFMessage", "TransformBatch"):
-        from linkwright.messages import tf_message
-
-        return getattr(tf_message, name)
-    raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
+__getattr__ = deferred(__name__, {"tf_message": ("TFMessage", "TransformBatch")})
+"""Those made of numpy's arrays, whose import takes longer than all else here."""

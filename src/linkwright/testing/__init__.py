@@ -5,8 +5,9 @@ With `SteppedSimulation` a simulated world stands still and goes on with the gra
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from linkwright.deferred import deferred
 from linkwright.testing.recording import Recording
 from linkwright.testing.stepped import AsyncSteppedGraph
 from linkwright.testing.stepped_sync import SteppedGraph
@@ -17,10 +18,5 @@ if TYPE_CHECKING:
 __all__ = ["AsyncSteppedGraph", "AsyncSteppedSimulation", "Recording", "SteppedGraph", "SteppedSimulation"]
 
 
-def __getattr__(name: str) -> Any:
-    """What needs the simulation, which takes long to import."""
-    if name in {"AsyncSteppedSimulation", "SteppedSimulation"}:
-        from linkwright.testing import simulated
-
-        return getattr(simulated, name)
-    raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
+__getattr__ = deferred(__name__, {"simulated": ("AsyncSteppedSimulation", "SteppedSimulation")})
+"""What needs the simulation, which takes long to import."""

@@ -1,0 +1,27 @@
+"""Names of a package whose modules are loaded when somebody asks for them, because that takes a while (PEP 562)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from importlib import import_module
+from typing import Any
+
+
+def deferred(package: str, names: Mapping[str, Sequence[str]]) -> Callable[[str], Any]:
+    """A ``__getattr__`` for the package's ``__init__``.
+
+    Args:
+        package: its name.
+        names: what each of its modules has, by the module's name below the package.
+
+    Returns:
+        A function that gives the attribute of a name, and raises AttributeError where it is none of them.
+    """
+
+    def find(name: str) -> Any:
+        for module, has in names.items():
+            if name in has:
+                return getattr(import_module(f"{package}.{module}"), name)
+        raise AttributeError(f"module '{package}' has no attribute '{name}'")
+
+    return find
