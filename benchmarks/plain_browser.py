@@ -113,7 +113,8 @@ class Socket:
                 continue
             if "error" in answer:
                 raise RuntimeError(f"{method}: {answer['error']['message']}")
-            return answer["result"]  # type: ignore[no-any-return]  # JSON
+            result: dict[str, Any] = answer["result"]
+            return result
 
 
 @contextmanager

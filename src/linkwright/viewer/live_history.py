@@ -5,12 +5,11 @@ from __future__ import annotations
 import asyncio
 import threading
 from collections.abc import Callable, Mapping
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
 
-from linkwright.graph import DurabilityPolicy, MessageInfo
+from linkwright.graph import DurabilityPolicy, MessageInfo, run_logged
 from linkwright.graph.endpoints.subscription import Detailed
-from linkwright.graph.log.logger import log_failure
 from linkwright.graph.simulated_time import CLOCK_TOPIC
 from linkwright.messages import serialize
 
@@ -208,11 +207,13 @@ class LiveHistory:
         history, fresh = self._kept, self._fresh
         self._fresh = []
         for topic, at_ns, message in fresh:
-            try:
-                history.add(topic, bytes(message) if isinstance(message, _BYTES) else serialize(message), at_ns)
-            except Exception as error:  # noqa: BLE001, PERF203  # a message that is none is no reason to keep no other
-                log_failure(self._handle.logger, f"keeping a message of '{topic}'", error)
+            keep = partial(self._keep, history, topic, at_ns, message)
+            run_logged(self._handle.logger, f"keeping a message of '{topic}'", keep)
         return history
+
+    @staticmethod
+    def _keep(history: History, topic: str, at_ns: int, message: Any) -> None:
+        history.add(topic, bytes(message) if isinstance(message, _BYTES) else serialize(message), at_ns)
 
     def _subscriptions(self) -> list[Subscription[Any]]:
         return list(self._context.node.subscriptions)

@@ -37,8 +37,8 @@ class ClassicPoseParameters:
     body_name: str = parameter(aliases=("bodyName",))
     frame_name: str = parameter("world", aliases=("frameName",))
     topic_name: str = parameter("odom", aliases=("topicName",))
-    xyz_offset: Vector3 = parameter((0.0, 0.0, 0.0), aliases=("xyz_offsets", "xyzOffset", "xyzOffsets"))  # noqa: RUF009 - a field of the table
-    rpy_offset: Vector3 = parameter((0.0, 0.0, 0.0), aliases=("rpy_offsets", "rpyOffset", "rpyOffsets"))  # noqa: RUF009 - a field of the table
+    xyz_offset: Vector3 = parameter((0.0, 0.0, 0.0), aliases=("xyz_offsets", "xyzOffset", "xyzOffsets"))
+    rpy_offset: Vector3 = parameter((0.0, 0.0, 0.0), aliases=("rpy_offsets", "rpyOffset", "rpyOffsets"))
     gaussian_noise: float = parameter(0.0, aliases=("gaussianNoise",))
     update_rate: float = parameter(0.0, aliases=("updateRate",))
 

@@ -113,12 +113,12 @@ class ControlParameters:
     com_link_name: str = parameter(aliases=("comLinkName",))
     command_topic: str = parameter("cmd_vel", aliases=("commandSubTopic",))
     enable_topic: str = parameter("enable", aliases=("enableSubTopic",))
-    velocity_gain: Vector3 = parameter(aliases=("velocityGain",))  # noqa: RUF009 - a field of the table
-    attitude_gain: Vector3 = parameter(aliases=("attitudeGain",))  # noqa: RUF009 - a field of the table
-    angular_rate_gain: Vector3 = parameter(aliases=("angularRateGain",))  # noqa: RUF009 - a field of the table
-    max_acceleration: Vector3 = parameter((inf, inf, inf), aliases=("maximumLinearAcceleration",))  # noqa: RUF009 - a field of the table
-    max_linear: Vector3 = parameter((inf, inf, inf), aliases=("maximumLinearVelocity",))  # noqa: RUF009 - a field of the table
-    max_angular: Vector3 = parameter((inf, inf, inf), aliases=("maximumAngularVelocity",))  # noqa: RUF009 - a field of the table
+    velocity_gain: Vector3 = parameter(aliases=("velocityGain",))
+    attitude_gain: Vector3 = parameter(aliases=("attitudeGain",))
+    angular_rate_gain: Vector3 = parameter(aliases=("angularRateGain",))
+    max_acceleration: Vector3 = parameter((inf, inf, inf), aliases=("maximumLinearAcceleration",))
+    max_linear: Vector3 = parameter((inf, inf, inf), aliases=("maximumLinearVelocity",))
+    max_angular: Vector3 = parameter((inf, inf, inf), aliases=("maximumAngularVelocity",))
 
 
 class GzMulticopterControl(SimulatedPlugin[ControlParameters]):

@@ -9,60 +9,23 @@ from importlib import import_module
 from typing import Any, ClassVar
 
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
-from linkwright.viewer.protocol.displays import SetProperty
-from linkwright.viewer.protocol.editing import ApplyEdit, AskEditableParts, PreviewEdit, RedoEdit, UndoEdit
-from linkwright.viewer.protocol.export import AskExport
-from linkwright.viewer.protocol.images import PictureSize
-from linkwright.viewer.protocol.markers import MarkerFeedback
+from linkwright.viewer.protocol import (
+    displays,
+    editing,
+    export,
+    images,
+    markers,
+    modelling,
+    monitor,
+    navigation,
+    points,
+    recording,
+    robot,
+    simulation,
+    voice,
+    voice_words,
+)
 from linkwright.viewer.protocol.message import ServerMessage
-from linkwright.viewer.protocol.modelling import (
-    NO_WORLD,
-    AddThing,
-    AskModels,
-    ChangeThings,
-    CopyThings,
-    DeleteThings,
-    GroupThings,
-    RedoWorld,
-    SaveWorld,
-    SetModelling,
-    UndoWorld,
-    UngroupThing,
-)
-from linkwright.viewer.protocol.monitor import (
-    AimTeleop,
-    AskFields,
-    Drive,
-    DumpParameters,
-    SetParameter,
-    WatchLog,
-    WatchNodeGraph,
-    WatchParameters,
-    WatchSeries,
-    WatchTopics,
-)
-from linkwright.viewer.protocol.navigation import CommandNavigation, WatchNavigation
-from linkwright.viewer.protocol.points import AskPoint
-from linkwright.viewer.protocol.recording import NOTHING_RECORDED, RecordTopics, SaveMinutes, StopRecording
-from linkwright.viewer.protocol.robot import MeshStatus
-from linkwright.viewer.protocol.simulation import (
-    NO_SIMULATION,
-    ControlSimulation,
-    DeleteModel,
-    DragModel,
-    PushLink,
-    SpawnModel,
-)
-from linkwright.viewer.protocol.voice import SayCommand, SoundBlock, Talk, WatchVoice
-from linkwright.viewer.protocol.voice_words import (
-    AskWordsFile,
-    BeginTake,
-    EndTake,
-    ImportWords,
-    RemoveWord,
-    RenameWord,
-    WatchWords,
-)
 from linkwright.viewer.web.audience import Page
 
 _SIMULATION = "simulation:SimulationFeature"
@@ -70,44 +33,56 @@ _MODELLING = "modelling.feature:ModellingFeature"
 _RECORDING = "recording:RecordingFeature"
 
 _ANSWERED_BY: dict[str, tuple[type, ...]] = {
-    "displays:DisplaysFeature": (SetProperty, MeshStatus, MarkerFeedback, PictureSize),
-    "displays:PointsFeature": (AskPoint,),
-    "editing.feature:EditingFeature": (ApplyEdit, AskEditableParts, PreviewEdit, RedoEdit, UndoEdit),
-    "export.feature:ExportFeature": (AskExport,),
-    _MODELLING: (
-        AddThing,
-        AskModels,
-        ChangeThings,
-        CopyThings,
-        DeleteThings,
-        GroupThings,
-        RedoWorld,
-        SaveWorld,
-        SetModelling,
-        UndoWorld,
-        UngroupThing,
+    "displays:DisplaysFeature": (displays.SetProperty, robot.MeshStatus, markers.MarkerFeedback, images.PictureSize),
+    "displays:PointsFeature": (points.AskPoint,),
+    "editing.feature:EditingFeature": (
+        editing.ApplyEdit,
+        editing.AskEditableParts,
+        editing.PreviewEdit,
+        editing.RedoEdit,
+        editing.UndoEdit,
     ),
-    "monitor.log:LogFeature": (WatchLog,),
-    "monitor.navigation:NavigationFeature": (CommandNavigation, WatchNavigation),
-    "monitor.node_graph:NodeGraphFeature": (WatchNodeGraph,),
-    "monitor.parameters:ParametersFeature": (DumpParameters, SetParameter, WatchParameters),
-    "monitor.plots:PlotsFeature": (AskFields, WatchSeries),
-    "monitor.teleop:TeleopFeature": (AimTeleop, Drive),
-    "monitor.topics:TopicsFeature": (WatchTopics,),
-    _RECORDING: (RecordTopics, StopRecording, SaveMinutes),
-    _SIMULATION: (ControlSimulation, SpawnModel, DeleteModel, DragModel, PushLink),
+    "export.feature:ExportFeature": (export.AskExport,),
+    _MODELLING: (
+        modelling.AddThing,
+        modelling.AskModels,
+        modelling.ChangeThings,
+        modelling.CopyThings,
+        modelling.DeleteThings,
+        modelling.GroupThings,
+        modelling.RedoWorld,
+        modelling.SaveWorld,
+        modelling.SetModelling,
+        modelling.UndoWorld,
+        modelling.UngroupThing,
+    ),
+    "monitor.log:LogFeature": (monitor.WatchLog,),
+    "monitor.navigation:NavigationFeature": (navigation.CommandNavigation, navigation.WatchNavigation),
+    "monitor.node_graph:NodeGraphFeature": (monitor.WatchNodeGraph,),
+    "monitor.parameters:ParametersFeature": (monitor.DumpParameters, monitor.SetParameter, monitor.WatchParameters),
+    "monitor.plots:PlotsFeature": (monitor.AskFields, monitor.WatchSeries),
+    "monitor.teleop:TeleopFeature": (monitor.AimTeleop, monitor.Drive),
+    "monitor.topics:TopicsFeature": (monitor.WatchTopics,),
+    _RECORDING: (recording.RecordTopics, recording.StopRecording, recording.SaveMinutes),
+    _SIMULATION: (
+        simulation.ControlSimulation,
+        simulation.SpawnModel,
+        simulation.DeleteModel,
+        simulation.DragModel,
+        simulation.PushLink,
+    ),
     "voice.feature:VoiceFeature": (
-        AskWordsFile,
-        BeginTake,
-        EndTake,
-        ImportWords,
-        RemoveWord,
-        RenameWord,
-        SayCommand,
-        SoundBlock,
-        Talk,
-        WatchVoice,
-        WatchWords,
+        voice_words.AskWordsFile,
+        voice_words.BeginTake,
+        voice_words.EndTake,
+        voice_words.ImportWords,
+        voice_words.RemoveWord,
+        voice_words.RenameWord,
+        voice.SayCommand,
+        voice.SoundBlock,
+        voice.Talk,
+        voice.WatchVoice,
+        voice_words.WatchWords,
     ),
 }
 """What pages ask each of them: by its module and class, below this package."""
@@ -115,7 +90,11 @@ _ANSWERED_BY: dict[str, tuple[type, ...]] = {
 _WOKEN_BY = {"/simulation_state": _SIMULATION, "/world_description": _MODELLING}
 """Topics on which a publisher means that there is something to tell pages."""
 
-_WITHOUT: dict[str, ServerMessage] = {_MODELLING: NO_WORLD, _RECORDING: NOTHING_RECORDED, _SIMULATION: NO_SIMULATION}
+_WITHOUT: dict[str, ServerMessage] = {
+    _MODELLING: modelling.NO_WORLD,
+    _RECORDING: recording.NOTHING_RECORDED,
+    _SIMULATION: simulation.NO_SIMULATION,
+}
 """What pages are told while a feature is not made."""
 
 

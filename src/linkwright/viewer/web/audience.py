@@ -6,9 +6,10 @@ import asyncio
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from linkwright.graph.log.logger import log_failure
+from linkwright.graph import run_logged
 from linkwright.viewer.protocol.message import (
     BadMessageError,
     PageMessage,
@@ -284,14 +285,9 @@ class Audience(PageGroup):
                     self._hand_on(page, decoded)
 
     def _hand_on(self, page: Page, message: PageMessage | SoundBlock) -> None:
-        cls = type(message)
-        receive = self._receivers.get(cls)
-        if receive is None:
-            return
-        try:
-            receive(page, message)
-        except Exception as error:  # noqa: BLE001  # one page must not take the program from the others
-            log_failure(self._logger, f"'{cls.__name__}' of a page", error)
+        receive = self._receivers.get(type(message))
+        if receive is not None:
+            run_logged(self._logger, f"'{type(message).__name__}' of a page", partial(receive, page, message))
 
 
 _RATE = 1000.0

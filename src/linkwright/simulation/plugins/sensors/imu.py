@@ -85,8 +85,8 @@ class OldImuParameters(FrameName):
     topic_name: str = parameter("imu", aliases=("topicName",))
     update_rate: float = parameter(0.0, aliases=("updateRate", "updateRateHZ"))
     gaussian_noise: float = parameter(0.0, aliases=("gaussianNoise",))
-    xyz_offset: vectors.Vector3 = parameter((0.0, 0.0, 0.0), aliases=("xyzOffset", "xyzOffsets"))  # noqa: RUF009 - a field of the table
-    rpy_offset: vectors.Vector3 = parameter((0.0, 0.0, 0.0), aliases=("rpyOffset", "rpyOffsets"))  # noqa: RUF009 - a field of the table
+    xyz_offset: vectors.Vector3 = parameter((0.0, 0.0, 0.0), aliases=("xyzOffset", "xyzOffsets"))
+    rpy_offset: vectors.Vector3 = parameter((0.0, 0.0, 0.0), aliases=("rpyOffset", "rpyOffsets"))
 
 
 class OldImu(_ImuPlugin[OldImuParameters]):
