@@ -71,7 +71,7 @@ test-browser: $(VENV)/.dev page
 test-ros: $(VENV)/.dev .build/ros/.ready
 	LINKWRIGHT_ROS_PYTHON=$(CURDIR)/.build/ros/bin/python RMW_IMPLEMENTATION=rmw_fastrtps_cpp \
 		$(BIN)/pytest tests/wire/test_real_ros.py tests/wire/test_real_services.py tests/wire/test_real_actions.py \
-		tests/standins/test_real_names.py $(ARGS)
+		tests/standins/test_real_names.py tests/standins/test_field_rules.py $(ARGS)
 
 .build/ros/.ready: | $(UV)
 	$(UV) venv --quiet --clear --python 3.12 .build/ros

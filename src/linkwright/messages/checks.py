@@ -2,7 +2,8 @@
 
 The setters that `linkwright.messages.classes` compiles test for the usual case themselves and come here for all others.
 The functions return the value to be kept, or raise the AssertionError that rclpy's users know. Beyond rclpy, numpy
-arrays and buffers of bytes may be assigned to numeric sequences.
+arrays and buffers of bytes may be assigned to sequences of numbers and bools, unless a program keeps to what ROS takes
+(`keep_to_ros`).
 
 numpy is imported for fixed arrays of numbers alone, whose fields hold its arrays: to import it takes longer than all
 else that a verb such as ``topic list`` needs. Whoever never imported it has none of its values.
@@ -33,6 +34,19 @@ class Unset:
 
 
 UNSET = Unset()
+
+_keeps_to_ros = False
+_fixed_as_humble = True
+
+
+def keep_to_ros(*, as_humble: bool) -> None:
+    """Take from now on, in this process, only what the classes of ROS 2 take.
+
+    Args:
+        as_humble: constructors convert what they are given for fixed arrays, as up to Humble; else they check it.
+    """
+    global _keeps_to_ros, _fixed_as_humble
+    _keeps_to_ros, _fixed_as_humble = True, as_humble
 
 
 def refuse_arguments(names: Iterable[str]) -> NoReturn:
@@ -93,7 +107,7 @@ def check_message(name: str, value: Any, cls: type) -> Any:
 
 def check_values(name: str, value: Any, kind: FieldType, cls: type) -> Any:
     """Several bools, bytes, texts or messages; the list that was given is kept."""
-    if cls is bool and is_array(value) and value.dtype.kind == "b":
+    if cls is bool and not _keeps_to_ros and is_array(value) and value.dtype.kind == "b":
         value = value.ravel().tolist()
     if not (
         _is_collection(value)
@@ -129,20 +143,25 @@ def check_sequence(name: str, value: Any, kind: FieldType) -> array[Any]:
         if kind.size is not None and len(value) > kind.size:
             raise AssertionError(f"The '{name}' array.array() must have a size <= {kind.size}")
         return value
-    if is_array(value):
+    if is_array(value) and not _keeps_to_ros:
         return _from_numpy(name, value, kind, primitive)
-    if primitive.array_code == "B" and isinstance(value, (bytes, bytearray, memoryview)):
+    if primitive.array_code == "B" and (
+        isinstance(value, (bytes, bytearray)) or (isinstance(value, memoryview) and not _keeps_to_ros)
+    ):
         return _from_buffer(name, value, kind)
     return array(primitive.array_code, _checked_numbers(name, value, kind, primitive))
 
 
 def made_sequence(name: str, value: Any, kind: FieldType) -> array[Any]:
     """What a constructor makes of numbers: as rclpy's, it takes integers for floats."""
-    if isinstance(value, (array, bytes, bytearray, memoryview)) or is_array(value):
-        return check_sequence(name, value, kind)
     assert kind.primitive is not None
-    assert kind.primitive.array_code is not None
-    return check_sequence(name, array(kind.primitive.array_code, value), kind)
+    code = kind.primitive.array_code
+    assert code is not None
+    if not _keeps_to_ros and (isinstance(value, (bytes, bytearray, memoryview)) or is_array(value)):
+        return check_sequence(name, value, kind)
+    if isinstance(value, array) and value.typecode == code:
+        return check_sequence(name, value, kind)
+    return check_sequence(name, array(code, value), kind)
 
 
 def made_fixed_array(name: str, value: Any, kind: FieldType) -> NDArray[Any]:
@@ -150,12 +169,16 @@ def made_fixed_array(name: str, value: Any, kind: FieldType) -> NDArray[Any]:
     import numpy as np
 
     primitive = cast(Primitive, kind.primitive)
+    if not _fixed_as_humble:
+        return check_fixed_array(name, value, kind)
     if value.__class__ is np.ndarray and value.dtype.char == primitive.array_code:  # in a third of the time of the rest
         made = value.copy()
     else:
         made = np.array(value, dtype=primitive.dtype)
     if made.size != kind.size:
         raise AssertionError(f"The '{name}' numpy.ndarray() must have a size of {kind.size}")
+    if _keeps_to_ros and made.shape != (kind.size,):
+        raise AssertionError(f"The '{name}' numpy.ndarray() must have the shape ({kind.size},)")
     return made
 
 

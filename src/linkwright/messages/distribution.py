@@ -21,3 +21,14 @@ def is_before_iron(variables: Mapping[str, str] = os.environ) -> bool:
 def is_before_kilted(variables: Mapping[str, str] = os.environ) -> bool:
     """Whether the distribution in ``ROS_DISTRO`` is Jazzy or an earlier one; without one, it is Humble."""
     return is_before_iron(variables) or variables.get("ROS_DISTRO", "").lower() in ("iron", "jazzy")
+
+
+def checks_fields_as_ros(variables: Mapping[str, str] = os.environ) -> bool:
+    """Whether values of fields are to be judged as ROS 2 judges them, without what we take beyond it.
+
+    So it is for who names Humble or an earlier distribution, and where ``ROS_PYTHON_CHECK_FIELDS`` asks for it, as in
+    the newer ones, which else take what comes.
+    """
+    if variables.get("ROS_PYTHON_CHECK_FIELDS") == "1":
+        return True
+    return bool(variables.get("ROS_DISTRO")) and ASSUMED not in variables and is_before_iron(variables)

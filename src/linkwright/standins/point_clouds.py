@@ -135,7 +135,7 @@ def create_cloud(
         point_step=dtype.itemsize,
         row_step=dtype.itemsize * width,
     )
-    cloud.data = np.frombuffer(rows.tobytes(), np.uint8)
+    cloud.data = rows.tobytes()
     return cloud
 
 

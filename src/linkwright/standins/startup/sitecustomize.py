@@ -49,7 +49,7 @@ class StandIns:
             from linkwright.standins import modules
 
             modules.install()
-            return modules.find_spec(name)
+            return _for_a_program(modules.find_spec(name))
         return self.interface(name) if _may_hold_interfaces(top) else None
 
     def interface(self, name: str) -> ModuleSpec | None:
@@ -61,7 +61,7 @@ class StandIns:
             _make_importable()
             from linkwright.standins.interfaces import find_spec
 
-            return find_spec(name)
+            return _for_a_program(find_spec(name))
         finally:
             self._searching = False
 
@@ -138,6 +138,20 @@ def _make_importable() -> None:
     for folder in (_LINKWRIGHT, *os.environ.get("LINKWRIGHT_SITE", "").split(os.pathsep)):
         if folder and folder not in sys.path:
             sys.path.append(folder)
+
+
+def _for_a_program(spec: ModuleSpec | None) -> ModuleSpec | None:
+    """A module that a user's program has found; messages are checked from then on as in the ROS that it is written for.
+
+    A command of Linkwright that runs in the shell is no such program: our own nodes are in it.
+    """
+    named = "ROS_DISTRO" in os.environ or "ROS_PYTHON_CHECK_FIELDS" in os.environ
+    if spec is not None and named and not _is_loaded("linkwright.cli"):
+        from linkwright.messages import checks, distribution
+
+        if distribution.checks_fields_as_ros():
+            checks.keep_to_ros(as_humble=distribution.is_before_iron())
+    return spec
 
 
 def _run_next_sitecustomize() -> None:

@@ -1,0 +1,84 @@
+"""What users' programs may assign to fields: as in the ROS 2 that they are written for."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from linkwright.messages.distribution import ASSUMED
+from linkwright.standins import process
+
+PYTHON = os.environ.get("LINKWRIGHT_ROS_PYTHON", "")
+PROGRAM = Path(__file__).with_name("field_values_program.py")
+BASE = {"PATH": os.environ["PATH"], "LINKWRIGHT_DDS": "0"}
+
+
+def told(python=sys.executable, command=(PROGRAM,), **variables):
+    """What came of each assignment: the text of an AssertionError, the name of another error, or type and values."""
+    environment = {**BASE, **variables} if python == PYTHON else process.environment({**BASE, **variables})
+    done = subprocess.run([python, *command], env=environment, check=False, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+def refused(came):
+    return isinstance(came, str)
+
+
+class TestHumble:
+    def test_numpy_arrays_are_refused_for_sequences_in_its_words(self):
+        humble = told(ROS_DISTRO="humble")
+        assert humble["Image.data set of numpy"] == (
+            "The 'data' field must be a set or sequence and each value of type 'int' "
+            "and each unsigned integer in [0, 255]"
+        )
+        assert refused(humble["JointState.position set of numpy"])
+        assert refused(humble["UnboundedSequences.bool_values set of numpy"])
+
+    def test_what_it_takes_is_taken(self):
+        humble = told(ROS_DISTRO="humble")
+        assert humble["Image.data set of bytes"] == humble["Image.data set of list"] == ["array", list(range(12))]
+        assert humble["JointState.position set of list of numpy's"] == ["array", [0.5, 1.5]]
+        assert humble["CameraInfo.k set of numpy"] == ["ndarray", list(range(9))]
+
+    def test_constructors_convert(self):
+        humble = told(ROS_DISTRO="humble")
+        assert humble["Image.data made of numpy"] == ["array", list(range(12))]
+        assert humble["Image.data made of numpy of rows"] == "TypeError"
+        assert humble["JointState.position made of array of another type"] == ["array", [0.5]]
+        assert humble["CameraInfo.k made of list of integers"] == ["ndarray", [1] * 9]
+        assert humble["CameraInfo.k made of numpy of rows"] == "The 'k' numpy.ndarray() must have the shape (9,)"
+
+
+@pytest.mark.parametrize("variables", [{}, {"ROS_DISTRO": "humble", ASSUMED: "1"}, {"ROS_DISTRO": "jazzy"}])
+def test_without_it_named_numpy_is_taken(variables):
+    came = told(**variables)
+    assert came["Image.data set of numpy of rows"] == ["array", list(range(12))]
+    assert came["JointState.position made of array of another type"] == ["array", [0.5]]
+    assert came["UnboundedSequences.bool_values set of numpy"] == ["list", [True, False]]
+
+
+def test_our_own_commands_take_what_they_always_do(tmp_path):
+    """In the shell their processes find stand-ins as users' programs do."""
+    program = tmp_path / "ours.py"
+    imports = "import json, linkwright.cli, numpy, rclpy\nfrom sensor_msgs.msg import Image"
+    program.write_text(
+        f"{imports}\nimage = Image()\nimage.data = numpy.zeros(2, 'B')\nprint(json.dumps(len(image.data)))\n"
+    )
+    assert told(command=(program,), ROS_DISTRO="humble") == 2
+
+
+@pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ROS_PYTHON names no interpreter with rclpy")
+def test_all_comes_to_the_same_as_with_the_real_classes_that_check():
+    """Jazzy's do where they are asked to; setters are those of Humble."""
+    real = told(python=PYTHON, ROS_PYTHON_CHECK_FIELDS="1")
+    assert told(ROS_DISTRO="jazzy", ROS_PYTHON_CHECK_FIELDS="1") == real
+    humble = told(ROS_DISTRO="humble")
+    assert {case: came for case, came in humble.items() if " set of " in case} == {
+        case: came for case, came in real.items() if " set of " in case
+    }
