@@ -400,7 +400,7 @@ class Simulation:
 
         Raises:
             KeyError: there is no such model.
-            LinkwrightError: SIM103 it cannot be moved, as it is fixed to the world.
+            LinkwrightError: SIM103 it cannot be moved, as it is fixed to the world or hangs on another model.
         """
         self.refresh()
         scene_model = self.scene.models[name]
@@ -409,7 +409,11 @@ class Simulation:
             self._current = False
             return
         if not self.moves_freely(name):
-            raise LinkwrightError(Diagnostic("SIM103", phrase("'{name}' is fixed to the world", name=name)))
+            message = phrase("'{name}' is fixed to the world", name=name)
+            if scene_model.hangs_on:
+                other = min(scene_model.hangs_on)
+                message = phrase("'{name}' is connected with '{other}' by a joint of the world", name=name, other=other)
+            raise LinkwrightError(Diagnostic("SIM103", message))
         root, offset = self._root(name)
         joint = self.data.joint(f"{root}#free")
         x, y, z, qx, qy, qz, qw = compose(pose, offset)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import combinations
 from math import inf, isfinite
@@ -19,6 +19,7 @@ from linkwright.sdf.poses import SEPARATOR, WORLD
 from linkwright.sdf.worlds import World, gravity_of, physics_of
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.scene.bodies import SECOND_AXIS, BodyWriter, hinge_anchors
+from linkwright.simulation.scene.connections import Connected, connections_of
 from linkwright.simulation.scene.couplings import geared, threaded
 from linkwright.simulation.scene.figures import draw, figures_of
 from linkwright.simulation.scene.meshes import MeshLibrary, changed_at
@@ -57,6 +58,7 @@ class SceneModel:
         parts: what the specification has of it, in the order in which it was added: bodies, without those that hang on
             others, constraints and actuators.
         files: those of its meshes, and when they were changed, in ns since the epoch.
+        hangs_on: the models that joints of the world connect it with, of those that came before it.
     """
 
     name: str
@@ -65,6 +67,7 @@ class SceneModel:
     structure: Structure
     parts: list[Any] = field(default_factory=list)
     files: dict[Path, int] = field(default_factory=dict)
+    hangs_on: frozenset[str] = frozenset()
 
     @property
     def is_outdated(self) -> bool:
@@ -119,7 +122,8 @@ class Scene:
         self.spec.compiler.inertiafromgeom = mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_FALSE
         self._set_options(world)
         frames = Frames(world)
-        for model in world.models:
+        self._connections = connections_of(world)
+        for model in self._in_order(world.models):
             if model.name in refused:
                 message = phrase("model '{name}' is left out: {why}", name=model.name, why=refused[model.name])
                 self._warn("SIM117", message, model.element)
@@ -128,6 +132,16 @@ class Scene:
         self.figures = figures_of(world, meshes)
         for figure in self.figures:
             draw(figure, self.spec, self._writer)
+
+    def _in_order(self, models: Iterable[Model]) -> list[Model]:
+        """Models, those that hang on others after these."""
+        models = list(models)
+        place = {name: number for number, name in enumerate(self.in_order([each.name for each in models]))}
+        return sorted(models, key=lambda model: place[model.name])
+
+    def in_order(self, names: Sequence[str]) -> list[str]:
+        """Names of models, each after those that it hangs on by joints of the world."""
+        return self._connections.in_order(names)
 
     def step_of(self, world: World) -> float:
         """The time step that a world says, in s; a millisecond where it says 0, which is told."""
@@ -152,7 +166,11 @@ class Scene:
         self._findings.append(Diagnostic(code, message, severity=Severity.WARNING, span=span, source=source))
 
     def set_physics(self, world: World, step: float) -> None:
-        """Take gravity from another world, and another time step in s; models stay as they are."""
+        """Take gravity and joints between models from another world, and another time step in s.
+
+        Models stay as they are.
+        """
+        self._connections = connections_of(world)
         self.spec.option.gravity = list(gravity_of(world))
         if step == self.step:
             return
@@ -194,24 +212,31 @@ class Scene:
         """
         if name in self.models:
             raise LinkwrightError(Diagnostic("SIM102", phrase("there is already a model '{name}'", name=name)))
-        structure = structure_of(model, name, pose)
-        added = self.models[name] = SceneModel(name, model, pose, structure)
-        poses = {held.link.name: held.link.pose for held in structure.links}
+        connected = self._connections.of(structure_of(model, name, pose), name, pose, self.models)
+        structure = connected.structure
+        added = self.models[name] = SceneModel(name, model, pose, structure, hangs_on=connected.hangs_on)
+        poses = {
+            held.link.name: held.link.pose
+            for each in (name, *connected.hangs_on)
+            for held in self.models[each].structure.links
+        }
+        own = {held.link.name for held in structure.links}
         self._meshes.used.clear()
         for held in structure.links:
             body = self._add_link(held, poses)
-            if body.parent == self.spec.worldbody:
+            if body.parent == self.spec.worldbody or body.parent.name not in own:
                 added.parts.append(body)
         added.files = dict(self._meshes.used)
         for held in structure.links:
             added.parts += self._mimicry(held.joint, name)
             if held.joint is not None and held.joint.name in self.joints:
                 added.parts += threaded(self.spec, held.joint)
-        for joint in structure.loops:
+        for joint in (*structure.loops, *connected.loops):
             added.parts += self._closed(joint, poses)
             if joint.joint.type == "gearbox":
                 added.parts += geared(self.spec, joint, self._moving(name))
         added.parts += self._strangers(structure)
+        added.parts += self._neighbours(connected)
         return added
 
     def place(self, name: str, pose: Transform) -> None:
@@ -240,7 +265,11 @@ class Scene:
 
         Raises:
             KeyError: there is none of that name.
+            ValueError: another hangs on it.
         """
+        hanging = self.hanging_on(name)
+        if hanging:
+            raise ValueError(f"{', '.join(hanging)} must be removed before {name}")
         model = self.models.pop(name)
         self._driven.pop(name, None)
         for part in reversed(model.parts):
@@ -249,6 +278,14 @@ class Scene:
             del self.bodies[held.link.name]
             if held.joint is not None:
                 self.joints.pop(held.joint.name, None)
+
+    def hanging_on(self, name: str) -> list[str]:
+        """The models that hang on one by joints of the world, or on others that do, in the order in which they came."""
+        found = {name}
+        for each in self.models.values():  # those that hang come later
+            if each.hangs_on & found:
+                found.add(each.name)
+        return [each for each in self.models if each in found - {name}]
 
     def add_velocity_motor(self, joint: str, gain: float, limit: float) -> str:
         """Add a motor that holds the velocity of a joint, and let the wheel that it turns roll without slipping.
@@ -399,6 +436,11 @@ class Scene:
                 moved = rotate(into_child[3:], point)
                 equality.data[:3] = [a + b for a, b in zip(moved, into_child[:3], strict=True)]
                 yield equality
+        elif joint.joint.type != "gearbox":
+            message = phrase(
+                "joint '{name}' is left out: one of type {kind} closes no loop", name=joint.name, kind=joint.joint.type
+            )
+            self._warn("SIM118", message, joint.joint.element)
 
     def _equality(self, kind: Any, ends: tuple[str, str]) -> Any:
         equality = self.spec.add_equality(type=kind, objtype=self._mujoco.mjtObj.mjOBJ_BODY)
@@ -412,6 +454,15 @@ class Scene:
         for one, other in combinations(touching, 2):
             if not (_collides(one.link.self_collide, one.model) and _collides(other.link.self_collide, other.model)):
                 yield self.spec.add_exclude(bodyname1=one.name, bodyname2=other.name)
+
+    def _neighbours(self, connected: Connected) -> Iterator[Any]:
+        """Let links that joints of the world connect pass through each other, as those of one model do."""
+        own = {held.link.name for held in connected.structure.links}
+        hung = (held.joint for held in connected.structure.links if held.joint is not None)
+        joints = (*(each for each in hung if each.parent not in own), *connected.loops)
+        for one, other in {tuple(sorted((each.parent, each.child))): None for each in joints}:
+            if WORLD not in (one, other):
+                yield self.spec.add_exclude(bodyname1=one, bodyname2=other)
 
 
 def _collides(said: bool | None, model: Model) -> bool:

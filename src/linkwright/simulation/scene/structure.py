@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from linkwright.geometry.single import Transform, compose
@@ -18,10 +18,10 @@ _LEAST = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class PlacedJoint:
-    """A joint of a model.
+    """A joint of a model, or of a world between two of them.
 
     Attributes:
-        name: with the models that it is in: ``robot::arm::elbow``.
+        name: with the models that it is in: ``robot::arm::elbow``; one of a world has its name alone.
         joint: what is written about it.
         parent: the link that it is fixed to, named as in `PlacedLink`; ``world`` for the world.
         child: the link that it moves.
@@ -75,7 +75,7 @@ def structure_of(model: Model, name: str, pose: Transform) -> Structure:
     for owner, inner, place, path in _models(model, frames, pose, name):
         for joint in owner.joints:
             try:
-                placed = _placed(joint, inner, place, path)
+                placed = placed_joint(joint, inner, place, path)
             except FrameError:
                 continue  # `check` tells of it
             ends_are_there = placed.child in links and (placed.parent in links or placed.parent == WORLD)
@@ -94,13 +94,28 @@ def _models(model: Model, frames: Frames, pose: Transform, path: str) -> Iterato
         yield from _models(inner, frames.inside(inner.name), place, f"{path}{SEPARATOR}{inner.name}")
 
 
-def _placed(joint: Joint, frames: Frames, pose: Transform, path: str) -> PlacedJoint:
+def placed_joint(joint: Joint, frames: Frames, pose: Transform, path: str) -> PlacedJoint:
+    """A joint with its links, its place and its axes.
+
+    Args:
+        joint: what is written about it.
+        frames: those of the model or world that it is in.
+        pose: where their origin stands in the world.
+        path: the name of the model, with those around it; empty for the world.
+
+    Raises:
+        FrameError: it connects or stands in what is not there.
+    """
     ends = [frames.link(end) for end in (joint.parent, joint.child)]
-    parent, child = (end if end == WORLD else f"{path}{SEPARATOR}{end}" for end in ends)
+    parent, child = (end if end == WORLD else _within(path, end) for end in ends)
     said = [axis for axis in (joint.axis, joint.axis2) if axis is not None]
     axes = tuple((axis, _direction(frames.axis(joint, axis))) for axis in said)
-    name = f"{path}{SEPARATOR}{joint.name}"
+    name = _within(path, joint.name)
     return PlacedJoint(name, joint, parent, child, compose(pose, frames.pose(joint.name)), axes)
+
+
+def _within(path: str, name: str) -> str:
+    return f"{path}{SEPARATOR}{name}" if path else name
 
 
 def _direction(said: Vector3) -> Vector3:
@@ -113,7 +128,7 @@ def _trees(links: dict[str, PlacedLink], joints: Iterable[PlacedJoint]) -> Struc
     loops: list[PlacedJoint] = []
     held: dict[str, list[str]] = {}
     for joint in joints:
-        is_taken = joint.child in holding or _holds(holding, joint.child, joint.parent)
+        is_taken = joint.child in holding or is_below(holding, joint.child, joint.parent)
         if is_taken or joint.joint.type == "gearbox":  # which couples joints, and holds nothing
             loops.append(joint)
         else:
@@ -126,8 +141,8 @@ def _trees(links: dict[str, PlacedLink], joints: Iterable[PlacedJoint]) -> Struc
     return Structure(tuple(HeldLink(links[name], holding.get(name)) for name in ordered), tuple(loops))
 
 
-def _holds(holding: dict[str, PlacedJoint], link: str, other: str) -> bool:
-    """Whether a link is another, or holds it by way of others."""
+def is_below(holding: Mapping[str, PlacedJoint], link: str, other: str) -> bool:
+    """Whether a link is another, or holds it by way of others; `holding` has the joints by their children."""
     while other != link:
         if other not in holding:
             return False

@@ -66,6 +66,14 @@ class Changes:
         )
         return replace(self, moved={}, renewed=(*self.renewed, *rest))
 
+    def with_connected(self, running: Mapping[str, SceneModel], namespaces: Mapping[str, str]) -> Changes:
+        """These, and those that stand elsewhere and that joints of the world connect with others come anew there."""
+        connected = {name for each in running.values() if each.hangs_on for name in (each.name, *each.hangs_on)}
+        again = {name: pose for name, pose in self.moved.items() if name in connected}
+        moved = {name: pose for name, pose in self.moved.items() if name not in connected}
+        coming = (Coming(running[name].model, name, pose, namespaces.get(name, "")) for name, pose in again.items())
+        return replace(self, moved=moved, renewed=(*self.renewed, *coming))
+
 
 def changes_to(world: World, running: Mapping[str, SceneModel], owned: Collection[str]) -> Changes:
     """What makes the models that run those of another world.
@@ -136,13 +144,15 @@ def come_into(simulation: Simulation, coming: Sequence[Coming]) -> None:
         LinkwrightError: SIM102 there is a model of such a name; SIM104, SIM105, SIM140 one cannot be simulated.
     """
     came: list[str] = []
+    by_name = {each.name: each for each in coming}
     try:
-        for each in coming:
-            came.append(each.name)
+        for name in simulation.scene.in_order(list(by_name)):
+            each = by_name[name]
+            came.append(name)
             simulation.spawn(each.model, each.name, each.pose)
         simulation.refresh()
     except (FrameError, ValueError, RuntimeError, LinkwrightError) as error:
-        for name in came:
+        for name in reversed(came):
             if name in simulation.scene.models:
                 simulation.delete(name)
         raise _not_simulated(came[-1], error) from error
@@ -151,7 +161,8 @@ def come_into(simulation: Simulation, coming: Sequence[Coming]) -> None:
 def surroundings(world: World) -> tuple[object, ...]:
     """What the plugins of models go by besides their models."""
     physics = physics_of(world)
-    return world.name, world.spherical_coordinates, world.magnetic_field, world.wind, physics.max_step_size
+    joints = tuple(world.joints)
+    return world.name, world.spherical_coordinates, world.magnetic_field, world.wind, physics.max_step_size, joints
 
 
 def _not_simulated(name: str, error: Exception) -> LinkwrightError:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import Any
@@ -162,6 +162,7 @@ class SimulationServer:
         changes = changes_to(wanted, simulation.scene.models, self._of_world)
         if surroundings(before) != surroundings(wanted):
             changes = changes.with_all(simulation.scene.models, self._namespaces)
+        changes = changes.with_connected(simulation.scene.models, self._namespaces)
         allow(check(wanted, simulation, (*changes.renewed, *changes.new), finder))
         renewed = tuple(replace(each, motion=motion_of(simulation, each.name)) for each in changes.renewed)
         simulation.set_world(world, finder)
@@ -173,15 +174,18 @@ class SimulationServer:
             self._load(_WORLD, of_world(wanted), "")
 
     def _exchange(self, gone: Iterable[str], coming: Sequence[Coming]) -> None:
-        """Let models go and others come, those of the same name in their places."""
+        """Let models go and others come, those of the same name in their places; what hung on them comes anew."""
         simulation = self.simulation
         told = len(simulation.scene.diagnostics)
         before: dict[str, list[SimulatedPlugin[object]]] = {}
-        for name in (*gone, *(each.name for each in coming if each.name in simulation.scene.models)):
+        gone, coming = tuple(gone), (*coming, *self._hanging_on({*gone, *(each.name for each in coming)}))
+        leaving = {*gone, *(each.name for each in coming)}
+        for name in [name for name in reversed(simulation.scene.models) if name in leaving]:
             before[name] = self._plugins.pop(name, [])
             self._end(before[name])
             simulation.delete(name)
-        come_into(simulation, coming)
+        if coming:
+            come_into(simulation, coming)
         for each in coming:
             if each.motion is not None:
                 resume(simulation, each.name, each.motion, here=each.here)
@@ -193,18 +197,25 @@ class SimulationServer:
             self._load(each.name, places, each.namespace, before[each.name] if goes_on else ())
         self._changed()
 
+    def _hanging_on(self, names: Collection[str]) -> Iterator[Coming]:
+        """What hangs on models by joints of the world, as it comes anew where it is."""
+        models = self.simulation.scene.models
+        for name in {each: None for one in names & models.keys() for each in self.simulation.scene.hanging_on(one)}:
+            if name not in names:
+                motion = motion_of(self.simulation, name)
+                scene_model, namespace = models[name], self._namespaces.get(name, "")
+                yield Coming(scene_model.model, name, scene_model.pose, namespace, motion, here=True)
+
     def delete(self, name: str) -> None:
-        """Take a model out of the world, after its plugins have ended.
+        """Take a model out of the world, after its plugins have ended; what hung on it by joints goes on without it.
 
         Raises:
             LinkwrightError: SIM141 there is none of that name.
         """
         self._model(name)
-        self._end(self._plugins.pop(name, []))
+        self._exchange((name,), ())
         self.left.clear()
         self._of_world.discard(name)
-        self.simulation.delete(name)
-        self._changed()
 
     def _model(self, name: str) -> SceneModel:
         if name not in self.simulation.scene.models:

@@ -11,7 +11,7 @@ from linkwright.simulation.plugins.registry import needs_nothing
 from linkwright.xmltree import Element
 
 _NOWHERE = frozenset({"audio_source", "fluid_added_mass", "gripper", "particle_emitter", "projector", "soft_contact"})
-_IN = frozenset({("actor", "animation"), ("geometry", "image"), ("world", "joint")})
+_IN = frozenset({("actor", "animation"), ("geometry", "image")})
 """What is simulated elsewhere, with the element in which it is not."""
 _WITHOUT_PLUGINS = frozenset({"actor", "visual"})
 

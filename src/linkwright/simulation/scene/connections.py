@@ -1,0 +1,158 @@
+"""Joints of a world, which connect links of its models (SDF 1.7 and later).
+
+A model whose link can be hung on the other one moves by that joint as its own links move by theirs. Where both links
+are held already, the joint closes a loop.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+
+from linkwright.geometry.single import IDENTITY, Transform
+from linkwright.sdf.frames import FrameError, Frames
+from linkwright.sdf.poses import SEPARATOR, WORLD
+from linkwright.sdf.worlds import World
+from linkwright.simulation.scene.structure import HeldLink, PlacedJoint, Structure, is_below, placed_joint, structure_of
+
+
+@dataclass(frozen=True, slots=True)
+class Connections:
+    """The joints of a world between its models.
+
+    Attributes:
+        hanging: joints that a model hangs by, by the names of their children.
+        loops: those between links that are held already.
+        poses: where the frames of the models that they connect stand in the world.
+    """
+
+    hanging: dict[str, PlacedJoint]
+    loops: tuple[PlacedJoint, ...]
+    poses: dict[str, Transform]
+
+    def of(self, structure: Structure, name: str, pose: Transform, others: Iterable[str]) -> Connected:
+        """A model as it is connected with those that came before it.
+
+        Args:
+            structure: its own links and joints.
+            name: what it is called in the world.
+            pose: where its frame stands in the world; elsewhere than in the world nothing connects it.
+            others: the names of the models that came before it.
+        """
+        if self.poses.get(name) != pose:
+            return Connected(structure, (), frozenset())
+        there = {WORLD, name, *others}
+        joints = (*self.hanging.values(), *self.loops)
+        own = [each for each in joints if name in _models(each) and _models(each) <= there]
+        hung = {
+            each.child: each for each in own if self.hanging.get(each.child) is each and model_of(each.child) == name
+        }
+        links = tuple(HeldLink(held.link, hung.get(held.link.name, held.joint)) for held in structure.links)
+        loops = tuple(each for each in own if hung.get(each.child) is not each)
+        hangs_on = frozenset(each for joint in own for each in _models(joint)) - {WORLD, name}
+        return Connected(replace(structure, links=links), loops, hangs_on)
+
+    def in_order(self, names: Sequence[str]) -> list[str]:
+        """Names of models, each after those that it hangs on, otherwise in their order."""
+        above: dict[str, list[str]] = {}
+        for joint in self.hanging.values():
+            above.setdefault(model_of(joint.child), []).append(model_of(joint.parent))
+        wanted = set(names)
+        ordered: dict[str, None] = {}
+        begun: set[str] = set()  # joints may lead back to where they come from, by way of other links
+        pending = list(reversed(names))
+        while pending:
+            name = pending[-1]
+            missing = (
+                [] if name in begun else [each for each in above.get(name, ()) if each in wanted and each not in begun]
+            )
+            begun.add(name)
+            if missing:
+                pending += missing
+            else:
+                ordered[pending.pop()] = None
+        return list(ordered)
+
+
+@dataclass(frozen=True, slots=True)
+class Connected:
+    """A model with what connects it.
+
+    Attributes:
+        structure: its links, with the joints of the world among those that hold them.
+        loops: joints of the world that close loops with links of other models, or within it.
+        hangs_on: names of the models that these joints lead to.
+    """
+
+    structure: Structure
+    loops: tuple[PlacedJoint, ...]
+    hangs_on: frozenset[str]
+
+
+def connections_of(world: World) -> Connections:
+    """The joints of a world; those whose links are not there, or never move, are left out.
+
+    Args:
+        world: with its includes resolved, and as it was saved.
+    """
+    if not world.joints:
+        return Connections({}, (), {})
+    frames = Frames(world)
+    placed = _placed(world, frames)
+    models = {model for joint in placed for model in _models(joint)}
+    poses: dict[str, Transform] = {}
+    held: dict[str, HeldLink] = {}
+    for model in world.models:
+        if model.name in models - poses.keys():
+            try:
+                structure = structure_of(model, model.name, frames.pose(model.name))
+            except FrameError:
+                continue  # the scene tells of it
+            poses[model.name] = frames.pose(model.name)
+            held |= {each.link.name: each for each in structure.links}
+
+    holding = {name: each.joint for name, each in held.items() if each.joint is not None}
+    moving = {name for name, each in held.items() if not each.link.static}
+    free = {name for name in moving - holding.keys() if not held[name].link.link.kinematic}
+    hanging: dict[str, PlacedJoint] = {}
+    loops: list[PlacedJoint] = []
+    for joint in placed:
+        there = held.keys() | {WORLD}
+        if not {joint.parent, joint.child} <= there or not {joint.parent, joint.child} & moving:
+            continue
+        ways = (joint, _turned_round(joint)) if len(_models(joint)) > 1 else ()  # links of one model have their order
+        fit = (each for each in ways if each.child in free and not is_below(holding, each.child, each.parent))
+        hung = next(fit, None)
+        if hung is None:
+            loops.append(joint)
+        else:
+            free.discard(hung.child)
+            hanging[hung.child] = holding[hung.child] = hung
+    return Connections(hanging, tuple(loops), poses)
+
+
+def model_of(link: str) -> str:
+    """The model of a world that a link is in; ``world`` for what is in none."""
+    return link.partition(SEPARATOR)[0]
+
+
+def _models(joint: PlacedJoint) -> set[str]:
+    return {model_of(joint.parent), model_of(joint.child)}
+
+
+def _placed(world: World, frames: Frames) -> list[PlacedJoint]:
+    found: dict[str, PlacedJoint] = {}
+    for joint in world.joints:
+        try:
+            placed = placed_joint(joint, frames, IDENTITY, "")
+        except FrameError:
+            continue  # `check` tells of it
+        if placed.name not in found and placed.parent != placed.child:
+            found[placed.name] = placed
+    return list(found.values())
+
+
+def _turned_round(joint: PlacedJoint) -> PlacedJoint:
+    """The same joint seen from its child, which holds its parent then; positions keep their signs."""
+    axes = tuple((axis, (-x, -y, -z)) for axis, (x, y, z) in reversed(joint.axes))
+    return replace(joint, parent=joint.child, child=joint.parent, axes=axes)

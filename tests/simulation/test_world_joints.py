@@ -1,0 +1,135 @@
+"""Joints of worlds, which connect links of their models."""
+
+from __future__ import annotations
+
+from math import pi, sqrt
+
+import numpy as np
+import pytest
+
+from tests.simulation.test_loading import load, steps
+from tests.simulation.test_server import simulator
+from tests.simulation.worlds import box, simulated
+
+BAR = """<model name="{name}"><pose>{pose}</pose><link name="link"><inertial><mass>1</mass><inertia>
+<ixx>1e-9</ixx><iyy>1e-9</iyy><izz>1e-9</izz></inertia></inertial></link></model>"""
+HINGE = '<axis><xyz>0 1 0</xyz></axis><pose relative_to="{at}"/>'
+
+
+def joint(kind: str, parent: str, child: str, more: str = "", name: str = "held") -> str:
+    """A joint of a world."""
+    return f'<joint name="{name}" type="{kind}"><parent>{parent}</parent><child>{child}</child>{more}</joint>'
+
+
+@pytest.mark.parametrize("parent", ["base", "base::link"])
+def test_a_pendulum_of_two_models_swings_as_the_textbook_says(parent):
+    bob, base = BAR.format(name="bob", pose="0.05 0 1.001249 0 0 0"), box("base", "0 0 2 0 0 0")
+    swing = joint("revolute", parent, "bob::link", HINGE.format(at="base"), name="swing")
+    simulation = simulated(bob, base, joint("fixed", "world", "base", name="anchor"), swing)
+    crossings = []
+    for _ in range(4500):
+        before = simulation.model_pose("bob")[0]
+        simulation.advance(1_000_000)
+        after = simulation.model_pose("bob")[0]
+        if before * after < 0:
+            crossings.append(simulation.seconds)
+    assert len(crossings) == 4
+    length = sqrt(0.05**2 + 0.998751**2)
+    assert (crossings[2] - crossings[0]) == pytest.approx(2 * pi * sqrt(length / 9.81), rel=2e-3)
+    assert simulation.model_pose("base")[:3] == (0, 0, 2)
+    assert list(simulation.scene.models) == ["base", "bob"], "what hangs comes last"
+
+
+def test_two_models_fixed_to_each_other_fall_as_one():
+    one, other = box("one", "0 0 9 0 0 0"), box("two", "1.5 0 9 0 0 0")
+    simulation = simulated(other, one, joint("fixed", "one", "two"), gravity="0 0 0")
+    simulation.set_model_velocity("one", (0.0, 0.0, 0.0), (0.0, 0.0, pi / 2))
+    simulation.advance(1_000_000_000)
+    one, two = (np.array(simulation.model_pose(name)) for name in ("one", "two"))
+    assert np.linalg.norm(two[:3] - one[:3]) == pytest.approx(1.5, abs=1e-9)
+    assert two[3:] == pytest.approx(one[3:], abs=1e-9)
+    assert abs(one[5]) > 0.5, "both turn"
+
+
+def test_a_slider_on_what_is_static_stops_at_its_limits_whichever_of_both_is_the_child():
+    post = box("post", "0 0 1 0 0 0").replace("<link", "<static>true</static><link", 1)
+    rail = "<axis><xyz>0 0 1</xyz><limit><lower>-0.3</lower><upper>0.3</upper></limit></axis>"
+    for parent, child, end in (("post", "slider", -0.3), ("slider", "post", 0.3)):
+        simulation = simulated(post, box("slider", "0 0 1 0 0 0"), joint("prismatic", parent, child, rail, "rail"))
+        simulation.advance(2_000_000_000)
+        assert simulation.joint_state("rail")[0] == pytest.approx(end, abs=1e-3)
+        assert simulation.model_pose("slider")[:3] == pytest.approx((0, 0, 0.7), abs=1e-3)
+
+
+def test_a_ball_and_a_universal_joint_keep_what_hangs_at_its_distance():
+    parts = [BAR.format(name=name, pose=f"{x} 0 3 0 0 0") for name, x in (("a", 0), ("b", 1), ("c", 2))]
+    axes = "<axis><xyz>0 1 0</xyz></axis><axis2><xyz>0 0 1</xyz></axis2>"
+    joints = (
+        joint("fixed", "world", "a", name="anchor"),
+        joint("universal", "a", "b", axes + '<pose relative_to="a"/>', "cross"),
+        joint("ball", "b", "c", '<pose relative_to="b"/>', "socket"),
+    )
+    simulation = simulated(*parts, *joints)
+    simulation.advance(700_000_000)
+    a, b, c = (np.array(simulation.model_pose(name)[:3]) for name in "abc")
+    assert np.linalg.norm(b - a) == pytest.approx(1, abs=1e-9)
+    assert np.linalg.norm(c - b) == pytest.approx(1, abs=1e-9)
+    assert c[2] < b[2] < 2.9
+
+
+def test_a_joint_between_what_is_held_already_closes_a_loop_or_is_told_of():
+    ends = [box(name, f"{x} 0 3 0 0 0") for name, x in (("a", 0), ("b", 2))]
+    middle = box("bridge", "1 0 3 0 0 0")
+    held = [joint("fixed", "world", name, name=f"hold_{name}") for name in "ab"]
+    both = [joint("fixed", name, "bridge", name=f"on_{name}") for name in "ab"]
+    simulation = simulated(*ends, middle, *held, *both)
+    simulation.advance(500_000_000)
+    assert simulation.model_pose("bridge")[:3] == pytest.approx((1, 0, 3), abs=1e-3)
+    simulation = simulated(*ends, middle, *held, both[0], joint("prismatic", "b", "bridge", "<axis/>", "rail"))
+    assert [(each.code, str(each.message)) for each in simulation.scene.diagnostics] == [
+        ("SIM118", "joint 'rail' is left out: one of type prismatic closes no loop")
+    ]
+
+
+def test_joints_to_nowhere_and_in_circles_leave_the_rest_as_it_is():
+    parts = [box(name, f"{x} 0 9 0 0 0") for name, x in (("a", 0), ("b", 2))]
+    joints = [joint("fixed", "a", "b", name="on"), joint("fixed", "b", "a", name="back"), joint("fixed", "a", "nobody")]
+    simulation = simulated(*parts, *joints, gravity="0 0 -10")
+    simulation.advance(500_000_000)
+    assert simulation.model_pose("a")[2] == pytest.approx(9 - 1.25, abs=0.01)
+    assert simulation.model_pose("b")[2] == pytest.approx(9 - 1.25, abs=0.01)
+
+
+async def test_what_hangs_on_a_model_goes_on_without_it(tmp_path):
+    parts = box("base", "0 0 9 0 0 0"), box("load", "0 0 7.5 0 0 0")
+    joints = joint("fixed", "world", "base", name="anchor"), joint("fixed", "base", "load", name="rope")
+    async with simulator(tmp_path, *parts, *joints) as it:
+        simulation = it.simulator.server.simulation
+        await steps(it, 200)
+        assert simulation.model_pose("load")[2] == 7.5
+        await it.ask("gazebo_msgs/srv/DeleteEntity", "/delete_entity", name="base")
+        assert simulation.model_pose("load")[2] == 7.5
+        await steps(it, 200)
+        assert simulation.model_pose("load")[2] == pytest.approx(7.5 - 0.5 * 9.8 * 0.04, abs=0.01)
+        await it.ask("std_srvs/srv/Empty", "/reset_world")
+        assert simulation.model_pose("load")[2] == 7.5
+
+
+async def test_a_world_with_joints_is_followed(tmp_path):
+    base, weight = box("base", "0 0 9 0 0 0"), BAR.format(name="bob", pose="1 0 9 0 0 0")
+    anchor = joint("fixed", "world", "base", name="anchor")
+    swing = joint("revolute", "base", "bob", HINGE.format(at="base"), name="swing")
+    async with simulator(tmp_path, base, weight, anchor, swing) as it:
+        simulation = it.simulator.server.simulation
+        await steps(it, 300)
+        turned = simulation.joint_state("swing")
+        assert turned[0] > 0.1
+        await load(it, tmp_path, base.replace("<mass>", "<mass>1"), weight, anchor, swing)
+        assert simulation.joint_state("swing") == turned, "what hangs on what has changed goes on"
+        await load(it, tmp_path, box("base", "3 0 9 0 0 0"), weight.replace("1 0 9", "4 0 9"), anchor, swing)
+        assert simulation.model_pose("base")[:3] == (3, 0, 9)
+        assert simulation.joint_state("swing") == turned
+        await load(it, tmp_path, base, weight, anchor)
+        assert simulation.moves_freely("bob")
+        await load(it, tmp_path, base, weight, anchor, swing)
+        assert not simulation.moves_freely("bob")
