@@ -77,7 +77,7 @@ function start(app: HTMLElement): void {
   const theme = new ThemeState(document.documentElement, browserStorage(), matchMedia("(prefers-color-scheme: light)"));
   const own = hasOwnDisplays(location.href) ? ownKey(browserStorage("sessionStorage")) : null;
   const tokens = new Tokens(addressBar(), browserStorage());
-  const connection = new Connection(socketUrl(location.href, own), tokens);
+  const connection = new Connection(socketUrl(location.href, own, language), tokens);
   const door = new Door(connection, tokens, app);
   // Before anything is drawn: the answer takes a moment.
   connection.open();

@@ -221,5 +221,6 @@ describe("the socket's address", () => {
   it("stands beside the page", () => {
     expect(socketUrl("http://127.0.0.1:7447/?token=abc")).toBe("ws://127.0.0.1:7447/ws");
     expect(socketUrl("https://lab.example/robots/mbot/")).toBe("wss://lab.example/robots/mbot/ws");
+    expect(socketUrl("http://127.0.0.1:7447/", null, "zh")).toBe("ws://127.0.0.1:7447/ws?language=zh");
   });
 });

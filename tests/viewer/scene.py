@@ -182,9 +182,9 @@ class Client:
 
 
 @asynccontextmanager
-async def page(viewer: Viewer) -> AsyncIterator[Client]:
-    """A connected page; its end is not waited for where the viewer is slow with it."""
-    address = viewer.url.replace("/?", "/ws?")
+async def page(viewer: Viewer, more: str = "") -> AsyncIterator[Client]:
+    """A connected page; its end is not waited for where the viewer is slow with it. `more` goes to its address."""
+    address = viewer.url.replace("/?", "/ws?") + more
     hurry = aiohttp.ClientWSTimeout(ws_close=1.0)
     async with aiohttp.ClientSession() as session, session.ws_connect(address, timeout=hurry) as socket:
         yield Client(socket)

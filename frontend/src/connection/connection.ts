@@ -185,11 +185,15 @@ export class Connection {
   }
 }
 
-/** Where the server's WebSocket is for a page at `page`; `own` is by what the page names displays of its own. */
-export function socketUrl(page: string, own: string | null = null): string {
+/**
+ * Where the server's WebSocket is for a page at `page`; `own` is by what the page names displays of its own, `language`
+ * what it is told things in.
+ */
+export function socketUrl(page: string, own: string | null = null, language: string | null = null): string {
   const url = new URL("ws", page);
   url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
   if (own !== null) url.searchParams.set("own", own);
+  if (language !== null) url.searchParams.set("language", language);
   const recording = recordingIn(page);
   if (recording !== null) url.searchParams.set("recording", recording);
   return url.href;

@@ -31,7 +31,7 @@ export interface Property {
   topics: TopicOffer | null;
 }
 
-/** One row below a display's Status. */
+/** One row below a display's Status. Its text, as a rule a phrase, goes to each page in the page's language. */
 export interface StatusRow {
   name: string;
   level: StatusLevel;

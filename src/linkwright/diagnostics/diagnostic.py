@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import Enum
 
-from linkwright.diagnostics.phrase import Phrase
+from linkwright.diagnostics.phrase import Phrase, joined
 from linkwright.diagnostics.source import SourceText, Span
 
 
@@ -46,6 +46,11 @@ class Diagnostic:
     notes: tuple[Note, ...] = ()
     hint: Phrase | None = None
     source: SourceText | None = None
+
+    @property
+    def placed_message(self) -> Phrase:
+        """The message, after its place where it has one."""
+        return joined((str(self.span), self.message), ": ") if self.span else self.message
 
 
 class LinkwrightError(Exception):

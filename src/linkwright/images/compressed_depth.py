@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from linkwright.diagnostics import foreign, phrase
 from linkwright.images.decoding import BadImageError
 from linkwright.images.image_files import MOST_PIXELS, RawImage, encoding_of, file_pixels
 
@@ -42,12 +43,15 @@ def unpacked_depth(message: Any) -> RawImage:
     packing = _PACKINGS.get(message.format.partition(";")[2].strip())
     if packing is None or encoding not in (*_WHOLE, _FLOAT):
         raise BadImageError(
-            f"The format of the depth image is '{message.format}'; read are 16UC1, mono16 and 32FC1, "
-            "each with 'compressedDepth png' or 'compressedDepth rvl'"
+            phrase(
+                "The format of the depth image is '{format}'; read are 16UC1, mono16 and 32FC1, "
+                "each with 'compressedDepth png' or 'compressedDepth rvl'",
+                format=message.format,
+            )
         )
     data = np.frombuffer(message.data, np.uint8)
     if data.size <= _HEADER.size:
-        raise BadImageError(f"The depth image has {data.size} bytes, no more than its header")
+        raise BadImageError(phrase("The depth image has {size} bytes, no more than its header", size=data.size))
     _, first, second = _HEADER.unpack(data[: _HEADER.size].tobytes())
     rest = data[_HEADER.size :]
     numbers = _of_png(rest) if packing == "png" else _of_rvl(rest)
@@ -59,28 +63,46 @@ def unpacked_depth(message: Any) -> RawImage:
 def _of_png(data: NDArray[np.uint8]) -> NDArray[np.uint16]:
     pixels = file_pixels(data)
     if pixels.dtype != np.uint16:
-        raise BadImageError("The depth image is not a PNG of 16 bits and one channel")
+        raise BadImageError(phrase("The depth image is not a PNG of 16 bits and one channel"))
     return pixels
 
 
 def _of_rvl(data: NDArray[np.uint8]) -> NDArray[np.uint16]:
     if data.size < _RVL_SIZE.size:
-        raise BadImageError("The RVL depth image ends before its size")
+        raise BadImageError(phrase("The RVL depth image ends before its size"))
     columns, rows = _RVL_SIZE.unpack(data[: _RVL_SIZE.size].tobytes())
     if not 0 < columns * rows <= MOST_PIXELS:
         raise BadImageError(
-            f"The RVL depth image says that it has {columns} x {rows} pixels; 1 to {MOST_PIXELS} are unpacked"
+            phrase(
+                "The RVL depth image says that it has {columns} x {rows} pixels; 1 to {most} are unpacked",
+                columns=columns,
+                rows=rows,
+                most=MOST_PIXELS,
+            )
         )
     try:
         return decoded(data[_RVL_SIZE.size :], columns * rows).reshape(rows, columns)
     except BadRvlError as error:
-        raise BadImageError(f"The RVL depth image of {columns} x {rows} pixels cannot be read: {error}") from None
+        raise BadImageError(
+            phrase(
+                "The RVL depth image of {columns} x {rows} pixels cannot be read: {error}",
+                columns=columns,
+                rows=rows,
+                error=foreign(error),
+            )
+        ) from None
 
 
 def _depths(numbers: NDArray[np.uint16], first: float, second: float) -> NDArray[np.float32]:
     """Metres, shape (height, width); NaN where there is no depth."""
     if not (np.isfinite(first) and np.isfinite(second) and first > 0.0):
-        raise BadImageError(f"The header of the depth image has no scale for its depths: {first:g}, {second:g}")
+        raise BadImageError(
+            phrase(
+                "The header of the depth image has no scale for its depths: {first:g}, {second:g}",
+                first=first,
+                second=second,
+            )
+        )
     every = np.arange(65536, dtype=np.float32)
     with np.errstate(divide="ignore"):
         metres = np.float32(first) / (every - np.float32(second))
@@ -128,7 +150,7 @@ def _numbers(stream: NDArray[np.uint8]) -> NDArray[np.int64]:
     lengths = ends - starts + 1
     longest = int(lengths.max(initial=0))
     if longest > _MOST_GROUPS:
-        raise BadRvlError("it has a number of more than 30 bits")
+        raise BadRvlError(phrase("it has a number of more than 30 bits"))
     numbers: NDArray[np.int64] = (groups[starts] & 7).astype(np.int64)
     for place in range(1, longest):
         longer = np.flatnonzero(lengths > place)
@@ -144,16 +166,16 @@ def _runs(numbers: NDArray[np.int64], pixels: int) -> tuple[list[int], list[int]
     at, left, count = 0, pixels, len(numbers)
     while left > 0:
         if at + 2 > count:
-            raise BadRvlError(f"it ends {left} pixels too early")
+            raise BadRvlError(phrase("it ends {left} pixels too early", left=left))
         zeros, others = read[at], read[at + 1]
         if zeros == 0 and heads:
-            raise BadRvlError("it has an empty run of pixels")
+            raise BadRvlError(phrase("it has an empty run of pixels"))
         left -= zeros + others
         heads.append(at)
         runs += (zeros, others)
         at += 2 + others
     if left < 0:
-        raise BadRvlError(f"it has {-left} pixels too many")
+        raise BadRvlError(phrase("it has {left} pixels too many", left=-left))
     if at > count:
-        raise BadRvlError(f"it ends {at - count} pixels too early")
+        raise BadRvlError(phrase("it ends {left} pixels too early", left=at - count))
     return heads, runs

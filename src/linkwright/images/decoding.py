@@ -14,6 +14,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from linkwright.diagnostics import phrase
+
 Pixels = NDArray[np.uint8]
 
 _LARGEST_STEP = 16
@@ -118,7 +120,7 @@ def picture_of(message: Any, ranges: RangeFinder) -> Picture:
         return Picture(demosaiced((mosaic >> 8).astype(np.uint8) if deep else mosaic, encoding[6:10]))
     if encoding in _YUV:
         return Picture(_YUV[encoding](message))
-    raise BadImageError(f"Unsupported image encoding [{encoding}]")
+    raise BadImageError(phrase("Unsupported image encoding [{encoding}]", encoding=encoding))
 
 
 _RGB, _BGR, _RGBA, _BGRA = None, [2, 1, 0], None, [2, 1, 0, 3]
@@ -148,8 +150,14 @@ def _rows(message: Any, kind: str, channels: int = 1) -> NDArray[Any]:
     height = message.height
     if step < row or data.size < step * max(0, height - 1) + row * (height > 0):
         raise BadImageError(
-            f"The image has {data.size} bytes in rows of {step}, too few for {message.width} x {height} "
-            f"pixels of '{message.encoding}'"
+            phrase(
+                "The image has {size} bytes in rows of {step}, too few for {width} x {height} pixels of '{encoding}'",
+                size=data.size,
+                step=step,
+                width=message.width,
+                height=height,
+                encoding=message.encoding,
+            )
         )
     shape = (height, message.width) if channels == 1 else (height, message.width, channels)
     strides = (step, size) if channels == 1 else (step, channels * size, size)
@@ -276,7 +284,15 @@ def _planar_yuv(layout: str) -> Callable[[Any], Pixels]:
         data = np.frombuffer(message.data, np.uint8)
         needed = step * height + chroma_step * chroma_rows
         if step < width or chroma_step < 2 * pairs or data.size < needed or width == 0 or height == 0:
-            raise BadImageError(f"The image has {data.size} bytes, too few for {width} x {height} pixels of '{layout}'")
+            raise BadImageError(
+                phrase(
+                    "The image has {size} bytes, too few for {width} x {height} pixels of '{layout}'",
+                    size=data.size,
+                    width=width,
+                    height=height,
+                    layout=layout,
+                )
+            )
         luma = data[: step * height].reshape(height, step)[:, :width]
         rest = data[step * height : needed].reshape(chroma_rows, chroma_step)[:, : 2 * pairs]
         return from_nv(luma, rest, layout)

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from linkwright.diagnostics import foreign, phrase
 from linkwright.diagnostics.extras import install_hint
 from linkwright.images.decoding import BadImageError
 
@@ -57,10 +58,12 @@ def file_pixels(data: NDArray[np.uint8]) -> NDArray[Any]:
     try:
         from PIL import JpegImagePlugin, PngImagePlugin
     except ModuleNotFoundError:
-        raise BadImageError(f"PNG and JPEG files cannot be unpacked: {install_hint('image')}") from None
+        raise BadImageError(
+            phrase("PNG and JPEG files cannot be unpacked: {hint}", hint=install_hint("image"))
+        ) from None
     start = data[:8].tobytes()
     if not start.startswith((_PNG, _JPEG)):
-        raise BadImageError("The image is neither a PNG nor a JPEG")
+        raise BadImageError(phrase("The image is neither a PNG nor a JPEG"))
     reader = PngImagePlugin.PngImageFile if start == _PNG else JpegImagePlugin.JpegImageFile
     try:
         # Not by Image.open: that one knows more formats, and warns of sizes that are refused below.
@@ -69,9 +72,21 @@ def file_pixels(data: NDArray[np.uint8]) -> NDArray[Any]:
         if width * height <= MOST_PIXELS:
             return _plain(file)
     except Exception as error:  # noqa: BLE001 - a file from a message may be broken in any way
-        raise BadImageError(f"The {file_kind(start)} cannot be read: {error or type(error).__name__}") from None
+        raise BadImageError(
+            phrase(
+                "The {kind} cannot be read: {error}",
+                kind=file_kind(start),
+                error=foreign(error or type(error).__name__),
+            )
+        ) from None
     raise BadImageError(
-        f"The {file_kind(start)} has {width} x {height} pixels; no more than {MOST_PIXELS} are unpacked"
+        phrase(
+            "The {kind} has {width} x {height} pixels; no more than {most} are unpacked",
+            kind=file_kind(start),
+            width=width,
+            height=height,
+            most=MOST_PIXELS,
+        )
     )
 
 

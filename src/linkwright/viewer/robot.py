@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from linkwright.descriptions import examine
-from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, phrase
 from linkwright.geometry.arrays import quaternion_from_matrix
 from linkwright.geometry.single import quaternion_of
 from linkwright.graph import DurabilityPolicy, MessageInfo
@@ -86,7 +86,7 @@ class DescriptionSource:
         self.publisher: bytes | None = None
         """The GID of who published the description that was received last; None before, and of files."""
 
-    def follow(self) -> str | None:
+    def follow(self) -> Phrase | None:
         """Follow the source named now instead of the one before; returns RViz's words for why that failed, or None."""
         self.close()
         if self._properties.text(SOURCE) == "File":
@@ -105,9 +105,9 @@ class DescriptionSource:
             self._reading.cancel()
             self._reading = None
 
-    def _subscribe(self, topic: str) -> str | None:
+    def _subscribe(self, topic: str) -> Phrase | None:
         if not topic:
-            return "Error subscribing: Empty topic name"
+            return phrase("Error subscribing: Empty topic name")
         asked = qos_of(self._properties, TOPIC)
         # Transient local first, then what the file asks for, for publishers that do not offer it.
         profiles = [qos_of(self._properties, TOPIC, lasting=True)]
@@ -119,7 +119,7 @@ class DescriptionSource:
                     self._context.node.create_subscription(String, topic, self._received, profile)
                 )
         except LinkwrightError as error:
-            return f"Error subscribing: {error.diagnostics[0].message}"
+            return phrase("Error subscribing: {message}", message=error.diagnostics[0].message)
         return None
 
     def publishers(self) -> dict[bytes, str]:
@@ -134,9 +134,9 @@ class DescriptionSource:
         self._heard.add(self.publisher)
         self._on_text(message.data)
 
-    def _read_file(self, address: str) -> str | None:
+    def _read_file(self, address: str) -> Phrase | None:
         if not address:
-            return "No description file is named"
+            return phrase("No description file is named")
         self._reading = asyncio.get_running_loop().create_task(self._read(address))
         return None
 
@@ -218,7 +218,7 @@ class SceneBuilder:
 
     def __init__(self, index: MeshIndex) -> None:
         self.index = index
-        self.problems: dict[str, list[str]] = {}
+        self.problems: dict[str, list[Phrase]] = {}
 
     def links(self, robot: Robot, prefix: str) -> list[LinkScene]:
         """The links in file order, with frames named by the display's TF Prefix."""
@@ -284,7 +284,10 @@ class SceneBuilder:
     def _mesh(self, link: Link, part: Visual | Collision, mesh: Mesh, shape: Shape) -> Shape | None:
         located = self.index.locate(mesh.filename, folder_of(part.element), MESH_TYPES)
         if located.url is None:
-            self._problem(link, f"Could not load mesh resource '{mesh.filename}': {located.problem}")
+            self._problem(
+                link,
+                phrase("Could not load mesh resource '{name}': {reason}", name=mesh.filename, reason=located.problem),
+            )
             return None
         shape.size = list(mesh.scale)
         shape.url = located.url
@@ -296,10 +299,12 @@ class SceneBuilder:
             return None
         located = self.index.locate(material.texture, folder_of(material.element), IMAGE_TYPES)
         if located.url is None:
-            self._problem(link, f"Could not load texture '{material.texture}': {located.problem}")
+            self._problem(
+                link, phrase("Could not load texture '{name}': {reason}", name=material.texture, reason=located.problem)
+            )
         return located.url
 
-    def _problem(self, link: Link, text: str) -> None:
+    def _problem(self, link: Link, text: Phrase) -> None:
         problems = self.problems.setdefault(link.name, [])
         if text not in problems:
             problems.append(text)

@@ -254,7 +254,7 @@ class Viewer:
         manager = self.managers.enter(page)
         messages, frames = self.opening_messages(manager)
         manager.pages.add(page)  # what it is told from here on comes after all this
-        return [*map(encode, messages), *frames]
+        return [*(encode(each, page.language) for each in messages), *frames]
 
     def opening_messages(self, manager: VisualizationManager) -> tuple[list[ServerMessage], list[Payload]]:
         """Messages for a page that begins to see a configuration, the frame table last; and binary frames."""

@@ -8,9 +8,18 @@ from hypothesis import given
 from hypothesis import strategies as st
 from msgspec import to_builtins
 
+from linkwright.diagnostics import phrase
+from linkwright.diagnostics.translation.wording import wording
 from linkwright.viewer.protocol.binary import pack_data
 from linkwright.viewer.protocol.configuration import Folder
-from linkwright.viewer.protocol.displays import DisplayProperties, Property, PropertyChanged, SetProperty
+from linkwright.viewer.protocol.displays import (
+    DisplayProperties,
+    DisplayStatus,
+    Property,
+    PropertyChanged,
+    SetProperty,
+    StatusRow,
+)
 from linkwright.viewer.protocol.geometry import PolygonLine
 from linkwright.viewer.protocol.joints import CenterJoints, JointPositions, Joints, RandomizeJoints, SetJoint
 from linkwright.viewer.protocol.message import BadMessageError, decode, encode, redundancy_key
@@ -112,6 +121,23 @@ def test_halves_of_characters_are_not_sent():
 def test_whole_numbers_are_floats_where_floats_are_meant():
     position = decode('{"type": "set_joint", "name": "a", "position": 1}').position
     assert (position, type(position)) == (1.0, float)
+
+
+def test_phrases_are_said_in_the_language_of_the_page():
+    frame = phrase("Frame [{frame}] does not exist", frame="base")
+    row = StatusRow("Fixed Frame", "warn", phrase("No tf data.  Actual error: {missing}", missing=frame))
+    message = DisplayStatus("global", "warn", [row])
+
+    def text(language):
+        return json.loads(encode(message, language))["status"][0]["text"]
+
+    assert text("zh") == "没有 tf 数据。实际的错误：坐标系 [base] 不存在"
+    assert text("en") == text(None) == "No tf data.  Actual error: Frame [base] does not exist"
+    in_chinese = frame.translated(wording("zh"))
+    message.status = [StatusRow("Fixed Frame", "error", in_chinese)]
+    assert (text("en"), text(None)) == ("Frame [base] does not exist", "坐标系 [base] 不存在")
+    odd = DisplayStatus("global", "warn", [StatusRow("caf\udce9", "warn", frame)])
+    assert json.loads(encode(odd, "zh"))["status"] == [{"name": "caf?", "level": "warn", "text": in_chinese}]
 
 
 def test_messages_of_the_server_are_plain_json():

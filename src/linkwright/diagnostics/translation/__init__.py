@@ -5,7 +5,7 @@ language; what it does not know stays English. Codes, places and the user's own 
 """
 
 from linkwright.diagnostics.translation.language import LANGUAGES, asked_language, language, language_of, set_language
-from linkwright.diagnostics.translation.translate import labels, localized, translate, translated
+from linkwright.diagnostics.translation.translate import labels, localized, said_in, translate, translated
 
 __all__ = [
     "LANGUAGES",
@@ -14,6 +14,7 @@ __all__ = [
     "language",
     "language_of",
     "localized",
+    "said_in",
     "set_language",
     "translate",
     "translated",

@@ -49,5 +49,10 @@ def localized(text: str, lang: str | None = None) -> str:
     return text.said_in(wording(lang)) if lang != "en" and isinstance(text, Phrase) else text
 
 
+def said_in(text: Phrase, lang: str) -> str:
+    """A phrase in a language of `LANGUAGES`, whatever language it is in now."""
+    return text.said_in(wording(lang))
+
+
 def _said(text: Phrase, words: Wording) -> Phrase:
     return text.translated(words) if isinstance(text, Phrase) else text

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from linkwright.diagnostics import phrase
 from linkwright.images import Picture
 from linkwright.viewer.clouds.points import BadCloudError, Points
 
@@ -41,14 +42,23 @@ class DepthCamera:
         expected = (roi_width // binning_x, roi_height // binning_y)
         if expected != (width, height):
             raise BadCloudError(
-                f"Error updating depth cloud: Depth image size and camera info don't match: {width} x {height} vs "
-                f"{expected[0]} x {expected[1]}(binning: {binning_x} x {binning_y}, "
-                f"ROI size: {roi_width} x {roi_height})"
+                phrase(
+                    "Error updating depth cloud: Depth image size and camera info don't match: {width} x {height} vs "
+                    "{columns} x {rows}(binning: {binning_x} x {binning_y}, ROI size: {roi_width} x {roi_height})",
+                    width=width,
+                    height=height,
+                    columns=expected[0],
+                    rows=expected[1],
+                    binning_x=binning_x,
+                    binning_y=binning_y,
+                    roi_width=roi_width,
+                    roi_height=roi_height,
+                )
             )
         p = np.asarray(info.p, np.float64)
         if not np.isfinite(p).all() or p[0] == 0.0 or p[5] == 0.0:
             raise BadCloudError(
-                "Error updating depth cloud: the projection matrix of the CameraInfo has no focal length"
+                phrase("Error updating depth cloud: the projection matrix of the CameraInfo has no focal length")
             )
         columns = (np.arange(width) - (p[2] - info.roi.x_offset) / binning_x) / (p[0] / binning_x)
         rows = (np.arange(height) - (p[6] - info.roi.y_offset) / binning_y) / (p[5] / binning_y)
@@ -90,8 +100,14 @@ class DepthCloudBuilder:
         metres, valid = _metres(depth)
         if colour is not None and (colour.width, colour.height) != (depth.width, depth.height):
             raise BadCloudError(
-                f"Error updating depth cloud: Depth image resolution ({depth.width}x{depth.height}) does not match "
-                f"color image resolution ({colour.width}x{colour.height})"
+                phrase(
+                    "Error updating depth cloud: Depth image resolution ({width}x{height}) does not match "
+                    "color image resolution ({columns}x{rows})",
+                    width=depth.width,
+                    height=depth.height,
+                    columns=colour.width,
+                    rows=colour.height,
+                )
             )
         colours = np.full(metres.shape, 0x00FFFFFF, np.uint32) if colour is None else _packed(colour)
         if keep_covered is None:
@@ -139,7 +155,7 @@ def _metres(image: Any) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
     kind = kinds.get(image.encoding)
     if kind is None:
         raise BadCloudError(
-            "Error updating depth cloud: Depth image has invalid format (only 16 bit and float are supported)!"
+            phrase("Error updating depth cloud: Depth image has invalid format (only 16 bit and float are supported)!")
         )
     kind = (">" if image.is_bigendian else "<") + kind
     data = np.frombuffer(image.data, np.uint8)
@@ -147,8 +163,12 @@ def _metres(image: Any) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
     step = image.step or row
     if step < row or data.size < step * max(0, image.height - 1) + row * (image.height > 0):
         raise BadCloudError(
-            f"Error updating depth cloud: the depth image has {data.size} bytes, "
-            f"too few for {image.width} x {image.height}"
+            phrase(
+                "Error updating depth cloud: the depth image has {size} bytes, too few for {width} x {height}",
+                size=data.size,
+                width=image.width,
+                height=image.height,
+            )
         )
     raw: NDArray[Any] = np.ndarray((image.height, image.width), kind, data.data, 0, (step, int(kind[2])))
     metres = raw.astype(np.float32)

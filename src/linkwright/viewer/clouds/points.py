@@ -13,6 +13,7 @@ import numpy as np
 from msgspec.structs import replace
 from numpy.typing import NDArray
 
+from linkwright.diagnostics import phrase
 from linkwright.geometry.arrays import rotate, slerp
 from linkwright.viewer.protocol.points import CloudPoints
 
@@ -63,12 +64,18 @@ def points_of_cloud(message: Any) -> Points:
     data = np.frombuffer(message.data, dtype=np.uint8)
     if data.size != count * step:
         raise BadCloudError(
-            f"Data size ({data.size} bytes) does not match width ({message.width}) times height ({message.height}) "
-            f"times point_step ({step}).  Dropping message."
+            phrase(
+                "Data size ({size} bytes) does not match width ({width}) times height ({height}) "
+                "times point_step ({step}).  Dropping message.",
+                size=data.size,
+                width=message.width,
+                height=message.height,
+                step=step,
+            )
         )
     fields = _fields(message.fields, step)
     if any(fields.get(axis, ("", 0))[0] != "f4" for axis in _AXES):
-        raise BadCloudError("No position transformer available for cloud")
+        raise BadCloudError(phrase("No position transformer available for cloud"))
     if count == 0:
         return Points(np.empty((0, 3), np.float32), {name: np.empty(0, kind) for name, (kind, _) in fields.items()})
     order = ">" if message.is_bigendian else "<"
@@ -98,7 +105,12 @@ def points_of_legacy_cloud(message: Any) -> Points:
         values = np.asarray(channel.values, dtype=np.float32)
         if len(values) != len(positions):
             raise BadCloudError(
-                f"Channel '{channel.name}' has {len(values)} values for {len(positions)} points.  Dropping message."
+                phrase(
+                    "Channel '{name}' has {values} values for {positions} points.  Dropping message.",
+                    name=channel.name,
+                    values=len(values),
+                    positions=len(positions),
+                )
             )
         channels.setdefault(channel.name, values)
     valid = np.isfinite(positions).all(axis=1)
@@ -114,7 +126,12 @@ def _fields(fields: Any, step: int) -> dict[str, tuple[str, int]]:
             continue
         if each.offset + int(kind[1]) > step:
             raise BadCloudError(
-                f"Field '{each.name}' ends at byte {each.offset + int(kind[1])} of a point of {step} bytes"
+                phrase(
+                    "Field '{name}' ends at byte {end} of a point of {step} bytes",
+                    name=each.name,
+                    end=each.offset + int(kind[1]),
+                    step=step,
+                )
             )
         found[each.name] = (kind, each.offset)
     return found

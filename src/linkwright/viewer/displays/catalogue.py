@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from functools import cache
 
+from linkwright.diagnostics import phrase
 from linkwright.extensions import extensions
 from linkwright.viewer.config.former_names import GROUP as GROUP_CLASS
 from linkwright.viewer.config.rviz_config import DisplayConfig
@@ -34,7 +35,7 @@ class UnsupportedDisplay(ViewerDisplay):
 
     def enabled_changed(self) -> None:
         """Say that it is not drawn, where the user would have it drawn."""
-        text = f"Displays of class '{self.config.cls}' are kept in the file but not drawn"
+        text = phrase("Displays of class '{name}' are kept in the file but not drawn", name=self.config.cls)
         self.set_status([StatusRow("Class", "warn", text)])
 
 

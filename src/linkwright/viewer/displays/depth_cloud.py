@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from linkwright.diagnostics import foreign, phrase
 from linkwright.graph import HistoryPolicy, QoSProfile, ReliabilityPolicy
 from linkwright.images import RAW, TRANSPORTS, BadImageError, ImageSource, RangeFinder, Unpacker, picture_of
 from linkwright.viewer.clouds import BadCloudError, DepthCamera, DepthCloudBuilder, Points
@@ -215,8 +216,16 @@ class DepthCloudDisplay(CloudDisplay):
         depth, colour = self._depth_source(), self._colour_source()
         for name, source in ((DEPTH_TRANSPORT, depth), (COLOUR_TRANSPORT, colour)):
             if not source.is_read:
-                choice = "choose raw, compressed or compressedDepth"
-                self.say(name, "error", f"Images of transport '{source.transport}' are not read: {choice}")
+                choice = phrase("choose raw, compressed or compressedDepth")
+                self.say(
+                    name,
+                    "error",
+                    phrase(
+                        "Images of transport '{transport}' are not read: {choice}",
+                        transport=source.transport,
+                        choice=choice,
+                    ),
+                )
         if not (depth.is_read and colour.is_read):
             return
         super()._subscribe()
@@ -224,7 +233,11 @@ class DepthCloudDisplay(CloudDisplay):
             return
         info = self.properties.text(INFO_TOPIC).strip() or camera_info_topic(depth.base)
         problem = self._infos.listen(info, self._qos())
-        self.say("Depth Camera Info", "error" if problem else "warn", problem or f"No CameraInfo received on [{info}]")
+        self.say(
+            "Depth Camera Info",
+            "error" if problem else "warn",
+            problem or phrase("No CameraInfo received on [{topic}]", topic=info),
+        )
         if colour.topic:
             self._colours = SideTopic(self.host, colour.message_type, self._colour_received)
             if problem := self._colours.listen(colour.topic, self._qos()):
@@ -240,7 +253,7 @@ class DepthCloudDisplay(CloudDisplay):
 
     def _info_received(self, info: Any) -> None:
         self._info = info
-        self.say("Depth Camera Info", "ok", "OK")
+        self.say("Depth Camera Info", "ok", phrase("OK"))
         self._try_pending()
 
     def _colour_received(self, message: Any) -> None:
@@ -270,26 +283,30 @@ class DepthCloudDisplay(CloudDisplay):
         try:
             points = self._points(message, pose, colour)
         except BadCloudError as error:
-            self.say("Message", "error", str(error))
+            self.say("Message", "error", foreign(error))
             return
         except BadImageError as error:
-            self.say("Message", "error", f"Error updating depth cloud: {error}")
+            self.say("Message", "error", phrase("Error updating depth cloud: {reason}", reason=foreign(error)))
             return
         frames = (message.header.frame_id, colour.header.frame_id if colour is not None else message.header.frame_id)
         if frames[0] != frames[1]:
-            text = f"Depth image frame id [{frames[0]}] doesn't match color image frame id [{frames[1]}]"
+            text = phrase(
+                "Depth image frame id [{depth}] doesn't match color image frame id [{color}]",
+                depth=frames[0],
+                color=frames[1],
+            )
             self.say("Message", "warn", text)
         else:
-            self.say("Message", "ok", "Ok")
+            self.say("Message", "ok", phrase("Ok"))
         self.show(points, pose, self.frame_of(message)[1])
 
     def _points(self, message: Any, pose: Pose, colour: Any) -> Points:
         depth = self._depth_unpacker.image(message, self._depth_source().transport)
-        self.say("Depth Image Size", "ok", f"{depth.width} x {depth.height}")
+        self.say("Depth Image Size", "ok", phrase("{width} x {height}", width=depth.width, height=depth.height))
         picture = None
         if colour is not None:
             colour = self._colour_unpacker.image(colour, self._colour_source().transport)
-            self.say("Image Size", "ok", f"{colour.width} x {colour.height}")
+            self.say("Image Size", "ok", phrase("{width} x {height}", width=colour.width, height=colour.height))
             picture = picture_of(colour, RangeFinder())
         camera = DepthCamera.of(self._info, depth.width, depth.height)
         self._pixel = camera.pixel

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from linkwright.diagnostics import phrase
 from linkwright.viewer.config.property_store import qos_of
 from linkwright.viewer.config.rviz_config import DisplayConfig
 from linkwright.viewer.config.schema import Path, PropertySpec, Schema, topic_spec
@@ -106,7 +107,7 @@ class DetectionPictureDisplay(ImageDisplay):
 
     def _listen(self) -> None:
         topic = self.properties.text(DETECTIONS).strip()
-        problem = self._side.listen(topic, qos_of(self.properties, DETECTIONS)) if topic else "Empty topic name"
+        problem = self._side.listen(topic, qos_of(self.properties, DETECTIONS)) if topic else phrase("Empty topic name")
         if problem:
             self.say(DETECTIONS, "error", problem)
         else:
@@ -118,7 +119,7 @@ class DetectionPictureDisplay(ImageDisplay):
         image = next((each for each in self._images if self.frame_of(each)[1] == stamp_ns), None)
         content = _boxes(message, of_image=image is not None)
         if content is None:
-            self.say(DETECTIONS, "error", "Message contained invalid floating point values (nans or infs)")
+            self.say(DETECTIONS, "error", phrase("Message contained invalid floating point values (nans or infs)"))
             return
         self.unsay(DETECTIONS)
         self.send(content, key=_BOXES, stamp_ns=stamp_ns)

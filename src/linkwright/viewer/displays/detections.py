@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from linkwright.diagnostics import foreign
 from linkwright.viewer.config.rviz_config import DisplayConfig
 from linkwright.viewer.config.schema import Path, PropertySpec, Schema, topic_spec
 from linkwright.viewer.displays.base.display import DisplayHost, Pose
@@ -167,7 +168,7 @@ class Detection3DArrayDisplay(_BoxDisplay):
             try:
                 self._table = read_class_colors(path)
             except ValueError as error:
-                self.say(CONFIG_PATH, "error", str(error))
+                self.say(CONFIG_PATH, "error", foreign(error))
 
     def _cancel_end(self) -> None:
         if self._end is not None:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from linkwright.diagnostics import LinkwrightError
+from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.geometry.single import quaternion_multiply, rotation_from_z
 from linkwright.graph import DESCRIPTION_QOS, TransformException
 from linkwright.messages import String
@@ -102,10 +102,10 @@ class EffortDisplay(RecentDisplay):
     def content(self, message: Any) -> DataContent | None:
         """A ring for each joint whose frame has a place."""
         if self._joints is None:
-            self.refuse("Robot model might not be loaded yet")
+            self.refuse(phrase("Robot model might not be loaded yet"))
             return None
         if len(message.name) != len(message.effort):
-            self.refuse("Received a joint state msg with different joint names and efforts size!")
+            self.refuse(phrase("Received a joint state msg with different joint names and efforts size!"))
             return None
         self.accept()
         _, stamp_ns = self.frame_of(message)
@@ -124,15 +124,23 @@ class EffortDisplay(RecentDisplay):
 
     def _ring_pose(self, joint: Joint, effort: float, stamp_ns: int) -> tuple[float, ...] | None:
         if not math.isfinite(effort):
-            self.say(joint.name, "error", f"Invalid effort: {effort}")
+            self.say(joint.name, "error", phrase("Invalid effort: {effort}", effort=effort))
             return None
         frame, fixed_frame = self._frame(joint), self.host.frames.fixed_frame
         try:
             pose = self.context.transforms.pose(fixed_frame, frame, stamp_ns)
         except TransformException:
-            self.say(joint.name, "error", f"Error transforming from frame '{frame}' to frame '{fixed_frame}'")
+            self.say(
+                joint.name,
+                "error",
+                phrase(
+                    "Error transforming from frame '{frame}' to frame '{fixed_frame}'",
+                    frame=frame,
+                    fixed_frame=fixed_frame,
+                ),
+            )
             return None
-        self.say(joint.name, "ok", "OK")
+        self.say(joint.name, "ok", phrase("OK"))
         x, y, z, *rotation = (float(part) for part in pose)
         qx, qy, qz, qw = rotation
         return (x, y, z, *quaternion_multiply((qx, qy, qz, qw), rotation_from_z(joint.axis)))
@@ -150,7 +158,7 @@ class EffortDisplay(RecentDisplay):
         try:
             self._descriptions = self.context.node.create_subscription(String, topic, self._described, DESCRIPTION_QOS)
         except LinkwrightError as error:
-            self.say(_URDF, "error", f"Error subscribing: {error.diagnostics[0].message}")
+            self.say(_URDF, "error", phrase("Error subscribing: {message}", message=error.diagnostics[0].message))
 
     def _leave(self) -> None:
         if self._descriptions is not None:
@@ -161,9 +169,9 @@ class EffortDisplay(RecentDisplay):
     def _described(self, message: String) -> None:
         robot = self.context.library.read(message.data).robot
         if robot is None:
-            self.say(_URDF, "error", "Unable to parse robot model description!")
+            self.say(_URDF, "error", phrase("Unable to parse robot model description!"))
             return
-        self.say(_URDF, "ok", "Robot model parsed Ok")
+        self.say(_URDF, "ok", phrase("Robot model parsed Ok"))
         known = self._joints
         self._joints = {
             joint.name: joint for joint in robot.joints.values() if joint.type in _TURNING and joint.limit is not None

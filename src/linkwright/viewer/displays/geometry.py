@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from linkwright.diagnostics import Phrase, phrase
 from linkwright.viewer.config.schema import (
     FIXED_FRAME,
     Path,
@@ -106,16 +107,16 @@ class GridCellsDisplay(TopicDisplay):
         positions = np.array(cells, dtype=np.float64).reshape(-1, 3)
         sides = (message.cell_width, message.cell_height)
         if not (np.isfinite(positions).all() and all(map(math.isfinite, sides))):
-            self._refuse("error", "Message contained invalid floating point values (nans or infs)")
+            self._refuse("error", phrase("Message contained invalid floating point values (nans or infs)"))
         elif 0.0 in sides:
-            self._refuse("error", "One of the Cell's dimension is zero, cells will be invisible.")
+            self._refuse("error", phrase("One of the Cell's dimension is zero, cells will be invisible."))
         elif not cells:
-            self._refuse("warn", "Message is empty: there are no cells to be shown.")
+            self._refuse("warn", phrase("Message is empty: there are no cells to be shown."))
         else:
             content = CellGrid(positions.astype(np.float32), float(sides[0]), float(sides[1]))
             self.send(content, pose=pose, stamp_ns=self.frame_of(message)[1])
 
-    def _refuse(self, level: StatusLevel, text: str) -> None:
+    def _refuse(self, level: StatusLevel, text: Phrase) -> None:
         """RViz takes the cells before away too, and says so in the row of the topic."""
         self.forget()
         self.say(TOPIC, level, text)

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from linkwright.diagnostics import foreign, phrase, quoted_names
 from linkwright.geometry.arrays import rotate
 from linkwright.viewer.config.schema import Path, PropertySpec, Schema, alpha, topic_spec
 from linkwright.viewer.displays.base.topic_display import RecentDisplay
@@ -81,7 +82,7 @@ class GridMapDisplay(RecentDisplay):
         try:
             made = self._surface(message)
         except BadGridError as error:
-            self.refuse(str(error))
+            self.refuse(foreign(error))
             return None
         self.accept()
         return made
@@ -108,7 +109,7 @@ class GridMapDisplay(RecentDisplay):
         while -(-grid.shape[0] // step) * -(-grid.shape[1] // step) > _MOST_CELLS:
             step += 1
         if step > 1:
-            self.say(_SIZE, "warn", f"The map is large: one of {step} rows and columns is drawn")
+            self.say(_SIZE, "warn", phrase("The map is large: one of {step} rows and columns is drawn", step=step))
         else:
             self.unsay(_SIZE)
         points = grid.points(np.where(valid, heights, 0.0))[::step, ::step]
@@ -174,12 +175,18 @@ class _Grid:
         self._resolution = float(info.resolution)
         numbers = (info.resolution, info.length_x, info.length_y, *self._middle, *self._turn)
         if not np.isfinite(numbers).all() or info.resolution <= 0.0:
-            raise BadGridError("The resolution, lengths or pose of the map are no numbers that can be")
+            raise BadGridError(phrase("The resolution, lengths or pose of the map are no numbers that can be"))
         self.shape = (round(info.length_x / info.resolution), round(info.length_y / info.resolution))
         if min(self.shape) < 1:
-            raise BadGridError(f"The map has {self.shape[0]} x {self.shape[1]} cells")
+            raise BadGridError(
+                phrase("The map has {rows} x {columns} cells", rows=self.shape[0], columns=self.shape[1])
+            )
         if len(message.layers) != len(message.data):
-            raise BadGridError(f"The map has {len(message.layers)} layers and data of {len(message.data)}")
+            raise BadGridError(
+                phrase(
+                    "The map has {layers} layers and data of {data}", layers=len(message.layers), data=len(message.data)
+                )
+            )
 
     def layer(self, name: str) -> NDArray[np.float32]:
         """The numbers of a layer, shape (rows, columns); not finite where a cell has none.
@@ -189,13 +196,21 @@ class _Grid:
         """
         names = list(self._message.layers)
         if name not in names:
-            known = ", ".join(f"'{each}'" for each in names) or "none"
-            raise BadGridError(f"The map has no layer '{name}'; its layers: {known}")
+            known = quoted_names(names) if names else phrase("none")
+            raise BadGridError(phrase("The map has no layer '{name}'; its layers: {known}", name=name, known=known))
         array = self._message.data[names.index(name)]
         numbers = np.asarray(array.data, dtype=np.float32)
         rows, columns = self.shape
         if len(numbers) != rows * columns:
-            raise BadGridError(f"Layer '{name}' has {len(numbers)} numbers for {rows} x {columns} cells")
+            raise BadGridError(
+                phrase(
+                    "Layer '{name}' has {numbers} numbers for {rows} x {columns} cells",
+                    name=name,
+                    numbers=len(numbers),
+                    rows=rows,
+                    columns=columns,
+                )
+            )
         by_rows = bool(array.layout.dim) and array.layout.dim[0].label == "row_index"
         cells = numbers.reshape(rows, columns) if by_rows else numbers.reshape(columns, rows).T
         begin = (-int(self._message.outer_start_index), -int(self._message.inner_start_index))

@@ -10,6 +10,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from linkwright.diagnostics import foreign, phrase
 from linkwright.graph import QoSProfile
 from linkwright.images import (
     COMPRESSED,
@@ -65,7 +66,7 @@ class ImageTopicDisplay(TopicDisplay):
         try:
             image = self._image_of(message)
         except BadImageError as error:
-            self.say("Image", "error", str(error))
+            self.say("Image", "error", foreign(error))
             return
         self.take_image(image, pose)
 
@@ -88,7 +89,7 @@ class ImageTopicDisplay(TopicDisplay):
         try:
             content = self._frame(message, camera)
         except BadImageError as error:
-            self.say("Image", "error", str(error))
+            self.say("Image", "error", foreign(error))
             return
         self.unsay("Image")
         frame, stamp_ns = TopicDisplay.frame_of(self, message)
@@ -107,8 +108,16 @@ class ImageTopicDisplay(TopicDisplay):
         if source.is_read:
             super()._subscribe()
         else:
-            choice = f"choose {source.base} or {source.base}/{COMPRESSED}"
-            self.say(TOPIC, "error", f"Images of transport '{source.transport}' are not read: {choice}")
+            choice = phrase("choose {base} or {base}/{compressed}", base=source.base, compressed=COMPRESSED)
+            self.say(
+                TOPIC,
+                "error",
+                phrase(
+                    "Images of transport '{transport}' are not read: {choice}",
+                    transport=source.transport,
+                    choice=choice,
+                ),
+            )
 
     def _image_of(self, message: Any) -> Any:
         transport = self._source().transport
@@ -120,7 +129,9 @@ class ImageTopicDisplay(TopicDisplay):
         if not hasattr(message, "encoding"):
             data = np.frombuffer(message.data, np.uint8)
             if not _is_readable(data.tobytes()[:16]):
-                raise BadImageError(f"The image is in no format that browsers read: '{message.format}'")
+                raise BadImageError(
+                    phrase("The image is in no format that browsers read: '{format}'", format=message.format)
+                )
             return ImageFrame(0, 0, 0, 0, "file", data, camera)
         picture = picture_of(message, self.ranges)
         shown = picture.reduced(self.reduction(picture.width, picture.height)).thinned(MOST_PIXELS)
@@ -332,7 +343,7 @@ class CameraDisplay(ImageTopicDisplay):
             return
         info = camera_info_topic(topic)
         problem = self._infos.listen(info, qos_of(self.properties))
-        text = problem or f"No CameraInfo received on [{info}]. Topic may not exist."
+        text = problem or phrase("No CameraInfo received on [{topic}]. Topic may not exist.", topic=info)
         self.say(_INFO, "error" if problem else "warn", text)
 
     def _unsubscribe(self) -> None:
@@ -352,20 +363,22 @@ class CameraDisplay(ImageTopicDisplay):
             return None
         numbers = [np.asarray(part, np.float64) for part in (info.d, info.k, info.r, info.p)]
         if not all(np.isfinite(part).all() for part in numbers):
-            self.say(_INFO, "error", "Contains invalid floating point values (nans or infs)")
+            self.say(_INFO, "error", phrase("Contains invalid floating point values (nans or infs)"))
             return None
         width = info.width or getattr(image, "width", 0)
         height = info.height or getattr(image, "height", 0)
         if width == 0 or height == 0:
-            text = "Could not determine width/height of image due to malformed CameraInfo (either width or height is 0)"
+            text = phrase(
+                "Could not determine width/height of image due to malformed CameraInfo (either width or height is 0)"
+            )
             self.say(_INFO, "error", text)
             return None
         p = numbers[3]
         if p[0] == 0.0 or p[5] == 0.0:
-            text = "CameraInfo/P resulted in an invalid position calculation (nans or infs)"
+            text = phrase("CameraInfo/P resulted in an invalid position calculation (nans or infs)")
             self.say(_INFO, "error", text)
             return None
-        self.say(_INFO, "ok", "OK")
+        self.say(_INFO, "ok", phrase("OK"))
         return CameraModel(
             width=float(width),
             height=float(height),

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from linkwright.diagnostics import LinkwrightError
+from linkwright.diagnostics import LinkwrightError, Phrase, foreign, phrase
 from linkwright.geometry.single import Transform
 from linkwright.graph import TransformException
 from linkwright.messages import get_message
@@ -120,7 +120,7 @@ class InteractiveMarkersDisplay(DataDisplay):
     def _connect(self) -> None:
         namespace = self.properties.text(_NAMESPACE).strip()
         if not namespace:
-            self.say(_CLIENT, "error", "Error connecting: empty namespace")
+            self.say(_CLIENT, "error", phrase("Error connecting: empty namespace"))
             return
         self._release = self.context.transforms.use(self._transforms_came)
         events = ClientEvents(
@@ -132,7 +132,7 @@ class InteractiveMarkersDisplay(DataDisplay):
         try:
             self._client = InteractiveMarkerClient(self.context.node, namespace, events)
         except LinkwrightError as error:
-            self.say(_CLIENT, "error", f"Error connecting: {error.diagnostics[0].message}")
+            self.say(_CLIENT, "error", phrase("Error connecting: {message}", message=error.diagnostics[0].message))
 
     def _disconnect(self) -> None:
         if self._client is not None:
@@ -146,7 +146,7 @@ class InteractiveMarkersDisplay(DataDisplay):
 
     # --- from the server ---------------------------------------------------------------------------------------
 
-    def _client_status(self, level: StatusLevel, text: str) -> None:
+    def _client_status(self, level: StatusLevel, text: Phrase) -> None:
         self.say(_CLIENT, level, text)
 
     def _soon(self, take: Callable[[], None]) -> None:
@@ -187,7 +187,7 @@ class InteractiveMarkersDisplay(DataDisplay):
     def _move(self, moved: Any) -> None:
         marker = self._markers.get(moved.name)
         if marker is None:
-            self.say(moved.name, "error", f"Pose received for non-existing marker '{moved.name}'")
+            self.say(moved.name, "error", phrase("Pose received for non-existing marker '{name}'", name=moved.name))
             return
         pose = pose_of(moved.pose)
         self._poses[moved.name] = pose
@@ -224,7 +224,7 @@ class InteractiveMarkersDisplay(DataDisplay):
             self.forget(f"marker {name}")
             return
         except BadMarkerError as error:
-            self.say(name, "error", str(error))
+            self.say(name, "error", foreign(error))
             self.forget(f"marker {name}")
             return
         self._unplaced.discard(name)

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from linkwright.diagnostics import Phrase, phrase
 from linkwright.viewer.config.property_store import qos_of
 from linkwright.viewer.config.rviz_config import DisplayConfig
 from linkwright.viewer.config.schema import Path, PropertySpec, Schema, alpha, topic_spec
@@ -120,7 +121,7 @@ class MapDisplay(TopicDisplay):
             return
         frame = self.frame_of(self._map)[0].removeprefix("/")
         problem = self.host.frames.problem(frame)
-        self.say(TRANSFORM, "error" if problem else "ok", problem or "Transform OK")
+        self.say(TRANSFORM, "error" if problem else "ok", problem or phrase("Transform OK"))
 
     def time_changed(self) -> None:
         """Show the map and the updates that came while time stood still."""
@@ -157,10 +158,10 @@ class MapDisplay(TopicDisplay):
         topic = self.properties.text(TOPIC).strip()
         if not topic:
             return
-        self.say("Message", "warn", "No map received")
+        self.say("Message", "warn", phrase("No map received"))
         updates = self.properties.text(_UPDATE_TOPIC).strip() or f"{topic}_updates"
         problem = self._updates.listen(updates, qos_of(self.properties, _UPDATE_TOPIC))
-        self.say("Update Topic", "error" if problem else "ok", problem or "OK")
+        self.say("Update Topic", "error" if problem else "ok", problem or phrase("OK"))
 
     def _unsubscribe(self) -> None:
         super()._unsubscribe()
@@ -173,17 +174,18 @@ class MapDisplay(TopicDisplay):
         cells = np.frombuffer(message.data, np.uint8)
         origin = _pose_of(info.origin)
         if not np.isfinite([info.resolution, *origin]).all():
-            self.say("Map", "error", "Message contained invalid floating point values (nans or infs)")
+            self.say("Map", "error", phrase("Message contained invalid floating point values (nans or infs)"))
         elif info.width * info.height == 0:
-            self.say("Map", "error", f"Map is zero-sized ({info.width}x{info.height})")
+            self.say(
+                "Map", "error", phrase("Map is zero-sized ({width}x{height})", width=info.width, height=info.height)
+            )
         elif info.width * info.height != cells.size:
-            text = f"width = {info.width}, height = {info.height}, data size = {cells.size}"
-            self.say("Map", "error", f"Data size doesn't match width*height: {text}")
+            self.say("Map", "error", _sizes(info, cells))
         else:
             self._map = message
             self._cells, self._is_own = cells.reshape(info.height, info.width), False
-            self.say("Message", "ok", "Map received")
-            self.say("Map", "ok", "Map OK")
+            self.say("Message", "ok", phrase("Map received"))
+            self.say("Map", "ok", phrase("Map OK"))
             self._tell(message)
             return True
         return False
@@ -200,16 +202,15 @@ class MapDisplay(TopicDisplay):
         part = np.frombuffer(update.data, np.uint8)
         right, top = update.x + update.width, update.y + update.height
         if update.x < 0 or update.y < 0 or right > info.width or top > info.height:
-            self.say("Update", "error", "Update area outside of original map area.")
+            self.say("Update", "error", phrase("Update area outside of original map area."))
             return
         if part.size != update.width * update.height:
-            text = f"width = {update.width}, height = {update.height}, data size = {part.size}"
-            self.say("Update", "error", f"Data size doesn't match width*height: {text}")
+            self.say("Update", "error", _sizes(update, part))
             return
         if not self._is_own:
             self._cells, self._is_own = self._cells.copy(), True
         self._cells[update.y : top, update.x : right] = part.reshape(update.height, update.width)
-        self.say("Update", "ok", "Update OK")
+        self.say("Update", "ok", phrase("Update OK"))
         self._send_soon()
 
     def _send_soon(self) -> None:
@@ -235,6 +236,16 @@ class MapDisplay(TopicDisplay):
         )
         self._sent_at = time.monotonic()
         self.send(content, frame=frame.removeprefix("/"), pose=self._pose if timed else None, stamp_ns=stamp_ns)
+
+
+def _sizes(grid: Any, cells: NDArray[np.uint8]) -> Phrase:
+    """What does not fit: of a MapMetaData or an update, and the cells that came with it."""
+    return phrase(
+        "Data size doesn't match width*height: width = {width}, height = {height}, data size = {size}",
+        width=grid.width,
+        height=grid.height,
+        size=cells.size,
+    )
 
 
 def _pose_of(origin: Any) -> list[float]:

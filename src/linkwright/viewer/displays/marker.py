@@ -7,6 +7,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from typing import Any
 
+from linkwright.diagnostics import foreign, phrase
 from linkwright.geometry.single import Transform
 from linkwright.graph import TransformException
 from linkwright.viewer.config.rviz_config import DisplayConfig
@@ -130,7 +131,7 @@ class MarkerDisplay(StoredMarkersDisplay):
             ]:
                 self._remove(identity)
         else:
-            self.say(marker_id(message), "error", f"Unknown marker action: {message.action}")
+            self.say(marker_id(message), "error", phrase("Unknown marker action: {action}", action=message.action))
 
     def _add(self, message: Any) -> None:
         identity = marker_id(message)
@@ -138,7 +139,7 @@ class MarkerDisplay(StoredMarkersDisplay):
             reading = read_marker(message, self._meshes)
         except BadMarkerError as error:
             self._remove(identity)
-            self.say(identity, "error", str(error))
+            self.say(identity, "error", foreign(error))
             return
         if message.ns not in self._namespaces:
             self._namespaces = sorted([*self._namespaces, message.ns])
@@ -167,7 +168,12 @@ class MarkerDisplay(StoredMarkersDisplay):
             frame = self._frame_pose(fixed_frame, marker.frame, 0 if marker.locked else marker.stamp_ns)
         except TransformException as error:
             reason = error.diagnostics[0].message
-            text = f"For frame [{marker.frame}]: No transform to fixed frame [{fixed_frame}].  TF error: [{reason}]"
+            text = phrase(
+                "For frame [{frame}]: No transform to fixed frame [{fixed_frame}].  TF error: [{reason}]",
+                frame=marker.frame,
+                fixed_frame=fixed_frame,
+                reason=reason,
+            )
             self.say(identity, "error", text)
             self._unplaced.add(identity)
             self._store.remove(identity)
@@ -235,8 +241,12 @@ class MarkerArrayDisplay(MarkerDisplay):
         for marker in markers:
             name = (marker.ns, marker.id)
             if name in seen:
-                text = "Multiple Markers in the same MarkerArray message had the same ns and id: "
-                self.say(_DUPLICATES, "error", f"{text}({marker.ns}, {marker.id})")
+                text = phrase(
+                    "Multiple Markers in the same MarkerArray message had the same ns and id: ({namespace}, {id})",
+                    namespace=marker.ns,
+                    id=marker.id,
+                )
+                self.say(_DUPLICATES, "error", text)
                 return
             seen.add(name)
         self.unsay(_DUPLICATES)

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from linkwright.diagnostics import foreign, phrase
 from linkwright.geometry.single import IDENTITY
 from linkwright.graph import QoSProfile
 from linkwright.viewer.config.property_store import qos_of
@@ -78,7 +79,7 @@ class OctomapDisplay(StoredMarkersDisplay):
         if problem:
             self.say(TRANSFORM, "error", problem)
         elif self._frame:
-            self.say(TRANSFORM, "ok", "Transform OK")
+            self.say(TRANSFORM, "ok", phrase("Transform OK"))
 
     def reset(self) -> None:
         """Forget the map."""
@@ -94,7 +95,7 @@ class OctomapDisplay(StoredMarkersDisplay):
             cells = read_octree(data=data, binary=message.binary, kind=message.id, resolution=message.resolution)
         except BadOctreeError as error:
             self.reset()
-            self.say(_MAP, "error", str(error))
+            self.say(_MAP, "error", foreign(error))
             return
         self.unsay(_MAP)
         self._frame = message.header.frame_id.removeprefix("/")

@@ -13,6 +13,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from linkwright.diagnostics import foreign, phrase
 from linkwright.graph import TransformException
 from linkwright.viewer.clouds import (
     BadCloudError,
@@ -235,7 +236,11 @@ class CloudDisplay(TopicDisplay):
 
     def _say_count(self) -> None:
         points = sum(len(each.points) for each in self._shown)
-        self.say("Points", "ok", f"Showing [{points}] points from [{len(self._shown)}] messages")
+        self.say(
+            "Points",
+            "ok",
+            phrase("Showing [{points}] points from [{shown}] messages", points=points, shown=len(self._shown)),
+        )
 
 
 _IDENTITY = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0])
@@ -262,7 +267,7 @@ class PointsDisplay(CloudDisplay):
         try:
             points = self.points_of(message)
         except BadCloudError as error:
-            self.say("Message", "error", str(error))
+            self.say("Message", "error", foreign(error))
             return
         self.unsay("Message")
         self.show(*self.placed(points, message, pose), self.frame_of(message)[1])

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from linkwright.diagnostics import phrase
 from linkwright.viewer.config.rviz_config import DisplayConfig
 from linkwright.viewer.config.schema import (
     PropertySpec,
@@ -234,7 +235,7 @@ class OdometryDisplay(RecentDisplay):
         if not self.is_finite(row, spread):
             return None
         if abs(sum(part * part for part in row[3:]) - 1.0) >= _NORM_TOLERANCE:
-            self.refuse("Message contained unnormalized quaternion (squares of values don't add to 1)")
+            self.refuse(phrase("Message contained unnormalized quaternion (squares of values don't add to 1)"))
             return None
         if self._is_near(row):
             return None

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Literal
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, translated
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, Severity, joined, phrase, translated
 from linkwright.urdf import Joint, Link, Robot
 from linkwright.viewer.config.rviz_config import DisplayConfig
 from linkwright.viewer.config.schema import Path, PropertySpec, Schema, alpha
@@ -173,8 +173,8 @@ class RobotModelDisplay(ViewerDisplay):
         self._publisher: bytes | None = None
         self._is_contested = False
         self._description: list[StatusRow] = []
-        self._file_problems: dict[str, list[str]] = {}
-        self._page_problems: dict[tuple[str, str], str] = {}
+        self._file_problems: dict[str, list[Phrase]] = {}
+        self._page_problems: dict[tuple[str, str], Phrase] = {}
 
     @property
     def text(self) -> str:
@@ -182,7 +182,7 @@ class RobotModelDisplay(ViewerDisplay):
         return self._text
 
     @property
-    def file_problems(self) -> dict[str, list[str]]:
+    def file_problems(self) -> dict[str, list[Phrase]]:
         """What is wrong with the files that links name."""
         return self._file_problems
 
@@ -198,7 +198,7 @@ class RobotModelDisplay(ViewerDisplay):
         if problem is not None:
             self._description = [StatusRow(name, "error", problem)]
         elif by_topic:
-            self._description = [StatusRow(name, "warn", "No messages received")]
+            self._description = [StatusRow(name, "warn", phrase("No messages received"))]
         else:
             self._description = []
         self._show_status()
@@ -241,7 +241,9 @@ class RobotModelDisplay(ViewerDisplay):
             self._page_problems.pop(key, None)
         else:
             name = status.url.partition("?")[0].rpartition("/")[2]
-            self._page_problems[key] = f"Could not load mesh '{name}': {status.error[:500]}"
+            self._page_problems[key] = phrase(
+                "Could not load mesh '{name}': {reason}", name=name, reason=status.error[:500]
+            )
             if self._page_problems[key] != known:
                 self.context.node.get_logger().error(f"Link '{status.link}': {self._page_problems[key]}")
         self._show_status()
@@ -266,7 +268,7 @@ class RobotModelDisplay(ViewerDisplay):
         if self._held is not None:
             return
         if not text.strip():
-            self._description = [StatusRow("URDF", "error", "URDF is empty")]
+            self._description = [StatusRow("URDF", "error", phrase("URDF is empty"))]
             self._show_status()
             return
         reading = self.context.library.read(text)
@@ -274,7 +276,7 @@ class RobotModelDisplay(ViewerDisplay):
             self._refused(reading.diagnostics)
             return
         is_other, self._text = text != self._text, text
-        self._description = [StatusRow("URDF", "ok", "URDF parsed OK")]
+        self._description = [StatusRow("URDF", "ok", phrase("URDF parsed OK"))]
         if self.properties.text("Description Source") == "Topic":
             self._description.insert(0, self._topic_row(is_other))
         self._show_robot(reading.robot)
@@ -286,7 +288,7 @@ class RobotModelDisplay(ViewerDisplay):
         owner = publishers.pop(self._publisher or b"", "")
         if not owner or not publishers:
             self._is_contested = False
-            return StatusRow("Topic", "ok", "OK")
+            return StatusRow("Topic", "ok", phrase("OK"))
         if is_other and before is not None and before in publishers:
             self._is_contested = True
             self.context.node.get_logger().warning(
@@ -295,16 +297,21 @@ class RobotModelDisplay(ViewerDisplay):
             )
         others = ", ".join(sorted(set(publishers.values())))
         level: Literal["ok", "warn"] = "warn" if self._is_contested else "ok"
-        return StatusRow("Topic", level, f"The description of {owner} is shown; {others} publish on the topic, too")
+        return StatusRow(
+            "Topic",
+            level,
+            phrase(
+                "The description of {owner} is shown; {others} publish on the topic, too", owner=owner, others=others
+            ),
+        )
 
     def _refused(self, diagnostics: Sequence[Diagnostic]) -> None:
         errors = [each for each in diagnostics if each.severity is Severity.ERROR]
         is_xml = not any(each.code.startswith("XML") for each in errors)
-        text = "URDF failed Model parse" if is_xml else "URDF failed XML parse"
+        text = phrase("URDF failed Model parse") if is_xml else phrase("URDF failed XML parse")
         self._description = [StatusRow("URDF", "error", text)]
         for error in errors[:_MOST_FINDINGS]:
-            where = f"{error.span}: " if error.span else ""
-            self._description.append(StatusRow(error.code, "error", where + error.message))
+            self._description.append(StatusRow(error.code, "error", error.placed_message))
         self._show_status()
 
     def _show_robot(self, robot: Robot) -> None:
@@ -368,7 +375,7 @@ class RobotModelDisplay(ViewerDisplay):
         derived = rows.derived(self.properties.text(*STYLE), lambda path: self.properties.flag(*path))
         return [path for path, value in derived.items() if self.properties.tell(path, value)]
 
-    def _log_new_problems(self, problems: dict[str, list[str]]) -> None:
+    def _log_new_problems(self, problems: dict[str, list[Phrase]]) -> None:
         for link, texts in problems.items():
             for text in texts:
                 if text not in self._file_problems.get(link, ()):
@@ -385,5 +392,5 @@ class RobotModelDisplay(ViewerDisplay):
         problems += self._file_problems.get(name, ())
         problems += [text for (link, _), text in self._page_problems.items() if link == name]
         if problems:
-            return StatusRow(name, "error", "; ".join(problems))
-        return StatusRow(name, "ok", "Transform OK")
+            return StatusRow(name, "error", joined(problems, "; "))
+        return StatusRow(name, "ok", phrase("Transform OK"))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection
 from typing import TYPE_CHECKING
 
+from linkwright.diagnostics import Phrase, foreign, phrase
 from linkwright.viewer.config.rviz_config import DisplayConfig
 from linkwright.viewer.config.schema import Path, PropertySpec, Schema
 from linkwright.viewer.displays.base.display import DisplayHost, ViewerDisplay
@@ -12,9 +13,6 @@ from linkwright.viewer.protocol.displays import PropertyChanged, StatusRow
 
 if TYPE_CHECKING:
     from linkwright.graph.names.expressions import Expression
-
-
-_NOT_USED = "This expression is not used"
 
 
 class FrameFilter:
@@ -30,7 +28,7 @@ class FrameFilter:
 
     def __init__(self, text: str = "") -> None:
         self.text = text
-        self.problem: str | None = None
+        self.problem: Phrase | None = None
         self._expression: Expression | None = None  # what reads one is imported for the few who write one
         self._known: set[str] = set()
         self._found: set[str] = set()
@@ -40,7 +38,7 @@ class FrameFilter:
             try:
                 self._expression = Expression(text)
             except ExpressionError as error:
-                self.problem = f"{_NOT_USED}: {error}"
+                self.problem = phrase("This expression is not used: {reason}", reason=foreign(error))
 
     @property
     def is_used(self) -> bool:
@@ -58,7 +56,9 @@ class FrameFilter:
                 self._known = set(names)
             except TooCostlyError:
                 self._expression, self._found = None, set()
-                self.problem = f"{_NOT_USED}: it takes too long to look for it in the names of the frames"
+                self.problem = phrase(
+                    "This expression is not used: it takes too long to look for it in the names of the frames"
+                )
         return self._found
 
 
@@ -142,7 +142,7 @@ class TfDisplay(ViewerDisplay):
 
     def _frame_status(self, name: str) -> StatusRow:
         problem = self.host.frames.problem(name)
-        return StatusRow(name, "warn", problem) if problem else StatusRow(name, "ok", "Transform OK")
+        return StatusRow(name, "warn", problem) if problem else StatusRow(name, "ok", phrase("Transform OK"))
 
     def _filtered(self, names: set[str]) -> set[str]:
         """The names that the filters leave; one that is not used leaves all."""

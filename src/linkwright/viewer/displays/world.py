@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, Severity, joined, phrase
 from linkwright.geometry.single import Transform, compose, invert
 from linkwright.graph import TF_QOS, TransformException
 from linkwright.messages import TFMessage
@@ -115,7 +115,7 @@ class WorldDisplay(TopicDisplay):
         self._leads = False
         self._placed: tuple[str, Pose | None] = ("", None)
         self._sent: tuple[Any, ...] = ()
-        self._page_problems: dict[tuple[str, str], str] = {}
+        self._page_problems: dict[tuple[str, str], Phrase] = {}
 
     # --- life --------------------------------------------------------------------------------------------------
 
@@ -188,7 +188,9 @@ class WorldDisplay(TopicDisplay):
             self._page_problems.pop(key, None)
         else:
             name = status.url.partition("?")[0].rpartition("/")[2]
-            self._page_problems[key] = f"Could not load mesh '{name}': {status.error[:500]}"
+            self._page_problems[key] = phrase(
+                "Could not load mesh '{name}': {reason}", name=name, reason=status.error[:500]
+            )
         self._tell_problems()
 
     def _follow(self) -> None:
@@ -229,7 +231,7 @@ class WorldDisplay(TopicDisplay):
             self._refuse(error.diagnostics)
             return
         except FrameError as error:
-            self.say(_WORLD, "error", f"'{error.name}' cannot be placed")
+            self.say(_WORLD, "error", phrase("'{name}' cannot be placed", name=error.name))
             return
         self.context.meshes.replace(self.id, index.folders)
         before = {link.name: row for row, link in enumerate(self._content.links)}
@@ -262,24 +264,27 @@ class WorldDisplay(TopicDisplay):
         self._rays.describe(lidars)
         self.send(scene, key=_SCENE_KEY)
         self._follow_rays()
-        self.say(_WORLD, "ok", f"{len(world.models)} models, {len(content.links)} links")
+        self.say(
+            _WORLD, "ok", phrase("{models} models, {links} links", models=len(world.models), links=len(content.links))
+        )
         self._tell_problems()
         self._show_poses()
 
     def _refuse(self, diagnostics: tuple[Diagnostic, ...]) -> None:
         errors = [each for each in diagnostics if each.severity is Severity.ERROR][:_MOST_FINDINGS]
-        text = "; ".join(f"{each.span}: {each.message}" if each.span else str(each.message) for each in errors)
-        self.say(_WORLD, "error", text or "The description is not SDF")
+        texts = [each.placed_message for each in errors] or [phrase("The description is not SDF")]
+        self.say(_WORLD, "error", joined(texts, "; "))
 
     def _tell_problems(self) -> None:
         problems = [(link, text) for link, texts in self._content.problems.items() for text in texts]
         problems += [(link, text) for (link, _), text in self._page_problems.items()]
-        self._tell("Files", "error", [f"{link}: {text}" for link, text in problems])
+        self._tell("Files", "error", [joined((link, text), ": ") for link, text in problems])
 
-    def _tell(self, name: str, level: StatusLevel, texts: list[str]) -> None:
+    def _tell(self, name: str, level: StatusLevel, texts: list[Phrase]) -> None:
         more = len(texts) - _MOST_FINDINGS
         if texts:
-            self.say(name, level, "; ".join(texts[:_MOST_FINDINGS]) + (f"; and {more} more" if more > 0 else ""))
+            text = joined(texts[:_MOST_FINDINGS], "; ")
+            self.say(name, level, phrase("{texts}; and {more} more", texts=text, more=more) if more > 0 else text)
         else:
             self.unsay(name)
 
@@ -290,7 +295,7 @@ class WorldDisplay(TopicDisplay):
         rows = [self._rows_of.get(child, -1) for child in batch.children]
         poses = np.asarray(batch.poses)
         if not np.isfinite(poses).all():
-            self.say(_POSES, "error", "Message contained invalid floating point values (nans or infs)")
+            self.say(_POSES, "error", phrase("Message contained invalid floating point values (nans or infs)"))
             return
         self.unsay(_POSES)
         # Transforms of this very moment may still be on their way, those of the last poses are there.
@@ -329,7 +334,7 @@ class WorldDisplay(TopicDisplay):
         found = self._anchor(frames) if self._leads or WORLD not in frames else None
         if self._leads or WORLD in frames:
             self._placed = (WORLD, None)
-            self.say(_FRAME, "ok", f"The world is at the frame '{WORLD}'")
+            self.say(_FRAME, "ok", phrase("The world is at the frame '{world}'", world=WORLD))
             if found is not None:
                 self._place_frames(*found)
             elif self._leads and self.context.transforms.own(WORLD) is None:
@@ -337,10 +342,18 @@ class WorldDisplay(TopicDisplay):
         elif found is not None:
             row, frame, pose = found
             self._placed = ("", np.array(compose(pose, invert(tuple(self._poses[row])))))
-            self.say(_FRAME, "ok", f"tf has no '{WORLD}': the world is where '{frame}' is in both")
+            self.say(
+                _FRAME,
+                "ok",
+                phrase("tf has no '{world}': the world is where '{frame}' is in both", world=WORLD, frame=frame),
+            )
         elif self._placed[1] is None:
             self._placed = ("", None)
-            self.say(_FRAME, "warn", f"tf has no '{WORLD}' and no frame of a model: the world is at the Fixed Frame")
+            self.say(
+                _FRAME,
+                "warn",
+                phrase("tf has no '{world}' and no frame of a model: the world is at the Fixed Frame", world=WORLD),
+            )
 
     def _place_frames(self, row: int, frame: str, pose: Transform) -> None:
         """Place tf's frames in the world so that a link is where it is; `pose` is that of its frame in tf's root."""
@@ -349,7 +362,11 @@ class WorldDisplay(TopicDisplay):
         before = transforms.own(WORLD)
         if before is None or before.parent != root or np.abs(before.pose - placed).max() > _UNMOVED:
             transforms.place(self.id, OwnFrame(WORLD, root, placed))
-        self.say(_FRAME, "ok", f"tf has no '{WORLD}': its frames are where '{frame}' is in both")
+        self.say(
+            _FRAME,
+            "ok",
+            phrase("tf has no '{world}': its frames are where '{frame}' is in both", world=WORLD, frame=frame),
+        )
 
     def _anchor(self, frames: frozenset[str]) -> tuple[int, str, Transform] | None:
         """A link that tf has a frame of, and where that is in the Fixed Frame; in tf's root where the world leads."""

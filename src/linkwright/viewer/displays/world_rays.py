@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from linkwright.diagnostics import Phrase
 from linkwright.graph import SENSOR_DATA_QOS
 from linkwright.viewer.displays.base.display import DisplayHost
 from linkwright.viewer.displays.base.topic_display import SideTopic
@@ -40,7 +41,7 @@ class LidarRays:
         self._lidars = {each.scene.name: each for each in lidars}
         self._let_go(set())
 
-    def follow(self, topic: str, choice: str) -> str | None:
+    def follow(self, topic: str, choice: str) -> Phrase | None:
         """Listen to what is needed.
 
         Args:
@@ -57,7 +58,7 @@ class LidarRays:
         self._let_go({name for names in wanted.values() for name in names})
         for each in self._topics.keys() - wanted.keys():
             self._topics.pop(each).close()
-        problem = None
+        problem: Phrase | None = None
         for each in wanted.keys() - self._topics.keys():
             self._topics[each] = SideTopic(self._host, "sensor_msgs/msg/LaserScan", self._measured)
             problem = self._topics[each].listen(each, SENSOR_DATA_QOS) or problem

@@ -173,7 +173,7 @@ class SimulationFeature(PageFeature):
             text = await asyncio.to_thread(self._text_of, address.strip())
         except LinkwrightError as error:
             found = error.diagnostics[0]
-            refuse(page, f"{found.span}: {found.message}" if found.span else found.message)
+            refuse(page, found.placed_message)
             return
         if text is None:
             refuse(page, phrase("there is no model in '{address}'", address=address))

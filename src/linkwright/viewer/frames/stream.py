@@ -15,6 +15,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from linkwright.diagnostics import Phrase, phrase
 from linkwright.geometry.arrays import compose
 from linkwright.graph import (
     STATIC_TF_SUBSCRIPTION_QOS,
@@ -71,18 +72,22 @@ class FrameView:
     parents: tuple[int, ...] = ()
     placed: frozenset[str] = field(default_factory=frozenset)
 
-    def problem(self, frame: str) -> str | None:
+    def problem(self, frame: str) -> Phrase | None:
         """RViz's words for a frame that cannot be placed, or None."""
         if frame in self.placed:
             return None
-        return f"No transform from [{frame}] to [{self.fixed_frame}]"
+        return phrase("No transform from [{frame}] to [{fixed_frame}]", frame=frame, fixed_frame=self.fixed_frame)
 
 
 def transform_status(frames: FrameView, frame: str) -> StatusRow:
     """The Transform row of a display in a frame (or in ``<Fixed Frame>``), in RViz's words."""
     if frame == FIXED_FRAME or frame in frames.placed:
-        return StatusRow("Transform", "ok", "Transform OK")
-    return StatusRow("Transform", "error", f"Could not transform from [{frame}] to [{frames.fixed_frame}]")
+        return StatusRow("Transform", "ok", phrase("Transform OK"))
+    return StatusRow(
+        "Transform",
+        "error",
+        phrase("Could not transform from [{frame}] to [{fixed_frame}]", frame=frame, fixed_frame=frames.fixed_frame),
+    )
 
 
 class TimeControl:

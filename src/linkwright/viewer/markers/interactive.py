@@ -17,6 +17,7 @@ import numpy as np
 from msgspec.structs import replace
 from numpy.typing import NDArray
 
+from linkwright.diagnostics import Phrase, phrase
 from linkwright.geometry.arrays import rotation_matrix
 from linkwright.geometry.single import Transform, compose, invert
 from linkwright.graph import Client, Node, Publisher, QoSProfile, Subscription
@@ -55,7 +56,7 @@ class ClientEvents:
     everything: Callable[[list[Any]], None]
     update: Callable[[Any], None]
     gone: Callable[[], None]
-    status: Callable[[StatusLevel, str], None]
+    status: Callable[[StatusLevel, Phrase], None]
 
 
 class InteractiveMarkerClient:
@@ -115,12 +116,14 @@ class InteractiveMarkerClient:
         if not there and (self._sequence is not None or self._request is not None):
             self._begin_anew()
         if not there:
-            self._events.status("warn", f"Service is not available: {self._namespace}/get_interactive_markers")
+            self._events.status(
+                "warn", phrase("Service is not available: {name}", name=f"{self._namespace}/get_interactive_markers")
+            )
         elif self._sequence is None and self._request is None:
             self._ask()
 
     def _ask(self) -> None:
-        self._events.status("ok", "Sending request for interactive markers")
+        self._events.status("ok", phrase("Sending request for interactive markers"))
         request = self._request = self._service.call_async(self._service.srv_type.Request())
         request.add_done_callback(lambda done: self._answered(request, done.result()))
 
@@ -130,7 +133,7 @@ class InteractiveMarkerClient:
         self._request = None
         self._sequence = response.sequence_number
         self._events.everything(list(response.markers))
-        self._events.status("ok", "Initialized interactive marker client")
+        self._events.status("ok", phrase("Initialized interactive marker client"))
         early, self._early = self._early, []
         for update in early:
             self._received(update)
@@ -145,7 +148,10 @@ class InteractiveMarkerClient:
         if update.seq_num != expected:
             self._begin_anew()
             self._events.status(
-                "warn", f"Detected lost update or server restart. Resetting. Sequence {expected} expected"
+                "warn",
+                phrase(
+                    "Detected lost update or server restart. Resetting. Sequence {expected} expected", expected=expected
+                ),
             )
             return
         if update.type == _UPDATE:
@@ -190,7 +196,7 @@ def read_interactive_marker(
     scale = message.scale or 1.0
     pose = pose_of(message.pose)
     if not all(map(math.isfinite, (*pose, scale))):
-        raise BadMarkerError("Marker contains invalid floats!")
+        raise BadMarkerError(phrase("Marker contains invalid floats!"))
     names: set[str] = set()
     return InteractiveMarkerShape(
         name=message.name,
@@ -223,7 +229,7 @@ def _control(
     transparent: bool,
 ) -> InteractiveControl:
     if control.interaction_mode >= len(_MODES) or control.orientation_mode >= len(_ORIENTATIONS):
-        raise BadMarkerError(f"Control '{name}' has an unknown interaction or orientation mode")
+        raise BadMarkerError(phrase("Control '{name}' has an unknown interaction or orientation mode", name=name))
     mode = _MODES[control.interaction_mode]
     facing = _ORIENTATIONS[control.orientation_mode]
     independent = control.independent_marker_orientation

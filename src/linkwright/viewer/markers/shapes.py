@@ -13,6 +13,7 @@ from typing import Any, get_args
 import numpy as np
 from numpy.typing import NDArray
 
+from linkwright.diagnostics import Phrase, phrase
 from linkwright.geometry.single import Quaternion, Transform, compose, normalized
 from linkwright.viewer.protocol.binary import pack_data
 from linkwright.viewer.protocol.markers import MarkerKind, MarkerMesh, MarkersChanged, MarkerShape
@@ -43,7 +44,7 @@ class MarkerReading:
 
     shape: MarkerShape
     pose: Transform
-    warning: str | None = None
+    warning: Phrase | None = None
 
 
 def made_marker(
@@ -106,7 +107,7 @@ def read_marker(message: Any, index: MeshIndex) -> MarkerReading:
         BadMarkerError: it cannot be drawn.
     """
     if not 0 <= message.type < len(_KINDS):
-        raise BadMarkerError(f"Unknown marker type: {message.type}")
+        raise BadMarkerError(phrase("Unknown marker type: {type}", type=message.type))
     kind = _KINDS[message.type]
     pose = _pose(message.pose)
     shape = MarkerShape(
@@ -173,50 +174,58 @@ def _colors(colors: Any) -> NDArray[np.float32]:
 def _check_floats(shape: MarkerShape) -> None:
     finite = all(map(math.isfinite, (*shape.pose, *shape.scale, *shape.color)))
     if not finite or any(len(each) and not np.isfinite(each).all() for each in (shape.points, shape.colors)):
-        raise BadMarkerError("Contains invalid floating point values (nans or infs)")
+        raise BadMarkerError(phrase("Contains invalid floating point values (nans or infs)"))
 
 
-def _check_arrow(shape: MarkerShape) -> str | None:
+def _check_arrow(shape: MarkerShape) -> Phrase | None:
     if len(shape.points) == 1:
-        raise BadMarkerError(f"Arrow marker [{shape.id}] only specified one point of a point to point arrow.")
+        raise BadMarkerError(
+            phrase("Arrow marker [{id}] only specified one point of a point to point arrow.", id=shape.id)
+        )
     if len(shape.points) == 2:
-        return "Scale of 0 in both x and y" if shape.scale[0] + shape.scale[1] == 0.0 else None
+        return phrase("Scale of 0 in both x and y") if shape.scale[0] + shape.scale[1] == 0.0 else None
     return _check_scale(shape)
 
 
-def _check_arrow_strip(shape: MarkerShape) -> str | None:
+def _check_arrow_strip(shape: MarkerShape) -> Phrase | None:
     if len(shape.points) < 2:
-        raise BadMarkerError(f"Arrow strip marker [{shape.id}] needs at least two points.")
-    return "Scale of 0 in both x and y" if shape.scale[0] + shape.scale[1] == 0.0 else None
+        raise BadMarkerError(phrase("Arrow strip marker [{id}] needs at least two points.", id=shape.id))
+    return phrase("Scale of 0 in both x and y") if shape.scale[0] + shape.scale[1] == 0.0 else None
 
 
-def _check_scale(shape: MarkerShape) -> str | None:
-    return "Scale of 0 in one of x/y/z" if math.prod(shape.scale) == 0.0 else None
+def _check_scale(shape: MarkerShape) -> Phrase | None:
+    return phrase("Scale of 0 in one of x/y/z") if math.prod(shape.scale) == 0.0 else None
 
 
-def _check_line_list(shape: MarkerShape) -> str | None:
+def _check_line_list(shape: MarkerShape) -> Phrase | None:
     if len(shape.points) % 2:
-        raise BadMarkerError(f"Line list marker [{shape.id}] has an odd number of points.")
+        raise BadMarkerError(phrase("Line list marker [{id}] has an odd number of points.", id=shape.id))
     return None
 
 
-def _check_dots(shape: MarkerShape) -> str | None:
+def _check_dots(shape: MarkerShape) -> Phrase | None:
     has_colors = len(shape.colors) > 0 and len(shape.colors) == len(shape.points)
     if has_colors and not shape.colors[:, 3].any():
-        return "All points have a zero alpha value."
+        return phrase("All points have a zero alpha value.")
     return None
 
 
-def _check_triangles(shape: MarkerShape) -> str | None:
+def _check_triangles(shape: MarkerShape) -> Phrase | None:
     count = len(shape.points)
     if count == 0:
-        raise BadMarkerError(f"TriMesh marker [{shape.id}] has no points.")
+        raise BadMarkerError(phrase("TriMesh marker [{id}] has no points.", id=shape.id))
     if count % 3:
-        raise BadMarkerError(f"TriMesh marker [{shape.id}] has a point count which is not divisible by 3 [{count}]")
+        raise BadMarkerError(
+            phrase(
+                "TriMesh marker [{id}] has a point count which is not divisible by 3 [{count}]",
+                id=shape.id,
+                count=count,
+            )
+        )
     return _check_scale(shape)
 
 
-_CHECKS: dict[MarkerKind, Callable[[MarkerShape], str | None]] = {
+_CHECKS: dict[MarkerKind, Callable[[MarkerShape], Phrase | None]] = {
     "arrow": _check_arrow,
     "arrow_strip": _check_arrow_strip,
     "cube": _check_scale,
@@ -239,7 +248,14 @@ def _mesh(message: Any, shape: MarkerShape, index: MeshIndex) -> MarkerMesh:
         return MarkerMesh(_ending(carried.filename), None, data, message.mesh_use_embedded_materials)
     located = index.locate(name, None, MESH_TYPES)
     if located.url is None:
-        raise BadMarkerError(f"Mesh resource marker [{shape.id}] could not load [{name}]: {located.problem}")
+        raise BadMarkerError(
+            phrase(
+                "Mesh resource marker [{id}] could not load [{name}]: {reason}",
+                id=shape.id,
+                name=name,
+                reason=located.problem,
+            )
+        )
     return MarkerMesh(_ending(name), located.url, None, message.mesh_use_embedded_materials)
 
 
@@ -248,10 +264,23 @@ def _add_texture(message: Any, shape: MarkerShape, index: MeshIndex) -> None:
         return
     count = len(message.uv_coordinates)
     if count != len(shape.points):
-        raise BadMarkerError(f"TriMesh marker [{shape.id}] has {count} uv coordinates for {len(shape.points)} points")
+        raise BadMarkerError(
+            phrase(
+                "TriMesh marker [{id}] has {count} uv coordinates for {points} points",
+                id=shape.id,
+                count=count,
+                points=len(shape.points),
+            )
+        )
     located = index.locate(message.texture_resource, None, IMAGE_TYPES)
     if located.url is None:
-        raise BadMarkerError(f"Could not load texture '{message.texture_resource}': {located.problem}")
+        raise BadMarkerError(
+            phrase(
+                "Could not load texture '{name}': {reason}",
+                name=message.texture_resource,
+                reason=located.problem,
+            )
+        )
     shape.texture = located.url
     shape.uvs = np.array([(each.u, each.v) for each in message.uv_coordinates], dtype=np.float32)
 

@@ -49,7 +49,7 @@ class Property(Record):
 
 
 class StatusRow(Record):
-    """One row below a display's Status."""
+    """One row below a display's Status. Its text, as a rule a phrase, goes to each page in the page's language."""
 
     name: str
     level: StatusLevel

@@ -8,11 +8,14 @@ from __future__ import annotations
 
 import json
 import re
-from functools import lru_cache
+from functools import cache, lru_cache, partial
 from typing import Any, ClassVar, Union
 
 import msgspec
 from msgspec import Struct
+
+from linkwright.diagnostics import Phrase
+from linkwright.diagnostics.translation import said_in
 
 
 def _tag(name: str) -> str:
@@ -60,16 +63,29 @@ def plain(value: Any) -> Any:
     raise TypeError(f"JSON has nothing for a {type(value).__name__}")
 
 
-_ENCODER = msgspec.json.Encoder(enc_hook=plain)
+def encode(message: ServerMessage, language: str | None = None) -> str:
+    """A message as JSON. Half characters, as names of files may have that are not in UTF-8, become question marks.
 
-
-def encode(message: ServerMessage) -> str:
-    """A message as JSON. Half characters, as names of files may have that are not in UTF-8, become question marks."""
+    Args:
+        message: what is sent.
+        language: what its phrases are said in; None leaves them as they are.
+    """
     try:
-        return _ENCODER.encode(message).decode()
+        return _encoder(language).encode(message).decode()
     except UnicodeEncodeError:
-        text = json.dumps(msgspec.to_builtins(message, enc_hook=plain), ensure_ascii=False, separators=(",", ":"))
+        built = msgspec.to_builtins(message, enc_hook=partial(_said, language=language))
+        text = json.dumps(built, ensure_ascii=False, separators=(",", ":"))
         return text.encode("utf-8", "replace").decode()
+
+
+@cache
+def _encoder(language: str | None) -> msgspec.json.Encoder:
+    return msgspec.json.Encoder(enc_hook=partial(_said, language=language))
+
+
+def _said(value: Any, language: str | None) -> Any:
+    """A phrase in the language; anything else as `plain` has it."""
+    return plain(said_in(value, language) if language is not None and isinstance(value, Phrase) else value)
 
 
 def redundancy_key(message: ServerMessage) -> str:

@@ -334,13 +334,13 @@ class VisualizationManager:
 
     def _show_global_status(self) -> None:
         frame, names = self.frames.fixed_frame, self.frames.names
-        missing = f"Frame [{frame}] does not exist"
+        missing = phrase("Frame [{frame}] does not exist", frame=frame)
         if frame in names or self.context.transforms.own(frame) is not None:
-            row = StatusRow("Fixed Frame", "ok", "OK")
+            row = StatusRow("Fixed Frame", "ok", phrase("OK"))
         elif names:
             row = StatusRow("Fixed Frame", "error", missing)
         else:
-            row = StatusRow("Fixed Frame", "warn", f"No tf data.  Actual error: {missing}")
+            row = StatusRow("Fixed Frame", "warn", phrase("No tf data.  Actual error: {missing}", missing=missing))
         if [row] != self._global_status:
             self._global_status = [row]
             self.publish(DisplayStatus(GLOBAL, row.level, [row]))

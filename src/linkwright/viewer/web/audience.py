@@ -44,10 +44,14 @@ class Page:
         socket: of the page.
         own: the name that the page has for displays of its own; empty for a page that shares the common ones.
         is_here: whether it is open on this machine, or came through a tunnel to it.
+        language: what its user reads, one of `LANGUAGES`; None where it did not say.
     """
 
-    def __init__(self, socket: WebSocketResponse, own: str = "", *, is_here: bool = False) -> None:
+    def __init__(
+        self, socket: WebSocketResponse, own: str = "", *, is_here: bool = False, language: str | None = None
+    ) -> None:
         self.outbox = Outbox()
+        self.language = language
         self.own = own
         self.is_here = is_here
         self.line = Line(asyncio.get_running_loop().time)
@@ -64,7 +68,7 @@ class Page:
 
     def send(self, message: ServerMessage) -> None:
         """Have a message sent to this page only."""
-        self.outbox.put(redundancy_key(message), encode(message))
+        self.outbox.put(redundancy_key(message), encode(message, self.language))
 
     async def write(self) -> None:
         """Send the opening messages, then whatever comes into the outbox, until the socket is gone."""
@@ -177,9 +181,10 @@ class PageGroup:
     def publish(self, message: ServerMessage) -> None:
         """Send a message to every page."""
         if self._pages:
-            key, text = redundancy_key(message), encode(message)
+            key = redundancy_key(message)
+            texts = {language: encode(message, language) for language in {page.language for page in self._pages}}
             for page in self._pages:
-                page.outbox.put(key, text)
+                page.outbox.put(key, texts[page.language])
 
     def send_data(self, key: str, payload: Payload) -> None:
         """Send what a display draws to every page; what waits under its key is dropped."""
@@ -231,9 +236,8 @@ class Audience(PageGroup):
         finally:
             self._expected -= 1
 
-    async def attend(self, socket: WebSocketResponse, own: str = "", *, is_here: bool = False) -> None:
-        """Serve a page until it goes; see `Page`."""
-        page = Page(socket, own, is_here=is_here)
+    async def attend(self, page: Page, socket: WebSocketResponse) -> None:
+        """Serve a page, whose socket this is, until it goes."""
         page.open(self._opening(page))
         self.add(page)
         self._sockets.add(socket)

@@ -17,7 +17,7 @@ from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 from urllib.parse import quote
 
-from linkwright.diagnostics import LinkwrightError, phrase
+from linkwright.diagnostics import LinkwrightError, Phrase, phrase
 from linkwright.diagnostics.pointers import FETCH, IS_POINTER, is_pointer_file
 from linkwright.packages import PackageFinder, PackageNotFoundError, enclosing_package
 
@@ -85,7 +85,7 @@ class Located:
     """Where a file named by a description is: an address for the page, or why there is none."""
 
     url: str | None
-    problem: str | None = None
+    problem: Phrase | None = None
 
 
 class FileRefusedError(Exception):
@@ -126,12 +126,12 @@ class MeshIndex:
         except LinkwrightError as error:
             return Located(None, error.diagnostics[0].message)
         except ValueError:
-            return Located(None, "its path holds a character that no path can hold")
+            return Located(None, phrase("its path holds a character that no path can hold"))
         if not path.is_file():
-            return Located(None, f"no file '{path}'")
+            return Located(None, phrase("no file '{path}'", path=path))
         if path.suffix.lower() not in types:
             known = ", ".join(sorted(suffix[1:].upper() for suffix in types))
-            return Located(None, f"'{path}' is of no format that is shown: {known}")
+            return Located(None, phrase("'{path}' is of no format that is shown: {known}", path=path, known=known))
         if is_pointer_file(path):
             return Located(None, phrase("'{path}': {why}; {how}", path=path, why=IS_POINTER, how=FETCH))
         folder = self._folder_of(uri, path)

@@ -19,7 +19,9 @@ from aiohttp import web
 from aiohttp.http_exceptions import HttpProcessingError
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
+from linkwright.diagnostics.translation import language_of
 from linkwright.viewer.web.access import TOKEN_PARAMETER, Admission, Gate, security_headers
+from linkwright.viewer.web.audience import Page
 from linkwright.viewer.web.files import CONTENT_TYPES, Downloads, FileRefusedError, MeshFolders
 from linkwright.viewer.web.uploads import Guests, Uploads
 
@@ -302,7 +304,9 @@ class WebServer:
             await socket.prepare(request)
         if request.transport is not None:
             keep_short(request.transport)
-        await audience.attend(socket, _own_displays(request), is_here=_is_from_here(request))
+        language = language_of(request.query.get("language", ""))
+        page = Page(socket, _own_displays(request), is_here=_is_from_here(request), language=language)
+        await audience.attend(page, socket)
         return socket
 
     def _audience_of(self, request: web.Request) -> Audience:

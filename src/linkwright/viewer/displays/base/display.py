@@ -255,7 +255,7 @@ class DataDisplay(ViewerDisplay):
         self.pages.publish(DisplayForgotten(self.id, key))
 
     def say(self, name: str, level: StatusLevel, text: str) -> None:
-        """Set a status row."""
+        """Set a status row; a text that is a phrase is said in the language of each page."""
         row = StatusRow(name, level, text)
         if self._rows.get(name) != row:
             self._rows[name] = row

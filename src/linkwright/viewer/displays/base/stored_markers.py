@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from linkwright.diagnostics import phrase
 from linkwright.viewer.config.rviz_config import DisplayConfig
 from linkwright.viewer.displays.base.display import DisplayHost
 from linkwright.viewer.displays.base.topic_display import TopicDisplay
@@ -35,7 +36,11 @@ class StoredMarkersDisplay(TopicDisplay):
     def receive(self, message: Any) -> None:
         """Take what a page says of a marker's mesh or texture."""
         if isinstance(message, MeshStatus) and message.error is not None and message.link in self._store:
-            self.say(message.link, "error", f"Mesh resource marker [{message.link}]: {message.error[:500]}")
+            self.say(
+                message.link,
+                "error",
+                phrase("Mesh resource marker [{link}]: {error}", link=message.link, error=message.error[:500]),
+            )
 
     def show_markers(self) -> None:
         """Send what has changed: all of a message at once."""

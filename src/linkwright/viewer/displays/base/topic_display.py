@@ -15,7 +15,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from linkwright.diagnostics import LinkwrightError
+from linkwright.diagnostics import LinkwrightError, Phrase, foreign, joined, phrase
 from linkwright.graph import (
     ExtrapolationException,
     QoSProfile,
@@ -46,14 +46,14 @@ class SideTopic:
         self._subscription: Subscription[Any] | None = None
         self._held: deque[Any] = deque()
 
-    def listen(self, topic: str, qos: QoSProfile) -> str | None:
+    def listen(self, topic: str, qos: QoSProfile) -> Phrase | None:
         """Subscribe to a topic instead of the one before; returns RViz's words for why that failed, or None."""
         self.close()
         self._held = deque(maxlen=max(1, qos.depth))
         try:
             self._subscription = self._host.context.node.create_subscription(self._type, topic, self._received, qos)
         except LinkwrightError as error:
-            return f"Error subscribing: {error.diagnostics[0].message}"
+            return phrase("Error subscribing: {message}", message=error.diagnostics[0].message)
         return None
 
     def close(self) -> None:
@@ -135,7 +135,7 @@ class TopicDisplay(DataDisplay, ABC):
         self._count = 0
         self._since = 0.0
         self._telling: asyncio.TimerHandle | None = None
-        self._incompatibility = ""
+        self._incompatibility: Phrase | None = None
         self._late: asyncio.TimerHandle | None = None
         self._late_reason = ""
 
@@ -236,9 +236,9 @@ class TopicDisplay(DataDisplay, ABC):
 
     def _subscribe(self) -> None:
         message, topic, qos = self.subscription()
-        self._count, self._since, self._incompatibility = 0, time.monotonic(), ""
+        self._count, self._since, self._incompatibility = 0, time.monotonic(), None
         if not topic:
-            self.say(self.TOPIC_ROW, "error", "Error subscribing: Empty topic name")
+            self.say(self.TOPIC_ROW, "error", phrase("Error subscribing: Empty topic name"))
             return
         try:
             self._subscription = self.context.node.create_subscription(
@@ -249,7 +249,9 @@ class TopicDisplay(DataDisplay, ABC):
                 event_callbacks=SubscriptionEventCallbacks(incompatible_qos=self._incompatible),
             )
         except LinkwrightError as error:
-            self.say(self.TOPIC_ROW, "error", f"Error subscribing: {error.diagnostics[0].message}")
+            self.say(
+                self.TOPIC_ROW, "error", phrase("Error subscribing: {message}", message=error.diagnostics[0].message)
+            )
             return
         if self.TRANSFORMED or self.FOLLOWS_TRANSFORMS:
             self._release = self.context.transforms.use(self.transforms_came)
@@ -272,7 +274,9 @@ class TopicDisplay(DataDisplay, ABC):
 
     def _incompatible(self, info: Any) -> None:
         policy = getattr(info.last_policy_kind, "name", str(info.last_policy_kind))
-        self._incompatibility = f"A publisher offers incompatible QoS. Last incompatible policy: {policy}"
+        self._incompatibility = phrase(
+            "A publisher offers incompatible QoS. Last incompatible policy: {policy}", policy=policy
+        )
         if self._count == 0:
             self._tell_count()
 
@@ -280,10 +284,17 @@ class TopicDisplay(DataDisplay, ABC):
         """Show how many messages came, or why there are none; repeated while there are none."""
         if self._count > 0:
             seconds = time.monotonic() - self._since
-            rate = f" at {self._count / seconds:.0f} hz." if self._count > 1 and seconds > 0 else ""
-            self.say(self.TOPIC_ROW, "ok", f"{self._count} messages received{rate}")
+            text = phrase("{count} messages received", count=self._count)
+            if self._count > 1 and seconds > 0:
+                rate = self._count / seconds
+                text = phrase("{count} messages received at {rate:.0f} hz.", count=self._count, rate=rate)
+            self.say(self.TOPIC_ROW, "ok", text)
             return
-        self.say(self.TOPIC_ROW, "warn", self._incompatibility or f"No messages received: {self._silence()}")
+        self.say(
+            self.TOPIC_ROW,
+            "warn",
+            self._incompatibility or phrase("No messages received: {reason}", reason=self._silence()),
+        )
         self._tell_count_later()
 
     def _tell_count_later(self) -> None:
@@ -300,18 +311,22 @@ class TopicDisplay(DataDisplay, ABC):
         found = node.get_publishers_info_by_topic(topic)
         return [(each.node_name, each.topic_type) for each in found if each.node_name != node.get_name()]
 
-    def _silence(self) -> str:
+    def _silence(self) -> Phrase:
         """Why nothing comes, as far as the graph knows, and where such messages are."""
         message, topic, _ = self.subscription()
         publishers = self._publishers(topic)
         types = {topic_type for _, topic_type in publishers}
         if types and message not in types:
-            return f"the topic carries {', '.join(sorted(types))}, not {message}"
+            return phrase("the topic carries {types}, not {message}", types=joined(sorted(types)), message=message)
         if publishers:
-            return f"nothing came yet from {', '.join(sorted({name for name, _ in publishers}))}"
+            return phrase("nothing came yet from {nodes}", nodes=joined(sorted({name for name, _ in publishers})))
         names = (name for name, found in self.context.node.get_topic_names_and_types() if message in found)
-        there = ", ".join(sorted(name for name in names if self._publishers(name))[:_MOST_OTHERS])
-        return "nobody publishes the topic" + (f"; there is {message} on {there}" if there else "")
+        there = sorted(name for name in names if self._publishers(name))[:_MOST_OTHERS]
+        if there:
+            return phrase(
+                "nobody publishes the topic; there is {message} on {topics}", message=message, topics=joined(there)
+            )
+        return phrase("nobody publishes the topic")
 
     # --- messages ----------------------------------------------------------------------------------------------
 
@@ -349,15 +364,20 @@ class TopicDisplay(DataDisplay, ABC):
         try:
             pose = self.context.transforms.pose(self._fixed_frame, frame, stamp_ns)
         except TransformException as error:
-            reason = f"Could not transform from [{frame}] to [{self._fixed_frame}]: {error.diagnostics[0].message}"
+            reason = phrase(
+                "Could not transform from [{frame}] to [{fixed_frame}]: {reason}",
+                frame=frame,
+                fixed_frame=self._fixed_frame,
+                reason=error.diagnostics[0].message,
+            )
             self._could_not_place(reason, is_late=isinstance(error, ExtrapolationException))
             return False
         self._in_time()
-        self.say(TRANSFORM, "ok", "Transform OK")
+        self.say(TRANSFORM, "ok", phrase("Transform OK"))
         self._take(message, pose)
         return True
 
-    def _could_not_place(self, reason: str, *, is_late: bool) -> None:
+    def _could_not_place(self, reason: Phrase, *, is_late: bool) -> None:
         """Say so, if it is only that transforms are late then when nothing could be placed for a while."""
         if not is_late:
             self.say(TRANSFORM, "error", reason)
@@ -385,7 +405,11 @@ class TopicDisplay(DataDisplay, ABC):
             if not self._failing:
                 self.context.node.get_logger().error(f"'{self.config.name}' failed:\n{traceback.format_exc().rstrip()}")
             self._failing = True
-            self.say(_FAILURE, "error", f"The message could not be shown: {error or type(error).__name__}")
+            self.say(
+                _FAILURE,
+                "error",
+                phrase("The message could not be shown: {reason}", reason=foreign(error or type(error).__name__)),
+            )
             return
         if self._failing:
             self._failing = False
@@ -393,7 +417,7 @@ class TopicDisplay(DataDisplay, ABC):
 
 
 _MESSAGE = "Message"
-_INVALID = "Message contained invalid floating point values (nans or infs)"
+_INVALID = phrase("Message contained invalid floating point values (nans or infs)")
 
 
 @dataclass(slots=True)

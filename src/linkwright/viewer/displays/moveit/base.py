@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from linkwright.diagnostics import joined, phrase, quoted_names
 from linkwright.graph import DESCRIPTION_QOS, QoSProfile
 from linkwright.urdf import Robot
 from linkwright.viewer.config.rviz_config import DisplayConfig
@@ -67,9 +68,11 @@ class MoveItDisplay(StoredMarkersDisplay):
     def say_unknown(self, joints: list[str]) -> None:
         """Say which joints of a state the robot does not have."""
         if joints:
-            names = ", ".join(f"'{name}'" for name in joints[:5])
-            more = f" and {len(joints) - 5} more" if len(joints) > 5 else ""
-            self.say(_JOINTS, "warn", f"The robot has no joint {names}{more}")
+            names, more = quoted_names(joints[:5]), len(joints) - 5
+            text = phrase("The robot has no joint {names}", names=names)
+            if more > 0:
+                text = phrase("The robot has no joint {names} and {more} more", names=names, more=more)
+            self.say(_JOINTS, "warn", text)
         else:
             self.unsay(_JOINTS)
 
@@ -129,20 +132,24 @@ class MoveItDisplay(StoredMarkersDisplay):
         if not self.enabled:
             return
         if not topic:
-            self.say(_URDF, "error", "Error subscribing: Empty topic name")
+            self.say(_URDF, "error", phrase("Error subscribing: Empty topic name"))
             return
         problem = self._descriptions.listen(topic, DESCRIPTION_QOS)
         if problem is not None:
             self.say(_URDF, "error", problem)
         elif self.robot is None:
-            self.say(_URDF, "warn", f"No description on topic '{topic}' yet")
+            self.say(_URDF, "warn", phrase("No description on topic '{topic}' yet", topic=topic))
 
     def _described(self, message: Any) -> None:
         robot = self.context.library.read(message.data).robot
         if robot is None or not robot.links:
-            self.say(_URDF, "error", "URDF is empty" if not message.data.strip() else "URDF failed Model parse")
+            self.say(
+                _URDF,
+                "error",
+                phrase("URDF is empty") if not message.data.strip() else phrase("URDF failed Model parse"),
+            )
             return
-        self.say(_URDF, "ok", "URDF parsed OK")
+        self.say(_URDF, "ok", phrase("URDF parsed OK"))
         self._take_robot(robot, message.data)
 
     def _take_robot(self, robot: Robot, text: str) -> None:
@@ -153,7 +160,7 @@ class MoveItDisplay(StoredMarkersDisplay):
             self.link_names = links
             self.publish_properties()
         for link, problems in self.robot.problems.items():
-            self.say(link, "error", "; ".join(problems))
+            self.say(link, "error", joined(problems, "; "))
         self.robot_changed()
         self.draw()
 
@@ -164,9 +171,9 @@ class MoveItDisplay(StoredMarkersDisplay):
         frames = {shape.frame for shapes in self._groups.values() for shape in shapes.values()}
         problems = [problem for frame in sorted(frames) if (problem := self.host.frames.problem(frame))]
         if problems:
-            self.say(TRANSFORM, "error", "; ".join(problems))
+            self.say(TRANSFORM, "error", joined(problems, "; "))
         elif frames:
-            self.say(TRANSFORM, "ok", "Transform OK")
+            self.say(TRANSFORM, "ok", phrase("Transform OK"))
         else:
             self.unsay(TRANSFORM)
 

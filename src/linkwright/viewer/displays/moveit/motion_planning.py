@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from linkwright.diagnostics import phrase
 from linkwright.graph import QoSProfile
 from linkwright.viewer.config.rviz_config import DisplayConfig
 from linkwright.viewer.config.schema import Path, PropertySpec, Schema
@@ -117,7 +118,11 @@ class MotionPlanningDisplay(PlanningSceneDisplay):
         topic = self.properties.text(PATH, TRAJECTORY_TOPIC).strip()
         if not self.enabled:
             return
-        problem = self._motions.listen(topic, QoSProfile(depth=10)) if topic else "Error subscribing: Empty topic name"
+        problem = (
+            self._motions.listen(topic, QoSProfile(depth=10))
+            if topic
+            else phrase("Error subscribing: Empty topic name")
+        )
         if problem is None:
             self.unsay(TRAJECTORY_TOPIC)
         else:

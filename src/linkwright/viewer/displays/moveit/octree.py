@@ -15,6 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from linkwright.diagnostics import phrase
+
 _DEPTH = 16
 """Levels below the root; cells of the last have the resolution."""
 
@@ -66,13 +68,15 @@ def read_octree(*, data: bytes, binary: bool, kind: str, resolution: float) -> C
         BadOctreeError: the data ends too early or too late, or the class is not known.
     """
     if not (math.isfinite(resolution) and resolution > 0.0):
-        raise BadOctreeError(f"Invalid resolution of the octomap: {resolution}")
+        raise BadOctreeError(phrase("Invalid resolution of the octomap: {resolution}", resolution=resolution))
     if not data:
         return _Leaves().cells(resolution, 0, data)
     try:
         return _read_binary(data, resolution) if binary else _read_full(data, kind, resolution)
     except (IndexError, struct.error):
-        raise BadOctreeError(f"The data of the octomap ends too early, after {len(data)} bytes") from None
+        raise BadOctreeError(
+            phrase("The data of the octomap ends too early, after {data} bytes", data=len(data))
+        ) from None
 
 
 def _read_binary(data: bytes, resolution: float) -> Cells:
@@ -90,7 +94,7 @@ def _read_binary(data: bytes, resolution: float) -> Cells:
         if deeper:
             pending += [_child(node, child) for child in reversed(range(8)) if deeper >> 2 * child & 1]
         if len(inner) > MOST_CELLS:
-            raise BadOctreeError(f"The octomap has more than {MOST_CELLS} cells")
+            raise BadOctreeError(phrase("The octomap has more than {most} cells", most=MOST_CELLS))
     _check_end(at, data)
     return _leaves_of(np.array(inner, dtype=np.int64), np.array(states, dtype=np.int64), resolution)
 
@@ -100,10 +104,10 @@ def _leaves_of(inner: NDArray[np.int64], bits: NDArray[np.int64], resolution: fl
     states = bits[:, None] >> 2 * np.arange(8) & 3
     parents, children = np.nonzero((states == _FREE) | (states == _OCCUPIED))
     if len(parents) > MOST_CELLS:
-        raise BadOctreeError(f"The octomap has more than {MOST_CELLS} cells")
+        raise BadOctreeError(phrase("The octomap has more than {most} cells", most=MOST_CELLS))
     edges = inner[parents, 3]
     if (edges <= 2).any():
-        raise BadOctreeError(f"The octomap is deeper than {_DEPTH} levels")
+        raise BadOctreeError(phrase("The octomap is deeper than {depth} levels", depth=_DEPTH))
     signs = (children[:, None] >> np.arange(3) & 1) * 2 - 1
     centers = inner[parents, :3] + signs * (edges // 4)[:, None]
     half = resolution / 2.0
@@ -115,7 +119,7 @@ def _read_full(data: bytes, kind: str, resolution: float) -> Cells:
     size = _FULL_NODES.get(kind)
     if size is None:
         known = ", ".join(_FULL_NODES)
-        raise BadOctreeError(f"Unknown octomap type: '{kind}'; known are {known}")
+        raise BadOctreeError(phrase("Unknown octomap type: '{kind}'; known are {known}", kind=kind, known=known))
     leaves = _Leaves()
     pending = [_ROOT]
     at = 0
@@ -140,7 +144,7 @@ _ROOT: _Node = (0, 0, 0, 2 << _DEPTH)
 def _child(node: _Node, child: int) -> _Node:
     x, y, z, edge = node
     if edge <= 2:
-        raise BadOctreeError(f"The octomap is deeper than {_DEPTH} levels")
+        raise BadOctreeError(phrase("The octomap is deeper than {depth} levels", depth=_DEPTH))
     away = edge // 4
     return (
         x + (away if child & 1 else -away),
@@ -159,7 +163,7 @@ class _Leaves:
 
     def add(self, node: _Node, probability: float) -> None:
         if len(self._nodes) == MOST_CELLS:
-            raise BadOctreeError(f"The octomap has more than {MOST_CELLS} cells")
+            raise BadOctreeError(phrase("The octomap has more than {most} cells", most=MOST_CELLS))
         self._nodes.append(node)
         self._probabilities.append(probability)
 
@@ -171,4 +175,4 @@ class _Leaves:
 
 def _check_end(at: int, data: bytes) -> None:
     if at != len(data):
-        raise BadOctreeError(f"The octomap ends after {at} of {len(data)} bytes")
+        raise BadOctreeError(phrase("The octomap ends after {at} of {data} bytes", at=at, data=len(data)))

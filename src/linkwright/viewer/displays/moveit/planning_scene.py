@@ -6,6 +6,7 @@ import asyncio
 from contextlib import suppress
 from typing import Any
 
+from linkwright.diagnostics import foreign
 from linkwright.graph import Client
 from linkwright.messages import get_message, get_service
 from linkwright.viewer.config.rviz_config import DisplayConfig
@@ -174,7 +175,7 @@ class PlanningSceneDisplay(MoveItDisplay):
         try:
             self.say_unknown(self.robot.set_state(self.scene.state, message))
         except UnusableStateError as error:
-            self.say(STATE, "error", str(error))
+            self.say(STATE, "error", foreign(error))
             return
         self.unsay(STATE)
 

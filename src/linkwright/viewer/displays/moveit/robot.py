@@ -8,6 +8,7 @@ from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field
 from typing import Any
 
+from linkwright.diagnostics import phrase
 from linkwright.geometry.arrays import quaternion_from_matrix
 from linkwright.geometry.single import IDENTITY, Transform, compose
 from linkwright.kinematics import KinematicTree
@@ -131,8 +132,12 @@ class PosableRobot:
         several = message.multi_dof_joint_state
         if len(several.joint_names) != len(several.transforms):
             raise UnusableStateError(
-                f"The state has {len(several.joint_names)} joints of many degrees of freedom and "
-                f"{len(several.transforms)} transforms for them"
+                phrase(
+                    "The state has {joint_names} joints of many degrees of freedom and "
+                    "{transforms} transforms for them",
+                    joint_names=len(several.joint_names),
+                    transforms=len(several.transforms),
+                )
             )
         for name, transform in zip(several.joint_names, several.transforms, strict=True):
             if name not in self._joints:  # the virtual joint of an SRDF, by which the root is in the world
@@ -143,7 +148,7 @@ class PosableRobot:
         """Put the root of the robot where a geometry_msgs/msg/Transform in a frame says."""
         at, turn = transform.translation, transform.rotation
         if not all(map(math.isfinite, (at.x, at.y, at.z, turn.x, turn.y, turn.z, turn.w))):
-            raise UnusableStateError("The state has invalid floating point values (nans or infs)")
+            raise UnusableStateError(phrase("The state has invalid floating point values (nans or infs)"))
         state.frame = frame.removeprefix("/")
         x, y, z, qx, qy, qz, qw = pose_of(_PoseOf(at, turn))
         state.root_in_frame = (x, y, z, qx, qy, qz, qw)
@@ -151,11 +156,17 @@ class PosableRobot:
     def set_joints(self, state: JointPositions, names: Any, positions: Any) -> list[str]:
         """Take positions of joints into a state; as `set_state`."""
         if len(names) != len(positions):
-            raise UnusableStateError(f"The state has {len(names)} joints and {len(positions)} positions")
+            raise UnusableStateError(
+                phrase(
+                    "The state has {names} joints and {positions} positions", names=len(names), positions=len(positions)
+                )
+            )
         unknown = []
         for name, position in zip(names, positions, strict=True):
             if not math.isfinite(position):
-                raise UnusableStateError(f"The position of joint '{name}' is {position}")
+                raise UnusableStateError(
+                    phrase("The position of joint '{name}' is {position}", name=name, position=position)
+                )
             if name in self._free:
                 state.values[name] = float(position)
             elif name not in self._joints:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from linkwright.diagnostics import foreign, phrase
 from linkwright.viewer.config.rviz_config import DisplayConfig
 from linkwright.viewer.config.schema import PropertySpec, Schema
 from linkwright.viewer.displays.base.display import DisplayHost, Pose
@@ -93,7 +94,7 @@ class RobotStateDisplay(MoveItDisplay):
             self.say(name, "error", text)
         unknown = sorted(name for name in highlights if not robot.has_link(name))
         if unknown:
-            self.say(_HIGHLIGHTS, "warn", f"The robot has no link '{unknown[0]}'")
+            self.say(_HIGHLIGHTS, "warn", phrase("The robot has no link '{name}'", name=unknown[0]))
         else:
             self.unsay(_HIGHLIGHTS)
         self.drawn()
@@ -110,7 +111,7 @@ class RobotStateDisplay(MoveItDisplay):
         try:
             self.say_unknown(robot.set_state(state, message.state))
         except UnusableStateError as error:
-            self.say(STATE, "error", str(error))
+            self.say(STATE, "error", foreign(error))
             return
         self.unsay(STATE)
         self._state = state

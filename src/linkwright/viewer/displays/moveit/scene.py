@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from linkwright.diagnostics import Phrase, foreign, phrase
 from linkwright.geometry.single import IDENTITY, Transform
 from linkwright.viewer.displays.moveit.octree import BadOctreeError, Cells, read_octree
 from linkwright.viewer.displays.moveit.properties import rgba
@@ -87,7 +88,7 @@ class Scene:
         self.is_whole = False
         self.state = JointPositions()
         self.octomap: PlacedCells | None = None
-        self.problems: dict[str, str] = {}
+        self.problems: dict[str, Phrase] = {}
         self._objects: dict[str, SceneObject] = {}
         self._held: dict[str, tuple[str, SceneObject]] = {}
         self._colors: dict[str, Color] = {}
@@ -136,7 +137,9 @@ class Scene:
         for link, each in self._held.values():
             at = each.frame or link
             if at not in links:
-                self.problems[each.id] = f"The robot has no link '{at}' for the attached object '{each.id}'"
+                self.problems[each.id] = phrase(
+                    "The robot has no link '{link}' for the attached object '{name}'", link=at, name=each.id
+                )
                 continue
             chosen = self._colors.get(each.id, color)
             made += self._markers(each, namespace, chosen, robot.frame_of(state), links[at])
@@ -148,7 +151,7 @@ class Scene:
         try:
             made = object_markers(each, namespace, color, frame=frame, base=base)
         except BadObjectError as error:
-            self.problems[each.id] = str(error)
+            self.problems[each.id] = foreign(error)
             return []
         self.problems.pop(each.id, None)
         return made
@@ -163,7 +166,7 @@ class Scene:
             self.problems.pop(name, None)
         elif operation == _MOVE:
             if known is None:
-                self.problems[name] = f"Object '{name}' is to be moved and is not there"
+                self.problems[name] = phrase("Object '{name}' is to be moved and is not there", name=name)
             else:
                 self._objects[name] = known.moved(message)
         elif operation == _APPEND and known is not None:
@@ -184,7 +187,7 @@ class Scene:
         if message.object.operation == _APPEND and before is not None:
             held = before[1].with_more(message.object)
         if not held.has_shapes:
-            self.problems[name] = f"The attached object '{name}' has no shapes"
+            self.problems[name] = phrase("The attached object '{name}' has no shapes", name=name)
             return
         self._objects.pop(name, None)
         self.problems.pop(name, None)
@@ -201,7 +204,7 @@ class Scene:
                 resolution=octomap.resolution,
             )
         except BadOctreeError as error:
-            self.problems[OCTOMAP] = str(error)
+            self.problems[OCTOMAP] = foreign(error)
             return
         self.problems.pop(OCTOMAP, None)
         if len(cells.sizes):

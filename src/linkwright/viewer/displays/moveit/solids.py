@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from linkwright.diagnostics import phrase
 from linkwright.geometry.single import Transform, compose
 from linkwright.viewer.markers.shapes import made_marker, pose_of
 from linkwright.viewer.protocol.markers import MarkerKind, MarkerShape
@@ -55,12 +56,19 @@ def object_markers(message: Any, namespace: str, color: Color, *, frame: str, ba
     made: list[MarkerShape] = []
     for what, shapes, poses, form_of in groups:
         if len(poses) not in (0, len(shapes)):
-            raise BadObjectError(f"{len(shapes)} shapes of kind {what} and {len(poses)} poses for them")
+            raise BadObjectError(
+                phrase(
+                    "{shapes} shapes of kind {what} and {poses} poses for them",
+                    shapes=len(shapes),
+                    what=what,
+                    poses=len(poses),
+                )
+            )
         for number, shape in enumerate(shapes):
             pose = compose(in_frame, _pose(poses[number])) if poses else in_frame
             kind, scale, points = form_of(shape)
             if not all(map(math.isfinite, (*pose, *scale))) or not np.isfinite(points).all():
-                raise BadObjectError("Contains invalid floating point values (nans or infs)")
+                raise BadObjectError(phrase("Contains invalid floating point values (nans or infs)"))
             name = f"{message.id} {what} {number}" if made else message.id
             made.append(made_marker(namespace, name, kind, pose, scale, color, frame=frame, points=points))
     return made
@@ -74,12 +82,19 @@ def _pose(message: Any) -> Transform:
 def _primitive(shape: Any) -> Form:
     make, count = _PRIMITIVES.get(shape.type, (None, 0))
     if make is None:
-        raise BadObjectError(f"Unknown type of primitive: {shape.type}")
+        raise BadObjectError(phrase("Unknown type of primitive: {type}", type=shape.type))
     sizes = [float(size) for size in shape.dimensions]
     if len(sizes) < count:
-        raise BadObjectError(f"A primitive of type {shape.type} needs {count} dimensions and has {len(sizes)}")
+        raise BadObjectError(
+            phrase(
+                "A primitive of type {type} needs {count} dimensions and has {sizes}",
+                type=shape.type,
+                count=count,
+                sizes=len(sizes),
+            )
+        )
     if any(size < 0.0 for size in sizes):
-        raise BadObjectError("A dimension is below zero")
+        raise BadObjectError(phrase("A dimension is below zero"))
     return make(shape, sizes)
 
 
@@ -109,7 +124,7 @@ def _prism(shape: Any, sizes: list[float]) -> Form:
     """A polygon as high as is said, half of it below; corners go round it."""
     flat = [(point.x, point.y) for point in shape.polygon.points]
     if len(flat) < 3:
-        raise BadObjectError(f"The polygon of a prism has {len(flat)} corners")
+        raise BadObjectError(phrase("The polygon of a prism has {corners} corners", corners=len(flat)))
     half = sizes[0] / 2.0
     lower, upper = [(x, y, -half) for x, y in flat], [(x, y, half) for x, y in flat]
     corners = []
@@ -135,11 +150,17 @@ _PRIMITIVES: dict[int, tuple[Callable[[Any, list[float]], Form], int]] = {
 
 def _mesh(mesh: Any) -> Form:
     if not mesh.triangles:
-        raise BadObjectError("A mesh has no triangles")
+        raise BadObjectError(phrase("A mesh has no triangles"))
     places = np.array([triangle.vertex_indices for triangle in mesh.triangles], dtype=np.int64).reshape(-1)
     vertices = np.array([(each.x, each.y, each.z) for each in mesh.vertices], dtype=np.float32).reshape(-1, 3)
     if places.max() >= len(vertices):
-        raise BadObjectError(f"A triangle of a mesh has vertex {places.max()}, and there are {len(vertices)}")
+        raise BadObjectError(
+            phrase(
+                "A triangle of a mesh has vertex {vertex}, and there are {vertices}",
+                vertex=places.max(),
+                vertices=len(vertices),
+            )
+        )
     return "triangle_list", _ONE, _points(vertices[places])
 
 
@@ -148,7 +169,7 @@ def _plane(plane: Any) -> Form:
     normal, distance = np.array(plane.coef[:3], dtype=np.float64), float(plane.coef[3])
     length = float(np.linalg.norm(normal))
     if not math.isfinite(length) or length == 0.0:
-        raise BadObjectError("A plane has no normal")
+        raise BadObjectError(phrase("A plane has no normal"))
     middle = normal * (-distance / length**2)
     normal /= length
     along = np.cross(normal, np.eye(3)[int(np.argmin(np.abs(normal)))])

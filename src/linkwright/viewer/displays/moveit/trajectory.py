@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
+from linkwright.diagnostics import foreign, phrase
 from linkwright.viewer.config.rviz_config import DisplayConfig
 from linkwright.viewer.config.schema import Path, Schema
 from linkwright.viewer.displays.base.display import DisplayHost, Pose
@@ -58,7 +59,7 @@ def read_motion(robot: PosableRobot, message: Any) -> Motion:
         one, many = part.joint_trajectory, part.multi_dof_joint_trajectory
         count = max(len(one.points), len(many.points))
         if len(states) + count > _MOST_WAYPOINTS:
-            raise UnusableStateError(f"The motion has more than {_MOST_WAYPOINTS} states")
+            raise UnusableStateError(phrase("The motion has more than {most} states", most=_MOST_WAYPOINTS))
         joints.update(one.joint_names)
         times = []
         for place in range(count):
@@ -77,7 +78,7 @@ def read_motion(robot: PosableRobot, message: Any) -> Motion:
             states.append(state.copy())
         durations += [max(0.0, after - before) for before, after in pairwise([0.0, *times])]
     if len(states) < 2:
-        raise UnusableStateError("The motion has no states")
+        raise UnusableStateError(phrase("The motion has no states"))
     return Motion(states, durations, frozenset(joints), unknown)
 
 
@@ -176,7 +177,7 @@ class MotionPlayer:
             self.motion = read_motion(robot, self._message)
         except UnusableStateError as error:
             self.motion = None
-            self._display.say(STATE, "error", str(error))
+            self._display.say(STATE, "error", foreign(error))
             self._show()
             return
         self._display.unsay(STATE)

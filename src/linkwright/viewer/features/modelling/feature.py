@@ -126,7 +126,7 @@ class ModellingFeature(PageFeature):
                 refuse(page, error.message)
             except LinkwrightError as error:
                 found = error.diagnostics[0]
-                refuse(page, f"{found.span}: {found.message}" if found.span else found.message)
+                refuse(page, found.placed_message)
             except Exception as error:  # noqa: BLE001  # a mistake of ours is no reason to edit no more
                 self.context.node.get_logger().error(f"The world cannot be edited: {type(error).__name__}: {error}")
                 refuse(page, f"{type(error).__name__}: {error}")
