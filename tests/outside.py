@@ -16,13 +16,14 @@ class Outside(Transport):
     def __init__(self, graph: Graph) -> None:
         self.graph = graph
         self.lose: Callable[[EndpointInfo], None] | None = None
+        self.publishers: list[EndpointInfo] = []
         graph.attach(self)
 
     def remote_nodes(self) -> Sequence[NodeIdentity]:
-        return ()
+        return list(dict.fromkeys(each.node for each in self.publishers if each.node is not None))
 
     def remote_endpoints(self) -> Sequence[EndpointInfo]:
-        return ()
+        return self.publishers
 
     def watch(self, changed: Callable[[], None]) -> None:
         pass
@@ -56,6 +57,7 @@ class Stranger:
         self._outside = outside
         gid = f"{node}{topic}".encode().ljust(16, b".")[:16]
         self._info = EndpointInfo(EndpointKind.PUBLISHER, NodeIdentity(node, "/"), topic, msg_type, QoSProfile(10), gid)
+        outside.publishers.append(self._info)
 
     def send(self, message: Any) -> None:
         """Have all subscriptions of the topic receive a message."""
@@ -65,4 +67,5 @@ class Stranger:
     def be_lost(self) -> None:
         """End without a word."""
         assert self._outside.lose is not None, "nobody wants to know who is lost"
+        self._outside.publishers.remove(self._info)
         self._outside.lose(self._info)

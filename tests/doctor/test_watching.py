@@ -76,8 +76,9 @@ async def test_an_endpoint_of_no_node_is_waited_for_no_longer_than_a_second(join
     assert time.monotonic() - begun > 0.9
 
 
-async def test_who_sends_velocities_is_written_down(joined: Graph) -> None:
-    node, other = joined.create_node("keys"), joined.create_node("planner")
+async def test_who_drives_at_the_same_time_is_written_down(joined: Graph) -> None:
+    """Whoever is silent, and whoever says the same, does not contradict."""
+    node, other, alike = (joined.create_node(name) for name in ("keys", "planner", "alike"))
     idle = joined.create_node("idle")
     idle.create_publisher(TWIST, "/cmd_vel", 10)
     publishers = [
@@ -86,15 +87,22 @@ async def test_who_sends_velocities_is_written_down(joined: Graph) -> None:
             (node, TWIST, "/cmd_vel"),
             (other, TWIST, "/cmd_vel"),
             (node, TWIST_STAMPED, "/arm/cmd_vel"),
+            (other, TWIST_STAMPED, "/arm/cmd_vel"),
+            (alike, TWIST, "/base/cmd_vel"),
+            (node, TWIST, "/base/cmd_vel"),
+            (node, TWIST, "/own/cmd_vel"),
         )
     ]
-    watched = asyncio.ensure_future(seen_of(joined, Outside(), seconds=1.0))
+    watched = asyncio.ensure_future(seen_of(joined, Outside(), seconds=2.0))
     while not watched.done():
-        for each in publishers:
-            each.publish(each.msg_type())
+        for number, each in enumerate(publishers):
+            message = each.msg_type()
+            driven = message.twist if each.type_name == TWIST_STAMPED else message
+            driven.linear.x = 0.5 if each.topic_name.startswith("/base") else float(number)
+            each.publish(message)
         await asyncio.sleep(0.01)
-    assert [(each.topic, each.senders) for each in watched.result().velocities] == [
-        ("/arm/cmd_vel", ("/keys",)),
+    assert [(each.topic, each.drivers) for each in watched.result().disputed] == [
+        ("/arm/cmd_vel", ("/keys", "/planner")),
         ("/cmd_vel", ("/keys", "/planner")),
     ]
 
@@ -103,13 +111,16 @@ async def test_two_commands_that_drive_are_written_down_and_not_what_else_they_s
     first, second = joined.create_node("_ros2cli_7"), joined.create_node("_ros2cli_8")
     publishers = [each.create_publisher(TWIST, "/cmd_vel", 10) for each in (first, second)]
     publishers.append(first.create_publisher("sensor_msgs/msg/JointState", "/joint_states", 10))
-    watched = asyncio.ensure_future(seen_of(joined, Outside(), seconds=0.5))
+    watched = asyncio.ensure_future(seen_of(joined, Outside(), seconds=2.0))
     while not watched.done():
-        for each in publishers:
-            each.publish(each.msg_type())
+        for number, each in enumerate(publishers):
+            message = each.msg_type()
+            if each.type_name == TWIST:
+                message.linear.x = float(number)
+            each.publish(message)
         await asyncio.sleep(0.01)
-    (velocities,) = watched.result().velocities
-    assert velocities.senders == ("/_ros2cli_7", "/_ros2cli_8")
+    (disputed,) = watched.result().disputed
+    assert disputed.drivers == ("/_ros2cli_7", "/_ros2cli_8")
     assert not watched.result().stamps
 
 

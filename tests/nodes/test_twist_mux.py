@@ -135,6 +135,30 @@ async def test_without_topics_it_says_so_and_runs(stage, said):
     assert said("WARN") == ["no topics.NAME.topic is given, so nothing goes through"]
 
 
+async def test_two_on_one_of_its_topics_are_told_and_not_what_it_chooses_between(traffic):
+    mux(traffic.stage)
+    outside = Outside(traffic.stage.graph)
+    named = (("/tab_vel", "tab"), ("/joy_vel", "joy"), ("/joy_vel", "pad"))
+    tablet, joystick, other = (Stranger(outside, topic, node) for topic, node in named)
+
+    async def drive(*sources):
+        for _ in range(20):
+            for speed, source in enumerate(sources):
+                message = TWIST()
+                message.linear.x = float(speed)
+                source.send(message)
+                await traffic.stage.clock.advance(0.1)
+
+    def told():
+        return [each.text for each in traffic.stage.log if "two drivers" in each.text]
+
+    await drive(tablet, joystick)
+    assert not told()
+    await drive(tablet, joystick, other)
+    (text,) = told()
+    assert "'/joy', '/pad' command by '/joy_vel'" in text
+
+
 async def test_a_stop_goes_out_when_who_sent_the_last_velocity_is_lost(traffic):
     mux(traffic.stage)
     outside = Outside(traffic.stage.graph)

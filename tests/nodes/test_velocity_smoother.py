@@ -10,6 +10,7 @@ from linkwright.messages import get_message
 from linkwright.nodes import NodeOptions
 from linkwright.nodes.teleop.smoothing import Limits, smoothed
 from linkwright.nodes.teleop.velocity_smoother import VelocitySmoother
+from tests.outside import Outside, Stranger
 
 TWIST, STAMPED = get_message("geometry_msgs/msg/Twist"), get_message("geometry_msgs/msg/TwistStamped")
 ODOMETRY = get_message("nav_msgs/msg/Odometry")
@@ -73,11 +74,39 @@ async def test_a_step_becomes_a_ramp_within_the_limits(line, stage):
     assert one.speeds() == [0.125, 0.25, 0.375, 0.5, 0.5, 0.5]
 
 
-async def test_a_command_that_is_not_repeated_ends(line, stage):
+async def test_a_command_that_is_not_repeated_ends(line, stage, said):
     one = line(velocity_timeout=0.2)
     await one.send(0.25)
     await stage.clock.advance(2.0)
     assert one.speeds() == [0.125, 0.25, 0.25, 0.25, 0.125, 0.0]
+    assert said("INFO")[-1:] == [
+        "no command for 0.2 s (velocity_timeout), and the last one was no stop: the robot is stopped"
+    ]
+
+
+async def test_after_a_stop_nothing_is_said_of_commands_that_end(line, stage, said):
+    one = line(velocity_timeout=0.2)
+    await one.send(0.25)
+    await stage.clock.advance(0.1)
+    await one.send(0.0)
+    await stage.clock.advance(2.0)
+    assert not [each for each in said("INFO") if "velocity_timeout" in each]
+
+
+async def test_it_stops_when_who_commanded_is_lost_and_says_so(line, stage, said):
+    one = line(velocity_timeout=10.0, enable_stamped_cmd_vel=False)
+    driver = Stranger(Outside(stage.graph), "/cmd_vel")
+    message = TWIST()
+    message.linear.x = 0.25
+    driver.send(message)
+    await stage.clock.advance(0.2)
+    driver.be_lost()
+    await stage.clock.advance(1.0)
+    assert one.speeds()[3] == 0.25
+    assert one.speeds()[-1] == 0.0
+    assert said("WARN") == [
+        "'/driver', which commanded by '/cmd_vel', was lost (killed, crashed or out of reach): the robot is stopped"
+    ]
 
 
 async def test_slow_velocities_are_none(line, stage):

@@ -61,6 +61,21 @@ async def test_a_drive_stops_when_its_commander_is_lost_and_says_so_once(model: 
         assert warnings(log) == [f"{LOST}: what it moved is stopped"]
 
 
+@pytest.mark.parametrize("model", DRIVES.values(), ids=DRIVES.keys())
+async def test_a_drive_says_once_that_two_drive_it_at_the_same_time(model: str) -> None:
+    async with served(GROUND, model) as (server, graph, log):
+        outside = Outside(graph)
+        drivers = [Stranger(outside, "/cmd_vel", name) for name in ("keys", "planner")]
+        silent = Stranger(outside, "/cmd_vel", "behaviors")
+        silent.send(forward(0.0))
+        for _ in range(30):
+            for driver, wanted in zip(drivers, (0.1, 0.3), strict=True):
+                driver.send(forward(wanted))
+                await advance(server, graph, 0.1)
+        (told,) = warnings(log)
+        assert told.startswith("two drivers at once: '/keys', '/planner' command by '/cmd_vel', and each message")
+
+
 async def test_a_drive_goes_on_whose_last_command_is_that_of_another() -> None:
     async with served(GROUND, robot(classic())) as (server, graph, log):
         outside = Outside(graph)

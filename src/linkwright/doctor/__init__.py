@@ -5,13 +5,13 @@ from linkwright.doctor.parameter_files import examine_parameter_files
 from linkwright.doctor.record import (
     ClockSeen,
     DescriptionSeen,
+    DriversSeen,
     FixedFrame,
     FrameSeen,
     JointSeen,
     Observation,
     StampSeen,
     TransformSeen,
-    VelocitiesSeen,
 )
 from linkwright.doctor.report import report
 from linkwright.doctor.watching import observe
@@ -19,13 +19,13 @@ from linkwright.doctor.watching import observe
 __all__ = [
     "ClockSeen",
     "DescriptionSeen",
+    "DriversSeen",
     "FixedFrame",
     "FrameSeen",
     "JointSeen",
     "Observation",
     "StampSeen",
     "TransformSeen",
-    "VelocitiesSeen",
     "examine",
     "examine_parameter_files",
     "observe",

@@ -96,16 +96,16 @@ class FrameSeen:
 
 
 @dataclass(frozen=True, slots=True)
-class VelocitiesSeen:
-    """The velocities on one topic.
+class DriversSeen:
+    """Several nodes that sent velocities which contradict each other at the same time, on one topic.
 
     Attributes:
         topic: where they came, as Twist or TwistStamped.
-        senders: full names of the nodes that published them, sorted.
+        drivers: full names of the nodes that published them, sorted; one twice where two nodes have it.
     """
 
     topic: str
-    senders: tuple[str, ...]
+    drivers: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,7 +149,7 @@ class Observation:
         descriptions: the robot descriptions published.
         stamps: of topics whose messages have a header.
         frames: those that messages are in, of topics whose messages have a header.
-        velocities: who published velocities.
+        disputed: topics with several drivers at once.
         clock: what ``/clock`` told; None when it told nothing.
         sim_time: ``use_sim_time`` of the nodes that answered, by full name.
         lifecycle: states of the managed nodes, by full name.
@@ -166,7 +166,7 @@ class Observation:
     descriptions: tuple[DescriptionSeen, ...] = ()
     stamps: tuple[StampSeen, ...] = ()
     frames: tuple[FrameSeen, ...] = ()
-    velocities: tuple[VelocitiesSeen, ...] = ()
+    disputed: tuple[DriversSeen, ...] = ()
     clock: ClockSeen | None = None
     sim_time: Mapping[str, bool] = field(default_factory=dict)
     lifecycle: Mapping[str, str] = field(default_factory=dict)

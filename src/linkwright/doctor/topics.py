@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterator
 
 from linkwright.diagnostics import Diagnostic, Note, Phrase, Severity, nearest, phrase
-from linkwright.doctor.record import TWIST, TWIST_STAMPED, UNKNOWN_NODE, Observation, listed, node_of, nodes_of
+from linkwright.doctor.record import TWIST, TWIST_STAMPED, Observation, listed, node_of, nodes_of
 from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
 from linkwright.graph.qos.compatibility import incompatible_policies
 from linkwright.graph.qos.profile import QoSPolicyKind
@@ -245,21 +245,19 @@ def _unheard_commands(seen: Observation) -> Iterator[Diagnostic]:
 
 
 def _two_drivers(seen: Observation) -> Iterator[Diagnostic]:
-    """Several nodes that sent velocities on one topic while it was looked."""
-    for velocities in seen.velocities:
-        drivers = [name for name in velocities.senders if name != UNKNOWN_NODE]
-        if len(drivers) > 1:
-            yield Diagnostic(
-                "DOC208",
-                phrase(
-                    "two drivers on one topic: {drivers} publish velocities on '{topic}'",
-                    drivers=listed(drivers),
-                    topic=velocities.topic,
-                ),
-                severity=Severity.WARNING,
-                notes=(Note(phrase("the robot obeys each message in turn, so it jerks between them")),),
-                hint=phrase("end one of them, or let twist_mux choose between them by priority"),
-            )
+    """Several nodes that contradicted each other on one topic while it was looked."""
+    for each in seen.disputed:
+        yield Diagnostic(
+            "DOC208",
+            phrase(
+                "two drivers on one topic: {drivers} publish velocities on '{topic}'",
+                drivers=listed(each.drivers),
+                topic=each.topic,
+            ),
+            severity=Severity.WARNING,
+            notes=(Note(phrase("the robot obeys each message in turn, so it jerks between them")),),
+            hint=phrase("end one of them, or let twist_mux choose between them by priority"),
+        )
 
 
 def _alike(name: str, candidates: list[str]) -> str | None:

@@ -16,15 +16,16 @@ from linkwright.doctor.record import (
     UNKNOWN_NODE,
     ClockSeen,
     DescriptionSeen,
+    DriversSeen,
     FixedFrame,
     FrameSeen,
     JointSeen,
     Observation,
     StampSeen,
     TransformSeen,
-    VelocitiesSeen,
     node_of,
 )
+from linkwright.graph.endpoints.drivers import Dispute, drivers_of, publishers_of
 from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind, MessageInfo
 from linkwright.graph.names.rules import join
 from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile, ReliabilityPolicy
@@ -59,6 +60,11 @@ _SECOND = 1_000_000_000
 _STAMP = {0: struct.Struct(">iI"), 1: struct.Struct("<iI")}
 """The stamp of a header that comes first, by the second byte of the CDR header, which tells the order of bytes."""
 _CDR_HEADER = 4
+_TWIST_BYTES = 48
+"""Six numbers, at the end of a Twist and of a TwistStamped."""
+_DISPUTED_S = 1.5
+"""For how long drivers must contradict each other: less than a drive asks for, as one looks for a few seconds."""
+_DISPUTED_TIMES = 2
 
 
 async def observe(
@@ -101,7 +107,7 @@ async def observe(
         descriptions=tuple(watcher.descriptions.values()),
         stamps=watcher.stamps_seen(sim_time),
         frames=watcher.frames_seen(),
-        velocities=watcher.velocities(),
+        disputed=watcher.disputed(),
         clock=watcher.clock,
         sim_time=sim_time,
         lifecycle=lifecycle,
@@ -121,7 +127,7 @@ class _Watcher:
         self._joints: dict[str, tuple[set[str], set[str]]] = {}
         self._stamps: dict[tuple[str, str], tuple[int, int]] = {}
         self._frames: dict[tuple[str, str], str] = {}
-        self._velocities: dict[str, set[str]] = {}
+        self._disputes: dict[str, Dispute] = {}
         self.descriptions: dict[tuple[str, str], DescriptionSeen] = {}
         self.clock: ClockSeen | None = None
 
@@ -178,7 +184,7 @@ class _Watcher:
         elif kind == _CLOCK and topic == "/clock":
             self._listen(endpoint, lambda message, _info: self._on_clock(message))
         elif kind == TWIST:
-            self._listen(endpoint, lambda _data, info: self._on_velocity(topic, info), raw=True)
+            self._listen(endpoint, lambda data, info: self._on_velocity(topic, data, info), raw=True)
         elif _begins_with_header(kind):
             driving = kind == TWIST_STAMPED
             self._listen(endpoint, lambda data, info: self._on_stamped(topic, data, info, driving=driving), raw=True)
@@ -240,12 +246,13 @@ class _Watcher:
             ClockSeen(1, now_ns, now_ns) if before is None else ClockSeen(before.ticks + 1, before.first_ns, now_ns)
         )
 
-    def _on_velocity(self, topic: str, info: MessageInfo) -> None:
-        self._velocities.setdefault(topic, set()).add(self._sender(topic, info))
+    def _on_velocity(self, topic: str, data: bytes, info: MessageInfo) -> None:
+        dispute = self._disputes.setdefault(topic, Dispute(_DISPUTED_S, _DISPUTED_TIMES))
+        dispute.hear(info.publisher_gid, bytes(data[-_TWIST_BYTES:]), time.monotonic())
 
     def _on_stamped(self, topic: str, data: bytes, info: MessageInfo, *, driving: bool) -> None:
         if driving:
-            self._on_velocity(topic, info)
+            self._on_velocity(topic, data, info)
         seconds, nanoseconds = _STAMP[data[1] & 1].unpack_from(data, _CDR_HEADER)
         sender = self._sender(topic, info)
         self._note_stamp(topic, sender, seconds, nanoseconds)
@@ -270,11 +277,14 @@ class _Watcher:
             for name, (senders, topics) in sorted(self._joints.items())
         )
 
-    def velocities(self) -> tuple[VelocitiesSeen, ...]:
-        """Who published velocities, by topic."""
-        return tuple(
-            VelocitiesSeen(topic, tuple(sorted(senders))) for topic, senders in sorted(self._velocities.items())
-        )
+    def disputed(self) -> tuple[DriversSeen, ...]:
+        """Who contradicted each other, by topic."""
+        found = []
+        for topic, dispute in sorted(self._disputes.items()):
+            drivers = drivers_of(self._graph, publishers_of(self._graph, dispute.parties))
+            if len(drivers) > 1:
+                found.append(DriversSeen(topic, tuple(drivers)))
+        return tuple(found)
 
     def stamps_seen(self, sim_time: Mapping[str, bool]) -> tuple[StampSeen, ...]:
         """The stamps against the clock that their sender goes by: simulated time, where it follows or makes that."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from linkwright.control.controllers.registry import controller_class
+from linkwright.graph.log.levels import LogLevel
 from linkwright.messages import get_message
 from tests.outside import Outside, Stranger
 
@@ -53,6 +54,25 @@ async def test_a_drive_stops_before_its_time_out(stand):
     assert [each.value for each in stand.commands.values()] == [0.0, 0.0]
     (told,) = [each.text for each in stand.log if "was lost" in each.text]
     assert told.startswith("'/driver', which commanded by '/base/cmd_vel', was lost")
+
+
+async def test_a_drive_says_once_that_two_drive_it_at_the_same_time(stand, clock):
+    for side in ("left", "right"):
+        stand.joint(side, commands=("velocity",), position=0.0)
+    drive = controller_class("diff_drive_controller/DiffDriveController")
+    controller = stand.start(drive, "base", **WHEELS)
+    outside = Outside(stand.graph)
+    drivers = [
+        Stranger(outside, "/base/cmd_vel", name, "geometry_msgs/msg/TwistStamped") for name in ("keys", "planner")
+    ]
+    message = Stamped()
+    for speed in range(1, 101):
+        message.header.stamp.sec, message.twist.linear.x = speed, float(speed)
+        drivers[speed % 2].send(message)
+        await clock.advance(0.1)
+    await stand.step(controller)
+    (told,) = [each.text for each in stand.log if each.level >= LogLevel.WARN]
+    assert told.startswith("two drivers at once: '/keys', '/planner' command by '/base/cmd_vel'")
 
 
 async def test_nothing_is_said_of_a_command_that_has_ended(stand):

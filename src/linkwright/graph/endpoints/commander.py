@@ -10,6 +10,7 @@ from linkwright.diagnostics import phrase
 from linkwright.graph.endpoints.info import EndpointInfo, MessageInfo
 
 if TYPE_CHECKING:
+    from linkwright.graph.endpoints.drivers import DriverWatch
     from linkwright.graph.endpoints.subscription import Subscription
 
 
@@ -22,10 +23,12 @@ class Commander:
     Args:
         take_back: called with the publisher that is lost, after the last of its commands, as callbacks of its
             subscription are.
+        drivers: is told each command of `taking`, to warn of several who command at once; None for nobody.
     """
 
-    def __init__(self, take_back: Callable[[EndpointInfo], object]) -> None:
+    def __init__(self, take_back: Callable[[EndpointInfo], object], drivers: DriverWatch | None = None) -> None:
         self._take_back = take_back
+        self._drivers = drivers
         self._gid: bytes | None = None
 
     def taking(self, take: Callable[[Any], object]) -> Callable[[Any, MessageInfo], object]:
@@ -42,6 +45,8 @@ class Commander:
 
     def _taken(self, take: Callable[[Any], object], message: Any, info: MessageInfo) -> None:
         self.obey(info)
+        if self._drivers is not None:
+            self._drivers.hear(message, info)
         take(message)
 
     def _lost(self, publisher: EndpointInfo) -> None:

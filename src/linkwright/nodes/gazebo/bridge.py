@@ -15,6 +15,7 @@ import yaml
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.graph import Graph, MessageInfo, Node, Publisher, QoSProfile, ReliabilityPolicy, Subscription
 from linkwright.graph.endpoints.commander import Commander
+from linkwright.graph.endpoints.drivers import DriverWatch
 from linkwright.graph.endpoints.event_types import PublisherEventCallbacks, QoSMatchedInfo
 from linkwright.graph.names.rules import join
 from linkwright.graph.parameters.qos_overrides import QoSOverridingOptions
@@ -134,15 +135,17 @@ class _Bridge(SingleNode):
             return
         lazy = self._lazy if topic.lazy is None else topic.lazy
         publishers: list[Publisher[Any]] = []
-        commander = None
+        commander = drivers = None
         if target_type in VELOCITIES:
             commander = Commander(lambda lost: send_stop(self._node, publishers[0], lost))
+            drivers = DriverWatch.of(self._node)
 
         def take(message: Any, info: MessageInfo) -> None:
             # What was sent by the bridge comes back where messages go both ways.
             if all(info.publisher_gid != each.gid for each in self._publishers):
-                if commander is not None:
+                if commander is not None and drivers is not None:
                     commander.obey(info)
+                    drivers.hear(message, info)
                 publishers[0].publish(convert(message))
 
         def listen() -> Subscription[Any]:

@@ -14,6 +14,7 @@ from typing import Any
 from linkwright.diagnostics import phrase
 from linkwright.graph import EndpointInfo, ParameterType, Subscription
 from linkwright.graph.endpoints.commander import Commander, who_was_lost
+from linkwright.graph.endpoints.drivers import DriverWatch
 from linkwright.graph.transforms.core import BufferCore
 from linkwright.graph.transforms.listener import TransformListener
 from linkwright.messages import get_message
@@ -83,7 +84,7 @@ class MonitorNode(ManagedNode):
         kinds = (TWIST, TWIST_STAMPED) if self._stamped is None else (TWIST_STAMPED if self._stamped else TWIST,)
         for kind in kinds:
             topic = str(self._value("cmd_vel_in_topic"))
-            commander = Commander(self._on_lost)
+            commander = Commander(self._on_lost, DriverWatch.of(self))
             take = commander.taking(self._on_velocity)
             heard: Subscription[Any] = self.create_subscription(kind, topic, take, _DEPTH)
             commander.watch(self.keep(heard))

@@ -17,6 +17,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, phrase
 from linkwright.diagnostics.translation import localized
 from linkwright.graph import Graph, MessageInfo, Node, Publisher, Subscription
 from linkwright.graph.endpoints.commander import Commander
+from linkwright.graph.endpoints.drivers import DriverWatch
 from linkwright.nodes.diagnostic_updater import DiagnosticUpdater, Health, Level
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
 from linkwright.nodes.teleop.standstill import send_stop
@@ -86,7 +87,7 @@ class TwistMux(SingleNode):
         self._commander = Commander(partial(send_stop, node, self._publisher))
         for source in self._topics:
             velocities: Subscription[Any] = node.create_subscription(
-                kind, source.topic, partial(self._velocity, source), _DEPTH
+                kind, source.topic, partial(self._velocity, source, DriverWatch.of(node)), _DEPTH
             )
             self._commander.watch(velocities)
         for source in self._locks:
@@ -102,7 +103,8 @@ class TwistMux(SingleNode):
     def _now_ns(self) -> int:
         return self._node.get_clock().now().nanoseconds
 
-    def _velocity(self, source: _Source, message: Any, info: MessageInfo) -> None:
+    def _velocity(self, source: _Source, drivers: DriverWatch, message: Any, info: MessageInfo) -> None:
+        drivers.hear(message, info)
         now = self._now_ns()
         source.hear(now)
         lock = self._lock_priority(now)

@@ -2,7 +2,7 @@
 
 A managed node; parameters, defaults and rules are those of nav2. Different on purpose: unless
 ``enable_stamped_cmd_vel`` is set it takes Twist and TwistStamped, and publishes what the subscribers take; and it stops
-the robot when it is deactivated.
+the robot when it is deactivated, or who commanded is lost, and says so.
 """
 
 from __future__ import annotations
@@ -13,7 +13,10 @@ from math import isfinite
 from typing import Any
 
 from linkwright.diagnostics import Phrase, joined, phrase
-from linkwright.graph import Parameter, ParameterType, SetParametersResult
+from linkwright.graph import Parameter, ParameterType, SetParametersResult, Subscription
+from linkwright.graph.endpoints.commander import Commander, who_was_lost
+from linkwright.graph.endpoints.drivers import DriverWatch
+from linkwright.graph.endpoints.info import EndpointInfo
 from linkwright.graph.lifecycle.states import LifecycleState, TransitionCallbackReturn
 from linkwright.messages import get_message
 from linkwright.nodes.navigation.managed import ManagedNode, ManagedServer
@@ -73,8 +76,10 @@ class _ManagedSmoother(ManagedNode):
         stamped = self._stamped
         kinds = (TWIST, TWIST_STAMPED) if stamped is None else (TWIST_STAMPED if stamped else TWIST,)
         self._output = VelocityTopic(self, "cmd_vel_smoothed", stamped)
+        commander = Commander(self._lose, DriverWatch.of(self))
         for kind in kinds:
-            self.keep(self.create_subscription(kind, "cmd_vel", self._heard, _DEPTH))
+            heard: Subscription[Any] = self.create_subscription(kind, "cmd_vel", commander.taking(self._heard), _DEPTH)
+            commander.watch(self.keep(heard))
         if self._value("feedback") == "CLOSED_LOOP":
             odometry = get_message("nav_msgs/msg/Odometry")
             self.keep(self.create_subscription(odometry, self._value("odom_topic"), self._on_odometry, _DEPTH))
@@ -170,6 +175,24 @@ class _ManagedSmoother(ManagedNode):
         self._command = values
         self._commanded_ns = self.get_clock().now().nanoseconds
 
+    def _rest(self) -> None:
+        """Come to rest, as no more commands come; who sent them has not said stop."""
+        if self._command is not None and any(self._command):
+            self._command = [0.0] * len(_AXES)
+            self.get_logger().info(
+                phrase(
+                    "no command for {seconds:g} s (velocity_timeout), and the last one was no stop: "
+                    "the robot is stopped",
+                    seconds=self._timeout,
+                )
+            )
+
+    def _lose(self, publisher: EndpointInfo) -> None:
+        """Come to rest, as who commanded is lost."""
+        if self._command is not None and any(self._command):
+            self._command = [0.0] * len(_AXES)
+            self.get_logger().warning(phrase("{who}: the robot is stopped", who=who_was_lost(publisher)))
+
     def _on_odometry(self, message: Any) -> None:
         now = self.get_clock().now().nanoseconds
         self._measured.append((now, _values(message.twist.twist)))
@@ -183,7 +206,7 @@ class _ManagedSmoother(ManagedNode):
             if self._stopped or not any(self._last):
                 self._stopped = True
                 return
-            self._command = [0.0] * len(_AXES)
+            self._rest()
         self._stopped = False
         now = self._last
         if self._closed:

@@ -12,6 +12,7 @@ from typing import Any, ClassVar
 
 from linkwright.graph import DEFAULT_QOS, Graph, Publisher, QoSProfile, Subscription
 from linkwright.graph.endpoints.commander import Commander
+from linkwright.graph.endpoints.drivers import DriverWatch
 from linkwright.graph.endpoints.info import EndpointInfo
 from linkwright.graph.qos.compatibility import fit
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
@@ -93,7 +94,7 @@ class TopicTool(SingleNode, ABC):
     def _subscribed(self, kind: str, qos: QoSProfile) -> Subscription[Any]:
         if kind not in VELOCITIES:
             return self._node.create_subscription(kind, self._input, self._hear, qos)
-        commander = Commander(self._stop_output)
+        commander = Commander(self._stop_output, DriverWatch.of(self._node))
         hear = commander.taking(self._hear)
         subscription: Subscription[Any] = self._node.create_subscription(kind, self._input, hear, qos)
         commander.watch(subscription)

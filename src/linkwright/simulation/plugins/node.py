@@ -11,6 +11,7 @@ from linkwright.diagnostics import phrase
 from linkwright.graph import Logger, Node
 from linkwright.graph.endpoints.base import Endpoint
 from linkwright.graph.endpoints.commander import Commander, who_was_lost
+from linkwright.graph.endpoints.drivers import DriverWatch
 from linkwright.graph.endpoints.info import EndpointInfo
 from linkwright.graph.endpoints.publisher import Publisher
 from linkwright.graph.endpoints.subscription import Subscription
@@ -92,6 +93,7 @@ class PluginNode:
         qos: what overrides qualities of service (`NodeDescription.qos`).
         usual: the usual names of topics that are still to be had; None where topics have their own names only.
         bridged: for plugins of gz, what tells which of their topics a bridge has under another type.
+        now_ns: the time that what it moves goes by, in nanoseconds; that of the node's clock when left out.
     """
 
     def __init__(
@@ -103,8 +105,10 @@ class PluginNode:
         qos: Mapping[tuple[str, str], Element],
         usual: set[str] | None,
         bridged: BridgedTopics | None = None,
+        now_ns: Callable[[], int] | None = None,
     ) -> None:
         self._node = node
+        self._now_ns = now_ns or node.get_clock().now_ns
         self._exchange = exchange
         self._owned = owned
         self._qos = {(node.handle.resolve_topic_name(topic), side): each for (topic, side), each in qos.items()}
@@ -188,6 +192,8 @@ class PluginNode:
     def commander(self, rest: Callable[[], bool]) -> Commander:
         """For topics of commands that hold until the next one: takes that of a publisher back that is lost.
 
+        It also warns where several nodes command at the same time.
+
         Args:
             rest: ends what the last command has set in motion; says whether there was anything to end, which is logged.
         """
@@ -195,7 +201,7 @@ class PluginNode:
         def lost(publisher: EndpointInfo) -> None:
             self._exchange.post(partial(self._rest, rest, publisher))
 
-        return Commander(lost)
+        return Commander(lost, DriverWatch(self.logger, self._node.graph, self._now_ns))
 
     def service(self, srv_type: str, name: str, callback: Callable[[Any, Any], Any]) -> None:
         """Answer a service: a function of a request and an empty response gives the response."""

@@ -318,7 +318,15 @@ class SimulationServer:
     def _node(self, place: PluginPlace, namespace: str) -> PluginNode:
         """The node of a plugin: that of the simulator for those of gz and for sensors without a plugin."""
         if is_shared(place):
-            return PluginNode(self.node, self.exchange, owned=False, qos={}, usual=self._usual, bridged=self._bridged)
+            return PluginNode(
+                self.node,
+                self.exchange,
+                owned=False,
+                qos={},
+                usual=self._usual,
+                bridged=self._bridged,
+                now_ns=self._now_ns,
+            )
         described = node_of(place.name, place.element, namespace)
         full_name = described.full_name
         if full_name in self._node_names:
@@ -337,7 +345,10 @@ class SimulationServer:
         )
         self._node_names.add(full_name)
         node.graph.makers[node.get_logger().name] = self.node.get_logger().name
-        return PluginNode(node, self.exchange, owned=True, qos=described.qos, usual=None)
+        return PluginNode(node, self.exchange, owned=True, qos=described.qos, usual=None, now_ns=self._now_ns)
+
+    def _now_ns(self) -> int:
+        return self.simulation.time
 
     def _tell_unsimulated(self, elements: Iterable[str]) -> None:
         new = [each for each in elements if each not in self._told]
