@@ -5,6 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 from rosbags.highlevel import AnyReader
@@ -29,9 +30,9 @@ from linkwright.messages import JointState, String, serialize
 START = 1_700_000_000_000_000_000
 
 
-def write(folder: Path, storage: str = "mcap", count: int = 3, **options: bool) -> Path:
+def write(folder: Path, storage: str = "mcap", count: int = 3, name: str = "bag", **options: bool) -> Path:
     """A recording of two topics."""
-    path = folder / "bag"
+    path = folder / name
     with BagWriter(path, storage, **options) as writer:
         writer.add_topic("/chatter", "std_msgs/msg/String", [DESCRIPTION_QOS])
         writer.add_topic("/joint_states", "sensor_msgs/msg/JointState", [DEFAULT_QOS, SENSOR_DATA_QOS])
@@ -98,14 +99,14 @@ def test_messages_of_some_topics_from_some_time_on(tmp_path: Path) -> None:
         ]
 
 
-@pytest.mark.parametrize("storage", STORAGES)
-def test_a_recording_whose_program_was_killed_is_read_from_its_file(tmp_path: Path, storage: str) -> None:
-    path = tmp_path / "bag"
+@pytest.mark.parametrize("options", [*({"storage": storage} for storage in STORAGES), {"single_file": True}])
+def test_a_recording_whose_program_was_killed_is_read_from_its_file(tmp_path: Path, options: dict[str, Any]) -> None:
+    path = tmp_path / "bag.mcap"
     program = f"""
 import os
 from linkwright.bag import BagWriter
 from linkwright.messages import String, serialize
-writer = BagWriter({str(path)!r}, {storage!r})
+writer = BagWriter({str(path)!r}, **{options!r})
 writer.add_topic("/chatter", "std_msgs/msg/String")
 for number in range(5):
     writer.write("/chatter", {START} + number, serialize(String(data=str(number))))
@@ -114,8 +115,23 @@ os._exit(1)
 """
     subprocess.run([sys.executable, "-c", program], check=False, timeout=60)
     assert not (path / "metadata.yaml").exists()
+    assert path.is_file() == ("single_file" in options)
     with BagReader(path) as bag:
         assert len(list(bag.messages())) == 5
+
+
+def test_a_recording_that_is_one_file(tmp_path: Path) -> None:
+    path = write(tmp_path / "new", name="run.mcap", single_file=True)
+    assert [each.name for each in path.parent.iterdir()] == ["run.mcap"]
+    with BagReader(path) as bag, BagReader(write(tmp_path)) as folder:
+        assert not bag.findings
+        assert list(bag.messages()) == list(folder.messages())
+        assert bag.topics == folder.topics
+        assert "Files:             run.mcap" in summary_text(bag)
+    with pytest.raises(LinkwrightError) as error:
+        BagWriter(path, single_file=True)
+    assert code_of(error) == "BAG105"
+    assert str(error.value.diagnostics[0].hint) == "name another file"
 
 
 def test_an_empty_recording(tmp_path: Path) -> None:

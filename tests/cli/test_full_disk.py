@@ -105,10 +105,12 @@ def test_a_configuration_that_cannot_be_saved_stays_as_it_was(tmp_path: Path) ->
 
 
 @needs_limits
-@pytest.mark.parametrize("storage", STORAGES)
-def test_a_recording_on_a_full_disk_ends_once_and_keeps_what_it_has(tmp_path: Path, storage: str) -> None:
-    path = tmp_path / "bag"
-    writer = BagWriter(path, storage)
+@pytest.mark.parametrize(("storage", "single_file"), [*((each, False) for each in STORAGES), ("mcap", True)])
+def test_a_recording_on_a_full_disk_ends_once_and_keeps_what_it_has(
+    tmp_path: Path, storage: str, single_file: bool
+) -> None:
+    path = tmp_path / "bag.mcap"
+    writer = BagWriter(path, storage, single_file=single_file)
     writer.add_topic("/chatter", "std_msgs/msg/String")
     said = serialize(String(data="x" * 1000))
     for stamp in range(10):

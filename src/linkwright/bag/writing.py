@@ -6,6 +6,7 @@ import contextlib
 import sqlite3
 from collections.abc import Collection
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Literal
 
 from linkwright.bag.qos import to_bag
@@ -32,15 +33,18 @@ class BagWriter:
     """A recording that is being written; close it, or use it in a ``with`` statement.
 
     Args:
-        path: the folder to make.
+        path: the folder to make; of a single file, the file.
         storage: one of `STORAGES`.
         compressed: whether chunks of messages are compressed (zstd); MCAP only.
+        single_file: whether there is an MCAP file alone, which needs no metadata beside it; rosbag2 makes a folder.
 
     Raises:
         LinkwrightError: BAG105, the folder exists already or cannot be made; BAG107, `rosbags` is not installed.
     """
 
-    def __init__(self, path: str | Path, storage: str = STORAGES[0], *, compressed: bool = False) -> None:
+    def __init__(
+        self, path: str | Path, storage: str = STORAGES[0], *, compressed: bool = False, single_file: bool = False
+    ) -> None:
         try:
             from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
             from rosbags.rosbag2.errors import WriterError
@@ -48,11 +52,18 @@ class BagWriter:
             raise missing_extra("BAG107", error) from None
 
         self.path = Path(path)
+        self._is_file = single_file
+        plugin = StoragePlugin.MCAP if single_file else StoragePlugin[storage.upper()]
         try:
-            self._writer = Writer(self.path, version=_VERSION, storage_plugin=StoragePlugin[storage.upper()])
+            self._writer = Writer(self.path, version=_VERSION, storage_plugin=plugin)
             if compressed:
                 self._writer.set_compression(CompressionMode.STORAGE, CompressionFormat.ZSTD)
-            self._writer.open()
+            if single_file:
+                self.path.parent.mkdir(parents=True, exist_ok=True)
+                into: Any = _File(self.path)
+                self._writer.storage = Writer.STORAGE_PLUGINS[plugin](into, self._writer.compression_mode)
+            else:
+                self._writer.open()
         except (OSError, WriterError) as error:
             reason = "it exists already" if self.path.exists() else str(error)
             raise LinkwrightError(
@@ -63,7 +74,7 @@ class BagWriter:
                         path=display_path(self.path),
                         reason=foreign(reason),
                     ),
-                    hint=phrase("name another folder"),
+                    hint=phrase("name another file") if single_file else phrase("name another folder"),
                 )
             ) from error
         self._connections: dict[str, Any] = {}
@@ -76,6 +87,8 @@ class BagWriter:
     @property
     def size(self) -> int:
         """Bytes of its files, as far as they are written."""
+        if self._is_file:
+            return self.path.stat().st_size
         return sum(each.stat().st_size for each in self.path.iterdir())
 
     def add_topic(self, name: str, type_name: str, offered_qos: Collection[QoSProfile] = ()) -> None:
@@ -138,11 +151,21 @@ class BagWriter:
         Raises:
             LinkwrightError: BAG108, the disk refuses.
         """
-        if self._writer.storage is not None:
-            try:
+        if self._writer.storage is None:
+            return
+        try:
+            if self._is_file:
+                self._close_file()
+            else:
                 self._writer.close()
-            except _REFUSALS as error:
-                raise self._ended(error) from error
+        except _REFUSALS as error:
+            raise self._ended(error) from error
+
+    def _close_file(self) -> None:
+        """Close a single file, which has the metadata in it; the library writes them into a folder, too."""
+        with TemporaryDirectory(prefix="linkwright_bag_") as folder:
+            self._writer.metapath = Path(folder) / self._writer.metapath.name
+            self._writer.close()
 
     def _ended(self, error: Exception) -> LinkwrightError:
         """What to say when the disk refuses something; nothing more is written then."""
@@ -162,3 +185,14 @@ class BagWriter:
 
     def __exit__(self, *_: object) -> None:
         self.close()
+
+
+class _File:
+    """What the library takes for the folder that it makes its file in: it is this file."""
+
+    def __init__(self, path: Path) -> None:
+        self.name = path.stem
+        self._path = path
+
+    def __truediv__(self, name: str) -> Path:
+        return self._path

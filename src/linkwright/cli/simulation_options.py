@@ -34,7 +34,9 @@ def add_simulation_options(parser: argparse.ArgumentParser) -> None:
         help="simulated seconds in a real one, or max (default: as the world says)",
     )
     parser.add_argument(
-        "--record", metavar="FOLDER", help="record all topics, as bag record -a does, with their simulated times"
+        "--record",
+        metavar="PATH",
+        help="record all topics with their simulated times, as bag record -a does: into a folder, or a file NAME.mcap",
     )
 
 
@@ -77,13 +79,13 @@ def recording(arguments: argparse.Namespace) -> AbstractContextManager[BagWriter
     """The recording that `add_simulation_options` asks for, which is closed at the end of the block; None for none.
 
     Raises:
-        LinkwrightError: BAG105, the folder exists already or cannot be made; BAG107, `rosbags` is not installed.
+        LinkwrightError: BAG105, the folder or file exists or cannot be made; BAG107, `rosbags` is not installed.
     """
     if arguments.record is None:
         return nullcontext()
     from linkwright.bag import BagWriter
 
-    return BagWriter(arguments.record)
+    return BagWriter(arguments.record, single_file=Path(arguments.record).suffix == ".mcap")
 
 
 class LoadedModel(NamedTuple):
