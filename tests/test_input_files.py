@@ -44,6 +44,26 @@ def piped() -> Iterator[str]:
     os.close(outer)
 
 
+@pytest.mark.parametrize("at_most", [0, 10, 1 << 17, len(LONG) - 1, len(LONG), len(LONG) + 1])
+def test_a_file_is_read_up_to_so_many_bytes(tmp_path: Path, at_most: int) -> None:
+    (tmp_path / "long").write_bytes(LONG)
+    (tmp_path / "short").write_bytes(LONG[:10])
+    assert read_file(tmp_path / "long", at_most) == LONG[:at_most]
+    assert read_file(tmp_path / "short", at_most) == LONG[: min(at_most, 10)]
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux has such files")
+def test_a_file_that_says_it_is_empty_and_is_not_is_read_to_its_end() -> None:
+    assert read_file("/proc/self/stat", 100_000).endswith(b"\n")
+    assert len(read_file("/proc/self/stat", 5)) == 5
+
+
+def test_a_folder_is_refused_by_its_name(tmp_path: Path) -> None:
+    with pytest.raises(IsADirectoryError) as caught:
+        read_file(tmp_path, 100)
+    assert caught.value.filename == str(tmp_path)
+
+
 def test_a_pipe_that_nobody_writes_to_is_refused(pipe: Path) -> None:
     with pytest.raises(NoWriterError, match="nobody writes to it"):
         read_file(pipe, 100)

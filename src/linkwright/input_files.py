@@ -13,6 +13,7 @@ import stat
 
 _FIRST_READ = 1 << 17  # most files are shorter, and room for more takes time to get
 _NOT_BLOCKING = getattr(os, "O_NONBLOCK", 0)  # Windows has no such pipes
+_FLAGS = os.O_RDONLY | _NOT_BLOCKING | getattr(os, "O_BINARY", 0)  # Windows reads texts if not told otherwise
 _pipes: dict[tuple[int, int], bytes] = {}
 """Device and number of a pipe -> what was read from it: a pipe says it once, and a command may ask twice."""
 
@@ -34,11 +35,25 @@ def read_file(path: str | os.PathLike[str], at_most: int) -> bytes:
     Raises:
         OSError: it cannot be read; `NoWriterError`, it is a pipe that nobody writes to.
     """
-    with open(path, "rb", opener=_open_at_once) as file:
-        kind = os.fstat(file.fileno())
+    descriptor = os.open(path, _FLAGS)
+    try:
+        return _content(descriptor, path, at_most)
+    finally:
+        os.close(descriptor)
+
+
+def _content(descriptor: int, path: str | os.PathLike[str], at_most: int) -> bytes:
+    kind = os.fstat(descriptor)
+    if stat.S_ISDIR(kind.st_mode):
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), os.fspath(path))
+    data = b""
+    if stat.S_ISREG(kind.st_mode):
+        data = os.read(descriptor, min(at_most, _FIRST_READ))
+        if len(data) == min(at_most, kind.st_size):  # as nearly always; a file object would take twice as long
+            return data
+    with open(descriptor, "rb", closefd=False) as file:
         if stat.S_ISREG(kind.st_mode):
-            data = file.read(min(at_most, _FIRST_READ))
-            return data + file.read(at_most - len(data)) if len(data) == _FIRST_READ else data
+            return data + file.read(at_most - len(data))
         first: bytes | None = file.read(1) if stat.S_ISFIFO(kind.st_mode) else None  # None: there will be something
         identity = kind.st_dev, kind.st_ino
         if first == b"" and identity not in _pipes:
@@ -65,7 +80,3 @@ def read_text(path: str | os.PathLike[str], encoding: str = "utf-8") -> str:
         reason = f"it has more than {LARGEST_TEXT // 1_000_000} million bytes"
         raise OSError(errno.ENXIO, reason, os.fspath(path))
     return io.StringIO(data.decode(encoding), newline=None).read()
-
-
-def _open_at_once(path: str, flags: int) -> int:
-    return os.open(path, flags | _NOT_BLOCKING)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import io
+import subprocess
+import sys
 
 import pytest
 
@@ -28,6 +30,14 @@ def test_text_goes_to_standard_output(model, capsys):
     captured = capsys.readouterr()
     assert '<link name="l2"/>' in captured.out
     assert captured.err == ""
+
+
+def test_the_command_loads_little(model):
+    """What takes long to import is not, where a file is only expanded: people type this often, and build tools do."""
+    code = "import sys; from linkwright.cli import main; main(sys.argv[1:]); print(*sorted(sys.modules))"
+    done = subprocess.run([sys.executable, "-c", code, "xacro", str(model)], check=True, capture_output=True, text=True)
+    seldom_needed = {"asyncio", "linkwright.packages", "linkwright.xmltree.positions", "locale", "numpy", "pathlib"}
+    assert not (seldom_needed | {"tempfile", "unicodedata", "yaml"}) & set(done.stdout.split())
 
 
 def test_values_and_output_file(model, tmp_path, capsys):

@@ -11,15 +11,17 @@ import os
 import sys
 from collections.abc import Iterable, Mapping, Sequence
 from importlib import import_module
-from typing import Protocol, cast
+from typing import TYPE_CHECKING, Protocol, cast
 
 from linkwright._version import __version__
 from linkwright.cli.endings import FINE, USAGE, status_of
 from linkwright.cli.language import LANGUAGE_HELP, said_in_help, take_language, translate_help
-from linkwright.cli.nested import SubVerb
 from linkwright.diagnostics import did_you_mean
 from linkwright.diagnostics.translation import set_language
 from linkwright.interruption import end_at_once, raise_interrupts
+
+if TYPE_CHECKING:
+    from linkwright.cli.nested import SubVerb
 
 GROUPS = {
     "descriptions": {

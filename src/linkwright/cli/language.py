@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import gettext
 from collections.abc import Sequence
 
 from linkwright.diagnostics.phrase import TERMS
@@ -58,12 +57,14 @@ def said_in_help(text: str) -> str:
     return words.pgettext(TERMS, text) if found == text else found
 
 
+# The name by which argparse asks for words of its own, such as "the following arguments are required". It is gettext's,
+# which looks for catalogues that there are none of, and loads `locale` for that.
+argparse._ = said_in_help  # type: ignore[attr-defined]  # argparse imports it so
+
+
 def translate_help(parser: argparse.ArgumentParser) -> None:
     """Put the texts of a parser, and of the parsers below it, into the reader's language."""
-    english = language() == "en"
-    # The name by which argparse asks gettext for words of its own, such as "the following arguments are required".
-    argparse._ = gettext.gettext if english else said_in_help  # type: ignore[attr-defined]  # gettext's, which argparse imports so
-    if not english:
+    if language() != "en":
         _translate(parser)
 
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import argparse
-from contextlib import ExitStack
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from linkwright.assignments import parse_assignments
 
 if TYPE_CHECKING:
+    from contextlib import ExitStack
+
     from linkwright.descriptions.pairs import Pair
 
 
@@ -50,6 +50,8 @@ def add_against(parser: argparse.ArgumentParser) -> None:
 
 def names_file(word: str) -> bool:
     """Whether a word is a file and not ``name:=value``, nor what looks like that and is no file, ``name=value``."""
+    from pathlib import Path  # `xacro`, which is called often, declares its values here and needs no more
+
     return ":=" not in word and ("=" not in word or Path(word).exists())
 
 
@@ -63,6 +65,8 @@ def asked_pair(arguments: argparse.Namespace, stack: ExitStack) -> Pair | None:
     Raises:
         LinkwrightError: see `linkwright.descriptions.revisions.Revision`.
     """
+    from pathlib import Path
+
     from linkwright.descriptions.pairs import against, pair_of
 
     files = [word for word in arguments.words if names_file(word)]

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Sequence
 from typing import IO, TYPE_CHECKING, Any
-from unicodedata import combining, east_asian_width
 
 from linkwright.diagnostics.diagnostic import Diagnostic, Note, Severity
 from linkwright.diagnostics.phrase import as_phrase, phrase
@@ -165,6 +164,10 @@ def shown_width(text: str) -> int:
 def _columns(character: str) -> int:
     if character == "\t":
         return len(_TAB)
+    if character.isascii():
+        return 1
+    from unicodedata import combining, east_asian_width
+
     if combining(character):
         return 0
     return 2 if east_asian_width(character) in "WF" else 1

@@ -33,10 +33,10 @@ _CHANGING = frozenset(
     }
 )
 
-_WITH_UNIT = re.compile(r"\s*([-+]?[0-9.]+)\s*[^\W\d]+\s*")
+_WITH_UNIT = r"\s*([-+]?[0-9.]+)\s*[^\W\d]+\s*"  # not compiled here: few files need it
 _GENERATOR = 10
 """What it costs, in steps, to make one, for the memory that it takes."""
-_LINES = re.compile(r"[^\r\n]*(?:\r\n?|\n|\Z)")
+_LINES = r"[^\r\n]*(?:\r\n?|\n|\Z)"
 _DEEPEST = 500
 """How deep the nodes of an expression may nest; a sum nests as deep as it has terms."""
 
@@ -146,7 +146,7 @@ class Compiler:
     def _place(self, node: Any) -> tuple[int, int]:
         start, end = node.col_offset, node.end_col_offset
         if not self._is_plain:
-            lines = _LINES.findall(self._source)  # columns count UTF-8 bytes
+            lines = re.findall(_LINES, self._source)  # columns count UTF-8 bytes
             start, end = (
                 sum(map(len, lines[: number - 1]))
                 + len(lines[number - 1].encode("utf-8", "replace")[:column].decode("utf-8", "replace"))
@@ -173,7 +173,7 @@ class Compiler:
                     value=repr(value),
                 )
             if isinstance(error, TypeError) and isinstance(value, str) and len(value) <= 40:
-                united = _WITH_UNIT.fullmatch(value)
+                united = re.fullmatch(_WITH_UNIT, value)
                 if united:
                     return phrase(
                         "'{written}' is the text '{value}' here; write the number alone: '{united}'",
@@ -340,8 +340,8 @@ class Compiler:
                 raise Fault("XAC205", foreign(error), start_of_name, end, hint) from None
             except FAILURES as error:
                 raise self._failure(error, start, end) from None
-            if result.__class__ in COPIED:
-                env.session.budget.step(cost(result))
+            if result.__class__ in COPIED and (steps := cost(result)):
+                env.session.budget.step(steps)
             return result
 
         return attribute
@@ -364,8 +364,8 @@ class Compiler:
                 raise Fault("XAC205", words, start, end, hint) from None
             except FAILURES as error:
                 raise self._failure(error, start, end) from None
-            if index.__class__ is slice or result.__class__ in COPIED:
-                env.session.budget.step(cost(result))
+            if (index.__class__ is slice or result.__class__ in COPIED) and (steps := cost(result)):
+                env.session.budget.step(steps)
             return result
 
         return subscript

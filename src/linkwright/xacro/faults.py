@@ -10,7 +10,6 @@ import re
 
 from linkwright.diagnostics import Note, Phrase, SourceText, Span, phrase, term
 from linkwright.xmltree import Element, Text
-from linkwright.xmltree.positions import attribute_name_range, attribute_value_range, raw_offset
 
 
 class Fault(Exception):  # noqa: N818 - it is on its way to a diagnostic, and no part of the public errors
@@ -108,6 +107,8 @@ def definition_elsewhere(source: SourceText, tag: str, name: str, prefix: str = 
 
 def attribute_part(element: Element, name: str, start: int | None, end: int | None) -> Span | None:
     """The place of a part of an attribute's value, as exactly as it can be told."""
+    from linkwright.xmltree.positions import attribute_value_range, raw_offset
+
     source = element.source
     if source is None:
         return None
@@ -125,6 +126,8 @@ def attribute_part(element: Element, name: str, start: int | None, end: int | No
 
 def attribute_name(element: Element, name: str) -> Span | None:
     """The place of an attribute's name; that of the element where it has no such attribute."""
+    from linkwright.xmltree.positions import attribute_name_range
+
     source = element.source
     if source is None:
         return None
@@ -134,6 +137,8 @@ def attribute_name(element: Element, name: str) -> Span | None:
 
 def text_part(text: Text, start: int | None, end: int | None) -> Span | None:
     """The place of a part of some character data, as exactly as it can be told."""
+    from linkwright.xmltree.positions import raw_offset
+
     source = text.source
     if source is None:
         return None

@@ -89,7 +89,9 @@ def attribute(value: Any, name: str) -> Any:
     """
     kind = value.__class__
     if kind is Module:
-        return _member(value.values, name, phrase("'{name}' has no '{other_name}'", name=value.name, other_name=name))
+        if name in value.values:
+            return value.values[name]
+        raise AttributeError(phrase("'{name}' has no '{other_name}'", name=value.name, other_name=name))
     if isinstance(value, Namespace):
         try:
             return value.lookup(name)
@@ -119,7 +121,9 @@ def subscript(value: Any, key: Any) -> Any:
     if isinstance(value, Namespace):
         return value.lookup(key)
     if value.__class__ is Module:
-        return _member(value.values, key, phrase("'{name}' has no '{key}'", name=value.name, key=key))
+        if key in value.values:
+            return value.values[key]
+        raise AttributeError(phrase("'{name}' has no '{key}'", name=value.name, key=key))
     if isinstance(value, type):
         raise TypeError(phrase("'{name}' is a type and has no items", name=value.__name__))
     return value[key]
@@ -200,11 +204,17 @@ def _check_length(length: int) -> None:
         raise RefusalError(phrase("the value has more than {max_length:,} characters or items", max_length=MAX_LENGTH))
 
 
+_WEIGHTLESS: frozenset[type] = frozenset({int, float, bool})
+"""What most items are, of those that are no texts."""
+
+
 def _weigh(value: Any) -> int:
     total = 0
     pending: list[Any] = [value]
     while pending:
         item = pending.pop()
+        if item.__class__ in _WEIGHTLESS:
+            continue
         if isinstance(item, (str, bytes)):
             total += len(item)
         elif isinstance(item, dict):
@@ -219,13 +229,6 @@ def _weigh(value: Any) -> int:
         if total > MAX_LENGTH:
             _check_length(total)
     return total
-
-
-def _member(values: dict[str, Any], name: Any, message: str) -> Any:
-    try:
-        return values[name]
-    except KeyError:
-        raise AttributeError(message) from None
 
 
 # operators that can make something large out of something small
@@ -267,14 +270,14 @@ def shift_left(value: Any, by: Any) -> Any:
     return value << by
 
 
-_FORMAT = re.compile(r"%(?:\([^)]*\))?[-+ #0]*(\*|\d+)?(?:\.(\*|\d+))?")
+_FORMAT = r"%(?:\([^)]*\))?[-+ #0]*(\*|\d+)?(?:\.(\*|\d+))?"  # not compiled here: few files need it
 
 
 def modulo(left: Any, right: Any) -> Any:
     """``left % right``, which for a string is formatting."""
     if isinstance(left, (str, bytes)):
         pattern = left if isinstance(left, str) else left.decode("latin-1")
-        for digits in (part for found in _FORMAT.findall(pattern) for part in found):
+        for digits in (part for found in re.findall(_FORMAT, pattern) for part in found):
             if digits == "*" or len(digits) > len(str(MAX_DIGITS)) or int(digits or 0) > MAX_DIGITS:
                 raise RefusalError(
                     phrase(
@@ -287,7 +290,6 @@ def modulo(left: Any, right: Any) -> Any:
     return left % right
 
 
-_DIGITS = re.compile(r"\d+")
 _CONVERSIONS: dict[int, Callable[[Any], str]] = {ord("s"): str, ord("r"): repr, ord("a"): ascii}
 _PLAIN: frozenset[type] = frozenset({bool, complex, float, int, str})
 
@@ -309,7 +311,7 @@ def formatted(value: Any, conversion: int, specification: str) -> str:
         value = _CONVERSIONS[conversion](value)
     if not specification:
         return as_text(value)
-    for digits in (specification, *_DIGITS.findall(specification)):
+    for digits in (specification, *re.findall(r"\d+", specification)):
         if len(digits) > MAX_DIGITS or (digits.isdecimal() and int(digits) > MAX_DIGITS):
             raise RefusalError(
                 phrase("the width or precision may be no more than {max_digits:,}", max_digits=MAX_DIGITS)

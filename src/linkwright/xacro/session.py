@@ -122,6 +122,8 @@ class Session:
         value = template.evaluate(scope)
         if value.__class__ is str and value.isprintable():
             return value
+        if value.__class__ is float:
+            return str(value)
         return self.written(text, value)
 
     def written(self, text: str, value: Any) -> str:
@@ -131,7 +133,8 @@ class Session:
             Fault: XML cannot hold it, or it is too long.
         """
         if value.__class__ is str:
-            _check_characters(value)
+            if not value.isprintable():
+                _check_characters(value)
             return value
         try:
             return sandbox.as_text(value)

@@ -24,7 +24,7 @@ _NO_DIRECTORY = phrase("ros/xacro knows the command 'dirname' but fails wherever
 _INSTEAD_OF_DIRECTORY = phrase(
     "write $(find PACKAGE)/FOLDER, or ${xacro.abs_filename('FILE')} for a file beside this one"
 )
-_REFERENCE = re.compile(r"\$\(([^()$]+)\)")
+_REFERENCE = r"\$\(([^()$]+)\)"  # not compiled here: few files need it
 
 
 def substitute(body: str, session: Context) -> str:
@@ -44,7 +44,7 @@ def substitute(body: str, session: Context) -> str:
     value = _command(body, session, only_find=False)
     if "$(" not in value:
         return value
-    return _REFERENCE.sub(lambda match: _found_again(match[0], match[1], session), value)
+    return re.sub(_REFERENCE, lambda match: _found_again(match[0], match[1], session), value)
 
 
 def _check_characters(body: str) -> None:

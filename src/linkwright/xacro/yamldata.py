@@ -141,12 +141,12 @@ def _copied(value: Any, seen: dict[int, Any]) -> Any:
     if isinstance(value, dict):
         mapping = seen[id(value)] = YamlMapping(value)
         for key, item in value.items():
-            if isinstance(item, (dict, list)):
+            if item.__class__ not in _SCALARS and isinstance(item, (dict, list)):
                 mapping[key] = _copied(item, seen)
         return mapping
     sequence = seen[id(value)] = value.copy()
     for at, item in enumerate(value):
-        if isinstance(item, (dict, list)):
+        if item.__class__ not in _SCALARS and isinstance(item, (dict, list)):
             sequence[at] = _copied(item, seen)
     return sequence
 

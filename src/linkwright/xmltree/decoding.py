@@ -16,7 +16,7 @@ from linkwright.diagnostics.pointers import FETCH, IS_POINTER, is_pointer
 UTF_8 = "utf-8"
 _LONGEST_BEGINNING = 100
 """More characters than a pointer is known by."""
-_DECLARED = re.compile(rb"""^\s*<\?xml[^>]*?\bencoding\s*=\s*["']([A-Za-z][A-Za-z0-9._-]*)["']""")
+_DECLARED = rb"""^\s*<\?xml[^>]*?\bencoding\s*=\s*["']([A-Za-z][A-Za-z0-9._-]*)["']"""  # compiled if needed
 _BYTE_ORDER_MARKS = (
     (codecs.BOM_UTF8, UTF_8),
     (codecs.BOM_UTF32_LE, "utf-32-le"),
@@ -55,7 +55,7 @@ def decoded(data: bytes, name: str) -> Decoded:
     try:
         return Decoded(data.decode(UTF_8))
     except UnicodeDecodeError:
-        declared = _DECLARED.match(data)
+        declared = re.match(_DECLARED, data)
         if declared is None:
             return _decode(data, UTF_8, name, phrase("it declares no other encoding"))
         encoding = declared[1].decode("ascii")

@@ -7,7 +7,7 @@ import re
 GROWTH_LIMIT = 1_000_000
 """How many characters the entities of one document may expand to, all together."""
 
-_REFERENCE = re.compile(r"&([^\s#;&<]+);")
+_REFERENCE = r"&([^\s#;&<]+);"  # not compiled here: few files need it
 
 
 class EntityGuard:
@@ -26,7 +26,7 @@ class EntityGuard:
 
     def growth(self, text: str) -> int:
         """How many characters the references to declared entities in a text expand to, together."""
-        return sum(self._length(name, ()) for name in _REFERENCE.findall(text))
+        return sum(self._length(name, ()) for name in re.findall(_REFERENCE, text))
 
     def _length(self, name: str, within: tuple[str, ...]) -> int:
         value = self._values.get(name)
@@ -36,6 +36,6 @@ class EntityGuard:
         if known is None:
             if len(within) > 100:
                 return GROWTH_LIMIT + 1
-            known = len(value) + sum(self._length(inner, (*within, name)) for inner in _REFERENCE.findall(value))
+            known = len(value) + sum(self._length(inner, (*within, name)) for inner in re.findall(_REFERENCE, value))
             known = self._lengths[name] = min(known, GROWTH_LIMIT + 1)
         return known
