@@ -5,7 +5,6 @@ import pytest
 import linkwright.simulation.server.worlds
 from linkwright.diagnostics import LinkwrightError
 from linkwright.simulation.scene.compiling import MOST_LINKS
-from linkwright.simulation.server.crowds import refuse_crowd
 from linkwright.simulation.server.worlds import load_world
 
 LINK = '<model name="m"><link name="l"/></model>'
@@ -29,26 +28,3 @@ def test_a_crowd_is_refused_before_it_is_read(tmp_path, monkeypatch, inside):
             load_world(str(path), text)
         (finding,) = caught.value.diagnostics
         assert finding.code == "SIM105"
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        world(LINK * MOST_LINKS),
-        world(f"<state>{LINK * (MOST_LINKS + 1)}</state>"),
-        world(f'<plugin name="p" filename="f">{"<link>" * 9}{"<link/>" * (MOST_LINKS * 3)}{"</link>" * 9}</plugin>'),
-        world(LINK) + world(LINK * (MOST_LINKS + 1)),
-        world(LINK * (MOST_LINKS + 1), '<!DOCTYPE sdf [<!ENTITY a "b">]>'),
-        world("<link <" + LINK * (MOST_LINKS + 1)),
-        "x" * (MOST_LINKS * 20),
-    ],
-    ids=["as many as there may be", "state", "plugin", "second", "entities", "no XML", "text"],
-)
-def test_all_else_is_left_to_the_reader(text):
-    refuse_crowd(text)
-    refuse_crowd(text.encode())
-
-
-def test_an_unknown_encoding_is_left_to_the_reader():
-    text = world(LINK * (MOST_LINKS + 1)).replace('"1.0"', '"1.0" encoding="nothing"')
-    refuse_crowd(text.encode())

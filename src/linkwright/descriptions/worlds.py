@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linkwright.diagnostics import Diagnostic, has_errors
+from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, has_errors, phrase
 from linkwright.packages import PackageFinder
 from linkwright.urdf import Reading
 from linkwright.xmltree import Document, Overlay
@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from linkwright.sdf.worlds import Sdf
 
 _OF_A_KIND = frozenset({"SDF150", "SDF160"})
+_MOST_LINKS = 100_000
+"""No more are read of a world: more would take minutes, and gigabytes."""
 _ENDINGS = (".world", ".sdf", ".world.xacro", ".sdf.xacro")
 
 
@@ -61,7 +63,7 @@ def examine_world(
         overlay: texts that stand for those of files.
 
     Raises:
-        LinkwrightError: it is not XML, or it cannot be expanded.
+        LinkwrightError: it is not XML, it cannot be expanded, or it has more links than are read (SDF163).
     """
     from linkwright.sdf.includes import resolve_includes
     from linkwright.sdf.reader import read
@@ -129,7 +131,15 @@ def _document(
 
         expansion = expand(str(path), arguments, packages=finder, text=text, overlay=overlay)
         return expansion.document, expansion.diagnostics, expansion.dependencies
+    from linkwright.sdf.crowds import has_more_links
     from linkwright.sdf.text import parse_as_gazebo
 
-    document, warnings = parse_as_gazebo(read_bytes(path) if text is None else text, str(path))
+    written = read_bytes(path) if text is None else text
+    if has_more_links(written, _MOST_LINKS):
+        message = phrase(
+            "'{path}' is not read: it has more than {most} links", path=display_path(path), most=_MOST_LINKS
+        )
+        hint = phrase("shapes that never move may be in one link")
+        raise LinkwrightError(Diagnostic("SDF163", message, hint=hint))
+    document, warnings = parse_as_gazebo(written, str(path))
     return document, warnings, (path,)

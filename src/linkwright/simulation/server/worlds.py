@@ -9,10 +9,10 @@ from typing import NamedTuple
 from linkwright.descriptions.worlds import examine_world
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, has_errors, joined, phrase
 from linkwright.packages import PackageFinder
+from linkwright.sdf.crowds import has_more_links
 from linkwright.sdf.resources import ResourceFinder
 from linkwright.sdf.worlds import World
-from linkwright.simulation.scene.compiling import count_links
-from linkwright.simulation.server.crowds import refuse_crowd
+from linkwright.simulation.scene.compiling import MOST_LINKS, count_links, fewer_links
 from linkwright.xmltree import Overlay
 from linkwright.xmltree.reader import read_bytes
 
@@ -55,7 +55,7 @@ def load_world(name: str, text: str | None = None) -> LoadedWorld:
     if text is None:
         path = _found(name, resources)
     if path.suffix != ".xacro" and (text is not None or path.is_file()):
-        refuse_crowd(read_bytes(path) if text is None else text)
+        _refuse_crowd(read_bytes(path) if text is None else text)
     description = examine_world(path, packages=finder, overlay=None if text is None else Overlay({path: text}))
     if description.sdf is None:
         raise LinkwrightError(*description.diagnostics)
@@ -67,6 +67,12 @@ def load_world(name: str, text: str | None = None) -> LoadedWorld:
     world = description.sdf.worlds[0]
     count_links(world.models)
     return LoadedWorld(world, resources, description.diagnostics, path, description.files, read_ns)
+
+
+def _refuse_crowd(text: bytes | str) -> None:
+    if has_more_links(text, MOST_LINKS):
+        message = phrase("a world of more than {most} links cannot be simulated", most=MOST_LINKS)
+        raise LinkwrightError(Diagnostic("SIM105", message, hint=fewer_links()))
 
 
 def _found(name: str, finder: ResourceFinder) -> Path:

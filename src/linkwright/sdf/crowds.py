@@ -1,11 +1,9 @@
-"""Worlds of more links than can be simulated are refused before they are read: reading would take minutes, and GB."""
+"""Worlds of so many links that reading them would take minutes, and GB: they are counted without being read."""
 
 from __future__ import annotations
 
+from contextlib import suppress
 from xml.parsers import expat
-
-from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
-from linkwright.simulation.scene.compiling import MOST_LINKS, fewer_links
 
 _SHORTEST = len('<link name="l"/>')
 _AROUND = frozenset({"sdf", "gazebo", "world", "model"})
@@ -13,25 +11,22 @@ _COUNTED = frozenset({"link", "include"})
 """What there may be too many of, and what it stands in, but for states and plugins. What is included has a link."""
 
 
-def refuse_crowd(data: bytes | str) -> None:
-    """Refuse a world with too many links and includes as soon as one too many has begun.
+def has_more_links(data: bytes | str, most: int) -> bool:
+    """Whether the first world of a text has more links and includes than so many; it is read up to the first too many.
 
     Args:
-        data: its text; of one that is not well formed nothing is said here.
-
-    Raises:
-        LinkwrightError: SIM105 the first world in it has too many links.
+        data: the text; of one that is not well formed nothing is said here.
+        most: how many there may be.
     """
-    if len(data) <= MOST_LINKS * _SHORTEST:
-        return
+    if len(data) <= most * _SHORTEST:
+        return False
     parser = expat.ParserCreate()
-    counter = _Counter()
+    counter = _Counter(most)
     parser.StartElementHandler, parser.EndElementHandler = counter.begin, counter.end
     parser.EntityDeclHandler = counter.stop
-    try:
+    with suppress(expat.ExpatError, _DoneError, LookupError, ValueError):
         parser.Parse(data, True)
-    except (expat.ExpatError, _DoneError, LookupError, ValueError):
-        return
+    return counter.count > most
 
 
 class _DoneError(Exception):
@@ -39,16 +34,16 @@ class _DoneError(Exception):
 
 
 class _Counter:
-    def __init__(self) -> None:
+    def __init__(self, most: int) -> None:
+        self.count = 0
+        self._most = most
         self._inside = 0
-        self._count = 0
 
     def begin(self, name: str, _attributes: dict[str, str]) -> None:
         if name in _COUNTED and not self._inside:
-            self._count += 1
-            if self._count > MOST_LINKS:
-                message = phrase("a world of more than {most} links cannot be simulated", most=MOST_LINKS)
-                raise LinkwrightError(Diagnostic("SIM105", message, hint=fewer_links()))
+            self.count += 1
+            if self.count > self._most:
+                raise _DoneError
         self._inside += name not in _AROUND
 
     def end(self, name: str) -> None:

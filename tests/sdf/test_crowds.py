@@ -1,0 +1,55 @@
+"""Worlds of so many links that they are not read."""
+
+import pytest
+
+from linkwright.cli import main
+from linkwright.sdf.crowds import has_more_links
+
+MOST = 1000
+LINK = '<model name="m"><link name="l"/></model>'
+
+
+def world(inside: str, before: str = "") -> str:
+    return f'<?xml version="1.0"?>{before}<sdf version="1.7"><world name="w">{inside}</world></sdf>'
+
+
+@pytest.mark.parametrize(
+    "inside",
+    [LINK * (MOST + 1), "<include><uri>model://m</uri></include>" * MOST + LINK],
+    ids=["links", "includes"],
+)
+def test_links_and_includes_count(inside):
+    assert has_more_links(world(inside), MOST)
+    assert has_more_links(world(inside).encode(), MOST)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        world(LINK * MOST),
+        world(f"<state>{LINK * (MOST + 1)}</state>"),
+        world(f'<plugin name="p" filename="f">{"<link>" * 9}{"<link/>" * (MOST * 3)}{"</link>" * 9}</plugin>'),
+        world(LINK) + world(LINK * (MOST + 1)),
+        world(LINK * (MOST + 1), '<!DOCTYPE sdf [<!ENTITY a "b">]>'),
+        world("<link <" + LINK * (MOST + 1)),
+        "x" * (MOST * 20),
+    ],
+    ids=["as many as there may be", "state", "plugin", "second", "entities", "no XML", "text"],
+)
+def test_all_else_is_left_to_the_reader(text):
+    assert not has_more_links(text, MOST)
+    assert not has_more_links(text.encode(), MOST)
+
+
+def test_an_unknown_encoding_is_left_to_the_reader():
+    text = world(LINK * (MOST + 1)).replace('"1.0"', '"1.0" encoding="nothing"')
+    assert not has_more_links(text.encode(), MOST)
+
+
+def test_a_world_of_a_million_links_is_refused_with_one_line(tmp_path, capsys):
+    path = tmp_path / "crowd.world"
+    path.write_text(world(LINK * 100_001))
+    assert main(["world", "check", str(path)]) == 1
+    said = capsys.readouterr().err
+    assert said.count("error[") == 1
+    assert "is not read: it has more than 100000 links" in said
