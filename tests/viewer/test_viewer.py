@@ -153,11 +153,12 @@ async def test_every_page_begins_with_the_view_of_the_file():
 async def test_a_page_that_has_drawn_the_meshes_says_how_large_grid_and_axes_are():
     async with world(RvizConfig.for_model("base")) as made, page(made.viewer) as client:
         await client.opened()
-        await client.send("robot_measured", diagonal=100.0)
+        await client.send("robot_measured", diagonal=100.0, ground=-2.5)
         cells = await client.until("property_changed", id="display-1/Cell Size")
         axes = await client.until("property_changed", id="display-3/Marker Scale")
-        assert (cells["value"], axes["value"]) == (100.0, 50.0)
-        await client.send("robot_measured", diagonal=1.0)
+        below = await client.until("property_changed", id="display-1/Offset/Z")
+        assert (cells["value"], axes["value"], below["value"]) == (100.0, 50.0, -2.5)
+        await client.send("robot_measured", diagonal=1.0, ground=0.0)
         await client.set("display-1/Alpha", 0.3)
         assert (await client.until("property_changed"))["id"] == "display-1/Alpha"
 

@@ -48,9 +48,10 @@ export interface ViewChanged {
   type: "view_changed";
 }
 
-/** The diagonal of the box around robots with their meshes, m, from a page whose camera nobody has put anywhere. */
+/** What a page saw, whose camera nobody has put anywhere, of robots with their meshes. */
 export interface RobotMeasured {
   diagonal: number;
+  ground: number;
   type: "robot_measured";
 }
 

@@ -294,7 +294,7 @@ export class Stage {
       if (seen === "" || !view.awaitsFit(seen)) return;
       const box = this.boundsOfRobots();
       if (box) view.fitFirst(box, this.room.take(), seen);
-      if (box && settled) view.measured(box);
+      if (box && settled) view.measured(box, Math.min(...robots.map((robot) => robot.ground())));
     }
     this.viewport.aim(view);
   }

@@ -107,11 +107,14 @@ export class ViewState {
     this.lookedAt = { what, box: before && holds(before, box) ? before : box };
   }
 
-  /** Tells how large the robots are that a camera is before that nobody has put anywhere, once all of them are there. */
-  measured({ min, max }: Span): void {
+  /**
+   * Tells how large the robots are that a camera is before that nobody has put anywhere, and how high the ground is that
+   * they stand on, once all of them are there.
+   */
+  measured({ min, max }: Span, ground: number): void {
     if (this.lookedAt === null || this.measuredFor === this.revision) return;
     this.measuredFor = this.revision;
-    this.connection.send({ type: "robot_measured", diagonal: distanceBetween(min, max) });
+    this.connection.send({ type: "robot_measured", diagonal: distanceBetween(min, max), ground });
   }
 
   /** Looks as values say with a camera that nobody has put anywhere; it waits for more to be seen, unless `isLast`. */

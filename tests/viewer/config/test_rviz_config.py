@@ -79,8 +79,8 @@ def test_grid_and_axes_are_as_large_as_the_model_asks_for(size, cell, marker_sca
     assert again.views.current.values["Focal Shape Size"] <= min(0.05, size.diagonal / 10)
 
 
-def sized(config, diagonal):
-    return {(display.name, name): value for display, name, value in config.sizes_for(diagonal)}
+def sized(config, diagonal, ground=0.0):
+    return {(display.name, *path): value for display, path, value in config.sizes_for(diagonal, ground)}
 
 
 def test_grid_and_axes_are_mended_once_the_meshes_are_known():
@@ -98,6 +98,16 @@ def test_grid_and_axes_are_mended_once_the_meshes_are_known():
 @pytest.mark.parametrize("diagonal", [0.0, -1.0, float("nan"), float("inf")])
 def test_a_model_without_a_size_mends_nothing(diagonal):
     assert sized(RvizConfig.for_model("base_link"), diagonal) == {}
+
+
+def test_the_grid_is_where_the_robot_stands():
+    found = sized(RvizConfig.for_model("base_link", size=ModelSize(0.5, 0.2)), 1.0, -0.12345)
+    assert found == {("Grid", "Cell Size"): 1.0, ("TF", "Marker Scale"): 0.5, ("Grid", "Offset", "Z"): -0.1235}
+    config = RvizConfig.for_model("base_link")
+    config.displays[0].section.put(("Offset", "Z"), "1", nested=True)
+    assert ("Grid", "Offset", "Z") not in sized(config, 1.0, -0.5)
+    assert sized(RvizConfig.for_model("base_link"), 1.0, float("nan")) == {}
+    assert sized(RvizConfig.default(), 1.0, -0.5) == {}
 
 
 def test_what_somebody_has_changed_is_not_mended():

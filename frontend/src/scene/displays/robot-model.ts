@@ -62,6 +62,11 @@ export class RobotModelDrawing implements Drawing {
     return this.shown?.bounds() ?? new Box3();
   }
 
+  /** How high the ground is that it stands on, in the fixed frame, m. */
+  ground(): number {
+    return this.shown?.ground() ?? 0;
+  }
+
   roughBounds(): Box3 {
     return this.shown?.roughBounds() ?? new Box3();
   }

@@ -8,6 +8,7 @@ import type { Lighting } from "../light";
 import { MaterialPool } from "../materials";
 import type { MeshLibrary } from "../meshes/mesh-library";
 import { MovingMeshes, type MovingPicture, type MovingPiece } from "./moving-meshes";
+import { groundOf } from "./ground";
 import { LinkDrawing, type FindLink } from "./link-drawing";
 import { RobotExtras } from "./robot-extras";
 import type { ShapeDrawing } from "./shape-drawing";
@@ -42,7 +43,7 @@ export class RobotDrawing {
   private readonly linkOf = new Map<number, string>();
   private loading: number;
 
-  constructor(scene: DrawnLinks, private readonly meshes: MeshLibrary, report: MeshReport, changed: () => void) {
+  constructor(private readonly scene: DrawnLinks, private readonly meshes: MeshLibrary, report: MeshReport, changed: () => void) {
     this.links = new Map(scene.links.map((link) => [link.name, new LinkDrawing(link, this.pool, this.root)]));
     for (const link of this.links.values()) this.root.add(link.root);
     this.extras = new RobotExtras(scene, this.root);
@@ -100,6 +101,11 @@ export class RobotDrawing {
     this.root.updateWorldMatrix(true, true);
     for (const link of this.links.values()) for (const mesh of link.visibleMeshes) box.expandByObject(mesh);
     return box;
+  }
+
+  /** How high the ground is that it stands on, in the fixed frame, m. */
+  ground(): number {
+    return groundOf(this.scene, this.boundsOfLinks());
   }
 
   /** The boxes around what is seen of each link, in the fixed frame, m; empty ones where nothing is. */

@@ -16,6 +16,7 @@ from linkwright.viewer.config.former_names import GROUP, modern_class
 from linkwright.viewer.config.model_size import ModelSize
 from linkwright.viewer.config.panels import PanelsConfig
 from linkwright.viewer.config.property_store import PropertyStore
+from linkwright.viewer.config.schema import Path as PropertyPath
 from linkwright.viewer.config.schema import PropertySpec, is_on
 from linkwright.viewer.config.tools import ToolsConfig
 from linkwright.viewer.config.views import ViewsConfig
@@ -325,8 +326,8 @@ class RvizConfig:
         view = config.views.current
         view.values |= {"Distance": _MODEL_DISTANCE, "Pitch": _MODEL_PITCH}
         if size is not None:
-            for each, property_name, length in _sizes(config.displays, size):
-                each.section.put((property_name,), f"{length:g}")
+            for each, path, length in _sizes(config.displays, size):
+                each.section.put(path, f"{length:g}")
             view.values |= {"Distance": size.distance, "Focal Shape Size": size.focal_shape}
         config.propose_view(view.values)
         config._proposed = _Proposed(config.displays, size)
@@ -344,18 +345,19 @@ class RvizConfig:
         """Whether nobody has said yet where the camera is: pages put it where they see all of the robot."""
         return self._unchosen_view == self.views.current
 
-    def sizes_for(self, diagonal: float) -> list[tuple[DisplayConfig, str, float]]:
+    def sizes_for(self, diagonal: float, ground: float = 0.0) -> list[tuple[DisplayConfig, PropertyPath, float]]:
         """What grid and axes should have that were made for a robot of unknown meshes: display, property, value.
 
         Only once, and only what nobody has changed since.
 
         Args:
             diagonal: of the box around the robot, m.
+            ground: how high the ground is that it stands on, in the Fixed Frame, m.
         """
         proposed, self._proposed = self._proposed, None
-        if proposed is None or not isfinite(diagonal) or diagonal <= 0:
+        if proposed is None or not isfinite(diagonal + ground) or diagonal <= 0:
             return []
-        return proposed.mended(diagonal)
+        return proposed.mended(diagonal, ground)
 
     def copy(self) -> RvizConfig:
         """A copy that belongs to no file."""
@@ -474,14 +476,14 @@ class _Proposed:
     def __init__(self, displays: Sequence[DisplayConfig], size: ModelSize | None) -> None:
         self._displays = tuple(displays)
         self._size = size
-        self._texts = [display.section.text(key) for display, key, _ in _sizes(displays, size or _ANY_SIZE)]
+        found = _sizes(displays, size or _ANY_SIZE, ground=1.0)
+        self._texts = {path: display.section.text(*path) for display, path, _ in found}
 
-    def mended(self, diagonal: float) -> list[tuple[DisplayConfig, str, float]]:
+    def mended(self, diagonal: float, ground: float) -> list[tuple[DisplayConfig, PropertyPath, float]]:
         """What of it should be another, and was not changed since."""
         spacing = diagonal if self._size is None else self._size.spacing
-        found = _sizes(self._displays, ModelSize(diagonal, spacing))
-        same = [display.section.text(key) == text for (display, key, _), text in zip(found, self._texts, strict=True)]
-        return [each for each, is_same in zip(found, same, strict=True) if is_same]
+        found = _sizes(self._displays, ModelSize(diagonal, spacing), ground)
+        return [each for each in found if each[0].section.text(*each[1]) == self._texts[each[1]]]
 
     def among(self, copies: Mapping[DisplayConfig, DisplayConfig]) -> _Proposed | None:
         """The same for copies of the displays; None where one has gone."""
@@ -492,7 +494,10 @@ class _Proposed:
 _ANY_SIZE = ModelSize(1.0, 1.0)
 
 
-def _sizes(displays: Sequence[DisplayConfig], size: ModelSize) -> list[tuple[DisplayConfig, str, float]]:
-    """What displays of `RvizConfig.for_model` have by the size of a robot: display, property, value."""
+def _sizes(
+    displays: Sequence[DisplayConfig], size: ModelSize, ground: float = 0.0
+) -> list[tuple[DisplayConfig, PropertyPath, float]]:
+    """What displays of `RvizConfig.for_model` have by the size of a robot and its ground: display, property, value."""
     grid, _, tf = displays
-    return [(grid, "Cell Size", size.cell), (tf, "Marker Scale", size.marker_scale)]
+    offset = [(grid, ("Offset", "Z"), round(ground, 4))] if ground else []
+    return [(grid, ("Cell Size",), size.cell), (tf, ("Marker Scale",), size.marker_scale), *offset]

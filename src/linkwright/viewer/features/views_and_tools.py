@@ -68,7 +68,7 @@ class ViewsFeature(PageFeature):
                 views.current = message.view
                 return
             if isinstance(message, RobotMeasured):
-                manager.measured(message.diagonal)
+                manager.measured(message.diagonal, message.ground)
                 return
             if isinstance(message, SaveView):
                 views.save(message.view)

@@ -66,9 +66,13 @@ class ViewChanged(PageMessage):
 
 
 class RobotMeasured(PageMessage):
-    """The diagonal of the box around robots with their meshes, m, from a page whose camera nobody has put anywhere."""
+    """What a page saw, whose camera nobody has put anywhere, of robots with their meshes.
+
+    That is the diagonal of the box around them, and how high the ground is that they stand on, in the Fixed Frame, m.
+    """
 
     diagonal: float
+    ground: float
 
 
 class SaveView(PageMessage):

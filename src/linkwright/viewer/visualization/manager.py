@@ -255,12 +255,12 @@ class VisualizationManager:
             for path in self.config.options.recall(memories):
                 self._option_changed(path[0])
 
-    def measured(self, diagonal: float) -> None:
-        """A page has drawn the robot with its meshes: grid and axes that nobody has changed take its size, m."""
-        for config, name, value in self.config.sizes_for(diagonal):
+    def measured(self, diagonal: float, ground: float) -> None:
+        """A page has drawn the robot with its meshes: grid and axes take its size and ground, m, where nobody chose."""
+        for config, path, value in self.config.sizes_for(diagonal, ground):
             for display in self.displays:
                 if display.config is config:
-                    display.set_property((name,), value)
+                    display.set_property(path, value)
 
     def edited(self) -> None:
         """Something of the file was changed that undo does not know of."""
