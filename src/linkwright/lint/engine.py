@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from linkwright.descriptions import Description, Packages, examine_world, is_world
 from linkwright.descriptions import examine as examine_description
@@ -18,9 +19,11 @@ from linkwright.lint.subject import Subject
 from linkwright.lint.suppression import Suppressions
 from linkwright.packages import PackageFinder
 from linkwright.packages.manifest import MANIFEST
-from linkwright.sdf.worlds import Sdf
 from linkwright.urdf import Reading, Robot
 from linkwright.xmltree import Document, Element, Overlay
+
+if TYPE_CHECKING:
+    from linkwright.sdf.worlds import Sdf
 
 
 @dataclass(frozen=True, slots=True)
