@@ -154,3 +154,14 @@ def test_a_place_at_the_end_of_a_very_long_line() -> None:
     source = SourceText("robot.urdf", f"{'a' * 1000}HERE")
     shown = render(Diagnostic("XML206", "it is wrong", source.span(1000, 1004), source=source)).splitlines()
     assert shown[3] == f"1 | ...{'a' * 80}HERE"
+
+
+def test_what_would_steer_the_terminal_is_shown_instead():
+    head, place, _, excerpt, carets, note, hint, rest = shown(
+        'a\x1b[2J\x07\x9b1m\u202e="x"', "x", notes=(Note("\x1b]0;title\x07"),), hint="two\nlines\x08"
+    )
+    assert excerpt == '1 | a␛[2J␇\ufffd1m\ufffd="x"'
+    assert carets.index("^") == excerpt.index("x")
+    assert note == "   = note: ␛]0;title␇"
+    assert [hint, rest] == ["   = hint: two", "     lines␈"]
+    assert (head, place) == ("error[URDF121]: message", "  --> <test>:1:13")

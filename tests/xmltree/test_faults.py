@@ -98,6 +98,41 @@ def test_bytes_that_are_no_text() -> None:
     assert hint is not None
 
 
+@pytest.mark.parametrize(
+    "data",
+    [b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR", b"PK\x03\x04\0\0\0", b"\x7fELF\x02\x01\x01\0", b"\0" * 80 + b"\x0c\0\0\0"],
+)
+def test_files_that_are_no_text(data: bytes) -> None:
+    code, message, *_, hint = told(data)
+    assert (code, message) == ("XML104", "'robot.urdf' is not a text")
+    assert "is it the file you meant?" in str(hint)
+
+
+@pytest.mark.parametrize("encoding", ["utf-16-le", "utf-16-be"])
+def test_utf_16_without_a_byte_order_mark(encoding: str) -> None:
+    code, message, *_, hint = told("<a b='车'/>".encode(encoding))
+    assert (code, message) == ("XML104", "'robot.urdf' is in UTF-16 and has no byte order mark")
+    assert hint == "save the file as UTF-8"
+
+
+def test_a_zero_byte_in_a_text_is_shown_at_its_place() -> None:
+    assert told(b"<a>\n <b n='\0'/></a>")[:4] == ("XML206", "the character U+0000 is not allowed in XML", 2, 8)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "<a>\n<<<<<<< HEAD\n<b/>\n=======\n<c/>\n>>>>>>> theirs\n</a>",
+        '<a\n<<<<<<< HEAD\n b="1"\n=======\n b="2"\n>>>>>>> theirs\n/>',
+    ],
+)
+def test_an_unfinished_merge(text: str) -> None:
+    code, message, line, column, hint = told(text)
+    assert (code, message) == ("XML206", "a merge of two versions was left unfinished here")
+    assert (line, column) == (2, 1)
+    assert "keep one of the two" in str(hint)
+
+
 def test_an_unknown_encoding() -> None:
     with pytest.raises(LinkwrightError) as caught:
         parse(b'<?xml version="1.0" encoding="klingon"?><a>\xff</a>', "x")

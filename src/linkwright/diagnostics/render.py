@@ -21,6 +21,12 @@ _TAB = "    "
 _WIDEST = 300
 _AROUND = 80
 """Of a longer line so many characters are shown before and after the place."""
+_SEEN_AS = {
+    **{code: 0x2400 + code for code in range(0x20) if chr(code) not in "\t\n"},
+    0x7F: 0x2421,
+    **dict.fromkeys((*range(0x80, 0xA0), *range(0x202A, 0x202F), *range(0x2066, 0x206A)), 0xFFFD),
+}
+"""Characters that a terminal obeys, or that turn the order of what follows -> what is printed in their place."""
 
 
 def wants_colour(stream: IO[str]) -> bool:
@@ -39,7 +45,7 @@ def render(diagnostic: Diagnostic, *, colour: bool = False, lang: str = "en") ->
     words = labels(lang)
     severity, colon = diagnostic.severity, words[": "]
     head = f"{words[severity.value]}[{diagnostic.code}]"
-    lines = [f"{paint(head, _COLOURS[severity] + ';1')}{paint(colon + diagnostic.message, '1')}"]
+    lines = [f"{paint(head, _COLOURS[severity] + ';1')}{paint(colon + printable(diagnostic.message), '1')}"]
     if diagnostic.span:
         lines.append(f"  {paint('-->', '34')} {_place(diagnostic.span)}")
         lines += _excerpt(diagnostic, paint)
@@ -123,7 +129,7 @@ class _Paint:
 
 def _place(span: Span) -> str:
     path = span.file if span.file.startswith("<") else display_path(span.file)
-    return f"{path}:{span.line}:{span.column}"
+    return f"{printable(path)}:{span.line}:{span.column}"
 
 
 def _excerpt(diagnostic: Diagnostic, paint: _Paint) -> list[str]:
@@ -148,12 +154,17 @@ def _excerpt(diagnostic: Diagnostic, paint: _Paint) -> list[str]:
     gutter = " " * len(number)
     bar = paint("|", "34")
     carets = paint("^" * max(1, shown_width(marked)), _COLOURS[diagnostic.severity])
-    shown = line.replace("\t", _TAB)
+    shown = printable(line).replace("\t", _TAB)
     return [
         f"{gutter} {bar}",
         f"{paint(number, '34')} {bar} {shown}",
         f"{gutter} {bar} {' ' * shown_width(before)}{carets}",
     ]
+
+
+def printable(text: str) -> str:
+    """The text as a terminal may print it: what would steer the terminal is replaced by what can be seen."""
+    return text.translate(_SEEN_AS)
 
 
 def shown_width(text: str) -> int:
@@ -174,7 +185,7 @@ def _columns(character: str) -> int:
 
 
 def _indented(text: str) -> str:
-    return text.replace("\n", "\n     ")
+    return printable(text).replace("\n", "\n     ")
 
 
 def display_path(path: str | Path) -> str:

@@ -24,6 +24,10 @@ _BYTE_ORDER_MARKS = (
     (codecs.BOM_UTF16_LE, "utf-16-le"),
     (codecs.BOM_UTF16_BE, "utf-16-be"),
 )
+_UTF_16_OF_XML = (b"<\0", b"\0<")
+"""How XML in UTF-16 begins where the byte order mark is missing."""
+_BEGINNING_OF_BINARY = 1024
+"""Bytes in which pictures, archives, programs and meshes have a zero."""
 
 
 class Decoded(NamedTuple):
@@ -52,6 +56,7 @@ def decoded(data: bytes, name: str) -> Decoded:
     for mark, encoding in _BYTE_ORDER_MARKS:
         if data.startswith(mark):
             return _decode(data[len(mark) :], encoding, name, phrase("its byte order mark says so"))
+    _refuse_binary(data, name)
     try:
         return Decoded(data.decode(UTF_8))
     except UnicodeDecodeError:
@@ -76,6 +81,22 @@ def _refuse_pointer(data: bytes, name: str) -> None:
     if is_pointer(data):
         message = phrase("cannot read '{path}': {reason}", path=name, reason=IS_POINTER)
         raise LinkwrightError(Diagnostic("XML106", message, hint=FETCH))
+
+
+def _refuse_binary(data: bytes, name: str) -> None:
+    beginning = data[:_BEGINNING_OF_BINARY]
+    if b"\0" not in beginning:
+        return
+    if beginning.startswith(_UTF_16_OF_XML):
+        message = phrase("'{name}' is in UTF-16 and has no byte order mark", name=name)
+        hint = phrase("save the file as UTF-8")
+    elif not beginning.lstrip().startswith(b"<"):
+        message = phrase("'{name}' is not a text", name=name)
+        hint = phrase("it has bytes as pictures, archives and programs have; is it the file you meant?")
+    else:
+        return
+    source = SourceText(name, "")
+    raise LinkwrightError(Diagnostic("XML104", message, span=source.span(0), hint=hint, source=source))
 
 
 def _decode(data: bytes, encoding: str, name: str, reason: Phrase) -> Decoded:

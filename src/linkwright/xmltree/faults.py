@@ -31,6 +31,8 @@ _ADDRESSES = {"xacro": "http://www.ros.org/wiki/xacro", "xi": "http://www.w3.org
 """Of the prefixes that descriptions use."""
 _AMPERSAND_HINT = phrase("write '&amp;' for the character '&'")
 _AND_HINT = phrase("write 'and' in an expression, or '&amp;' for each '&'")
+_MERGE_MARK = "<<<<<<< "
+"""What git begins a conflict with that it leaves in a file."""
 _LESS_HINT = phrase("close the quotes of the attribute before it, or write '&lt;' for the character '<'")
 
 
@@ -186,8 +188,20 @@ class _Fault:
         begin = len(self._text) - len(self._text.lstrip())
         return self._diagnostic("XML206", phrase("this is not XML"), at=begin, hint=hint)
 
+    def _unfinished_merge(self, start: int) -> Diagnostic:
+        return self._diagnostic(
+            "XML206",
+            phrase("a merge of two versions was left unfinished here"),
+            len(_MERGE_MARK.rstrip()),
+            at=start,
+            hint=phrase("keep one of the two, and remove the lines with '<<<<<<<', '=======' and '>>>>>>>'"),
+        )
+
     def _invalid_token(self) -> Diagnostic:
         text, at = self._text, self._offset
+        line = text.rfind("\n", 0, at) + 1
+        if text.startswith(_MERGE_MARK, line):
+            return self._unfinished_merge(line)
         character = text[at : at + 1]
         before = text[max(0, at - 200) : at]
         if character and not character.isprintable() and character not in "\t\r\n":

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from linkwright.diagnostics.diagnostic import Diagnostic
-from linkwright.diagnostics.render import display_path
+from linkwright.diagnostics.render import display_path, printable
 
 
 def to_text(diagnostics: Iterable[Diagnostic]) -> str:
@@ -21,4 +21,4 @@ def _line(diagnostic: Diagnostic) -> str:
         place = f"{file}:{span.line}:{span.column}: "
     message = " ".join(diagnostic.message.split())
     hint = f" ({' '.join(diagnostic.hint.split())})" if diagnostic.hint else ""
-    return f"{place}{diagnostic.severity.value}[{diagnostic.code}] {message}{hint}"
+    return printable(f"{place}{diagnostic.severity.value}[{diagnostic.code}] {message}{hint}")
