@@ -38,8 +38,10 @@ from benchmarks.page_questions import (
     transform_age,
     wheel_latency,
 )
+from benchmarks.page_seeks import seeks
 from benchmarks.plain_browser import PlainBrowser
 from benchmarks.robots import write_arm_sweep, write_sweep
+from linkwright.bag.writing import STORAGES
 from linkwright.packages import PackageFinder
 
 RUNS = 7
@@ -193,6 +195,15 @@ def nothing(browser: Browser, model: Path) -> list[Row]:
     ]
 
 
+def recordings(browser: PlainBrowser) -> list[Row]:
+    """A click on the timeline of a large recording, until its frames, scan and image are drawn."""
+    made = []
+    for storage in STORAGES:
+        size, times = seeks(browser, storage)
+        made.append(row(f"seek in {size:.3g} GB ({storage}) to drawn frame and image", times, "ms", "500 ms"))
+    return made
+
+
 def rows() -> list[Row]:
     """Measure everything."""
     package = PackageFinder().share("my_robot_description")
@@ -210,5 +221,6 @@ def rows() -> list[Row]:
             *data(plain, "markers", "1000 markers at 10 Hz", page_rate="10"),
             *images(plain),
             *data(plain, "scan", "500 links at 30 Hz and a scan"),
+            *recordings(plain),
             *still,
         ]

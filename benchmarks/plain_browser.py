@@ -61,11 +61,16 @@ class PlainPage:
         )
         self._socket.call("Emulation.setFocusEmulationEnabled", enabled=True)
         self._socket.call("Page.navigate", url=url)
+        self.until(ready)
+
+    def until(self, condition: str) -> Any:
+        """Wait until an expression is true, or something that counts as true; returns that."""
         end = time.monotonic() + SECONDS
-        while not self.evaluate(f"() => Boolean({ready})"):
+        while not (found := self.evaluate(f"() => {condition}")):
             if time.monotonic() > end:
-                raise SystemExit(f"not within {SECONDS:g} s: {ready}")
+                raise SystemExit(f"not within {SECONDS:g} s: {condition}")
             time.sleep(0.05)
+        return found
 
     def evaluate(self, function: str) -> Any:
         """What a JavaScript function without arguments returns."""
@@ -77,6 +82,11 @@ class PlainPage:
     def wheel(self, x: float, y: float, distance: float) -> None:
         """Turn the mouse wheel over a place of the page."""
         self._socket.call("Input.dispatchMouseEvent", type="mouseWheel", x=x, y=y, deltaX=0, deltaY=distance)
+
+    def click(self, x: float, y: float) -> None:
+        """Click on a place of the page."""
+        for kind in ("mousePressed", "mouseReleased"):
+            self._socket.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1)
 
     def close(self) -> None:
         """Close the socket."""
