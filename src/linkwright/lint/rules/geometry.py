@@ -20,6 +20,15 @@ def shapes_of(subject: Subject) -> Iterator[tuple[Link, Visual | Collision]]:
         yield from ((link, collision) for collision in link.collisions)
 
 
+def is_scenery(subject: Subject) -> bool:
+    """Whether the description is one fixed thing, such as a ground or a building.
+
+    Bullet takes a link of mass zero for one that never moves, and its planes, tables and terrains are written so.
+    """
+    links = list(subject.links)
+    return len(links) == 1 and links[0].inertial is not None and links[0].inertial.mass == 0
+
+
 def kind_of(shape: Visual | Collision) -> str:
     """``visual`` or ``collision``."""
     return "visual" if isinstance(shape, Visual) else "collision"
@@ -87,7 +96,8 @@ class HugeSize(Rule):
 
     ## Why
 
-    URDF is in metres. A box of 400 is a box of 400 mm in a file that came from CAD.
+    URDF is in metres. A box of 400 is a box of 400 mm in a file that came from CAD. A single link of mass zero is
+    scenery, such as a ground, and may be of any size.
 
     ## Example
 
@@ -109,7 +119,7 @@ class HugeSize(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         largest = self.option(subject, "largest", float)
-        for link, shape in shapes_of(subject):
+        for link, shape in () if is_scenery(subject) else shapes_of(subject):
             name, size = max(sizes_of(shape.geometry), key=lambda each: each[1], default=("", 0.0))
             if size > largest:
                 what = type(shape.geometry).__name__.lower()

@@ -16,7 +16,7 @@ from linkwright.lint.rule import Rule
 from linkwright.lint.rules.inertia import links_with_inertial, part
 from linkwright.lint.subject import Subject
 from linkwright.lint.tensors import flaw_of
-from linkwright.urdf import Mesh
+from linkwright.urdf import Inertial, Mesh
 
 if TYPE_CHECKING:
     from linkwright.geometry.bounds import Bounds
@@ -317,7 +317,7 @@ class InertiaTooLarge(Rule):
                             )
                         )
                     ],
-                    hint=(_unit_hint(largest / usual) if usual > 0 else None) or _COMPUTE,
+                    hint=_COMPUTE if usual <= 0 or _is_made_up(inertial) else _unit_hint(largest / usual) or _COMPUTE,
                 )
 
 
@@ -385,6 +385,11 @@ def _uniform(bounds: Bounds, mass: float) -> float:
     """The largest moment of a solid box of this mass about its middle, in kg m2."""
     squares = sorted(edge**2 for edge in bounds.size)
     return mass * (squares[1] + squares[2]) / 12
+
+
+def _is_made_up(inertial: Inertial) -> bool:
+    """Whether a tensor is one round number three times, such as 1 1 1: it was never in any unit."""
+    return inertial.ixx == inertial.iyy == inertial.izz == float(f"{inertial.ixx:.0e}")
 
 
 def _unit_hint(ratio: float) -> Phrase | None:

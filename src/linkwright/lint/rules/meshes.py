@@ -11,6 +11,7 @@ from linkwright.lint.fix import Fix, add_attribute, replace_value
 from linkwright.lint.meshes import MeshUse
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
+from linkwright.lint.rules.geometry import is_scenery
 from linkwright.lint.subject import Subject
 
 if TYPE_CHECKING:
@@ -169,7 +170,8 @@ class Millimetres(Rule):
     ## Why
 
     STL and OBJ have no unit, and CAD programs write millimetres. URDF takes the numbers as metres, so the part is a
-    thousand times too large, and the camera of RViz is inside it: one sees nothing.
+    thousand times too large, and the camera of RViz is inside it: one sees nothing. A single link of mass zero is
+    scenery, such as a terrain, and may be of any size.
 
     ## Example
 
@@ -190,7 +192,7 @@ class Millimetres(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         largest = self.option(subject, "largest", float)
-        for use, mesh in loaded(subject):
+        for use, mesh in () if is_scenery(subject) else loaded(subject):
             low, high = mesh.bounds
             edge = float((high - low).max())
             if edge > largest:
