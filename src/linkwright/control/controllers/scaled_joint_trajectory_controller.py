@@ -1,0 +1,73 @@
+"""``ur_controllers/ScaledJointTrajectoryController``: a trajectory controller that goes as slowly as the robot does.
+
+Source: ur_controllers of the driver for Universal Robots (the parameter; time on a trajectory goes on by the factor).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import isfinite
+
+from linkwright.control.controllers.action import Goal
+from linkwright.control.controllers.controller import InterfaceNames
+from linkwright.control.controllers.joint_trajectory_controller import JointTrajectoryController
+from linkwright.control.controllers.joint_trajectory_parameters import Parameters
+from linkwright.control.controllers.parameters import parameter
+from linkwright.control.hardware.interfaces import Interfaces, StateInterface
+from linkwright.control.motion.splines import MotionState
+from linkwright.control.motion.trajectory import Trajectory
+
+_SECOND = 1_000_000_000
+
+
+@dataclass(frozen=True, kw_only=True)
+class ScaledParameters(Parameters):
+    """Of the controller."""
+
+    speed_scaling_interface_name: str = parameter(
+        "speed_scaling/speed_scaling_factor",
+        read_only=True,
+        description="the state that says how fast the robot goes, 1 for as planned; empty for always as planned",
+    )
+
+
+class ScaledJointTrajectoryController(JointTrajectoryController):
+    """Follows trajectories on a time that goes on by a factor which the hardware states, as its speed slider has it."""
+
+    PARAMETERS = ScaledParameters
+
+    @property
+    def _factor_name(self) -> str:
+        said = self.parameters
+        assert isinstance(said, ScaledParameters)
+        return said.speed_scaling_interface_name
+
+    def state_interfaces(self) -> InterfaceNames:
+        """Those of the joints, then the factor."""
+        names, factor = super().state_interfaces(), self._factor_name
+        assert not isinstance(names, Interfaces), "the joints are named"
+        return [*names, factor] if factor else names
+
+    def on_activate(self) -> None:
+        """Hold the joints where they are."""
+        self._factor: StateInterface | None = None
+        if self._factor_name:
+            *self.states, self._factor = self.states
+        self._behind_ns = 0
+        super().on_activate()
+
+    def update(self, time_ns: int, period_s: float) -> None:
+        """Command what is due on the trajectory's own time, which begins with it."""
+        if self._factor is not None and isfinite(self._factor.value):
+            self._behind_ns += round((1.0 - max(self._factor.value, 0.0)) * period_s * _SECOND)
+        super().update(time_ns - self._behind_ns, period_s)
+
+    def _follow(self, trajectory: Trajectory) -> None:
+        self._behind_ns = 0
+        super()._follow(trajectory)
+
+    def _tell(self, goal: Goal, time_ns: int, desired: MotionState) -> None:
+        super()._tell(goal, time_ns + self._behind_ns, desired)
+
+    def _publish(self, time_ns: int, desired: MotionState) -> None:
+        super()._publish(time_ns + self._behind_ns, desired)

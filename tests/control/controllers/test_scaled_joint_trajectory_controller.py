@@ -1,0 +1,51 @@
+"""The trajectory controller of Universal Robots: time on a trajectory goes on as fast as the robot says."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.control.controllers.registry import controller_class
+from linkwright.control.hardware.interfaces import StateInterface
+from linkwright.messages import get_action
+from tests.control.controllers.arm import JOINTS, Asked, run, trajectory
+
+ACTION = "control_msgs/action/FollowJointTrajectory"
+KIND = "ur_controllers/ScaledJointTrajectoryController"
+FACTOR = "speed_scaling/speed_scaling_factor"
+SAID = {"joints": list(JOINTS), "command_interfaces": ["position"], "state_interfaces": ["position", "velocity"]}
+SUCCEEDED = 4
+
+
+async def position_after(stand, seconds, factor=None, **more):
+    """Where the first joint is, so many seconds after a goal 2 rad and 2 s away was given, and the goal."""
+    for joint in JOINTS:
+        stand.joint(joint, commands=("position",), position=0.0, velocity=0.0)
+    if factor is not None:
+        stand.states[FACTOR] = StateInterface(*FACTOR.split("/"), factor)
+    controller = stand.start(controller_class(KIND), **SAID, **more)
+
+    def obey():
+        for name, command in stand.commands.items():
+            stand.states[name].value = command.value
+
+    message = trajectory((2.0, [2.0] * len(JOINTS)))
+    asked = Asked(stand, ACTION, "/controller/follow_joint_trajectory", get_action(ACTION).Goal(trajectory=message))
+    await run(stand, controller, seconds, obey)
+    return stand.commands[f"{JOINTS[0]}/position"].value, asked
+
+
+@pytest.mark.parametrize(("factor", "reached"), [(1.0, 1.0), (0.5, 0.5), (0.0, 0.0)])
+async def test_it_goes_as_fast_as_the_robot_says(stand, factor, reached):
+    position, _ = await position_after(stand, 1.0, factor)
+    assert position == pytest.approx(reached, abs=0.03)
+
+
+async def test_a_goal_takes_longer_and_is_reached_all_the_same(stand):
+    position, asked = await position_after(stand, 4.2, 0.5)
+    assert position == pytest.approx(2.0)
+    assert asked.status == SUCCEEDED
+
+
+async def test_without_an_interface_it_goes_as_planned(stand):
+    position, _ = await position_after(stand, 1.0, speed_scaling_interface_name="")
+    assert position == pytest.approx(1.0, abs=0.03)
