@@ -7,6 +7,7 @@ from math import pi, sqrt
 import numpy as np
 import pytest
 
+from linkwright.simulation.server.unsimulated import unsimulated
 from tests.simulation.test_loading import load, steps
 from tests.simulation.test_server import simulator
 from tests.simulation.worlds import box, simulated
@@ -98,6 +99,33 @@ def test_joints_to_nowhere_and_in_circles_leave_the_rest_as_it_is():
     simulation.advance(500_000_000)
     assert simulation.model_pose("a")[2] == pytest.approx(9 - 1.25, abs=0.01)
     assert simulation.model_pose("b")[2] == pytest.approx(9 - 1.25, abs=0.01)
+
+
+def test_joints_of_a_world_follow_each_other_and_turn_by_gears():
+    wheels = [box(name, f"{x} 0 3 0 0 0", "0.2 0.2 0.2") for name, x in (("base", 0), ("a", 1), ("b", 2), ("c", 3))]
+    axis = "<axis><xyz>0 0 1</xyz>{}</axis>"
+    follow = axis.format('<mimic joint="turn_a"><multiplier>2</multiplier></mimic>')
+    gear = "<gearbox_ratio>3</gearbox_ratio><gearbox_reference_body>base</gearbox_reference_body>"
+    joints = (
+        joint("fixed", "world", "base", name="anchor"),
+        joint("revolute", "base", "a", axis.format(""), "turn_a"),
+        joint("revolute", "base", "b", follow, "turn_b"),
+        joint("revolute", "base", "c", axis.format(""), "turn_c"),
+        joint("gearbox", "a", "c", gear + axis.format("") + axis.format("").replace("axis>", "axis2>"), "gear"),
+    )
+    simulation = simulated(*wheels, *joints)
+    simulation.push_joint("turn_a", 0.05)
+    simulation.advance(1_500_000_000)
+    turned = simulation.joint_state("turn_a")[0]
+    assert turned > 0.3
+    assert simulation.joint_state("turn_b")[0] == pytest.approx(2 * turned, rel=0.01)
+    assert simulation.joint_state("turn_c")[0] == pytest.approx(-3 * turned, rel=0.01)
+
+
+def test_a_sensor_in_a_joint_of_a_world_is_named_as_not_simulated():
+    sensor = '<sensor name="force" type="force_torque"/>'
+    simulation = simulated(box("a", "0 0 9 0 0 0"), joint("fixed", "world", "a", sensor))
+    assert unsimulated(simulation.world) == ["<sensor> in <joint> of <world>"]
 
 
 async def test_what_hangs_on_a_model_goes_on_without_it(tmp_path):

@@ -120,7 +120,8 @@ def connections_of(world: World) -> Connections:
         there = held.keys() | {WORLD}
         if not {joint.parent, joint.child} <= there or not {joint.parent, joint.child} & moving:
             continue
-        ways = (joint, _turned_round(joint)) if len(_models(joint)) > 1 else ()  # links of one model have their order
+        can_hang = len(_models(joint)) > 1 and joint.joint.type != "gearbox"  # links of one model have their own order
+        ways = (joint, _turned_round(joint)) if can_hang else ()
         fit = (each for each in ways if each.child in free and not is_below(holding, each.child, each.parent))
         hung = next(fit, None)
         if hung is None:

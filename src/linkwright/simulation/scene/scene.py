@@ -228,13 +228,13 @@ class Scene:
                 added.parts.append(body)
         added.files = dict(self._meshes.used)
         for held in structure.links:
-            added.parts += self._mimicry(held.joint, name)
+            added.parts += self._mimicry(held.joint)
             if held.joint is not None and held.joint.name in self.joints:
                 added.parts += threaded(self.spec, held.joint)
         for joint in (*structure.loops, *connected.loops):
             added.parts += self._closed(joint, poses)
             if joint.joint.type == "gearbox":
-                added.parts += geared(self.spec, joint, self._moving(name))
+                added.parts += geared(self.spec, joint, self._moving((name, *connected.hangs_on)))
         added.parts += self._strangers(structure)
         added.parts += self._neighbours(connected)
         return added
@@ -401,20 +401,20 @@ class Scene:
         self._writer.add_collisions(body, link, placed.frames, fixed=fixed)
         return body
 
-    def _moving(self, model: str) -> list[PlacedJoint]:
-        """The joints of a model that move."""
-        held = self.models[model].structure.links
+    def _moving(self, models: Iterable[str]) -> list[PlacedJoint]:
+        """The joints of models that move."""
+        held = (each for name in models for each in self.models[name].structure.links)
         return [each.joint for each in held if each.joint is not None and each.joint.name in self.joints]
 
-    def _mimicry(self, joint: PlacedJoint | None, model: str) -> Iterator[Any]:
+    def _mimicry(self, joint: PlacedJoint | None) -> Iterator[Any]:
         """What makes axes of a joint follow those of others."""
         if joint is None or joint.name not in self.joints:
             return
         for number, (axis, _) in enumerate(joint.axes):
             if axis.mimic is None:
                 continue
-            owner = joint.name.rpartition(SEPARATOR)[0] or model
-            leader = f"{owner}{SEPARATOR}{axis.mimic.joint}{SECOND_AXIS if axis.mimic.axis == 'axis2' else ''}"
+            owner, separator, _ = joint.name.rpartition(SEPARATOR)
+            leader = f"{owner}{separator}{axis.mimic.joint}{SECOND_AXIS if axis.mimic.axis == 'axis2' else ''}"
             if leader.removesuffix(SECOND_AXIS) not in self.joints:
                 continue  # `check` tells
             equality = self.spec.add_equality(type=self._mujoco.mjtEq.mjEQ_JOINT)

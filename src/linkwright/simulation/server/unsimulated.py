@@ -38,6 +38,8 @@ def _named(roots: Iterable[Element]) -> list[str]:
             for child in element.elements():
                 if child.tag in _NOWHERE or (child.tag == _BOUNCE and _is_positive(child)):
                     found[f"<{child.tag}>"] = None
+                elif element.tag == "world" and child.tag == "joint" and child.first("sensor") is not None:
+                    found["<sensor> in <joint> of <world>"] = None
                 elif (element.tag, child.tag) in _IN:
                     found[f"<{child.tag}> in <{element.tag}>"] = None
                 elif child.tag == "plugin" and element.tag in _WITHOUT_PLUGINS:
