@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import wraps
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Concatenate, ParamSpec, TypeVar
 
 from linkwright.descriptions import DescriptionLibrary, examine
 from linkwright.diagnostics import LinkwrightError
@@ -30,6 +31,9 @@ from linkwright.testing.stepped_sync import SteppedGraph
 
 if TYPE_CHECKING:
     from typing_extensions import Self
+
+_P = ParamSpec("_P")
+_T = TypeVar("_T")
 
 _NODE = "gazebo"
 _CLOCK, _TWIST = "rosgraph_msgs/msg/Clock", "geometry_msgs/msg/Twist"
@@ -207,6 +211,21 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         self._clock_topic.publish(get_message(_CLOCK)(clock=Time(*divmod(self.simulation.time, NANOSECONDS))))
 
 
+def _taking_what(
+    make: Callable[_P, AsyncSteppedSimulation],
+) -> Callable[[Callable[[_T, AsyncSteppedSimulation], None]], Callable[Concatenate[_T, _P], None]]:
+    """Have an ``__init__`` take what the class that does the steps takes, and be given one of it."""
+
+    def decorate(init: Callable[[_T, AsyncSteppedSimulation], None]) -> Callable[Concatenate[_T, _P], None]:
+        @wraps(AsyncSteppedSimulation.__init__)
+        def make_both(self: _T, /, *args: _P.args, **kwargs: _P.kwargs) -> None:
+            init(self, make(*args, **kwargs))
+
+        return make_both
+
+    return decorate
+
+
 class SteppedSimulation(SteppedGraph):
     """A simulated world and a graph whose time passes only in `advance`, and in both together.
 
@@ -252,38 +271,9 @@ class SteppedSimulation(SteppedGraph):
 
     _steps: AsyncSteppedSimulation
 
-    def __init__(
-        self,
-        world: str | Path = "empty",
-        robot: str | Path | None = None,
-        *,
-        arguments: Mapping[str, object] | None = None,
-        pose: Sequence[float] = _ORIGIN,
-        seed: int = 0,
-        friction: float | None = None,
-        mass: float = 1.0,
-        noise: float = 1.0,
-        robot_state_publisher: bool = False,
-        period: float = _PERIOD,
-        start: float = 1_700_000_000.0,
-        strict: bool = True,
-    ) -> None:
-        super().__init__(
-            steps=AsyncSteppedSimulation(
-                world,
-                robot,
-                arguments=arguments,
-                pose=pose,
-                seed=seed,
-                friction=friction,
-                mass=mass,
-                noise=noise,
-                robot_state_publisher=robot_state_publisher,
-                period=period,
-                start=start,
-                strict=strict,
-            )
-        )
+    @_taking_what(AsyncSteppedSimulation)
+    def __init__(self, steps: AsyncSteppedSimulation) -> None:
+        super().__init__(steps=steps)
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
