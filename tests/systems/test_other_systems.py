@@ -24,14 +24,13 @@ SYSTEMS = ("windows", "macos")
 ROBOT = PACKAGE / "urdf" / "mbot_with_laser.urdf"
 IMPORT_ALL = """
 import importlib, pkgutil, linkwright
-LEFT_OUT = ("linkwright.__main__", "linkwright.standins.path", "linkwright.launch.engine.guardian_program",
-            "linkwright.vision.training.learning")
+LEFT_OUT = ("linkwright.__main__", "linkwright.launch.engine.guardian_program", "linkwright.vision.training.learning")
 for module in pkgutil.walk_packages(linkwright.__path__, "linkwright."):
     if not module.name.startswith(LEFT_OUT):
         importlib.import_module(module.name)
 print("all")
 """
-"""Left out are programs, stand-ins that are found by another path, and what needs PyTorch."""
+"""Left out are programs, and what needs PyTorch."""
 PROGRAM = """
 import sys
 from launch import LaunchDescription

@@ -9,7 +9,7 @@ from __future__ import annotations
 from math import acos
 from typing import NamedTuple
 
-from linkwright.geometry.single import Pose, quaternion_of
+from linkwright.geometry.single import Pose, quaternion_of, rotation_matrix
 from linkwright.geometry.vectors import Vector3, dot, subtracted
 
 Matrix = tuple[Vector3, Vector3, Vector3]
@@ -46,12 +46,7 @@ def placement(pose: Pose) -> Placement:
 
 def rotation(pose: Pose) -> Matrix:
     """The rotation of a pose."""
-    x, y, z, w = quaternion_of(pose)
-    return (
-        (1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)),
-        (2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)),
-        (2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)),
-    )
+    return rotation_matrix(quaternion_of(pose))
 
 
 def product(first: Matrix, second: Matrix) -> Matrix:

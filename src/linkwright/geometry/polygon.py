@@ -1,8 +1,13 @@
-"""Polygons in a plane as triangles."""
+"""Polygons in a plane: as triangles, and what is in them."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
 Point = tuple[float, float]
 
@@ -34,6 +39,26 @@ def triangulated(points: Sequence[Point]) -> list[tuple[int, int, int]]:
         else:
             at, tried = at + 1, tried + 1
     return triangles
+
+
+def within_polygon(points: NDArray[np.float64], corners: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Which points lie in a polygon: those from which a ray crosses its border an odd number of times.
+
+    Args:
+        points: of shape (..., 2).
+        corners: of shape (corners, 2), in the same frame; the last is joined to the first.
+
+    Returns:
+        Of shape (...).
+    """
+    import numpy as np  # readers of descriptions, which take polygons apart, are free of it
+
+    x, y = points[..., 0], points[..., 1]
+    inside = np.zeros(x.shape, np.bool_)
+    for (x0, y0), (x1, y1) in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+        if y0 != y1:
+            inside ^= ((y0 > y) != (y1 > y)) & (x < (x1 - x0) * (y - y0) / (y1 - y0) + x0)
+    return inside
 
 
 def _twice_area(points: Sequence[Point], ring: Sequence[int]) -> float:

@@ -22,7 +22,7 @@ from linkwright.lint.settings import Settings
 from linkwright.lint.subject import Subject
 from linkwright.xmltree import Element
 from linkwright.xmltree.decoding import decode
-from linkwright.xmltree.patches import element_range
+from linkwright.xmltree.patches import element_range, whole_lines
 from linkwright.xmltree.reader import read_bytes
 
 UNUSED = "LW001"
@@ -226,11 +226,9 @@ def _source(file: str) -> SourceText:
 
 def _removal(directive: Directive) -> Edit:
     text, start, end = directive.source.text, directive.start, directive.end
-    line_start = text.rfind("\n", 0, start) + 1
-    line_end = text.find("\n", end)
-    line_end = len(text) if line_end < 0 else line_end + 1
-    if not text[line_start:start].strip() and not text[end:line_end].strip():
-        return Edit(directive.source.name, line_start, line_end, "")
-    while start > line_start and text[start - 1] in " \t":
+    lines = whole_lines(text, start, end)
+    if lines != (start, end):
+        return Edit(directive.source.name, *lines, "")
+    while start and text[start - 1] in " \t":
         start -= 1
     return Edit(directive.source.name, start, end, "")

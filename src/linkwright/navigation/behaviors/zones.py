@@ -13,7 +13,8 @@ from math import atan2, hypot
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.navigation.costmaps.footprints import Footprint, cells_within
+from linkwright.geometry.polygon import within_polygon
+from linkwright.navigation.costmaps.footprints import Footprint
 from linkwright.navigation.following.follower import Velocity
 
 Points = NDArray[np.float64]
@@ -58,7 +59,7 @@ class Outline:
 
     def holds(self, points: Points) -> NDArray[np.bool_]:
         """Which points lie in it."""
-        return cells_within(self.corners, points)
+        return within_polygon(points, self.corners)
 
 
 Shape = Circle | Outline

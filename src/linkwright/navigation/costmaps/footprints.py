@@ -79,13 +79,3 @@ def placed(footprint: Footprint, x: float, y: float, yaw: float) -> Footprint:
     cosine, sine = np.cos(yaw), np.sin(yaw)
     turned: Footprint = footprint @ np.array([[cosine, sine], [-sine, cosine]]) + (x, y)
     return turned
-
-
-def cells_within(footprint: Footprint, centres: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Which points lie in a footprint, of shape (...) for x and y of shape (..., 2) in the frame of its corners."""
-    x, y = centres[..., 0], centres[..., 1]
-    inside = np.zeros(x.shape, np.bool_)
-    for (x0, y0), (x1, y1) in zip(footprint, np.roll(footprint, -1, axis=0), strict=True):
-        if y0 != y1:
-            inside ^= ((y0 > y) != (y1 > y)) & (x < (x1 - x0) * (y - y0) / (y1 - y0) + x0)
-    return inside

@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from linkwright.geometry.polygon import within_polygon
 from linkwright.navigation.costmaps.costmap import FREE, UNKNOWN
-from linkwright.navigation.costmaps.footprints import Footprint, cells_within
+from linkwright.navigation.costmaps.footprints import Footprint
 from linkwright.navigation.grids.grid import Grid
 
 Costs = NDArray[np.uint8]
@@ -205,4 +206,4 @@ def free_footprint(cells: Costs, moment: Moment, grid: Grid, window: Window) -> 
         return
     rows, columns = np.mgrid[inside.top : inside.bottom, inside.left : inside.right]
     centres = grid.centres_of(np.stack((rows, columns), axis=-1))
-    cells[inside.cells][cells_within(moment.footprint, centres)] = FREE
+    cells[inside.cells][within_polygon(centres, moment.footprint)] = FREE

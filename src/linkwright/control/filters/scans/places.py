@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from linkwright.control.filters.scans.scan import Flags, Lookup, Scan, ScanFilter, cleared
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+from linkwright.geometry.polygon import within_polygon
 
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 
@@ -134,17 +135,7 @@ class PolygonFilter(ScanFilter):
         points = scan.points(self.polygon_frame, lookup)
         if points is None:
             return None
-        return cleared(scan, (_inside(points, self._corners) != self.invert) & scan.measured)
-
-
-def _inside(points: NDArray[np.float64], corners: NDArray[np.float64]) -> Flags:
-    """Which points are above a polygon: those from which a ray crosses its border an odd number of times."""
-    inside = np.zeros(len(points), dtype=bool)
-    x, y = points[:, 0], points[:, 1]
-    for (ax, ay), (bx, by) in zip(corners, np.roll(corners, 1, axis=0), strict=True):
-        if ay != by:
-            inside ^= ((ay > y) != (by > y)) & (x < (bx - ax) * (y - ay) / (by - ay) + ax)
-    return inside
+        return cleared(scan, (within_polygon(points, self._corners) != self.invert) & scan.measured)
 
 
 def _beyond(scan: Scan, which: Flags) -> Scan:
