@@ -407,6 +407,13 @@ def test_simulated_time_for_some():
     )
 
 
+def test_hidden_nodes_and_who_makes_time_need_not_follow_it():
+    seen = more(WELL, publisher("/gazebo", "/clock", "rosgraph_msgs/msg/Clock"))
+    clock = ClockSeen(9, 5, 6)
+    times = {RSP: True, JSP: True, "/gazebo": False, "/_gzclient": False}
+    assert codes(replace(seen, sim_time=times, clock=clock)) == []
+
+
 def test_simulated_time_without_a_clock():
     assert codes(replace(WELL, sim_time={RSP: True, JSP: True})) == ["DOC602"]
 

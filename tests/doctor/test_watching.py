@@ -124,6 +124,26 @@ async def test_two_commands_that_drive_are_written_down_and_not_what_else_they_s
     assert not watched.result().stamps
 
 
+async def test_what_a_bridge_hands_on_is_neither_a_second_publisher_nor_far_from_now(joined: Graph) -> None:
+    simulator, bridge = joined.create_node("gazebo"), joined.create_node("ros_gz_bridge")
+    clock = simulator.create_publisher("rosgraph_msgs/msg/Clock", "/clock", 10)
+    own = simulator.create_publisher(TRANSFORMS, "/model/vehicle/tf", 10)
+    handed_on = bridge.create_publisher(TRANSFORMS, "/tf", 10)
+    watched = asyncio.ensure_future(seen_of(joined, Outside(), seconds=0.5))
+    message = own.msg_type()
+    message.transforms = [TransformStamped(child_frame_id="base")]
+    message.transforms[0].header.frame_id = "odom"
+    message.transforms[0].header.stamp.sec = 5
+    while not watched.done():
+        clock.publish(Clock(clock=message.transforms[0].header.stamp))
+        for each in (own, handed_on):
+            each.publish(message)
+        await asyncio.sleep(0.01)
+    (transform,) = watched.result().transforms
+    assert len(transform.senders) == 1
+    assert {each.behind_ns for each in watched.result().stamps} == {0}
+
+
 async def test_a_simulators_own_stamps_and_poses_are_taken_for_what_they_are(joined: Graph) -> None:
     """It makes the time that it stamps by, and tells where models are on a topic of transforms that are no frames."""
     simulator = joined.create_node("gazebo")

@@ -19,11 +19,15 @@ def examine_clocks(seen: Observation) -> Iterator[Diagnostic]:
     yield from _stamps(seen)
 
 
+def _is_hidden(node: str) -> bool:
+    return node.rpartition("/")[2].startswith("_")
+
+
 def _simulated(seen: Observation) -> Iterator[Diagnostic]:
     on = sorted(node for node, value in seen.sim_time.items() if value)
     off = sorted(node for node, value in seen.sim_time.items() if not value)
     senders = nodes_of(seen.publishers_of(_CLOCK))
-    off = [node for node in off if node not in senders]  # who makes time need not follow it
+    off = [node for node in off if node not in senders and not _is_hidden(node)]  # who makes time need not follow it
     if on and not senders:
         yield Diagnostic(
             "DOC602",

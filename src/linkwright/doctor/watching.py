@@ -123,7 +123,7 @@ class _Watcher:
         self._graph = graph
         self._node = node
         self._subscribed: set[tuple[str, str]] = set()
-        self._transforms: dict[tuple[str, str], tuple[set[str], bool, bool]] = {}
+        self._transforms: dict[tuple[str, str], tuple[dict[str, set[str]], bool, bool]] = {}
         self._joints: dict[str, tuple[set[str], set[str]]] = {}
         self._stamps: dict[tuple[str, str], tuple[int, int]] = {}
         self._frames: dict[tuple[str, str], str] = {}
@@ -221,8 +221,8 @@ class _Watcher:
         sender = self._sender(topic, info)
         for each in message.transforms:
             key = (each.header.frame_id.lstrip("/"), each.child_frame_id.lstrip("/"))
-            senders, _, valid = self._transforms.get(key, (set(), is_static, True))
-            senders.add(sender)
+            senders, _, valid = self._transforms.get(key, ({}, is_static, True))
+            senders.setdefault(topic, set()).add(sender)
             self._transforms[key] = (senders, is_static, valid and _is_transform(each.transform))
             if not is_static:
                 self._note_stamp(topic, sender, each.header.stamp.sec, each.header.stamp.nanosec)
@@ -264,9 +264,9 @@ class _Watcher:
     # --- what is made of it ------------------------------------------------------------------------------------------
 
     def transforms(self) -> tuple[TransformSeen, ...]:
-        """The transforms, by parent and child."""
+        """The transforms, by parent and child; who sent them on one topic, as a bridge may hand on those of another."""
         return tuple(
-            TransformSeen(parent, child, tuple(sorted(senders)), is_static, valid)
+            TransformSeen(parent, child, max(map(tuple, map(sorted, senders.values())), key=len), is_static, valid)
             for (parent, child), (senders, is_static, valid) in sorted(self._transforms.items())
         )
 
@@ -287,7 +287,10 @@ class _Watcher:
         return tuple(found)
 
     def stamps_seen(self, sim_time: Mapping[str, bool]) -> tuple[StampSeen, ...]:
-        """The stamps against the clock that their sender goes by: simulated time, where it follows or makes that."""
+        """The stamps against the clock that their sender goes by: simulated time, where it follows or makes that.
+
+        One that does not may hand stamps on that others made, so the nearer clock counts.
+        """
         found = []
         makers = {node_of(each) for each in self._publishers("/clock")}
         for (topic, sender), (stamp_ns, now_ns) in sorted(self._stamps.items()):
@@ -295,7 +298,10 @@ class _Watcher:
                 if self.clock is None:
                     continue
                 now_ns = self.clock.last_ns
-            found.append(StampSeen(topic, sender, now_ns - stamp_ns, zero=stamp_ns == 0))
+            behind_ns = now_ns - stamp_ns
+            if self.clock is not None:  # a bridge, and robot_state_publisher, hand on stamps of simulated time
+                behind_ns = min(behind_ns, self.clock.last_ns - stamp_ns, key=abs)
+            found.append(StampSeen(topic, sender, behind_ns, zero=stamp_ns == 0))
         return tuple(found)
 
     def frames_seen(self) -> tuple[FrameSeen, ...]:
