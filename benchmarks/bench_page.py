@@ -15,6 +15,7 @@ from pathlib import Path
 
 from playwright.sync_api import Browser
 
+from benchmarks import peers
 from benchmarks.measure import Row
 from benchmarks.page_programs import (
     Core,
@@ -23,12 +24,15 @@ from benchmarks.page_programs import (
     opened,
     plain_chromium,
     showing,
+    shown_by_viser,
     started,
     viewer_url,
     watched,
 )
 from benchmarks.page_questions import (
+    COUNT_FRAMES,
     frames_drawn,
+    frames_with_drawing,
     images_shown,
     open_every_panel,
     rate_of,
@@ -108,11 +112,29 @@ def meshes(browser: PlainBrowser) -> list[Row]:
     """The same of an arm whose shapes are meshes."""
     with tempfile.TemporaryDirectory() as folder:
         launch = write_arm_sweep(Path(folder), 30)
-        return moving(browser, launch, "an arm of 96 000 triangles moving at 30 Hz", server="", page_rate="30")
+        what = "an arm of 96 000 triangles moving at 30 Hz"
+        return moving(browser, launch, what, server="", page_rate="30", peer="arm")
 
 
-def moving(browser: PlainBrowser, launch: Path, what: str, *, server: str, page_rate: str) -> list[Row]:
+def viser(browser: PlainBrowser, scene: str) -> tuple[dict[str, float | None], dict[str, float | None]]:
+    """What viser's server uses and how often its page draws, for one of `viser_scenes` in the same browser."""
+    if not scene:
+        return {}, {}
+    if peers.version("viser") is None:
+        return {"viser": None}, {"viser": None}
+    with (
+        shown_by_viser(scene) as process,
+        watched(browser, viewer_url(process), "window.framesWithDrawing > 5", COUNT_FRAMES) as page,
+    ):
+        time.sleep(SETTLES)
+        core = Core(process)
+        rate = rate_of(frames_with_drawing, page, SECONDS)
+        return {"viser": core.share}, {"viser": rate}
+
+
+def moving(browser: PlainBrowser, launch: Path, what: str, *, server: str, page_rate: str, peer: str = "") -> list[Row]:
     """While the joints of a launch file move: what the server uses, and how often the page draws."""
+    shares, rates = viser(browser, peer)
     with ExitStack() as stack:
         process, _, _ = stack.enter_context(started("launch", str(launch)))
         page = stack.enter_context(watched(browser, viewer_url(process)))
@@ -121,8 +143,8 @@ def moving(browser: PlainBrowser, launch: Path, what: str, *, server: str, page_
         rate = rate_of(frames_drawn, page, SECONDS)
         share = core.share
     return [
-        Row(f"server, {what}", share, CORE, server),
-        Row(f"page, {what}, frames drawn", rate, "1/s", page_rate),
+        Row(f"server, {what}", share, CORE, server, shares),
+        Row(f"page, {what}, frames drawn", rate, "1/s", page_rate, rates),
     ]
 
 
@@ -146,8 +168,11 @@ def many_pages(browser: PlainBrowser, links: int) -> list[Row]:
     ]
 
 
-def data(browser: PlainBrowser, scene: str, what: str, *, server: str = "", page_rate: str = "") -> list[Row]:
+def data(
+    browser: PlainBrowser, scene: str, what: str, *, server: str = "", page_rate: str = "", peer: str = ""
+) -> list[Row]:
     """A display of data: the server's cost, how often the page draws, and how soon it heeds the mouse."""
+    shares, rates = viser(browser, peer)
     with showing(scene) as process, watched(browser, viewer_url(process), "window.linkwright?.framesDrawn > 5") as page:
         time.sleep(2)
         core = Core(process)
@@ -155,8 +180,8 @@ def data(browser: PlainBrowser, scene: str, what: str, *, server: str = "", page
         share = core.share
         turns = wheel_latency(page, TURNS)
     return [
-        Row(f"server, {what}", share, CORE, server),
-        Row(f"page, {what}, frames drawn", rate, "1/s", page_rate),
+        Row(f"server, {what}", share, CORE, server, shares),
+        Row(f"page, {what}, frames drawn", rate, "1/s", page_rate, rates),
         row(f"page, {what}, wheel to drawn frame", turns, "ms"),
     ]
 
@@ -217,7 +242,7 @@ def rows() -> list[Row]:
             *robots(plain, 500, server="5", page_rate="30"),
             *meshes(plain),
             *many_pages(plain, 12),
-            *data(plain, "points", "100 000 points at 10 Hz", page_rate="10"),
+            *data(plain, "points", "100 000 points at 10 Hz", page_rate="10", peer="points"),
             *data(plain, "markers", "1000 markers at 10 Hz", page_rate="10"),
             *images(plain),
             *data(plain, "scan", "500 links at 30 Hz and a scan"),

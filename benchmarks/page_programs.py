@@ -41,6 +41,13 @@ def showing(scene: str) -> Iterator[subprocess.Popen[str]]:
 
 
 @contextmanager
+def shown_by_viser(scene: str) -> Iterator[subprocess.Popen[str]]:
+    """A process in which viser shows one of `viser_scenes`."""
+    with _running("-m", "benchmarks.viser_scenes", scene) as process:
+        yield process
+
+
+@contextmanager
 def _running(*words: str) -> Iterator[subprocess.Popen[str]]:
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
     environment["LINKWRIGHT_DDS"] = "0"  # robots of others would be measured too
@@ -124,9 +131,9 @@ def plain_chromium() -> Iterator[PlainBrowser]:
 
 
 @contextmanager
-def watched(browser: PlainBrowser, url: str, ready: str = READY) -> Iterator[PlainPage]:
+def watched(browser: PlainBrowser, url: str, ready: str = READY, script: str = "") -> Iterator[PlainPage]:
     """The page of a program, when it has drawn the robot (or another condition holds)."""
-    with browser.opened(url, ready, **SIZE) as page:
+    with browser.opened(url, ready, **SIZE, script=script) as page:
         yield page
 
 

@@ -61,6 +61,26 @@ _WATCH_WHEEL = """
 
 _DRAWN = "() => window.linkwright.framesDrawn"
 
+COUNT_FRAMES = """
+(() => {
+  let drew = false;
+  window.framesWithDrawing = 0;
+  for (const { prototype } of [WebGLRenderingContext, WebGL2RenderingContext]) {
+    for (const name of ["drawArrays", "drawElements", "drawArraysInstanced", "drawElementsInstanced"]) {
+      const draw = prototype[name];
+      if (draw) prototype[name] = function (...words) { drew = true; return draw.apply(this, words); };
+    }
+  }
+  const next = () => {
+    if (drew) window.framesWithDrawing += 1;
+    drew = false;
+    requestAnimationFrame(next);
+  };
+  requestAnimationFrame(next);
+})();
+"""
+"""For a page of another program, before its own scripts: counts the frames in which WebGL draws something."""
+
 
 def slider_latency(page: Page, moves: int) -> tuple[list[float], list[float]]:
     """Milliseconds from a slider's input event to the new transform in the page, and to the frame drawn with it."""
@@ -101,6 +121,12 @@ def wheel_latency(page: PlainPage, turns: int) -> list[float]:
 def frames_drawn(page: Page | PlainPage) -> int:
     """How many frames the page has drawn."""
     count: int = page.evaluate(_DRAWN)
+    return count
+
+
+def frames_with_drawing(page: PlainPage) -> int:
+    """How many frames a page with `COUNT_FRAMES` has drawn."""
+    count: int = page.evaluate("() => window.framesWithDrawing")
     return count
 
 

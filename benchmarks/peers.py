@@ -23,6 +23,8 @@ PEERS = {
     "pinocchio": "pin",
     "pybullet": "pybullet",
     "zenoh_ros2_sdk": "zenoh-ros2-sdk==0.1.8",
+    "viser": "viser==1.1.1",
+    "trimesh": "trimesh",
 }
 """Module -> what is installed for it."""
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import os
 import re
 import subprocess
 import tempfile
@@ -34,12 +35,12 @@ class PlainBrowser:
         self._socket = Socket(address)
 
     @contextmanager
-    def opened(self, url: str, ready: str, width: int, height: int) -> Iterator[PlainPage]:
-        """A page with storage of its own, from when a condition holds on it."""
+    def opened(self, url: str, ready: str, width: int, height: int, script: str = "") -> Iterator[PlainPage]:
+        """A page with storage of its own, in which a script ran before its own, from when a condition holds on it."""
         context = self._socket.call("Target.createBrowserContext")["browserContextId"]
         target = self._socket.call("Target.createTarget", url="about:blank", browserContextId=context)["targetId"]
         with closing(PlainPage(Socket(self._pages + target))) as page:
-            page.open(url, ready, width, height)
+            page.open(url, ready, width, height, script)
             yield page
         self._socket.call("Target.disposeBrowserContext", browserContextId=context)
 
@@ -54,8 +55,11 @@ class PlainPage:
     def __init__(self, socket: Socket) -> None:
         self._socket = socket
 
-    def open(self, url: str, ready: str, width: int, height: int) -> None:
-        """Go there, at a size in pixels, and wait for a condition."""
+    def open(self, url: str, ready: str, width: int, height: int, script: str = "") -> None:
+        """Go there, at a size in pixels, and wait for a condition; before the page's own scripts run another."""
+        if script:
+            self._socket.call("Page.enable")
+            self._socket.call("Page.addScriptToEvaluateOnNewDocument", source=script)
         self._socket.call(
             "Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False
         )
@@ -132,7 +136,10 @@ def running(program: str, flags: tuple[str, ...]) -> Iterator[PlainBrowser]:
     """A Chromium, from its start to its end, with a profile of its own that goes then."""
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
         own = ("--headless", "--remote-debugging-port=0", f"--user-data-dir={profile}", "--no-first-run")
-        process = subprocess.Popen([program, *flags, *own, "about:blank"], stderr=subprocess.PIPE, text=True)
+        # Of the locale C it tells pages a language that Intl does not know.
+        environment = os.environ | {"LC_ALL": "en_US.UTF-8"}
+        words = [program, *flags, *own, "about:blank"]
+        process = subprocess.Popen(words, stderr=subprocess.PIPE, env=environment, text=True)
         try:
             assert process.stderr is not None
             found = next(filter(None, (re.search(r"listening on (ws://\S+)", line) for line in process.stderr)), None)

@@ -35,7 +35,8 @@ _ENGLISH = """# Benchmarks
 What `make bench` measures, side by side with programs from PyPI on the same machine in the same run
 ({machine}). Figures are medians. In brackets stands how many times ours the other program's figure
 is. The inputs are {inputs}. The other readers of URDF check less than
-urdfdom does, and name no places; pinocchio reads with urdfdom, in C++.
+urdfdom does, and name no places; pinocchio reads with urdfdom, in C++. viser shows the same arm and points in the same
+browser, both drawn without a graphics card, each with its own defaults.
 
 `python -m benchmarks.peers` installs the other programs into `.build/peers`; `python -m benchmarks --write` measures
 and writes this page.
@@ -44,7 +45,8 @@ _CHINESE = """# 性能测试
 
 `make bench` 的测量结果，与 PyPI 上的程序在同一台机器、同一次运行中对比（{machine}）。
 数值为中位数，括号内是对方的数值为我们的多少倍。输入为 {inputs}。其他 URDF 读取程序的检查少于 urdfdom，
-也不指出位置；pinocchio 通过 C++ 的 urdfdom 读取。
+也不指出位置；pinocchio 通过 C++ 的 urdfdom 读取。viser 在同一个浏览器中显示同样的机械臂和点云，
+两者都不用显卡绘制，各用自己的默认设置。
 
 `python -m benchmarks.peers` 把对比程序安装到 `.build/peers`；`python -m benchmarks --write` 测量并写出本页。
 """
