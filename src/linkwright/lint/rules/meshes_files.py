@@ -43,13 +43,37 @@ def _is_listed(folder: Path, name: str) -> bool:
     return True
 
 
+def _folder_hint(use: MeshUse, name: str) -> Phrase | None:
+    """What to write where a folder near the description stands in the place of a package; None where there is none."""
+    source = use.element.source
+    if source is None or not name:
+        return None
+    file = Path(source.name).absolute()
+    for place in file.parents[:2]:
+        if not (place / name).is_dir():
+            continue
+        package = enclosing_package(place)
+        if package is None:
+            return phrase(
+                "'{name}' is a folder: write the package before it, 'package://PACKAGE/{name}/...'", name=name
+            )
+        path = (place / name).relative_to(package[1]).as_posix()
+        return phrase(
+            "'{name}' is a folder of package '{package}': write 'package://{package}/{path}/...'",
+            name=name,
+            package=package[0],
+            path=path,
+        )
+    return None
+
+
 class UnknownPackage(Rule):
     """A mesh address that names a package that is not found.
 
     ## Why
 
     Without the package there is no mesh. Either its name is misspelt, or the workspace that holds it is not there or
-    not sourced.
+    not sourced, or a folder such as `meshes` stands where the package's name belongs.
 
     ## Example
 
@@ -82,7 +106,7 @@ class UnknownPackage(Rule):
                 subject.finder.resolve(use.mesh.filename)
             except PackageNotFoundError as error:
                 told[package] = [use]
-                hints[package] = error.diagnostics[0].hint
+                hints[package] = _folder_hint(use, package) or error.diagnostics[0].hint
             except LinkwrightError:
                 continue
         for package, uses in told.items():

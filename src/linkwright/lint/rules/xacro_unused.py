@@ -7,6 +7,7 @@ to include are never reported on for that.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -15,6 +16,9 @@ from linkwright.lint.fix import remove_element
 from linkwright.lint.rules.xacro_rule import XacroRule
 from linkwright.lint.xacro_facts import Definition, FileFacts, XacroFacts, parameter_span
 from linkwright.xmltree import Element
+
+_SPEAKING = re.compile(r"\b(?:fatal|error|warning|message)\s*\(")
+"""Functions that are called for what they do."""
 
 
 class UnusedProperty(XacroRule):
@@ -25,7 +29,8 @@ class UnusedProperty(XacroRule):
     Whoever changes its value expects the robot to change. Often the place where it belongs has the number written out.
 
     Only properties of the checked file and those inside macros are looked at: a file of properties for several robots
-    holds more than one of them needs.
+    holds more than one of them needs. One that is evaluated at once, with `lazy_eval="false"`, and calls `xacro.fatal`,
+    `error`, `warning` or `message` is there for what it says.
 
     ## Example
 
@@ -51,7 +56,7 @@ class UnusedProperty(XacroRule):
         for file in facts.own.values():
             for definition in file.properties:
                 name, element = definition.name, definition.element
-                if "$" in name or not name or name in facts.names or _is_remove(element):
+                if "$" in name or not name or name in facts.names or _is_remove(element) or _speaks(element):
                     continue
                 if file is not facts.main and (definition.macro is None or "scope" in element.attributes):
                     continue
@@ -266,6 +271,12 @@ def _used_inside(macro: Element, file: FileFacts) -> tuple[set[str], set[str], b
         if element.tag == "xacro:macro" and element is not macro:
             names |= {parameter.name for parameter in file.parameters(element) if parameter.forward}
     return names, blocks, is_open
+
+
+def _speaks(element: Element) -> bool:
+    """Whether a property is evaluated where it is defined and tells the user something then."""
+    lazy = element.attributes.get("lazy_eval", "true").strip() not in ("false", "False", "0")
+    return (not lazy or "scope" in element.attributes) and bool(_SPEAKING.search(element.attributes.get("value", "")))
 
 
 def _is_remove(element: Element) -> bool:
