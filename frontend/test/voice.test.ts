@@ -1,6 +1,7 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
 import type { PageMessage } from "../src/protocol";
+import { GapFinder } from "../src/state/voice/gaps";
 import { meterPart } from "../src/state/voice/level";
 import { Microphone, type OpenCapture } from "../src/state/voice/microphone";
 import { pcm, Resampler } from "../src/state/voice/resampler";
@@ -42,21 +43,63 @@ it("a meter is logarithmic", () => {
   expect(meterPart(Math.sqrt(0.001))).toBeCloseTo(0.5);
 });
 
+describe("gaps", () => {
+  const QUANTUM = 128;
+  const loud = new Float32Array(QUANTUM).map((_, i) => 0.3 * Math.sin(i));
+  const silent = new Float32Array(QUANTUM);
+
+  /** Milliseconds found to be lost in two seconds of sound of 48 kHz; `change` gives what comes instead of a quantum, and how late it comes. */
+  const found = (change: (number: number) => { samples?: Float32Array; lateMs?: number }): number => {
+    const finder = new GapFinder(48_000);
+    for (let number = 0; number < 750; number++) {
+      const { samples = loud, lateMs = 0 } = change(number);
+      finder.take(samples, 5000 + (number * QUANTUM) / 48 + lateMs);
+    }
+    return Math.round(1000 * finder.takeLost());
+  };
+
+  it("sound that comes in time has none, and none where it is silent or comes late and catches up", () => {
+    expect(found(() => ({}))).toBe(0);
+    expect(found(() => ({ samples: silent }))).toBe(0);
+    const fading = (gain: number): Float32Array => loud.map((sample, i) => (sample * gain * (QUANTUM - i)) / QUANTUM);
+    expect(found((number) => (number % 50 < 10 ? { samples: silent } : number % 50 === 49 ? { samples: fading(0.01) } : {}))).toBe(0);
+    expect(found((number) => ({ lateMs: number > 300 && number < 340 ? 8 * (340 - number) : 0 }))).toBe(0);
+    expect(found((number) => ({ lateMs: -0.002 * number }))).toBe(0);
+  });
+
+  it("exact silence within sound is a gap, unless it lasts", () => {
+    expect(found((number) => (number === 400 ? { samples: silent } : {}))).toBe(3);
+    expect(found((number) => (number >= 300 && number < 330 ? { samples: silent } : {}))).toBe(80);
+    expect(found((number) => (number >= 100 && number < 700 ? { samples: silent } : {}))).toBe(0);
+  });
+
+  it("sound that comes later from one time on was left out", () => {
+    expect(found((number) => ({ lateMs: number > 400 ? 100 : 0 }))).toBe(100);
+  });
+
+  it("what was told is not told again", () => {
+    const finder = new GapFinder(48_000);
+    for (const samples of [loud, silent, loud]) finder.take(samples, 0);
+    expect(finder.takeLost()).toBeGreaterThan(0);
+    expect(finder.takeLost()).toBe(0);
+  });
+});
+
 describe("talking", () => {
   let sent: PageMessage[];
   let frames: ArrayBuffer[];
   let connection: Connection;
-  let deliver: (samples: Int16Array) => void;
+  let deliver: (samples: Int16Array, lostSeconds?: number) => void;
   let lose: () => void;
   let closed: number;
   const storage = { getItem: () => null, setItem: () => undefined };
 
   const openFake: OpenCapture = (block, lost) => {
-    deliver = block;
+    deliver = (samples, lostSeconds = 0) => block(samples, lostSeconds);
     lose = lost;
     return Promise.resolve({
       flush: () => {
-        block(Int16Array.of(7));
+        block(Int16Array.of(7), 0);
         return Promise.resolve();
       },
       close: () => void (closed += 1),
@@ -110,6 +153,22 @@ describe("talking", () => {
     await soon();
     expect(closed).toBe(2);
     expect(modes().at(-1)).toBe("off");
+  });
+
+  it("gaps in what is said are known until something else is said", async () => {
+    const voice = new VoiceState(connection, storage, new Microphone(openFake));
+    voice.press();
+    await soon();
+    expect(voice.hasGaps).toBe(false);
+    deliver(Int16Array.of(1), 0.02);
+    expect(voice.hasGaps).toBe(false);
+    deliver(Int16Array.of(1), 0.02);
+    expect(voice.hasGaps).toBe(true);
+    voice.release();
+    await soon();
+    expect(voice.hasGaps).toBe(true);
+    voice.press();
+    expect(voice.hasGaps).toBe(false);
   });
 
   it("a button let go before the microphone is there sends nothing", async () => {

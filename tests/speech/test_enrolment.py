@@ -85,6 +85,21 @@ def test_what_cannot_serve_as_an_example_is_not_taken_and_told_why(samples, code
     assert words.names == ()
 
 
+@pytest.mark.parametrize("kept", [slice(9_200, None), slice(0, 12_000)], ids=["beginning", "end"])
+def test_a_word_that_is_cut_off_is_not_taken(kept):
+    words = Words()
+    (finding,) = enrol(words, "forward", say(WORDS["forward"])[kept])
+    assert (finding.code, finding.severity) == ("VOICE211", Severity.ERROR)
+    assert words.names == ()
+
+
+def test_a_recording_with_gaps_is_not_taken_as_good_as_it_looks():
+    words = Words()
+    (finding,) = enrol(words, "forward", say(WORDS["forward"]), has_gaps=True)
+    assert (finding.code, finding.severity) == ("VOICE212", Severity.ERROR)
+    assert words.names == ()
+
+
 @pytest.mark.parametrize(("name", "other"), [("forward", "back"), ("back", "stop"), ("stop", "turn left")])
 def test_another_word_is_not_taken_after_one_take(name, other):
     words = Words()

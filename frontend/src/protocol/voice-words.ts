@@ -20,6 +20,7 @@ export interface BeginTake {
 
 /** The word was said. */
 export interface EndTake {
+  has_gaps: boolean;
   type: "end_take";
 }
 

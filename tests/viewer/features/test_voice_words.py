@@ -36,11 +36,11 @@ async def opened() -> AsyncIterator[tuple[Client, Client]]:
         yield client, other
 
 
-async def record(client: Client, name: str, samples: np.ndarray) -> dict:
+async def record(client: Client, name: str, samples: np.ndarray, *, has_gaps: bool = False) -> dict:
     await client.send("begin_take", name=name)
     for at in range(0, samples.size, 1600):
         await client.socket.send_bytes(frame(samples[at : at + 1600]))
-    await client.send("end_take")
+    await client.send("end_take", has_gaps=has_gaps)
     return await client.until("take_judged", name=name)
 
 
@@ -54,6 +54,13 @@ async def test_a_word_is_enrolled_by_saying_it():
             told = await other.until("voice_words")
             assert (told["words"], told["enough"]) == ([{"name": "stop", "takes": count}], 3)
         assert Words.read(words_path()).names == ("stop",)
+
+
+async def test_a_recording_of_which_the_page_lost_some_is_not_taken():
+    async with opened() as (client, _):
+        judged = await record(client, "stop", say(WORDS["stop"]), has_gaps=True)
+        assert judged["code"] == "VOICE212"
+        assert not Words.read(words_path()).names
 
 
 async def test_what_cannot_serve_is_not_taken():
@@ -102,7 +109,7 @@ async def test_a_damaged_file_is_left_alone_and_told_of():
         words_path().parent.mkdir(parents=True)
         words_path().write_text("{")
         await client.send("begin_take", name="stop")
-        await client.send("end_take")
+        await client.send("end_take", has_gaps=False)
         assert "it is no JSON" in (await client.until("voice_words"))["problem"]
         assert words_path().read_text() == "{"
         await other.send("watch_words", watched=True)

@@ -113,16 +113,17 @@ export class WordsBox {
   }
 
   private update(row: Element | undefined, { name, takes }: EnrolledWord): void {
-    const { recording, enough, judged } = this.words;
+    const { recording, isHearing, enough, judged } = this.words;
     const texts = strings.voice.words;
     const find = (part: string): Element | null => row?.querySelector(part) ?? null;
     const count = find(".word-takes");
     if (count) count.textContent = texts.takes(takes, enough);
     row?.classList.toggle("enough", takes >= enough);
-    find(".word-say")?.classList.toggle("talking", recording === name);
+    find(".word-say")?.classList.toggle("talking", recording === name && isHearing);
     const last = judged.get(name);
     const line = find(".word-judged");
-    const text = recording === name ? texts.saying : last ? judgement(last) : "";
+    const saying = isHearing ? texts.saying : strings.voice.opening;
+    const text = recording === name ? saying : last ? judgement(last) : "";
     if (line && line.textContent !== text) line.textContent = text;
     line?.classList.toggle("wrong", recording !== name && last !== undefined && last.code !== null);
   }

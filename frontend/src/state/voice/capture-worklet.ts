@@ -1,5 +1,7 @@
 /// <reference lib="webworker" />
 import { MOST_SAMPLES, SOUND_RATE } from "../../protocol";
+import { GapFinder } from "./gaps";
+import type { CaptureMessage } from "./microphone";
 import { pcm, Resampler } from "./resampler";
 
 declare const sampleRate: number;
@@ -10,22 +12,29 @@ declare function registerProcessor(name: string, processor: new () => AudioWorkl
 
 /**
  * Runs in the browser's thread for sound: what the microphone gives becomes blocks of a tenth of a second, mono, at the
- * rate that engines of speech want. Any message has what is there of a block sent at once.
+ * rate that engines of speech want. A message has what is there of a block sent at once, and its number with it.
  */
 class Capture extends AudioWorkletProcessor {
   private readonly resampler = new Resampler(sampleRate, SOUND_RATE);
+  private readonly gaps = new GapFinder(sampleRate);
   private readonly block = new Int16Array(MOST_SAMPLES);
   private filled = 0;
+  private began = false;
 
   constructor() {
     super();
-    this.port.onmessage = () => this.send();
+    this.port.onmessage = ({ data }: MessageEvent<number>) => this.send(data);
   }
 
   process([channels = []]: readonly Float32Array[][]): boolean {
+    if (!this.began) {
+      this.began = true;
+      this.send();
+    }
     const [first] = channels;
     if (!first) return true;
     const mono = first.map((_, i) => channels.reduce((sum, channel) => sum + (channel[i] ?? 0), 0) / channels.length);
+    this.gaps.take(mono, Date.now());
     for (const sample of pcm(this.resampler.take(mono))) {
       this.block[this.filled++] = sample;
       if (this.filled === MOST_SAMPLES) this.send();
@@ -33,9 +42,10 @@ class Capture extends AudioWorkletProcessor {
     return true;
   }
 
-  /** The last message of a request is empty if nothing is left: it says that all has been sent. */
-  private send(): void {
-    this.port.postMessage(this.block.slice(0, this.filled));
+  /** Delivers what is there of a block; `answers` is the number of the request for it. */
+  private send(answers: number | null = null): void {
+    const message: CaptureMessage = { samples: this.block.slice(0, this.filled), lost: this.gaps.takeLost(), answers };
+    this.port.postMessage(message);
     this.filled = 0;
   }
 }

@@ -14,7 +14,17 @@ export interface Capture {
   close(): void;
 }
 
-export type OpenCapture = (block: (samples: Int16Array) => void, lost: () => void) => Promise<Capture>;
+/** What the thread for sound sends. */
+export interface CaptureMessage {
+  samples: Int16Array;
+  /** Seconds of sound that were found to be lost since the last message. */
+  lost: number;
+  /** The number of the request that this answers; all sound until then has been sent. */
+  answers: number | null;
+}
+
+/** Resolves when sound is being taken; `block` gets it, with the seconds that are missing in it. */
+export type OpenCapture = (block: (samples: Int16Array, lostSeconds: number) => void, lost: () => void) => Promise<Capture>;
 
 /** The browser's microphone: opened when it is asked for first, and closed when nobody needs it. */
 export class Microphone {
@@ -26,6 +36,8 @@ export class Microphone {
   detail = "";
   /** The loudest sample of the last block, 0 to 1. */
   peak = 0;
+  /** Seconds of sound that were lost so far: a machine that is busy does not take all of it. */
+  lostSeconds = 0;
   private capture: Capture | null = null;
   private opening: Promise<boolean> | null = null;
   /** Counts openings: what comes of one that was given up is not taken. */
@@ -68,8 +80,8 @@ export class Microphone {
     const turn = ++this.turn;
     try {
       const capture = await this.openCapture(
-        (samples) => {
-          if (turn === this.turn) this.take(samples);
+        (samples, lostSeconds) => {
+          if (turn === this.turn) this.take(samples, lostSeconds);
         },
         () => {
           if (turn === this.turn) this.fail("lost");
@@ -90,7 +102,9 @@ export class Microphone {
     }
   }
 
-  private take(samples: Int16Array): void {
+  private take(samples: Int16Array, lostSeconds: number): void {
+    this.lostSeconds += lostSeconds;
+    if (samples.length === 0) return;
     this.peak = samples.reduce((most, sample) => Math.max(most, Math.abs(sample)), 0) / 32768;
     this.block.emit(samples);
   }
@@ -119,35 +133,45 @@ function problemOf(error: unknown): MicrophoneProblem {
 }
 
 /** The microphone that the user allows, through an AudioWorklet. */
-async function openBrowserCapture(block: (samples: Int16Array) => void, lost: () => void): Promise<Capture> {
+async function openBrowserCapture(block: (samples: Int16Array, lostSeconds: number) => void, gone: () => void): Promise<Capture> {
   // Where the address is no secure one, browsers do not even have the property.
   const devices = (navigator as Partial<Navigator>).mediaDevices;
   if (!isSecureContext || !devices) throw new InsecureError("no secure context");
-  const stream = await devices.getUserMedia({
-    audio: { channelCount: 1, echoCancellation: true, noiseSuppression: true, autoGainControl: true },
-  });
-  const tracks = stream.getTracks();
   const context = new AudioContext();
+  let tracks: MediaStreamTrack[] = [];
   const close = (): void => {
     for (const track of tracks) track.stop();
     void context.close();
   };
   try {
+    // First of all: what is said between the microphone's opening and the program's would be lost.
     await context.audioWorklet.addModule(workletUrl);
-    await context.resume();
+    const running = context.resume();
+    running.catch(() => undefined); // it is awaited below, unless there is no microphone
+    const stream = await devices.getUserMedia({
+      audio: { channelCount: 1, echoCancellation: true, noiseSuppression: true, autoGainControl: true },
+    });
+    tracks = stream.getTracks();
     const node = new AudioWorkletNode(context, "linkwright-capture", { numberOfOutputs: 0 });
-    let delivered: (() => void)[] = [];
-    node.port.onmessage = ({ data }: MessageEvent<Int16Array>) => {
-      if (data.length > 0) block(data);
-      for (const each of delivered) each();
-      delivered = [];
-    };
+    const waiting = new Map<number, () => void>();
+    let asked = 0;
+    const began = new Promise<void>((resolve) => {
+      node.port.onmessage = ({ data: { samples, lost, answers } }: MessageEvent<CaptureMessage>) => {
+        resolve();
+        block(samples, lost);
+        if (answers === null) return;
+        waiting.get(answers)?.();
+        waiting.delete(answers);
+      };
+    });
     context.createMediaStreamSource(stream).connect(node);
-    for (const track of tracks) track.addEventListener("ended", lost);
+    for (const track of tracks) track.addEventListener("ended", gone);
+    await running;
+    await began;
     const flush = (): Promise<void> =>
       new Promise((resolve) => {
-        delivered.push(resolve);
-        node.port.postMessage(null);
+        waiting.set((asked += 1), resolve);
+        node.port.postMessage(asked);
       });
     return { flush, close };
   } catch (error) {

@@ -72,6 +72,7 @@ export class WordsState {
       return this.recording === name;
     });
     if (!begun && this.recording === name) this.stop();
+    else this.changed.emit();
   }
 
   /** The user has said it. */
@@ -83,7 +84,7 @@ export class WordsState {
     }
     window.setTimeout(() => {
       void this.voice.endRecord().then(() => {
-        this.connection.send({ type: "end_take" });
+        this.connection.send({ type: "end_take", has_gaps: this.voice.hasGaps });
         this.stop();
       });
     }, TAIL_MS);
@@ -106,6 +107,11 @@ export class WordsState {
 
   askFile(): void {
     this.connection.send({ type: "ask_words_file" });
+  }
+
+  /** Whether the word can be said now: its button is held and the microphone is open. */
+  get isHearing(): boolean {
+    return this.recording !== null && this.voice.recording;
   }
 
   private stop(): void {

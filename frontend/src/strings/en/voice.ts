@@ -61,9 +61,12 @@ export const voice = {
       VOICE205: "Not taken: hardly anything is heard. Speak louder or nearer to the microphone.",
       VOICE206: "Not taken: too short or too long. Say the word once, within 3 s.",
       VOICE207: "Not taken: overdriven. Speak more softly or farther from the microphone.",
+      VOICE211: "Not taken: the word begins or ends where the recording does. Hold the button, wait until it says so, say the word, then let go.",
+      VOICE212: "Not taken: the sound had gaps, as this computer was too busy to take all of it. Say it again.",
     },
   },
   cut: "The page sent more sound than time has passed and was cut off. Press the button again.",
+  gaps: "The sound had gaps: this computer was too busy to take all of it. Say it again.",
   another: "Another page is talking; this one is heard when it has finished.",
   nobody: "Nobody listens: start the voice node, for example with linkwright launch my_robot_voice voice.launch.py",
 };

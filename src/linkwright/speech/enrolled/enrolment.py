@@ -13,6 +13,7 @@ from linkwright.speech.sound.samples import Samples
 from linkwright.speech.sound.spectra import HOP, WINDOW, mel_frames
 
 _SHORTEST, _LONGEST = 15, 300  # frames: 0.15 s and 3 s
+_EDGE = 3  # frames at the beginning or end of a recording in which there is no speech yet, or no more
 _QUIETEST = 60.0  # effective value of the loudest 50 ms, in steps of 16 bits: -55 dB of full scale
 _LEAST_ABOVE_NOISE = 8.0  # dB, mean of the bands of the loudest frames
 _CLIPPED_SHARE = 0.01
@@ -21,18 +22,20 @@ _UNLIKE = 0.7  # of its distance to a word played backwards: another word is far
 _MUCH_ALIKE = 0.85  # of its distance to another word
 
 
-def enrol(words: Words, name: str, samples: Samples) -> tuple[Diagnostic, ...]:
+def enrol(words: Words, name: str, samples: Samples, has_gaps: bool = False) -> tuple[Diagnostic, ...]:
     """Take a word said once into the words.
 
     Args:
         words: gets the take, unless a finding is an error.
         name: the phrase that the word stands for.
         samples: a recording with the word in it once, and best some tenths of a second of silence around it.
+        has_gaps: some of the sound is known to be lost.
 
     Returns:
         What is wrong with it. Errors, for which it is not taken: VOICE204 the name cannot be used; VOICE205 nothing is
         heard, or too little above the noise; VOICE206 it is too short or too long; VOICE207 it is overdriven;
-        VOICE208 it is unlike what was said for the word before. A warning: VOICE209 it sounds much like another word.
+        VOICE208 it is unlike what was said for the word before; VOICE211 its beginning or its end is cut off; VOICE212
+        the sound has gaps. A warning: VOICE209 it sounds much like another word.
     """
     reason = name_problem(name)
     if reason is not None:
@@ -40,9 +43,20 @@ def enrol(words: Words, name: str, samples: Samples) -> tuple[Diagnostic, ...]:
     if len(words.names) >= MOST_WORDS and name not in words.names:
         reason = phrase("there are {most} words already", most=MOST_WORDS)
         return (_refused("VOICE204", phrase("a word cannot be called '{name}': {reason}", name=name, reason=reason)),)
+    if has_gaps:
+        message = phrase("the sound that was recorded for '{name}' has gaps", name=name)
+        return (
+            _refused("VOICE212", message, phrase("say it again; the machine was too busy to take all of the sound")),
+        )
     powers = mel_frames(samples)
     first, last, noise = speech_span(powers)
     finding = _unfit(name, samples, first, last)
+    if finding is None and (first < _EDGE or last > len(powers) - _EDGE):
+        finding = _refused(
+            "VOICE211",
+            phrase("what was said for '{name}' begins or ends where the recording does", name=name),
+            phrase("leave some tenths of a second of silence before and after the word"),
+        )
     if finding is None and np.quantile(_above(powers[first:last], noise), 0.9) < _LEAST_ABOVE_NOISE:
         finding = _refused(
             "VOICE205",

@@ -27,7 +27,13 @@ class BeginTake(PageMessage):
 
 
 class EndTake(PageMessage):
-    """The word was said."""
+    """The word was said.
+
+    Attributes:
+        has_gaps: the page knows that some of the sound was lost.
+    """
+
+    has_gaps: bool
 
 
 class RemoveWord(PageMessage):

@@ -73,8 +73,8 @@ class WordBook:
                 self._watchers.discard(page)
             case BeginTake(name=name):
                 self._recordings[page] = Recording(name.strip())
-            case EndTake():
-                self._judge(page)
+            case EndTake(has_gaps=has_gaps):
+                self._judge(page, has_gaps)
             case RemoveWord(name=name):
                 self._change(page, lambda words: words.remove(name))
             case RenameWord(name=name, new_name=new_name):
@@ -96,13 +96,13 @@ class WordBook:
         self._watchers.discard(page)
         self._recordings.pop(page, None)
 
-    def _judge(self, page: Page) -> None:
+    def _judge(self, page: Page, has_gaps: bool) -> None:
         recording = self._recordings.pop(page, None)
         if recording is None:
             return
         samples = recording.samples
         findings: list[Diagnostic] = []
-        if self._change(page, lambda words: findings.extend(enrol(words, recording.name, samples))):
+        if self._change(page, lambda words: findings.extend(enrol(words, recording.name, samples, has_gaps))):
             found = next(iter(translated(findings)), None)
             peak = float(np.max(np.abs(samples.astype(np.int32)), initial=0)) / 32768
             self._judged += 1

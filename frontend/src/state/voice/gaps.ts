@@ -1,0 +1,69 @@
+/** Samples of exact silence that are a hole: what browsers give, at a time, where sound did not come in time. */
+const HOLE = 128;
+/** Seconds of exact silence that are one, and no hole, however abruptly they begin. */
+const SILENCE = 1;
+/** Samples before a hole that tell whether sound was cut off there, and how loud that must be: -40 dB. */
+const EDGE = 32;
+const LOUD = 0.01;
+/** Seconds in which the sound that came latest is looked for, and by how much it may be later than before. */
+const WINDOW = 0.25;
+const LATE_MS = 60;
+/** Windows at the beginning of a stream, which come as they like. */
+const SETTLING = 2;
+
+/**
+ * Finds where a stream of sound lacks some. A machine that is busy leaves holes of exact silence, at which sound ends
+ * abruptly, or leaves samples out: then those that come later come later than they should, all of them from there on.
+ */
+export class GapFinder {
+  private lost = 0;
+  private zeros = 0;
+  private edge = new Float32Array(EDGE);
+  private edgeAt = 0;
+  private taken = 0;
+  private windowEnd: number;
+  private windows = 0;
+  private least = Infinity;
+  private before = Infinity;
+
+  /** For a stream of `rate` samples a second. */
+  constructor(private readonly rate: number) {
+    this.windowEnd = WINDOW * rate;
+  }
+
+  /** The next samples of the stream, -1 to 1, which came at a time in milliseconds. */
+  take(samples: Float32Array, now: number): void {
+    for (const sample of samples) this.lookForHole(sample);
+    this.taken += samples.length;
+    this.least = Math.min(this.least, now - (1000 * this.taken) / this.rate);
+    if (this.taken < this.windowEnd) return;
+    const later = this.least - this.before;
+    if (this.windows >= SETTLING && later > LATE_MS) this.lost += later / 1000;
+    this.windows += 1;
+    this.windowEnd += WINDOW * this.rate;
+    this.before = this.least;
+    this.least = Infinity;
+  }
+
+  /** The seconds that were found to be lost since this was asked last. */
+  takeLost(): number {
+    const { lost } = this;
+    this.lost = 0;
+    return lost;
+  }
+
+  private lookForHole(sample: number): void {
+    if (sample === 0) {
+      this.zeros += 1;
+      return;
+    }
+    if (this.zeros >= HOLE) {
+      const isCutOff = this.edge.some((each) => Math.abs(each) > LOUD);
+      if (isCutOff && this.zeros < SILENCE * this.rate) this.lost += this.zeros / this.rate;
+      this.edge.fill(0);
+    }
+    this.zeros = 0;
+    this.edge[this.edgeAt] = sample;
+    this.edgeAt = (this.edgeAt + 1) % EDGE;
+  }
+}
