@@ -90,7 +90,7 @@ class Subject:
         if self.robot is not None:
             return tuple(self.robot.joints.values())
         from linkwright.urdf.elements import read_joint
-        from linkwright.urdf.explain import UrdfReport
+        from linkwright.urdf.report import UrdfReport
 
         return tuple(read_joint(element, UrdfReport()) for element in self.elements("joint"))
 
@@ -100,7 +100,7 @@ class Subject:
         if self.robot is not None:
             return tuple(self.robot.links.values())
         from linkwright.urdf.elements import MaterialTable, read_link
-        from linkwright.urdf.explain import UrdfReport
+        from linkwright.urdf.report import UrdfReport
 
         findings = UrdfReport()
         table = MaterialTable(findings)

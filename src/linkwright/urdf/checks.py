@@ -13,9 +13,9 @@ from linkwright.diagnostics import phrase
 from linkwright.geometry.single import Pose, Quaternion, rpy_from_quaternion
 from linkwright.geometry.vectors import Vector3
 from linkwright.schema.report import UNREADABLE
-from linkwright.urdf.explain import owner_name
 from linkwright.urdf.findings import Findings
 from linkwright.urdf.model import Dynamics, Geometry, Limit
+from linkwright.urdf.report import owner_name
 from linkwright.urdf.values import degrees_hint, looks_like_degrees, number, numbers
 from linkwright.xmltree import Element
 

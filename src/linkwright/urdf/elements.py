@@ -18,8 +18,8 @@ from linkwright.diagnostics import Diagnostic, Note, Phrase, did_you_mean, joine
 from linkwright.schema.reading import reader_of
 from linkwright.schema.report import UNREADABLE
 from linkwright.schema.rules import ElementRule, Version
-from linkwright.urdf.explain import BLACK, UrdfReport, owner_name
 from linkwright.urdf.model import Joint, Limit, Link, Material, Visual
+from linkwright.urdf.report import BLACK, UrdfReport, owner_name
 from linkwright.urdf.schema import AXIS, COLLISION, INERTIAL, JOINT, LIMIT, LINK, MATERIAL, VISUAL
 from linkwright.urdf.values import degrees_hint, looks_like_degree_limits, looks_like_degrees
 from linkwright.xmltree import Element

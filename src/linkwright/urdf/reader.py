@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from linkwright.diagnostics import Diagnostic, did_you_mean, joined, phrase
 from linkwright.schema.rules import Version
 from linkwright.urdf.elements import MaterialTable, read_joint, read_link
-from linkwright.urdf.explain import UrdfReport
 from linkwright.urdf.model import Joint, Link, Robot
+from linkwright.urdf.report import UrdfReport
 from linkwright.urdf.schema import NEWEST_VERSION
 from linkwright.urdf.tree import find_root
 from linkwright.xmltree import Document, Element

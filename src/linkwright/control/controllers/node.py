@@ -46,5 +46,5 @@ class _Call:
         self._call = call
 
     def publish(self, message: None) -> None:
-        """Do it."""
+        """Call what is to be done; there is nothing to publish."""
         self._call()

@@ -90,7 +90,7 @@ class TricycleController(Controller[Parameters]):
         return [f"{said.traction_joint_name}/{VELOCITY}", f"{said.steering_joint_name}/{POSITION}"]
 
     def state_interfaces(self) -> InterfaceNames:
-        """The same."""
+        """What is commanded: the velocity of the wheel, and its angle."""
         return self.command_interfaces()
 
     def on_configure(self) -> None:

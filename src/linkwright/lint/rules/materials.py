@@ -13,7 +13,7 @@ from linkwright.lint.rules.geometry import shapes_of
 from linkwright.lint.subject import Subject
 from linkwright.urdf import Link, Material, Mesh, Visual
 from linkwright.urdf.elements import read_material
-from linkwright.urdf.explain import UrdfReport
+from linkwright.urdf.report import UrdfReport
 from linkwright.xmltree import Element
 
 _UNSEEN = re.compile(r"invisib|transparen|hidden|unseen|clear|none|null|empty|dummy", re.IGNORECASE)

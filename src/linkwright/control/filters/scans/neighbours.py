@@ -35,7 +35,6 @@ class ScanShadowsFilter(ScanFilter):
             raise LinkwrightError(Diagnostic("NODE433", message))
 
     def apply(self, scan: Scan, lookup: Lookup) -> Scan:
-        """See the class."""
         ranges = scan.ranges.astype(np.float64)
         edges = self._edges(ranges, scan.angle_increment)
         for shift in range(-self.neighbors, self.neighbors + 1):
@@ -81,7 +80,6 @@ class SpeckleFilter(ScanFilter):
             raise LinkwrightError(Diagnostic("NODE433", message))
 
     def apply(self, scan: Scan, lookup: Lookup) -> Scan | None:
-        """See the class."""
         ranges, window = scan.ranges.astype(np.float64), self.filter_window
         if len(ranges) <= window + 1:
             return None

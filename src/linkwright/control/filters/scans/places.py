@@ -24,7 +24,6 @@ class AngularBoundsFilter(ScanFilter):
     upper_angle: float = 0.0
 
     def apply(self, scan: Scan, lookup: Lookup) -> Scan | None:
-        """See the class."""
         angles = scan.angles
         inside = np.flatnonzero((angles >= self.lower_angle) & (angles <= self.upper_angle))
         if not len(inside):
@@ -47,7 +46,6 @@ class AngularBoundsInPlaceFilter(ScanFilter):
     upper_angle: float = 0.0
 
     def apply(self, scan: Scan, lookup: Lookup) -> Scan:
-        """See the class."""
         angles = scan.angles
         return _beyond(scan, (angles > self.lower_angle) & (angles < self.upper_angle))
 
@@ -64,7 +62,6 @@ class SectorFilter(ScanFilter):
     invert: bool = False
 
     def apply(self, scan: Scan, lookup: Lookup) -> Scan:
-        """See the class."""
         width, offset = self.angle_max - self.angle_min, scan.angles - self.angle_min
         if width < 0.0:
             width += tau
@@ -87,7 +84,6 @@ class BoxFilter(ScanFilter):
     invert: bool = False
 
     def apply(self, scan: Scan, lookup: Lookup) -> Scan | None:
-        """See the class."""
         points = scan.points(self.box_frame, lookup)
         if points is None:
             return None
@@ -103,7 +99,6 @@ class FootprintFilter(ScanFilter):
     inscribed_radius: float
 
     def apply(self, scan: Scan, lookup: Lookup) -> Scan | None:
-        """See the class."""
         points = scan.points("base_link", lookup)
         if points is None:
             return None
@@ -131,7 +126,6 @@ class PolygonFilter(ScanFilter):
         self._corners = corners + np.sign(corners) * self.polygon_padding
 
     def apply(self, scan: Scan, lookup: Lookup) -> Scan | None:
-        """See the class."""
         points = scan.points(self.polygon_frame, lookup)
         if points is None:
             return None

@@ -25,7 +25,6 @@ class RangeFilter(ScanFilter):
     upper_replacement_value: float = nan
 
     def apply(self, scan: Scan, lookup: Lookup) -> Scan:
-        """See the class."""
         lower, upper = self.lower_threshold, self.upper_threshold
         if self.use_message_range_limits:
             lower, upper = scan.range_min, scan.range_max
@@ -47,7 +46,6 @@ class IntensityFilter(ScanFilter):
     filter_override_intensity: bool = False
 
     def apply(self, scan: Scan, lookup: Lookup) -> Scan:
-        """See the class."""
         count = len(scan.intensities)
         outside = (scan.intensities <= self.lower_threshold) | (scan.intensities >= self.upper_threshold)
         taken = outside != self.invert
@@ -66,7 +64,6 @@ class InterpolationFilter(ScanFilter):
     """
 
     def apply(self, scan: Scan, lookup: Lookup) -> Scan:
-        """See the class."""
         far = scan.range_max - 0.01
         valid = (scan.ranges > scan.range_min) & (scan.ranges < scan.range_max)
         places = np.arange(len(valid))
@@ -85,7 +82,6 @@ class MaskFilter(ScanFilter):
     masks: Mapping[str, Any]
 
     def apply(self, scan: Scan, lookup: Lookup) -> Scan:
-        """See the class."""
         places = [int(place) for place in self.masks.get(scan.frame, ()) if 0 <= int(place) < len(scan.ranges)]
         scan.ranges[places] = nan
         return scan
@@ -105,7 +101,6 @@ class ArrayFilter(ScanFilter):
         self._intensities = _windows(self.intensity_filter_chain)
 
     def apply(self, scan: Scan, lookup: Lookup) -> Scan:
-        """See the class."""
         for window in self._ranges:
             scan.ranges = window.add(scan.ranges)
         for window in self._intensities:
