@@ -239,7 +239,7 @@ async def test_the_type_is_that_of_who_listens(stage, start):
     assert pilot.velocities[0].header.frame_id == "base_link"
 
 
-async def test_a_joystick_nobody_speaks_for_stops_the_robot(stage, start):
+async def test_a_joystick_nobody_speaks_for_stops_the_robot(stage, start, said):
     pilot = Pilot(stage)
     start(TeleopTwistJoy)
     await pilot.hold(AXES, 5)
@@ -247,6 +247,7 @@ async def test_a_joystick_nobody_speaks_for_stops_the_robot(stage, start):
     pilot.node.destroy_node()
     await stage.clock.advance(1.0)
     assert [each.linear.x for each in pilot.velocities] == [0.0]
+    assert said("WARN") == ["nobody publishes '/joy' any more: the robot is stopped"]
 
 
 async def test_its_end_stops_the_robot(stage):

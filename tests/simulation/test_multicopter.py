@@ -99,6 +99,21 @@ async def test_it_stands_until_it_is_told_rises_hovers_and_flies_ahead() -> None
         assert warnings(log) == []
 
 
+async def test_its_rotors_take_their_speeds_by_number_from_a_topic_where_nothing_flies_it() -> None:
+    async with served(GROUND, quadcopter()) as (server, graph, log):
+        kind = get_message("actuator_msgs/msg/Actuators")
+        driver = graph.create_node("driver").create_publisher(kind, "/X3/command/motor_speed", 10)
+        hovering = (MASS * 9.8 / 4 / FORCE) ** 0.5
+        driver.publish(kind(velocity=[1.1 * hovering] * 4))
+        await advance(server, graph, 1.0)
+        assert velocity(server)[2] == pytest.approx(0.21 * 9.8, rel=0.15)
+        driver.publish(kind(velocity=[float("nan"), 0.0]))  # no speed, nothing, and two that are not told of
+        await advance(server, graph, 0.5)
+        motors = {each.parameters.actuator_number: each for each in server.plugins("x3") if hasattr(each, "speed")}
+        assert [motors[number].speed > 1.0 for number in range(4)] == [True, False, True, True]
+        assert warnings(log) == []
+
+
 async def test_it_turns_and_flies_in_its_own_axes() -> None:
     async with served(GROUND, quadcopter()) as (server, graph, _):
         driver = graph.create_node("driver").create_publisher(get_message("geometry_msgs/msg/Twist"), "/X3/cmd_vel", 10)

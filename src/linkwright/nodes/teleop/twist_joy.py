@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from linkwright.diagnostics import phrase
 from linkwright.graph import Clock, ClockType, EndpointKind, Graph, Node, ParameterType
 from linkwright.messages import get_message
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, starting
@@ -126,6 +127,9 @@ class TeleopTwistJoy(SingleNode):
             each.name == self._joy and each.kind is EndpointKind.PUBLISHER for each in self._node.graph.endpoints()
         ):
             self._stop()
+            self._node.get_logger().warning(
+                phrase("nobody publishes '{topic}' any more: the robot is stopped", topic=self._joy)
+            )
 
 
 def _axis(node: Node, kind: str, name: str) -> _Axis:

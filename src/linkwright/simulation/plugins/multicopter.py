@@ -10,7 +10,7 @@ quadrotor UAV on SE(3)", 2010.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import exp, hypot, inf
+from math import exp, hypot, inf, isfinite
 from typing import Any
 
 import numpy as np
@@ -42,6 +42,7 @@ class MotorParameters:
     turning_direction: str = parameter("ccw", aliases=("turningDirection",))
     motor_type: str = parameter("velocity", aliases=("motorType",))
     actuator_number: int = parameter(0, aliases=("motorNumber",))
+    command_topic: str = parameter("command/motor_speed", aliases=("commandSubTopic",))
     max_rot_velocity: float = parameter(838.0, aliases=("maxRotVelocity",))
     motor_constant: float = parameter(8.54858e-06, aliases=("motorConstant",))
     moment_constant: float = parameter(0.016, aliases=("momentConstant",))
@@ -53,7 +54,9 @@ class MotorParameters:
 
 
 class GzMulticopterMotor(SimulatedPlugin[MotorParameters]):
-    """A rotor; it turns as fast as a controller of its model says, with the delay of a motor.
+    """A rotor; it turns as fast as a controller of its model or a topic says, with the delay of a motor.
+
+    The topic has the speeds of all rotors, in rad/s; where a controller flies the model, that one is obeyed.
 
     Attributes:
         wanted: how fast it is to turn, in rad/s.
@@ -61,11 +64,11 @@ class GzMulticopterMotor(SimulatedPlugin[MotorParameters]):
     """
 
     PARAMETERS = MotorParameters
-    IGNORED = ("commandSubTopic", "motorSpeedPubTopic")
+    IGNORED = ("motorSpeedPubTopic",)
     CARRIED = ("wanted", "speed")
 
     def start(self) -> None:
-        """Find the rotor.
+        """Find the rotor, and listen.
 
         Raises:
             LinkwrightError: SIM133, SIM134 there is no such link or joint; SIM160 the motor is of another type.
@@ -82,11 +85,19 @@ class GzMulticopterMotor(SimulatedPlugin[MotorParameters]):
         self._spin = self.simulation.add_velocity_motor(joint, _SPIN_GAIN, inf)
         self.simulation.keep_awake(self._link)
         self.reset()
+        namespace = _text(self.place.element, "robotNamespace").strip("/") or self.place.path
+        self.node.subscribe("actuator_msgs/msg/Actuators", f"/{namespace}/{said.command_topic}", self._told)
         self.every(0.0, self._pull)
 
     def reset(self) -> None:
         """Stand still."""
         self.wanted = self.speed = 0.0
+
+    def _told(self, actuators: Any) -> None:
+        number = self.parameters.actuator_number
+        speeds = actuators.velocity
+        if number < len(speeds) and isfinite(speeds[number]):
+            self.wanted = float(speeds[number])
 
     def _pull(self) -> None:
         said, simulation = self.parameters, self.simulation
