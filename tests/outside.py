@@ -19,6 +19,9 @@ class Outside(Transport):
         self.publishers: list[EndpointInfo] = []
         graph.attach(self)
 
+    def look_around(self) -> None:
+        pass
+
     def remote_nodes(self) -> Sequence[NodeIdentity]:
         return list(dict.fromkeys(each.node for each in self.publishers if each.node is not None))
 

@@ -27,6 +27,9 @@ class Outside(Transport):
     def __init__(self, *endpoints: EndpointInfo) -> None:
         self.endpoints = list(endpoints)
 
+    def look_around(self) -> None:
+        pass
+
     def remote_nodes(self) -> list[NodeIdentity]:
         return list({each.node for each in self.endpoints if each.node is not None})
 

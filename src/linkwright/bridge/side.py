@@ -73,6 +73,7 @@ class Side:
     def watch(self, changed: Callable[[], None]) -> None:
         """Have something called, from any thread, when something comes or goes."""
         self._transport.watch(changed)
+        self._transport.look_around()
 
     def look(self) -> None:
         """Find out what there is now."""

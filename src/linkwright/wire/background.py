@@ -192,6 +192,7 @@ class BackgroundTransport(ABC):
         deadline = time.monotonic() + timeout
         if not self.wait_until_ready(timeout):
             return False
+        self.look_around()
         while time.monotonic() < deadline and not self._closed:
             if self._has_settled(time.monotonic() - max(self._outside.changed_at, self._joined_at)):
                 return True
@@ -241,6 +242,9 @@ class BackgroundTransport(ABC):
     def close_client(self, client: Client[Any, Any]) -> None:
         """Stop mirroring a client."""
         self._mirror(lambda engine: engine.close_endpoint(client))
+
+    def look_around(self) -> None:  # noqa: B027 - nothing is to be done where all is discovered anyhow
+        """Find out what there is outside, for who asks next; only where that is not done all the time."""
 
     def remote_nodes(self) -> Sequence[NodeIdentity]:
         """The nodes of other processes, as far as discovery has come."""

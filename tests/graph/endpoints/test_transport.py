@@ -23,6 +23,7 @@ class FakeTransport:
         self.open = []
         self.nodes, self.endpoints = [], []
         self.closed = False
+        self.looked = 0
         self.tell = None
         self.lose = None
 
@@ -45,6 +46,9 @@ class FakeTransport:
 
     open_publisher = open_subscription = open_service = open_client = _open
     close_publisher = close_subscription = close_service = close_client = _close
+
+    def look_around(self):
+        self.looked += 1
 
     def remote_nodes(self):
         return self.nodes
@@ -325,6 +329,14 @@ async def test_queries_tell_of_both_sides(graph, transport):
     assert theirs.endpoint_type.name == "PUBLISHER"
     with pytest.raises(RuntimeError, match="'nobody' in namespace '/'"):
         node.get_publisher_names_and_types_by_node("nobody", "/")
+
+
+async def test_a_transport_learns_that_somebody_asks(graph, transport):
+    graph.create_node("ours").create_publisher(String, "chatter", 10)
+    graph.attach(transport)
+    assert not transport.looked
+    graph.count_publishers("/chatter")
+    assert transport.looked == 1
 
 
 async def test_what_is_waited_for_comes_from_outside(graph, transport):

@@ -1,6 +1,9 @@
 from __future__ import annotations
 
+import os
 import socket
+import subprocess
+import sys
 from collections.abc import Callable, Iterator
 from importlib.util import find_spec
 
@@ -10,6 +13,8 @@ from linkwright.wire.zenoh import ZenohTransport, join
 from linkwright.wire.zenoh.settings import ATTEMPTS, OVERRIDES, ROUTER_FILE, SESSION_FILE
 from tests.waiting import SECONDS
 from tests.wire.conftest import Process
+
+ROUTER = [sys.executable, "-m", "linkwright.node_program", "rmw_zenoh_cpp", "rmw_zenohd"]
 
 collect_ignore_glob = [] if find_spec("zenoh") else ["test_*.py"]
 
@@ -29,6 +34,31 @@ def zenoh_variables(monkeypatch: pytest.MonkeyPatch, domain: int, router_port: i
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setenv("RMW_IMPLEMENTATION", "rmw_zenoh_cpp")
     monkeypatch.setenv(OVERRIDES, f'connect/endpoints=["tcp/localhost:{router_port}"]')
+
+
+@pytest.fixture
+def start_router(router_port) -> Iterator[Callable[[], subprocess.Popen[str]]]:
+    """Starts a router at the port of the test; it has said that it is one when this returns."""
+    started: list[subprocess.Popen[str]] = []
+
+    def start() -> subprocess.Popen[str]:
+        settings = f'listen/endpoints=["tcp/localhost:{router_port}"];connect/endpoints=[]'
+        router = subprocess.Popen(
+            ROUTER,
+            env={**os.environ, OVERRIDES: settings},
+            stderr=subprocess.STDOUT,
+            stdout=subprocess.PIPE,
+            text=True,
+        )
+        started.append(router)
+        assert router.stdout is not None
+        assert f"Zenoh router at tcp/localhost:{router_port}" in router.stdout.readline()
+        return router
+
+    yield start
+    for router in started:
+        router.kill()
+        router.communicate()
 
 
 class ZenohProcess(Process):

@@ -5,41 +5,16 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
 import pytest
 
 from linkwright.messages import String, get_interface
 from linkwright.wire.zenoh.settings import ATTEMPTS, OVERRIDES
 from tests.wire.test_topics import EVERYTHING, LASTING
+from tests.wire.zenoh.conftest import ROUTER
 
 AddTwoInts = get_interface("example_interfaces/srv/AddTwoInts")
-COMMAND = [sys.executable, "-m", "linkwright.node_program", "rmw_zenoh_cpp", "rmw_zenohd"]
-
-
-@pytest.fixture
-def start_router(router_port) -> Iterator[Callable[[], subprocess.Popen[str]]]:
-    """Starts a router at the port of the test; it has said that it is one when this returns."""
-    started: list[subprocess.Popen[str]] = []
-
-    def start() -> subprocess.Popen[str]:
-        settings = f'listen/endpoints=["tcp/localhost:{router_port}"];connect/endpoints=[]'
-        router = subprocess.Popen(
-            COMMAND,
-            env={**os.environ, OVERRIDES: settings},
-            stderr=subprocess.STDOUT,
-            stdout=subprocess.PIPE,
-            text=True,
-        )
-        started.append(router)
-        assert router.stdout is not None
-        assert f"Zenoh router at tcp/localhost:{router_port}" in router.stdout.readline()
-        return router
-
-    yield start
-    for router in started:
-        router.kill()
-        router.communicate()
 
 
 @pytest.fixture
@@ -153,7 +128,7 @@ def test_a_second_router_says_why_it_cannot_be_one(start_router, router_port):
     start_router()
     settings = f'listen/endpoints=["tcp/localhost:{router_port}"]'
     second = subprocess.run(
-        COMMAND, check=False, env={**os.environ, OVERRIDES: settings}, capture_output=True, text=True, timeout=60
+        ROUTER, check=False, env={**os.environ, OVERRIDES: settings}, capture_output=True, text=True, timeout=60
     )
     assert second.returncode == 1
     assert "error[DDS112]: a session of Zenoh cannot be opened" in second.stderr
@@ -166,7 +141,7 @@ def test_a_second_router_says_why_it_cannot_be_one(start_router, router_port):
 )
 def test_a_setting_that_is_refused_is_told_with_its_name(monkeypatch, settings, said):
     result = subprocess.run(
-        COMMAND, check=False, env={**os.environ, OVERRIDES: settings}, capture_output=True, text=True, timeout=60
+        ROUTER, check=False, env={**os.environ, OVERRIDES: settings}, capture_output=True, text=True, timeout=60
     )
     assert result.returncode == 1
     assert f"error[DDS111]: {said}" in result.stderr

@@ -57,8 +57,18 @@ class Transport(Protocol):
     def close_client(self, client: Client[Any, Any]) -> None:
         """Stop mirroring a client."""
 
+    def look_around(self) -> None:
+        """Find out what there is outside; called by who is about to ask.
+
+        A transport need not know before. It may block the first time, for a few seconds at most; from then on it
+        discovers all there is.
+        """
+
     def remote_nodes(self) -> Sequence[NodeIdentity]:
-        """The nodes of other processes, as far as discovery has come."""
+        """The nodes of other processes, as far as discovery has come.
+
+        Those that share a name with a node of this process are among them, whoever asked before.
+        """
 
     def remote_endpoints(self) -> Sequence[EndpointInfo]:
         """The endpoints of other processes, as far as discovery has come.

@@ -37,7 +37,10 @@ class GraphQueries:
 
     def identities(self) -> list[NodeIdentity]:
         """The nodes of this process and, as far as discovery has come, of others."""
-        outside = self._transport.remote_nodes() if self._transport is not None else ()
+        outside: Sequence[NodeIdentity] = ()
+        if self._transport is not None:
+            self._transport.look_around()
+            outside = self._transport.remote_nodes()
         return [*(node.identity for node in tuple(self._nodes)), *outside]
 
     def endpoints(self) -> list[EndpointInfo]:
@@ -46,7 +49,10 @@ class GraphQueries:
 
     def remote_endpoints(self) -> Sequence[EndpointInfo]:
         """The endpoints of other processes, as far as discovery has come."""
-        return self._transport.remote_endpoints() if self._transport is not None else ()
+        if self._transport is None:
+            return ()
+        self._transport.look_around()
+        return self._transport.remote_endpoints()
 
     def node_names(self) -> list[str]:
         """Full names of the nodes of this process, sorted."""

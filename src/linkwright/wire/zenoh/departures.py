@@ -59,6 +59,11 @@ class Departures:
         """Have something called, in the thread of discovery, with each publisher that is lost."""
         self._watchers.append(lost)
 
+    @property
+    def is_watched(self) -> bool:
+        """Whether somebody is told of publishers that are lost."""
+        return bool(self._watchers)
+
     def is_ours(self, session: str) -> None:
         """Take note of a session of Linkwright's, which says when it leaves."""
         self._ours.add(session)

@@ -15,7 +15,6 @@ from collections.abc import Callable
 from typing import Any
 
 import zenoh
-from zenoh.handlers import Callback
 
 from linkwright.graph.endpoints.info import EndpointKind
 from linkwright.graph.log.logger import Logger
@@ -26,9 +25,10 @@ from linkwright.wire.background import Work, ends_by_error
 from linkwright.wire.type_names import dds_type
 from linkwright.wire.zenoh import qos_text, tokens
 from linkwright.wire.zenoh.departures import Departures
+from linkwright.wire.zenoh.interests import OURS, Interests
 from linkwright.wire.zenoh.remote import RemoteGraph
 from linkwright.wire.zenoh.services import IncomingService, OutsideServer
-from linkwright.wire.zenoh.session import open_session
+from linkwright.wire.zenoh.session import is_client, open_session
 from linkwright.wire.zenoh.settings import Settings
 from linkwright.wire.zenoh.tokens import Token
 
@@ -37,9 +37,6 @@ _CLOSING_TIME = 1.0
 
 _WORK_SPAN = 0.02
 """Seconds after which work on the own endpoints makes room for news from outside."""
-
-_OURS = "@linkwright"
-"""Sessions of Linkwright's have a token ``@linkwright/<domain>/<session>/here``, and ``left`` before they leave."""
 
 
 class Engine:
@@ -64,6 +61,7 @@ class Engine:
         self._departures = departures
         self._work = work
         self._logger = logger
+        self._is_client = is_client(settings)
         self._session = open_session(settings)
         self._session_id = str(self._session.zid())
         self._ids = itertools.count()
@@ -75,18 +73,17 @@ class Engine:
         self._wake = threading.Event()
         self._ended = threading.Event()
         self._is_stale = False
+        self._has_changed = False
+        self._follows = False
         self._thread = threading.Thread(target=self._run, name="linkwright-zenoh", daemon=True)
         self._here: Any = None
-        self._watching: tuple[Any, ...] = ()
+        self._interests = Interests(self._session, settings.domain_id, self._hear)
 
     def start(self) -> None:
         """Begin."""
-        liveliness, domain = self._session.liveliness(), self._settings.domain_id
-        handler: Any = Callback(self._hear, indirect=False)
-        self._here = liveliness.declare_token(self._own_token("here"))
-        self._watching = tuple(
-            liveliness.declare_subscriber(f"{root}/{domain}/**", handler, history=True) for root in (_OURS, tokens.ROOT)
-        )
+        self._here = self._session.liveliness().declare_token(self._own_token("here"))
+        if not self._is_client:
+            self._interests.add_all()
         self._thread.start()
 
     def wake(self) -> None:
@@ -113,8 +110,7 @@ class Engine:
             self._say_farewell()
         for mirrored in self._mirrored.values():
             mirrored.close()
-        for subscriber in self._watching:
-            subscriber.undeclare()
+        self._interests.close()
         self._session.close()
 
     def abandon(self) -> None:
@@ -134,6 +130,7 @@ class Engine:
         number = str(next(self._ids))
         token = Token(self._settings.domain_id, self._session_id, number, number, node)
         self._nodes.setdefault(node, []).append((number, self._session.liveliness().declare_token(token.key)))
+        self._interests.add(tokens.of_node(self._settings.domain_id, node))
 
     def remove_node(self, node: NodeIdentity) -> None:
         """Withdraw a node."""
@@ -141,6 +138,8 @@ class Engine:
         if announced:
             _, token = announced.pop()
             token.undeclare()
+            if self._interests.remove(tokens.of_node(self._settings.domain_id, node)):
+                self._remote.forget_nodes(node.full_name)
             if not announced:
                 del self._nodes[node]
 
@@ -190,11 +189,17 @@ class Engine:
         if mirrored is not None:
             mirrored.close()
             self._own_gids.discard(mirrored.token.gid)
+            kind = _OPPOSITE.get(mirrored.token.kind)
+            if kind is not None and self._interests.remove(tokens.of_others(mirrored.token, kind)):
+                self._remote.forget_endpoints(kind, mirrored.token.data_key)
 
     def _announce(self, endpoint: Any, mirrored: Any) -> None:
         """Have an endpoint known that can be reached by now."""
         self._mirrored[endpoint] = mirrored
         self._tokens[endpoint] = self._session.liveliness().declare_token(mirrored.token.key)
+        kind = _OPPOSITE.get(mirrored.token.kind)
+        if kind is not None:
+            self._interests.add(tokens.of_others(mirrored.token, kind))
         self._review(mirrored)
 
     def _token_of(self, endpoint: Any, kind: EndpointKind) -> Token:
@@ -227,6 +232,31 @@ class Engine:
             if kind is EndpointKind.SUBSCRIPTION and endpoint.raw:  # the bytes alone are wanted
                 return tokens.NO_HASH
             raise
+
+    def look_around(self, seconds: float, told: Callable[[], None]) -> None:
+        """Hear of all there is from now on.
+
+        Args:
+            seconds: after which who is there now has said so at the latest.
+            told: called then, from any thread.
+        """
+        self._interests.ask_all(seconds, told)
+        self._interests.add_all()
+
+    def note_news(self) -> None:
+        """Take note of what was heard."""
+        while self._news:
+            came, key = self._news.popleft()
+            self._has_changed = self._note(came=came, key=key) or self._has_changed
+        if self._departures.is_watched and (self._has_changed or not self._follows):
+            self._follows = True
+            for session in self._remote.publishing_sessions():
+                self._interests.follow(session)
+
+    @property
+    def runs_this(self) -> bool:
+        """Whether the calling thread is the engine's own."""
+        return threading.current_thread() is self._thread
 
     # --- news, from threads of Zenoh ---------------------------------------------------------------------------------
 
@@ -266,10 +296,8 @@ class Engine:
         self._logger.error("A part of the graph is not seen outside of this process: " + "".join(lines).rstrip())
 
     def _take_news(self) -> None:
-        changed = False
-        while self._news:
-            came, key = self._news.popleft()
-            changed = self._note(came=came, key=key) or changed
+        self.note_news()
+        changed, self._has_changed = self._has_changed, False
         if changed or self._is_stale:
             self._is_stale = False
             for mirrored in tuple(self._mirrored.values()):
@@ -279,7 +307,7 @@ class Engine:
 
     def _note(self, *, came: bool, key: str) -> bool:
         """Take note of a token; whether that changes what is outside."""
-        if key.startswith(_OURS):
+        if key.startswith(OURS):
             _, _, session, what = key.split("/")
             if came and what == "left":
                 self._departures.leaves(session)
@@ -290,7 +318,7 @@ class Engine:
         if token is None or token.session == self._session_id:
             return False
         if came:
-            return self._remote.came(key, token)
+            return not (self._is_client and self._remote.has_just_gone(key)) and self._remote.came(key, token)
         if self._remote.went(key) is None:
             return False
         self._departures.went(key, token)
@@ -328,7 +356,7 @@ class Engine:
         left.undeclare()
 
     def _own_token(self, what: str) -> str:
-        return f"{_OURS}/{self._settings.domain_id}/{self._session_id}/{what}"
+        return f"{OURS}/{self._settings.domain_id}/{self._session_id}/{what}"
 
 
 _OPPOSITE = {

@@ -5,11 +5,15 @@ from __future__ import annotations
 import time
 from collections import Counter
 from collections.abc import Callable
+from itertools import islice
 from threading import Lock
 
 from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
 from linkwright.graph.names.identity import NodeIdentity
 from linkwright.wire.zenoh.tokens import Token
+
+_GONE_FOR = 0.5
+"""Seconds for which a token stays gone; links are tried again after one second."""
 
 
 class RemoteGraph:
@@ -20,6 +24,7 @@ class RemoteGraph:
         self._tokens: dict[str, Token] = {}
         self._counts: Counter[tuple[EndpointKind, str]] = Counter()
         self._watchers: list[Callable[[], None]] = []
+        self._gone: dict[str, float] = {}
         self.changed_at = time.monotonic()
         """When something changed last, by the steady clock."""
 
@@ -35,13 +40,41 @@ class RemoteGraph:
                 self._counts[token.kind, token.data_key] += 1
         return True
 
+    def has_just_gone(self, key: str) -> bool:
+        """Whether news that a token is there is older than that it has gone, as far as can be told.
+
+        A session that asks anew for what it knows already is told of that in a task of its own, which the news of the
+        token's end may overtake. A token that comes back with a broken link takes longer.
+        """
+        return key in self._gone and time.monotonic() - self._gone[key] < _GONE_FOR
+
     def went(self, key: str) -> Token | None:
         """Remove a token; None when it was not known."""
+        now = time.monotonic()
+        for old in [each for each in islice(self._gone, 2) if now - self._gone[each] > _GONE_FOR]:
+            del self._gone[old]  # of those in order of their going two for each, so that few remain
+        self._gone.pop(key, None)
+        self._gone[key] = now
         with self._lock:
             token = self._tokens.pop(key, None)
             if token is not None and token.kind is not None:
                 self._counts[token.kind, token.data_key] -= 1
         return token
+
+    def forget_endpoints(self, kind: EndpointKind, data_key: str) -> None:
+        """Remove what nothing is heard of any more: the endpoints of a kind at a key."""
+        with self._lock:
+            gone = [key for key, each in self._tokens.items() if (each.kind, each.data_key) == (kind, data_key)]
+            for key in gone:
+                del self._tokens[key]
+            self._counts.pop((kind, data_key), None)
+
+    def forget_nodes(self, full_name: str) -> None:
+        """The same for the nodes of a name."""
+        with self._lock:
+            for key in [key for key, each in self._tokens.items() if each.kind is None]:
+                if self._tokens[key].node.full_name == full_name:
+                    del self._tokens[key]
 
     def announce(self) -> None:
         """Notify the watchers that something has changed."""
@@ -67,6 +100,11 @@ class RemoteGraph:
     def is_there(self, key: str) -> bool:
         """Whether there is a token."""
         return key in self._tokens
+
+    def publishing_sessions(self) -> set[str]:
+        """The sessions that publish something."""
+        with self._lock:
+            return {each.session for each in self._tokens.values() if each.kind is EndpointKind.PUBLISHER}
 
     def nodes(self) -> list[NodeIdentity]:
         """The nodes of other sessions."""

@@ -42,6 +42,15 @@ def open_with(config: zenoh.Config) -> zenoh.Session:
         ) from error
 
 
+def is_client(settings: Settings) -> bool:
+    """Whether settings make a client of a router.
+
+    Raises:
+        LinkwrightError: DDS111, the configuration is refused.
+    """
+    return bool(json.loads(configuration(settings).get_json("mode")) == "client")
+
+
 def listening_at(config: zenoh.Config) -> list[str]:
     """The addresses that a configuration listens at, where it is the same for all kinds of sessions."""
     addresses = json.loads(config.get_json("listen/endpoints"))

@@ -111,6 +111,17 @@ def data_key(domain_id: int, name: str, type_name: str, type_hash: str) -> str:
     return f"{domain_id}/{name.strip('/')}/{type_name}/{type_hash}"
 
 
+def of_node(domain_id: int, node: NodeIdentity) -> str:
+    """The key expression of the tokens that nodes of a name have."""
+    return f"{ROOT}/{domain_id}/*/*/*/{_NODE}/*/{_chunk(node.namespace)}/{node.name}"
+
+
+def of_others(token: Token, kind: EndpointKind) -> str:
+    """The key expression of the tokens of endpoints of another kind at the same key."""
+    about = (_chunk(token.name), _chunk(token.type_name), _chunk(token.type_hash))
+    return "/".join((ROOT, str(token.domain_id), "*/*/*", _MARKS[kind], "*/*/*", *about, "**"))
+
+
 def read(key: str) -> Token | None:
     """The token of a key expression; None when it is not written in ROS's way."""
     chunks = key.split("/")

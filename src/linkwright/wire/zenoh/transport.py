@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING
+from threading import Event, Lock
+from typing import TYPE_CHECKING, cast
 
 from linkwright.graph.log.logger import Logger
 from linkwright.wire.background import BackgroundTransport, Engine
@@ -16,6 +17,12 @@ if TYPE_CHECKING:
 
 SETTLED_AFTER = 0.4
 """Seconds without news after which discovery counts as complete, where another session is linked to this one."""
+
+_ANSWERED_WITHIN = 2.0
+"""Seconds within which the router says what there is; who asks for the first time waits for that."""
+
+_QUIET = 0.1
+"""Seconds without news after which the answer counts as whole."""
 
 _ALONE_AFTER = 1.4
 """The same where none is. Who is there is asked at once and again after a second."""
@@ -39,9 +46,41 @@ class ZenohTransport(BackgroundTransport):
         self._departures = Departures(self._remote)
         self._zenoh_engine: ZenohEngine | None = None
         self._linked_at = 0.0
+        self._looks = False
+        self._looking = Lock()
+        self._looked = Event()
         super().__init__(
             settings.domain_id, self._remote, self._departures, logger, only_looks=only_looks, must_join=must_join
         )
+
+    def look_around(self) -> None:
+        """Find out what there is outside: a client of a router is told only what its own endpoints need until then."""
+        engine = self._zenoh_engine
+        waits = engine is not None and self._decided.is_set() and not engine.runs_this
+        with self._looking:
+            looks, self._looks = self._looks, True
+        if looks:
+            if waits and not self._looked.is_set():
+                self._looked.wait(_ANSWERED_WITHIN)
+            return
+        told = Event()
+        self._do(lambda engine: cast("ZenohEngine", engine).look_around(_ANSWERED_WITHIN, told.set))
+        if waits:  # else what there is comes as news
+            self._wait_until_told(told)
+            self._do(self._note_news)
+            self._looked.wait(_ANSWERED_WITHIN)
+        self._looked.set()
+
+    def _wait_until_told(self, told: Event) -> None:
+        """Wait for the answer, and until nothing more comes, which now and then it does."""
+        told.wait(_ANSWERED_WITHIN)
+        begin = time.monotonic()
+        while time.monotonic() < min(begin + _ANSWERED_WITHIN, max(self._remote.changed_at, begin) + _QUIET):
+            time.sleep(_QUIET / 10)
+
+    def _note_news(self, engine: Engine) -> None:
+        cast("ZenohEngine", engine).note_news()
+        self._looked.set()
 
     def _make_engine(self) -> Engine:
         from linkwright.wire.zenoh.engine import Engine as ZenohEngine

@@ -1,0 +1,102 @@
+"""Which tokens a session hears of.
+
+Each one has been told of all by the router once it asks for all: in a hall of robots that is the square of their
+number. So a client of a router, as robots are, asks only for what the nodes and endpoints of its own have to do with,
+until somebody asks for the graph (`docs/decisions/0078-tokens-on-demand.md`).
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable
+from typing import Any
+
+import zenoh
+from zenoh.handlers import Callback
+
+from linkwright.wire.zenoh import tokens
+
+OURS = "@linkwright"
+"""Sessions of Linkwright's have a token ``@linkwright/<domain>/<session>/here``, and ``left`` before they leave."""
+
+
+class Interests:
+    """What a session hears of; used by one thread, after `__init__`.
+
+    Args:
+        session: the session.
+        domain_id: the ROS domain.
+        hear: called with each token that comes or goes, from threads of Zenoh.
+    """
+
+    def __init__(self, session: zenoh.Session, domain_id: int, hear: Callable[[zenoh.Sample], None]) -> None:
+        self._liveliness = session.liveliness()
+        self._hear = hear
+        self._all = f"{tokens.ROOT}/{domain_id}/**"
+        self._sessions = f"{OURS}/{domain_id}"
+        self._counts: Counter[str] = Counter()
+        self._declared: dict[str, Any] = {}
+        self._followed: set[str] = set()
+        self.in_all = False
+        """Whether all tokens of the domain are heard of."""
+
+    def add(self, key: str) -> None:
+        """Hear of the tokens of a key expression; as often as it is asked for."""
+        self._counts[key] += 1
+        if not self.in_all and self._counts[key] == 1:
+            self._declare(key)
+
+    def remove(self, key: str) -> bool:
+        """Undo `add`; whether nobody hears of these tokens any more."""
+        self._counts[key] -= 1
+        if self._counts[key]:
+            return False
+        del self._counts[key]
+        declared = self._declared.pop(key, None)
+        if declared is not None:
+            declared.undeclare()
+        return not self.in_all
+
+    def follow(self, session: str) -> None:
+        """Hear of all tokens of another session, by which it shows how it leaves."""
+        if self.in_all or session in self._followed:
+            return
+        self._followed.add(session)
+        self._declare(f"{self._sessions}/{session}/*")
+        self._declare(self._all.replace("**", f"{session}/**"))
+
+    def add_all(self) -> None:
+        """Hear of all tokens of the domain."""
+        if self.in_all:
+            return
+        self.in_all = True
+        before, self._declared = self._declared, {}
+        self._declare(f"{self._sessions}/**")
+        self._declare(self._all)
+        for declared in before.values():
+            declared.undeclare()
+
+    def ask_all(self, seconds: float, told: Callable[[], None]) -> None:
+        """Ask which tokens of the domain are there now; before `add_all`, after which Zenoh answers of what it has.
+
+        Args:
+            seconds: how long at most.
+            told: called from a thread of Zenoh when all have answered, or the time is over.
+        """
+
+        def take(reply: zenoh.Reply) -> None:
+            if reply.ok is not None:
+                self._hear(reply.ok)
+
+        handler: Any = Callback(take, told, indirect=False)
+        self._liveliness.get(self._all, handler, timeout=seconds)
+
+    def close(self) -> None:
+        """Hear of nothing any more."""
+        for declared in self._declared.values():
+            declared.undeclare()
+        self._declared.clear()
+
+    def _declare(self, key: str) -> None:
+        handler: Any = Callback(self._hear, indirect=False)
+        self._declared[key] = self._liveliness.declare_subscriber(key, handler, history=True)

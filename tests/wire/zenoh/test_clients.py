@@ -1,0 +1,138 @@
+"""Clients of a router: they are told of what their own endpoints need, and of all else when somebody asks."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import pytest
+import zenoh
+
+from linkwright.messages import String, get_interface
+from linkwright.wire.zenoh import remote, transport
+from linkwright.wire.zenoh.settings import OVERRIDES
+
+AddTwoInts = get_interface("example_interfaces/srv/AddTwoInts")
+Int32 = get_interface("std_msgs/msg/Int32")
+
+
+@pytest.fixture(autouse=True)
+def router(start_router, monkeypatch, router_port) -> None:
+    """A router, and nothing but clients of it."""
+    start_router()
+    monkeypatch.setenv(OVERRIDES, f'mode="client";connect/endpoints=["tcp/localhost:{router_port}"]')
+
+
+def known(process):
+    """The nodes that a process was told of, without asking for any."""
+    return sorted(node.name for node in process.transport.remote_nodes())
+
+
+def test_what_own_endpoints_need_is_known_and_nothing_else(processes):
+    talker, other = processes("talker"), processes("other")
+    publisher = talker.node.create_publisher(String, "chatter", 10)
+    got: list[str] = []
+    ears = [processes(f"ear{number}") for number in range(2)]
+    subscriptions = [
+        ear.node.create_subscription(String, "chatter", lambda message: got.append(message.data), 10) for ear in ears
+    ]
+    talker.spin_until(lambda: publisher.get_subscription_count() == 2)
+    for ear, subscription in zip(ears, subscriptions, strict=True):
+        ear.spin_until(lambda subscription=subscription: subscription.get_publisher_count() == 1)
+    publisher.publish(String(data="hej"))
+    for ear in ears:
+        ear.spin_until(lambda: got)
+        got.clear()
+    ears[0].node.destroy_subscription(subscriptions[0])
+    talker.spin_until(lambda: publisher.get_subscription_count() == 1)
+    assert [known(each) for each in (talker, other, *ears)] == [[], [], [], []]
+    assert other.transport.remote_endpoints() == []
+
+
+def test_the_first_question_is_answered_whole(processes, monkeypatch):
+    monkeypatch.setattr(transport, "_ANSWERED_WITHIN", 60.0)  # on a machine that is busy, too
+    monkeypatch.setattr(transport, "_QUIET", 1.0)
+    talker, asks = processes("talker"), processes("asks")
+    talker.node.create_publisher(String, "chatter", 10)
+    hears = talker.node.create_subscription(String, "said_late", print, 10)
+    late = processes("late")
+    late.node.create_publisher(String, "chatter", 10)
+    late.node.create_publisher(String, "said_late", 10)
+    talker.spin_until(lambda: hears.get_publisher_count() == 1)  # so the router knows of all
+    assert asks.node.count_publishers("chatter") == 2
+    assert sorted(asks.node.get_node_names()) == ["asks", "late", "talker"]
+    late.close()
+    asks.spin_until(lambda: asks.node.count_publishers("chatter") == 1)
+    assert sorted(asks.node.get_node_names()) == ["asks", "talker"]
+
+
+def test_a_subscription_that_is_made_again_counts_right(processes):
+    """What was heard of for its sake is forgotten with it."""
+    talker, ear = processes("talker"), processes("ear")
+    first = talker.node.create_publisher(String, "chatter", 10)
+    subscription = ear.node.create_subscription(String, "chatter", print, 10)
+    ear.spin_until(lambda: subscription.get_publisher_count() == 1)
+    ear.node.destroy_subscription(subscription)
+    talker.node.destroy_publisher(first)
+    talker.node.create_publisher(String, "chatter", 10)
+    talker.node.create_publisher(String, "chatter", 10)
+    again = ear.node.create_subscription(String, "chatter", print, 10)
+    ear.spin_until(lambda: again.get_publisher_count() == 2)
+
+
+def test_news_that_was_overtaken_is_not_believed_and_a_token_that_came_back_is(processes, monkeypatch):
+    """Zenoh tells of what it knows already in a task of its own, after news that it is gone."""
+    talker, ear = processes("talker"), processes("ear")
+    publisher = talker.node.create_publisher(String, "chatter", 10)
+    subscription = ear.node.create_subscription(String, "chatter", print, 10)
+    ear.spin_until(lambda: subscription.get_publisher_count() == 1)
+    (key,) = ear.transport._remote._tokens
+    monkeypatch.setattr(remote, "_GONE_FOR", 60.0)
+    talker.node.destroy_publisher(publisher)
+    ear.spin_until(lambda: subscription.get_publisher_count() == 0)
+    late = SimpleNamespace(kind=zenoh.SampleKind.PUT, key_expr=key)
+    ear.transport._zenoh_engine._hear(late)
+    talker.node.create_publisher(String, "chatter", 10)
+    ear.spin_until(lambda: subscription.get_publisher_count() > 0)
+    assert subscription.get_publisher_count() == 1
+    monkeypatch.setattr(remote, "_GONE_FOR", 0.0)
+    ear.transport._zenoh_engine._hear(late)
+    ear.spin_until(lambda: subscription.get_publisher_count() == 2)
+
+
+def test_services_are_ready_and_gone(processes):
+    server, asks = processes("server"), processes("asks")
+
+    def add(request, response):
+        response.sum = request.a + request.b
+        return response
+
+    service = server.node.create_service(AddTwoInts, "add", add)
+    client = asks.node.create_client(AddTwoInts, "add")
+    asks.spin_until(client.service_is_ready)
+    future = client.call_async(AddTwoInts.Request(a=1, b=2))
+    asks.spin_until(lambda: future.done() or server.executor.spin_once(timeout_sec=0.01) or future.done())
+    assert future.result().sum == 3
+    server.node.destroy_service(service)
+    asks.spin_until(lambda: not client.service_is_ready())
+
+
+def test_who_has_the_name_of_a_node_of_ours_is_told_of(processes):
+    ours = processes("robot")
+    processes("robot")
+    ours.spin_until(lambda: any("exact name '/robot'" in text for text in ours.warnings()))
+
+
+def test_a_publisher_that_was_killed_is_lost_and_one_that_left_is_not(processes, programs):
+    ours = processes("ours")
+    lost: list[str] = []
+    subscription = ours.node.create_subscription(Int32, "flood", print, 10)
+    subscription.watch_lost(lambda publisher: lost.append(publisher.node.name))
+    left = processes("left")
+    left.node.create_publisher(Int32, "flood", 10)
+    victim = programs("our_program", "victim")
+    ours.spin_until(lambda: subscription.get_publisher_count() == 2)
+    left.close()
+    ours.spin_until(lambda: subscription.get_publisher_count() == 1)
+    victim.kill()
+    ours.spin_until(lambda: lost)
+    assert lost == ["victim"]
