@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
+from PIL import Image
 
 from linkwright.cli import main
 from linkwright.descriptions import examine_world
@@ -139,3 +142,22 @@ def test_what_is_no_model_does_not_become_urdf(folder, capsys):
     assert "error[SDF180]" in capsys.readouterr().err
     assert main(["convert", "arm.xacro", "--to", "urdf"]) == 1
     assert "error[CLI322]" in capsys.readouterr().err
+
+
+def test_mjcf_has_the_mean_colours_of_images(tmp_path: Path) -> None:
+    corners = "v 0 -1 -1\nv 0 1 -1\nv 0 1 1\nv 0.1 -1 1\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+    (tmp_path / "quad.obj").write_text(corners + "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n")
+    mujoco = pytest.importorskip("mujoco")
+    image = Image.new("RGB", (4, 4), (255, 0, 0))
+    image.paste((0, 0, 255), (2, 0, 4, 4))
+    image.save(tmp_path / "halves.png")
+    material = "<diffuse>0.5 1 1 1</diffuse><pbr><metal><albedo_map>halves.png</albedo_map></metal></pbr>"
+    world = tmp_path / "panel.sdf"
+    world.write_text(
+        '<sdf version="1.9"><model name="m"><static>true</static><link name="l"><visual name="v"><geometry><mesh>'
+        f"<uri>quad.obj</uri></mesh></geometry><material>{material}</material></visual></link></model></sdf>"
+    )
+    assert main(["convert", str(world), "--to", "mjcf", "-o", str(tmp_path / "out" / "m.xml")]) == 0
+    made = mujoco.MjModel.from_xml_path(str(tmp_path / "out" / "m.xml"))
+    assert made.ntex == 0
+    assert made.geom_rgba[0].tolist() == pytest.approx([0.25, 0.0, 0.5, 1.0], abs=1e-3)

@@ -6,7 +6,7 @@ import argparse
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from linkwright.assignments import parse_assignments
 from linkwright.cli.model_arguments import add_values
@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from linkwright.packages import PackageFinder
     from linkwright.sdf.worlds import Sdf
 
+_UNSAID = [0.5, 0.5, 0.5, 1.0]
+"""The colour in MuJoCo of what has that of its material."""
 _FORMATS = ("sdf", "urdf", "mjcf")
 
 
@@ -108,13 +110,36 @@ def _mjcf(sdf: Sdf, finder: PackageFinder) -> tuple[str, Sequence[Diagnostic]]:
     world = sdf.worlds[0] if sdf.worlds else World(sdf.models[0].name if sdf.models else "", models=sdf.models)
     scene = Scene(world, MeshLibrary(ResourceFinder(finder)))
     try:
-        scene.spec.compile()
+        model = scene.spec.compile()
     except ValueError as error:
         reason = " ".join(str(error).split())
         raise LinkwrightError(
             Diagnostic("CLI321", phrase("MuJoCo refuses it: {reason}", reason=foreign(reason)))
         ) from None
+    _take_images_out(scene.spec, model)
     return scene.spec.to_xml(), scene.diagnostics
+
+
+def _take_images_out(spec: Any, model: Any) -> None:
+    """Give what wears an image its mean colour instead: MJCF has images in files of their own only."""
+    import numpy as np
+
+    from linkwright.simulation.rendering.rays import mean_colour
+
+    means: dict[str, Any] = {}
+    for material in spec.materials:
+        (texture,) = {int(each) for each in np.atleast_1d(model.mat_texid[model.material(material.name).id])} - {
+            -1
+        } or {-1}
+        if texture >= 0:
+            means[material.name] = np.array([*mean_colour(model, texture), 1.0])
+            material.rgba = material.rgba * means[material.name]
+            material.textures = [""] * len(material.textures)
+    for geom in spec.geoms:
+        if geom.material in means and list(geom.rgba) != _UNSAID:
+            geom.rgba = geom.rgba * means[geom.material]
+    for texture in list(spec.textures):
+        spec.delete(texture)
 
 
 _WRITERS: dict[str, Callable[[Sdf, PackageFinder], tuple[str | None, Sequence[Diagnostic]]]] = {

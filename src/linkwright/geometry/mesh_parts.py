@@ -160,6 +160,17 @@ def _rgb(color: Any) -> tuple[float, float, float]:
     return red, green, blue
 
 
+def read_png(path: Path) -> bytes | None:
+    """An image in a file as PNG; None where it is none, or Pillow is not installed."""
+    try:
+        from PIL import Image  # not above: an extra
+
+        with Image.open(path) as image:
+            return _png(image)
+    except (ModuleNotFoundError, OSError, ValueError, SyntaxError):
+        return None
+
+
 def _png(image: Any) -> bytes | None:
     if image is None:
         return None

@@ -6,6 +6,7 @@ from math import pi, tan
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from linkwright.geometry.single import IDENTITY
 from linkwright.sdf.cameras import Camera, Clip, Distortion, Intrinsics, Picture
@@ -113,6 +114,44 @@ def test_colours_are_those_of_the_things(make):
     assert red[1] == red[2] == 0
     assert green[1] > 50
     assert green[0] == green[2] == 0
+
+
+QUAD = """v 0 -1 -1\nv 0 1 -1\nv 0 1 1\nv 0 -1 1
+vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3\nf 1/1 3/3 2/2\nf 1/1 3/3 4/4\nf 1/1 4/4 3/3\n"""
+PANEL = """<model name="panel"><static>true</static><pose>2 0 0 0 0 0</pose><link name="link"><visual name="v">
+<geometry><mesh><uri>file://{folder}/quad.obj</uri></mesh></geometry><material><pbr><metal><{kind}_map>file://{folder}/{image}</{kind}_map>
+</metal></pbr></material></visual></link></model>"""
+
+
+@pytest.mark.parametrize("kind", ["albedo", "emissive"])
+def test_meshes_wear_the_images_of_their_materials(make, tmp_path, kind, request):
+    (tmp_path / "quad.obj").write_text(QUAD)
+    image = Image.new("RGB", (64, 64), (255, 0, 0))
+    image.paste((0, 0, 255), (32, 0, 64, 64))  # its right half, which is the left one as seen from here
+    image.save(tmp_path / "halves.png")
+    simulation = simulated(PANEL.format(folder=tmp_path, kind=kind, image="halves.png"))
+    assert not simulation.scene.diagnostics
+    colour = make(simulation).render(optics_of(CAMERA), IDENTITY, Wanted.COLOUR).colour.astype(int)
+    left, right = colour[60, 60], colour[60, 100]
+    assert left[1] == right[1] == 0
+    if request.node.callspec.params["make"] in ("embree", "mujoco"):  # rays: one colour a shape
+        assert left[0] == left[2] > 50
+        return
+    assert left[2] > 50
+    assert left[0] == 0
+    assert right[0] > 50
+    assert right[2] == 0
+    if kind == "emissive":
+        assert left[2] >= 250
+
+
+def test_an_image_that_is_not_there_is_told_once(tmp_path):
+    (tmp_path / "quad.obj").write_text(QUAD)
+    panel = PANEL.format(folder=tmp_path, kind="albedo", image="none.png")
+    simulation = simulated(panel, panel.replace('name="panel"', 'name="other"'))
+    (finding,) = simulation.scene.diagnostics
+    assert finding.code == "SIM112"
+    assert str(finding.message).startswith("an image is left out: ")
 
 
 @pytest.mark.parametrize("point", [(2.0, 0.5, 0.3), (2.0, -1.2, -0.6), (3.0, 2.0, 1.5)])

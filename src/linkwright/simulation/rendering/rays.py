@@ -17,6 +17,9 @@ from linkwright.simulation.rendering.optics import Optics
 from linkwright.simulation.rendering.renderer import Picture, Wanted, axes_of
 from linkwright.simulation.simulation import Simulation
 
+_UNSAID = (0.5, 0.5, 0.5, 1.0)
+"""The colour in MuJoCo of what has that of its material."""
+
 
 class RayRenderer:
     """Makes pictures by rays.
@@ -100,16 +103,17 @@ def geom_colours(model: Any) -> Any:
     colours = np.array(model.geom_rgba[:, :3], dtype=np.float64)
     for geom in np.nonzero(model.geom_matid >= 0)[0]:
         material = model.geom_matid[geom]
-        colours[geom] = model.mat_rgba[material, :3]
+        if (model.geom_rgba[geom] == _UNSAID).all():
+            colours[geom] = model.mat_rgba[material, :3]
         for texture in np.atleast_1d(model.mat_texid[material]):
             if texture >= 0:
-                colours[geom] *= _mean(model, int(texture))
+                colours[geom] *= mean_colour(model, int(texture))
                 break
     return colours.astype(np.float32)
 
 
-def _mean(model: Any, texture: int) -> Array:
-    """The mean colour of a texture."""
+def mean_colour(model: Any, texture: int) -> Array:
+    """The mean colour of a texture of a model of MuJoCo: red, green, blue from 0 to 1."""
     first, channels = model.tex_adr[texture], model.tex_nchannel[texture]
     count = model.tex_width[texture] * model.tex_height[texture] * channels
     mean: Array = model.tex_data[first : first + count].reshape(-1, channels).mean(axis=0) / 255

@@ -21,6 +21,7 @@ from linkwright.sdf.frames import Frames, pose_of, transform_of
 from linkwright.sdf.joints import Axis
 from linkwright.sdf.links import Collision, Inertia, Inertial, Link, Visual
 from linkwright.sdf.poses import RawPose
+from linkwright.sdf.values import Color
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.scene.couplings import THREAD
 from linkwright.simulation.scene.meshes import MeshLibrary
@@ -43,6 +44,9 @@ _LEAST_INERTIA = 1e-9
 _LEAST_MOMENT = 1e-12
 """In kg m2: MuJoCo takes a moment of inertia of less than 1e-14 for none."""
 _USUAL_INERTIAL = Inertial()
+_GREY: Color = (0.7, 0.7, 0.7, 1.0)
+_WHITE: Color = (1.0, 1.0, 1.0, 1.0)
+"""Of what wears an image, and says nothing of its colour."""
 _WATER = 1000.0
 """The density of what says nothing of its own, in kg/m3."""
 
@@ -165,9 +169,9 @@ class BodyWriter:
                 geom.group = VISUAL_GROUP
                 geom.contype = geom.conaffinity = 0
                 if visual.material is not None:
-                    geom.material = ""
-                if not geom.material:
-                    geom.rgba = _colour(visual)
+                    geom.material = self._meshes.worn(geom, visual)
+                if visual.material is not None or not geom.material:
+                    geom.rgba = _colour(visual, _WHITE if geom.material else _GREY)
 
     def add_collisions(self, body: Any, link: Link, frames: Frames, *, fixed: bool) -> None:
         """Add what touches of a link."""
@@ -225,9 +229,9 @@ def _worked_out(link: Link, frames: Frames) -> Inertial | None:
     return Inertial(whole.mass, RawPose(Pose((x, y, z))), Inertia(ixx, iyy, izz, ixy, ixz, iyz))
 
 
-def _colour(visual: Visual) -> list[float]:
+def _colour(visual: Visual, usual: Color) -> list[float]:
     material = visual.material
-    red, green, blue, alpha = (material.diffuse if material is not None else None) or (0.7, 0.7, 0.7, 1.0)
+    red, green, blue, alpha = (material.diffuse if material is not None else None) or usual
     return [min(max(each, 0.0), 1.0) for each in (red, green, blue, alpha * (1.0 - visual.transparency))]
 
 

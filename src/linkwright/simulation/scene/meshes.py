@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,11 +13,12 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, displa
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.decomposition import convex_pieces, thickened
 from linkwright.geometry.mesh_files import BadMeshError, beside, told_triangles
-from linkwright.geometry.mesh_parts import MeshPart, Triangles, read_parts
+from linkwright.geometry.mesh_parts import MeshPart, Triangles, read_parts, read_png
 from linkwright.geometry.meshes import read_mesh, unreadable
 from linkwright.geometry.polygon import triangulated
 from linkwright.geometry.single import Transform
 from linkwright.geometry.vectors import Vector3
+from linkwright.sdf.links import Visual
 from linkwright.sdf.resources import Missing, ResourceFinder
 from linkwright.sdf.shapes import Cone, Heightmap, Mesh, Polyline, Shape
 from linkwright.simulation.library import load_mujoco
@@ -53,6 +55,7 @@ class MeshLibrary:
         self._files: dict[tuple[str, Path], Path | None] = {}
         self._assets: dict[Hashable, list[str]] = {}
         self._told: set[str] = set()
+        self._mapped: set[str] = set()  # meshes of the specification with coordinates of images
 
     def look_in(self, finder: ResourceFinder) -> None:
         """Find meshes elsewhere from now on; those that were not there are looked for again."""
@@ -143,6 +146,7 @@ class MeshLibrary:
             mesh.userface = _flat(faces[:, ::-1] if np.prod(shape.scale) < 0 else faces, np.int32)
             if triangles.coordinates is not None:
                 mesh.usertexcoord = _flat(triangles.coordinates)
+                self._mapped.add(name)
             self._give_look(name, part)
             yield name
 
@@ -152,11 +156,48 @@ class MeshLibrary:
         material = self.spec.add_material(name=f"{mesh} look")
         material.rgba = [*part.own.color, 1.0]
         if part.own.image is not None and part.triangles.coordinates is not None:
-            mujoco = load_mujoco()
-            texture = self.spec.add_texture(name=material.name, type=mujoco.mjtTexture.mjTEXTURE_2D)
-            texture.file = f"{material.name}.png"
-            self.spec.assets = {**self.spec.assets, texture.file: part.own.image}
-            material.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = texture.name
+            self._give_image(material, part.own.image)
+
+    def _give_image(self, material: Any, image: bytes) -> None:
+        """Let a material of MuJoCo show an image, which is PNG."""
+        mujoco = load_mujoco()
+        texture = self.spec.add_texture(name=material.name, type=mujoco.mjtTexture.mjTEXTURE_2D)
+        texture.file = f"{material.name}.png"
+        self.spec.assets = {**self.spec.assets, texture.file: image}
+        material.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = texture.name
+
+    def worn(self, geom: Any, visual: Visual) -> str:
+        """The name of MuJoCo's material with the image that a visual says its mesh wears; empty for none.
+
+        An image of what glows stands for that of a colour which is not there.
+        """
+        workflow = (
+            visual.material and visual.material.pbr and (visual.material.pbr.metal or visual.material.pbr.specular)
+        )
+        if not workflow or geom.meshname not in self._mapped:
+            return ""
+        path = self._image(workflow.albedo_map or workflow.emissive_map, visual.element)
+        if path is None:
+            return ""
+        glows = not workflow.albedo_map
+        key = ("image", path, changed_at(path), glows)
+        if key not in self._assets:
+            self._assets[key] = []
+            image = read_png(path)
+            if image is not None:
+                material = self.spec.add_material(name=f"image {len(self.spec.materials)}", emission=float(glows))
+                self._give_image(material, image)
+                self._assets[key] = [material.name]
+        return "".join(self._assets[key])
+
+    def _image(self, uri: str, element: Element | None) -> Path | None:
+        source = element.source if element is not None else None
+        found = self._finder.file(uri, Path(source.name).parent if source is not None else Path()) if uri else None
+        if isinstance(found, Missing):
+            message = phrase("an image is left out: {reason}", reason=found.reason)
+            self._tell(Diagnostic("SIM112", message, severity=Severity.WARNING, hint=found.hint), element)
+            return None
+        return found
 
     def _parts(self, shape: Mesh, path: Path) -> list[MeshPart]:
         _bounded(path, told_triangles(path) or 0)
@@ -233,13 +274,16 @@ class MeshLibrary:
 
     def _warn(self, found: Diagnostic, element: Element | None) -> None:
         message = phrase("a shape is left out: {reason}", reason=found.message)
+        self._tell(Diagnostic(found.code, message, severity=Severity.WARNING, hint=found.hint), element)
+
+    def _tell(self, found: Diagnostic, element: Element | None) -> None:
+        """Say something of an element, the same thing once."""
+        if found.message in self._told:
+            return
+        self._told.add(found.message)
         span = element.span() if element is not None else None
         source = element.source if element is not None else None
-        if message not in self._told:
-            self._told.add(message)
-            self.diagnostics.append(
-                Diagnostic(found.code, message, severity=Severity.WARNING, span=span, source=source, hint=found.hint)
-            )
+        self.diagnostics.append(replace(found, span=span, source=source))
 
 
 def _bounded(path: Path, count: int) -> None:
