@@ -1,6 +1,6 @@
 """Findings about a user's input: where, what, why, how to mend it; and how they are printed."""
 
-from linkwright.diagnostics.diagnostic import Diagnostic, LinkwrightError, Note, Severity, has_errors
+from linkwright.diagnostics.diagnostic import Diagnostic, LinkwrightError, Note, Severity, has_errors, in_one_line
 from linkwright.diagnostics.extras import install_hint, missing_extra
 from linkwright.diagnostics.phrase import (
     Phrase,
@@ -31,6 +31,7 @@ __all__ = [
     "display_path",
     "foreign",
     "has_errors",
+    "in_one_line",
     "install_hint",
     "is_misspelt",
     "joined",

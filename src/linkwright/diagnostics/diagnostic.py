@@ -69,6 +69,11 @@ class LinkwrightError(Exception):
         )
 
 
+def in_one_line(diagnostics: Iterable[Diagnostic]) -> Phrase:
+    """The messages of several diagnostics in a row."""
+    return joined((each.message for each in diagnostics), "; ")
+
+
 def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
     """Whether any of them is an error."""
     return any(diagnostic.severity is Severity.ERROR for diagnostic in diagnostics)

@@ -6,6 +6,7 @@ import ast
 from pathlib import Path
 
 import linkwright.viewer
+from linkwright.diagnostics import Diagnostic, phrase
 from tests.viewer.displays.test_topic_display import config
 from tests.viewer.scene import page, world
 
@@ -60,3 +61,12 @@ async def test_each_page_reads_statuses_in_its_language():
             for client, language in ((chinese, "zh"), (other, "en")):
                 told = await client.until("display_status", display=display["id"], level="error")
                 assert [(row["name"], row["text"]) for row in told["status"]] == [("Topic", wrong[language])]
+
+
+async def test_findings_are_told_in_the_language_of_each_page_too():
+    async with world(config()) as w, page(w.viewer, "&language=zh") as chinese, page(w.viewer) as other:
+        await chinese.opened()
+        await other.opened()
+        w.viewer.show_diagnostics([Diagnostic("URDF101", phrase("URDF is empty"))])
+        texts = [(await client.until("diagnostics"))["items"][0]["message"] for client in (chinese, other)]
+        assert texts == ["URDF 是空的", "URDF is empty"]

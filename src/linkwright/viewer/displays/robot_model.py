@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Literal
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, Severity, joined, phrase, translated
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, Severity, joined, phrase
 from linkwright.urdf import Joint, Link, Robot
 from linkwright.viewer.config.rviz_config import DisplayConfig
 from linkwright.viewer.config.schema import Path, PropertySpec, Schema, alpha
@@ -258,7 +258,7 @@ class RobotModelDisplay(ViewerDisplay):
         try:
             provenance = self.context.library.provenance(self._text, element)
         except LinkwrightError as error:
-            return LinkProvenance(self.id, link, [each.message for each in translated(error.diagnostics)])
+            return LinkProvenance(self.id, link, [each.message for each in error.diagnostics])
         return None if provenance is None else LinkProvenance(self.id, link, provenance_lines(provenance))
 
     # --- descriptions ------------------------------------------------------------------------------------------

@@ -8,7 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, TypeVar
 
-from linkwright.diagnostics import Diagnostic, translated
+from linkwright.diagnostics import Diagnostic
 from linkwright.packages import PackageFinder
 from linkwright.urdf import Robot
 from linkwright.viewer.displays.robot_model import RobotModelDisplay
@@ -230,8 +230,7 @@ class DiagnosticsFeature(PageFeature):
 
 
 def item_of(diagnostic: Diagnostic) -> DiagnosticItem:
-    """A diagnostic as the page shows it, in the language of the terminal, with the line of source it points to."""
-    (diagnostic,) = translated([diagnostic])
+    """A diagnostic as the page shows it, with the line of source it points to."""
     span, source = diagnostic.span, diagnostic.source
     excerpt = source.line(span.line) if span and source and source.name == span.file else ""
     return DiagnosticItem(

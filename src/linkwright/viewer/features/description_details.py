@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from linkwright import descriptions
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, SourceText, translated
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, SourceText
 from linkwright.geometry.single import quaternion_of, rpy_from_quaternion
 from linkwright.lint import Finding, Settings, Subject
 from linkwright.lint.registry import all_rules
@@ -246,7 +246,8 @@ def implausible(robot: Robot, finder: PackageFinder) -> list[InertiaFinding]:
     owners = _owners(robot)
     return [
         InertiaFinding(link, each.code, each.message, each.hint or "")
-        for each in translated([each for each in kept if each.severity is not Severity.INFO])
+        for each in kept
+        if each.severity is not Severity.INFO
         if (link := _link_of(each, owners)) is not None
     ]
 

@@ -16,8 +16,7 @@ from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, display_path, foreign, phrase
-from linkwright.diagnostics.translation import translated
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, display_path, foreign, in_one_line, phrase
 from linkwright.graph import Duration, JumpThreshold, Node
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
 from linkwright.viewer.protocol.message import ServerMessage
@@ -255,7 +254,7 @@ class RecordingFeature(PageFeature):
         """Tell pages and the terminal what is wrong."""
         for each in diagnostics:
             self.context.report(each)
-        self._problem = "; ".join(each.message for each in translated(diagnostics))
+        self._problem = in_one_line(diagnostics)
 
     def _tell(self) -> None:
         self.context.pages.publish(self._state())

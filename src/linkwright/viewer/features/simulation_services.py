@@ -7,7 +7,6 @@ from contextlib import suppress
 from typing import Any
 
 from linkwright.diagnostics import Phrase, phrase
-from linkwright.diagnostics.translation import localized
 from linkwright.graph import Client
 from linkwright.messages import get_service
 from linkwright.viewer.context import ViewerContext
@@ -75,5 +74,5 @@ class SimulationServices:
 
 
 def refuse(page: Page, text: str | Phrase) -> None:
-    """Tell a page why something was not done, in the language of the terminal."""
-    page.send(SimulationNotice(localized(text)))
+    """Tell a page why something was not done."""
+    page.send(SimulationNotice(text))

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Iterable
 from math import isfinite
 from typing import TYPE_CHECKING, ClassVar
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError
-from linkwright.diagnostics.translation import translated
+from linkwright.diagnostics import LinkwrightError, in_one_line
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
 from linkwright.viewer.live_history import LiveHistory
 from linkwright.viewer.protocol.message import ServerMessage
@@ -58,7 +56,7 @@ class TimelineFeature(PageFeature):
         super().__init__(viewer)
         self._recorded: Playback | None = None
         self._timeline: Timeline | None = None
-        self._problem = ""
+        self._problem: str = ""
         self._begun = False
         self._timer: asyncio.TimerHandle | None = None
         self._telling: asyncio.TimerHandle | None = None
@@ -75,7 +73,7 @@ class TimelineFeature(PageFeature):
             self._live = None
         self._timeline = Timeline(bag.path.name, bag.start_ns / _SECOND, bag.end_ns / _SECOND, topics, live=False)
         if bag.findings:
-            self._problem = _text(bag.findings)
+            self._problem = in_one_line(bag.findings)
         self._recorded = playback
         playback.begin_anew = self._begin_anew
         playback.changed.append(self._changed)
@@ -92,7 +90,7 @@ class TimelineFeature(PageFeature):
 
     def failed(self, error: LinkwrightError) -> None:
         """The recording cannot be read on."""
-        self._problem = _text(error.diagnostics)
+        self._problem = in_one_line(error.diagnostics)
         for diagnostic in error.diagnostics:
             self.context.report(diagnostic)
 
@@ -201,7 +199,3 @@ class TimelineFeature(PageFeature):
         if self._live is not None and len(self.context.pages):
             self.context.pages.publish(self._kept(self._live))
             self._tell_kept_later()
-
-
-def _text(diagnostics: Iterable[Diagnostic]) -> str:
-    return "; ".join(each.message for each in translated(diagnostics))

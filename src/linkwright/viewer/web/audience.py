@@ -44,7 +44,7 @@ class Page:
         socket: of the page.
         own: the name that the page has for displays of its own; empty for a page that shares the common ones.
         is_here: whether it is open on this machine, or came through a tunnel to it.
-        language: what its user reads, one of `LANGUAGES`; None where it did not say.
+        language: what its user reads, one of `LANGUAGES`; None leaves texts as they are.
     """
 
     def __init__(

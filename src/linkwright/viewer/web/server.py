@@ -19,6 +19,7 @@ from aiohttp import web
 from aiohttp.http_exceptions import HttpProcessingError
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
+from linkwright.diagnostics.translation import language as language_of_terminal
 from linkwright.diagnostics.translation import language_of
 from linkwright.viewer.web.access import TOKEN_PARAMETER, Admission, Gate, security_headers
 from linkwright.viewer.web.audience import Page
@@ -304,7 +305,7 @@ class WebServer:
             await socket.prepare(request)
         if request.transport is not None:
             keep_short(request.transport)
-        language = language_of(request.query.get("language", ""))
+        language = language_of(request.query.get("language", "")) or language_of_terminal()
         page = Page(socket, _own_displays(request), is_here=_is_from_here(request), language=language)
         await audience.attend(page, socket)
         return socket

@@ -19,8 +19,8 @@ import msgspec
 from aiohttp import web
 
 from linkwright.bag.scratch import scratch_folder
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, foreign, phrase
-from linkwright.diagnostics.translation import translated
+from linkwright.diagnostics import LinkwrightError, Phrase, foreign, in_one_line, phrase
+from linkwright.diagnostics.translation import localized
 
 if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable
@@ -197,7 +197,7 @@ class Uploads:
         try:
             shown = await self._guests.open(upload.target, upload.scratch)
         except LinkwrightError as error:
-            found = "; ".join(each.message for each in translated(error.diagnostics))
+            found = localized(in_one_line(error.diagnostics))
             self._remove(request.match_info["key"])
             # Where it lies for a moment says nothing to whoever has dropped it.
             return _problem(found.replace(f"{upload.folder}/", ""))
@@ -248,8 +248,7 @@ class Uploads:
 
 
 def _refused(message: Phrase) -> web.Response:
-    (diagnostic,) = translated([Diagnostic("BAG111", message)])
-    return _problem(diagnostic.message)
+    return _problem(localized(message))
 
 
 def _problem(text: str) -> web.Response:

@@ -9,8 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
-from linkwright.diagnostics import LinkwrightError, display_path
-from linkwright.diagnostics.translation import translated
+from linkwright.diagnostics import LinkwrightError, display_path, in_one_line
 from linkwright.viewer.features.export.snapshot import Snapshot, snapshot_of
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
 from linkwright.viewer.protocol.export import AskExport, ExportFailed, ExportReady
@@ -89,7 +88,7 @@ class ExportFeature(PageFeature):
             snapshot = snapshot_of(self.viewer, self.managers.of(page), message.view)
             data = await asyncio.to_thread(partial(export_snapshot, snapshot, message.format))
         except LinkwrightError as error:
-            page.send(ExportFailed("; ".join(each.message for each in translated(error.diagnostics))))
+            page.send(ExportFailed(in_one_line(error.diagnostics)))
             return
         except Exception as error:  # noqa: BLE001  # a fault of ours must not leave the page waiting
             self.context.node.get_logger().error(
