@@ -64,6 +64,18 @@ def test_of_a_folder_the_descriptions_are_checked_that_stand_by_themselves(here)
     assert found == ["a/broken.xacro", "a/plain.urdf", "a/robot.urdf.xacro", "a/wrapper.xacro"]
 
 
+def test_what_arguments_and_the_environment_choose_to_include_stands_not_by_itself(here):
+    text = """<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
+      <xacro:arg name="accessories" default="empty.urdf"/><xacro:arg name="model" default="other.urdf"/>
+      <xacro:include filename="$(find r)/urdf/$(arg accessories)"/>
+      <xacro:include filename="$(optenv R_URDF_EXTRAS nothing.urdf)"/>
+      <link name="base_link"/>
+    </robot>"""
+    nothing = "<robot></robot>"
+    write(here, {"r.urdf.xacro": text, "empty.urdf": nothing, "nothing.urdf": nothing, "other.urdf": GOOD})
+    assert [path.name for path in find_targets([here]).files] == ["other.urdf", "r.urdf.xacro"]
+
+
 def test_packages_are_those_around_the_files_and_those_in_the_folders(here):
     manifest = "<package><name>{}</name></package>"
     write(

@@ -21,6 +21,10 @@ _WHOLE = (_URDF, ".world", ".sdf")
 _EMPTY_FILE = "XML105"
 _OTHER_FORMATS = (".srdf.xacro", ".sdf.xacro", ".world.xacro", ".launch.xacro")
 _INCLUDED = re.compile(r"""<xacro:include\b[^>]*?\bfilename\s*=\s*["']([^"']+)["']""")
+_ARGUMENT = re.compile(r"<xacro:arg\b[^>]*>")
+_ATTRIBUTE = re.compile(r"""\b(name|default)\s*=\s*["']([^"']+)["']""")
+_GIVEN = re.compile(r"\$\(arg\s+(\S+?)\s*\)")
+_OPTIONAL = re.compile(r"\$\(optenv\s+\S+\s+([^)]*)\)")
 _DECLARATIONS = frozenset({"xacro:include", "xacro:macro", "xacro:property", "xacro:arg"})
 
 
@@ -80,10 +84,19 @@ def _walk(folder: Path) -> tuple[list[Path], list[Path]]:
 
 
 def _entries(found: list[Path]) -> Iterator[Path]:
-    included = {Path(name).name for path in found for name in _INCLUDED.findall(_text(path))}
+    included = {name for path in found for name in _included_names(_text(path))}
     for path in found:
         if path.name not in included and (path.suffix in _WHOLE or _describes_robot(path)):
             yield path
+
+
+def _included_names(text: str) -> Iterator[str]:
+    """The names of the files that a description includes with the defaults of its arguments and of `$(optenv ...)`."""
+    arguments = [dict(_ATTRIBUTE.findall(tag)) for tag in _ARGUMENT.findall(text)]
+    defaults = {each["name"]: each.get("default", "") for each in arguments if "name" in each}
+    for written in _INCLUDED.findall(text):
+        chosen = _GIVEN.sub(lambda given: defaults.get(given[1], ""), written)
+        yield Path(_OPTIONAL.sub(r"\1", chosen).strip()).name
 
 
 def _text(path: Path) -> str:

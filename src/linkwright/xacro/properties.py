@@ -28,8 +28,7 @@ def define_property(expander: Expander, site: Site) -> None:
     if ("value" in attributes) + ("default" in attributes) + remove > 1:
         message = phrase("the property '{name}' has more than one of 'value', 'default' and 'remove'", name=name)
         expander.fail_at("XAC304", message, node, node.span(), phrase("keep one of them"))
-    if remove:
-        _remove(expander, node, name, scope)
+    if remove and _remove(expander, node, name, scope):
         return
     if "default" in attributes:
         if "scope" in attributes:
@@ -78,15 +77,18 @@ def _flag(expander: Expander, node: Element, attribute: str, scope: Scope, *, de
         expander.fail_at("XAC305", message, node, node.attribute_span(attribute), phrase("write true or false"))
 
 
-def _remove(expander: Expander, node: Element, name: str, scope: Scope) -> None:
+def _remove(expander: Expander, node: Element, name: str, scope: Scope) -> bool:
+    """Take a value away. False where there is none: then, as in ros/xacro, the element defines a block of this name."""
     span = node.attribute_span("name")
     if name not in scope:
         expander.session.warn("XAC310", phrase("there is no property '{name}' to remove", name=name), span)
-    elif name in expander.session.globals.values:
+        return False
+    if name in expander.session.globals.values:
         expander.session.warn(
             "XAC310", phrase("'{name}' is a name that xacro provides and cannot be removed", name=name), span
         )
     scope.remove(name)
+    return True
 
 
 def _target(expander: Expander, node: Element, name: str, scope: Scope) -> tuple[Scope, bool]:
