@@ -355,6 +355,15 @@ def test_outputs_that_are_no_boxes(tmp_path, shape):
     assert (code, str(list(shape)) in message) == ("VISION106", True)
 
 
+@pytest.mark.parametrize("metadata", [None, NAMES])
+@pytest.mark.parametrize("rows", [252, 300, 3000], ids=["YOLOX", "RT-DETR", "another"])
+def test_rows_that_look_like_those_of_yolov5_and_are_none(tmp_path, rows, metadata):
+    path = constant(tmp_path / "other.onnx", np.full((1, rows, 8), 0.9, np.float32), metadata)
+    code, message, hint = refused(path)
+    assert (code, f"[1, {rows}, 8]" in message) == ("VISION106", True)
+    assert "YOLOX" in hint
+
+
 def test_names_that_do_not_fit(tmp_path):
     path = columns(tmp_path / "v8.onnx", 5, metadata=NAMES)
     code, message, _ = refused(path)

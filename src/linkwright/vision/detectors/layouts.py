@@ -5,6 +5,9 @@ for each place of the picture: centre, size and a score for each class. The clas
 one number more, how likely there is a thing at all. Networks that were exported with ``nms=True``, and YOLO26 with
 ``end2end``, give up to 300 rows that are final: corners, score, class. Segmentation adds coefficients of masks behind
 the scores, and pose estimation key points.
+
+Others have shapes like these and mean something else: YOLOX has one row for each place, not decoded, and RT-DETR 300
+rows of shares of the picture. Rows that are not three for each place are no boxes that are known here.
 """
 
 from __future__ import annotations
@@ -20,8 +23,10 @@ from numpy.typing import NDArray
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.vision.detectors.metadata import Metadata
 
-_HEADS = ((8, 16, 32), (8, 16, 32, 64), (4, 8, 16, 32), (16, 32))
+_HEADS = ((8, 16, 32), (8, 16, 32, 64), (8, 16, 32, 64, 128), (4, 8, 16, 32), (8, 16), (16, 32))
 """Strides of the grids that networks look at."""
+_SHAPES = 3
+"""Boxes that the classic YOLOv5 has for each place of a grid."""
 _BOXES = {"": "", "detect": "", "segment": "masks", "pose": "key points"}
 """Tasks whose networks find upright boxes -> what else they find, which is left out."""
 _CORNERS_OF_CENTRES = np.array([[1, 0, -0.5, 0], [0, 1, 0, -0.5], [1, 0, 0.5, 0], [0, 1, 0, 0.5]], np.float32)
@@ -128,7 +133,10 @@ def find_layout(
         message = phrase(
             "the outputs of '{file}' are not boxes as YOLO has them: {shapes}", file=file.name, shapes=shown
         )
-        hint = phrase("known are [1, 4 + classes, N], [1, N, 5 + classes] and [1, N, 6]")
+        hint = phrase(
+            "known are [1, 4 + classes, N], [1, N, 5 + classes] with three rows for each place, and [1, N, 6]; "
+            "YOLOX, YOLOv6 and RT-DETR have other boxes"
+        )
         raise LinkwrightError(Diagnostic("VISION106", message, hint=hint))
     form, classes = next((each for each in forms if each[1] in (0, named)), forms[0])
     if named is not None and classes not in (0, named):
@@ -179,11 +187,11 @@ def _possible(shape: Sequence[int], size: tuple[int, int], more: int, suppressed
     if batch != 1:
         return []
     places = {sum((size[0] // stride) * (size[1] // stride) for stride in strides) for strides in _HEADS}
-    triples = {3 * each for each in places}
+    triples = {_SHAPES * each for each in places}
     if second == 6 + more and (suppressed or first not in places | triples):
         return [(Form.FINAL, 0)]
     as_columns, as_rows = (Form.COLUMNS, first - 4 - more), (Form.ROWS, second - 5 - more)
     found = [as_columns] if second in places or second > first else []
-    if first in triples or first > second:
+    if first in triples:
         found.insert(len(found) if second in places else 0, as_rows)
     return [each for each in found if each[1] >= 1]
