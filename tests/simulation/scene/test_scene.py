@@ -248,3 +248,17 @@ def test_an_image_that_is_none_is_told_of(tmp_path, text):
     path.write_bytes(text)
     with pytest.raises(LinkwrightError, match="cannot read the image"):
         read_heights(path)
+
+
+def test_parts_of_a_mesh_that_are_one_triangle_or_none_do_not_lose_the_model(tmp_path):
+    corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\n"
+    parts = "usemtl a\nf 1 2 3\nusemtl b\nf 4 5 6\nf 4 6 5\nf 1 2 5\nusemtl c\nf 1 2 2\n"
+    (tmp_path / "parts.obj").write_text(f"mtllib parts.mtl\n{corners}{parts}")
+    colours = enumerate(("1 0 0", "0 1 0", "0 0 1"))
+    (tmp_path / "parts.mtl").write_text("".join(f"newmtl {'abc'[number]}\nKd {colour}\n" for number, colour in colours))
+    visual = f'<visual name="v"><geometry><mesh><uri>file://{tmp_path}/parts.obj</uri></mesh></geometry></visual>'
+    simulation = simulated(f'<model name="m"><static>true</static><link name="l">{visual}</link></model>')
+    assert not simulation.scene.diagnostics
+    model = simulation.model
+    seen = [model.mat_rgba[model.geom_matid[geom], :3].tolist() for geom in range(model.ngeom)]
+    assert sorted(seen) == [[0, 1, 0], [1, 0, 0]]

@@ -32,6 +32,8 @@ _MOST_TRIANGLES = 1_000_000
 """A mesh of more is left out: it would take gigabytes, and no contact or picture is the better for it."""
 _MOST_HULL_CORNERS = 64
 """The hull of what moves has no more corners."""
+_LEAST_AREA = 1e-12
+"""In m2: what has no more is not seen, and MuJoCo refuses it."""
 _UNIT: Vector3 = (1.0, 1.0, 1.0)
 
 
@@ -139,13 +141,16 @@ class MeshLibrary:
             return
         for part in parts:
             triangles = part.triangles
+            faces = triangles.indices.reshape(-1, 3)
+            positions = triangles.positions * np.asarray(shape.scale)
+            if _area(positions, faces) <= _LEAST_AREA:
+                continue
             name = f"mesh {len(self.spec.meshes)}"
             mesh = self.spec.add_mesh(name=name, inertia=load_mujoco().mjtMeshInertia.mjMESH_INERTIA_SHELL)
-            mesh.uservert = _flat(triangles.positions * np.asarray(shape.scale))
-            faces = triangles.indices.reshape(-1, 3)
+            mesh.uservert = _flat(_four(positions))
             mesh.userface = _flat(faces[:, ::-1] if np.prod(shape.scale) < 0 else faces, np.int32)
             if triangles.coordinates is not None:
-                mesh.usertexcoord = _flat(triangles.coordinates)
+                mesh.usertexcoord = _flat(_four(triangles.coordinates))
                 self._mapped.add(name)
             self._give_look(name, part)
             yield name
@@ -300,6 +305,18 @@ def _prisms(polyline: Polyline) -> Iterator[Array]:
     for triangle in triangulated(polyline.points):
         base = points[list(triangle)]
         yield np.concatenate([np.insert(base, 2, height, axis=1) for height in (0.0, polyline.height)])
+
+
+def _area(positions: Array, faces: Any) -> float:
+    """The area of triangles in m2."""
+    one, two, three = (positions[faces[:, corner]] for corner in range(3))
+    with np.errstate(over="ignore", invalid="ignore"):
+        return float(np.linalg.norm(np.cross(two - one, three - one), axis=1).sum() / 2)
+
+
+def _four(corners: Array) -> Array:
+    """The corners of a mesh, the last again where they are three: MuJoCo has no mesh of less than four."""
+    return np.concatenate([corners, np.repeat(corners[-1:], max(4 - len(corners), 0), axis=0)])
 
 
 def _joined(parts: Sequence[Triangles]) -> tuple[Array, Any]:
