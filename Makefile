@@ -2,7 +2,7 @@
 #
 #   make demo    drive the robot of the tutorial, with laser and camera, through a simulated world in a browser
 #   make test    all tests, those of the page in a real Chromium (fetched below .build/ where there is none)
-#   make test-ros  the tests against real ROS 2, which is installed from PyPI below .build/
+#   make test-ros  the tests against real ROS 2 (Jazzy, or ROS=kilted), which is installed from PyPI below .build/
 #   make test-zenoh-sdk  those against zenoh-ros2-sdk, which is installed from PyPI below .build/
 #   make test-train  those that train networks, with PyTorch from PyPI below .build/
 #   make check   ruff, mypy, import-linter, the page's type check, generated files current
@@ -67,16 +67,20 @@ coverage: $(VENV)/.dev
 test-browser: $(VENV)/.dev page
 	LINKWRIGHT_CHROMIUM=$$($(BIN)/python tools/chromium.py) $(BIN)/pytest -m browser $(ARGS)
 
-# Against real ROS 2 (Jazzy) from wheels of PyPI, which there are for Linux and Python 3.12.
-test-ros: $(VENV)/.dev .build/ros/.ready
-	LINKWRIGHT_ROS_PYTHON=$(CURDIR)/.build/ros/bin/python RMW_IMPLEMENTATION=rmw_fastrtps_cpp \
-		$(BIN)/pytest tests/wire/test_real_ros.py tests/wire/test_real_services.py tests/wire/test_real_actions.py \
-		tests/standins/test_real_names.py tests/standins/test_field_rules.py $(ARGS)
+# Against real ROS 2 from wheels of PyPI, which there are for Linux and Python 3.12. The names of modules are Jazzy's.
+ROS ?= jazzy
+ROS_FOLDER := .build/ros$(patsubst -jazzy,,-$(ROS))
+ROS_WHEELS_jazzy := ros-rclpy==7.1.6 ros-rmw-fastrtps-cpp==8.4.3 ros-common-interfaces==5.3.6 ros-test-msgs==2.0.3
+ROS_WHEELS_kilted := ros-rclpy==9.1.2 ros-rmw-fastrtps-cpp==9.3.3 ros-common-interfaces==5.5.1 ros-test-msgs==2.3.0
 
-.build/ros/.ready: | $(UV)
-	$(UV) venv --quiet --clear --python 3.12 .build/ros
-	$(UV) pip install --quiet --python .build/ros/bin/python \
-		ros-rclpy==7.1.6 ros-rmw-fastrtps-cpp==8.4.3 ros-common-interfaces==5.3.6 ros-test-msgs==2.0.3
+test-ros: $(VENV)/.dev $(ROS_FOLDER)/.ready
+	LINKWRIGHT_ROS_PYTHON=$(CURDIR)/$(ROS_FOLDER)/bin/python RMW_IMPLEMENTATION=rmw_fastrtps_cpp \
+		$(BIN)/pytest tests/wire/test_real_ros.py tests/wire/test_real_services.py tests/wire/test_real_actions.py \
+		tests/standins/test_field_rules.py $(if $(filter jazzy,$(ROS)),tests/standins/test_real_names.py) $(ARGS)
+
+$(ROS_FOLDER)/.ready: | $(UV)
+	$(UV) venv --quiet --clear --python 3.12 $(ROS_FOLDER)
+	$(UV) pip install --quiet --python $(ROS_FOLDER)/bin/python $(ROS_WHEELS_$(ROS))
 	touch $@
 
 # Over Zenoh, with nodes that another program makes of it.

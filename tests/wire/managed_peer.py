@@ -33,10 +33,12 @@ class ManagedPeer(LifecycleNode):
         super().__init__(name)
         self.changes: list[list[str]] = []
         self.events: list[list[Any]] = []
+        self._asking: dict[str, Any] = {}
+        self._action = f"/{name}/fibonacci"
         self._server = ActionServer(
             self,
             Fibonacci,
-            f"{name}/fibonacci",
+            self._action,
             self._execute,
             goal_callback=lambda goal: GoalResponse.REJECT if goal.order < 0 else GoalResponse.ACCEPT,
             cancel_callback=lambda _: CancelResponse.ACCEPT,
@@ -46,14 +48,14 @@ class ManagedPeer(LifecycleNode):
     def act(self, action: str, order: int, cancel_after: int = -1) -> dict[str, Any]:
         """What becomes of a goal, which may be cancelled after some feedback."""
         feedback: list[list[int]] = []
-        client = ActionClient(self, Fibonacci, action)
+        client = self._asking.get(action) or ActionClient(self, Fibonacci, action)
+        self._asking[action] = client  # another one would have to be found by the server first, to get feedback
         assert client.wait_for_server(SECONDS)
         sent = client.send_goal_async(
             Fibonacci.Goal(order=order), feedback_callback=lambda said: feedback.append(list(said.feedback.sequence))
         )
         goal = _answer(sent)
         if not goal.accepted:
-            client.destroy()
             return {"accepted": False}
         result = goal.get_result_async()
         if cancel_after >= 0:
@@ -63,7 +65,6 @@ class ManagedPeer(LifecycleNode):
             assert len(_answer(goal.cancel_goal_async()).goals_canceling) == 1
         told = _answer(result)
         names = {getattr(GoalStatus, f"STATUS_{name}"): name for name in ("SUCCEEDED", "ABORTED", "CANCELED")}
-        client.destroy()
         sequence = list(told.result.sequence)
         return {"accepted": True, "status": names[told.status], "sequence": sequence, "feedback": feedback}
 
@@ -114,6 +115,9 @@ class ManagedPeer(LifecycleNode):
         return self.changes
 
     def _execute(self, goal: Any) -> Any:
+        until = time.monotonic() + SECONDS
+        while not self.count_subscribers(f"{self._action}/_action/feedback") and time.monotonic() < until:
+            time.sleep(0.01)  # whose request has come may not have been found yet by the publisher of feedback
         sequence = fibonacci(1)
         for _ in range(goal.request.order - 1):
             if goal.is_cancel_requested:

@@ -36,6 +36,7 @@ class RealPeer:
         self.heard: dict[str, list[Any]] = {}
         self.publishers: dict[str, Any] = {}
         self.mismatched: list[str] = []
+        self.others: list[Node] = []
         publisher_events = PublisherEventCallbacks(incompatible_qos=lambda _: self.mismatched.append("publisher"))
         subscription_events = SubscriptionEventCallbacks(
             incompatible_qos=lambda _: self.mismatched.append("subscription")
@@ -53,6 +54,9 @@ class RealPeer:
         self.node.declare_parameter("speed", 1.5)
         self.publishers["lasting_"].publish(String(data="said before"))
         threading.Thread(target=rclpy.spin, args=(self.node,), daemon=True).start()
+
+    def make_nodes(self, count: int) -> None:
+        self.others = [rclpy.create_node(f"extra_{number}") for number in range(count)]
 
     def nodes(self) -> list[list[str]]:
         return sorted([namespace, name] for name, namespace in self.node.get_node_names_and_namespaces())
@@ -151,7 +155,7 @@ def echo(request: Any, response: Any) -> Any:
 
 def main() -> None:
     peer = RealPeer(sys.argv[1])
-    questions = "nodes published_by hashes publish publish_state publish_images received received_states"
+    questions = "make_nodes nodes published_by hashes publish publish_state publish_images received received_states"
     questions += " received_images mismatches echoes echoes_are_right parameters_of set_parameter_of"
     serve({question: getattr(peer, question) for question in questions.split()})
     rclpy.shutdown()

@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
 import time
+from itertools import product
 
 import pytest
+import yaml
 
 from linkwright.graph.names.identity import NodeIdentity
 from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile, ReliabilityPolicy
@@ -16,6 +20,7 @@ from tests.wire.programs import linkwright
 PYTHON = os.environ.get("LINKWRIGHT_ROS_PYTHON", "")
 LASTING = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 IMAGES = 45
+NODES = 50
 
 Image = get_message("sensor_msgs/msg/Image")
 JointState = get_message("sensor_msgs/msg/JointState")
@@ -44,16 +49,18 @@ def test_nodes_know_each_other(processes, real_node, we_are_first):
     real.ask_until(lambda nodes: nodes == [["/", "ours"], ["/", "real_node"]], "nodes")
 
 
-@pytest.mark.parametrize(
-    ("theirs", "ours"),
-    [
-        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}, {}),
-        ({}, {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}),
-        ({}, {"ROS_LOCALHOST_ONLY": "1"}),
-        ({"ROS_LOCALHOST_ONLY": "1"}, {"ROS_LOCALHOST_ONLY": "1"}),
-        ({}, {"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}),
-    ],
-)
+LOCALHOST = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
+SUBNET = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}
+LOCALHOST_ONLY = {"ROS_LOCALHOST_ONLY": "1"}
+RANGES: list[dict[str, str]] = [{}, LOCALHOST, SUBNET, LOCALHOST_ONLY]
+
+
+def apart(theirs, ours):
+    """Where a node of Fast DDS is not found: it looks on the loopback interface alone, and we on the network's."""
+    return ours == SUBNET and theirs in (LOCALHOST, LOCALHOST_ONLY)
+
+
+@pytest.mark.parametrize(("theirs", "ours"), [pair for pair in product(RANGES, RANGES) if not apart(*pair)], ids=str)
 def test_nodes_know_each_other_however_far_they_look(processes, real_node, monkeypatch, theirs, ours):
     real = real_node(**theirs)
     for name, value in ours.items():
@@ -204,6 +211,34 @@ def test_ours_that_is_killed_is_gone_there_and_its_successor_is_heard(processes,
     publisher.publish(String(data="the next one"))
     assert real.ask_until(bool, "received", "to_ros") == ["the next one"]
     real.ask_until(lambda nodes: nodes.count(["/", "victim"]) == 1, "nodes", seconds=10)
+
+
+def test_fifty_nodes_there_are_all_known_and_gone_with_their_process(processes, real_node):
+    us = processes("ours")
+    real = real_node()
+    real.ask("make_nodes", NODES)
+    names = {f"extra_{number}" for number in range(NODES)}
+    us.spin_until(lambda: names <= {node.name for node in us.transport.remote_nodes()})
+    us.spin_until(lambda: us.node.count_publishers("/rosout") == NODES + 2)
+    assert len(linkwright("node", "list")[0].splitlines()) == NODES + 2
+    real.end()
+    us.spin_until(lambda: not us.transport.remote_nodes())
+
+
+def test_verbs_measure_describe_and_dump(real_node):
+    real = real_node()
+    real.ask("publish_images", 3000, 30.0)
+    command = [sys.executable, "-m", "linkwright", "topic", "hz", "/images_from_ros"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as measuring:
+        assert measuring.stdout is not None
+        rate = next(line for line in measuring.stdout if "average rate: " in line)
+        measuring.terminate()
+    assert 10 < float(rate.partition("average rate: ")[2]) < 60
+    described = linkwright("topic", "info", "-v", "/lasting_from_ros")[0]
+    assert "Node name: real_node" in described
+    assert "Durability: TRANSIENT_LOCAL" in described
+    dumped = linkwright("param", "dump", "/real_node")[0]
+    assert yaml.safe_load(dumped)["/real_node"]["ros__parameters"]["speed"] == 1.5
 
 
 def test_verbs_show_what_a_node_there_has(real_node):
