@@ -133,6 +133,13 @@ def test_an_unfinished_merge(text: str) -> None:
     assert "keep one of the two" in str(hint)
 
 
+def test_a_text_in_gbk_is_known_by_its_pairs() -> None:
+    code, message, line, column, hint = told('<a>\n <b n="机器人底盘"/></a>'.encode("gbk"))
+    assert (code, message, line, column) == ("XML104", "byte 0xbb is not valid UTF-8", 2, 8)
+    assert "it looks like GBK; save it as UTF-8" in str(hint)
+    assert "GBK" not in str(told("<a n='rübe'/>".encode("latin-1"))[-1])
+
+
 def test_an_unknown_encoding() -> None:
     with pytest.raises(LinkwrightError) as caught:
         parse(b'<?xml version="1.0" encoding="klingon"?><a>\xff</a>', "x")
