@@ -67,6 +67,13 @@ def test_the_worst_is_said_and_sorts_first(tmp_path):
     assert sorted([fine, bad, worse, verdict], key=lambda each: each.place) == [verdict, worse, bad, fine]
 
 
+def test_a_mass_of_next_to_nothing_in_a_large_shape_has_a_density_of_zero(tmp_path):
+    large = BALL.replace("0.1", "1e5")
+    verdict = verdict_on(tmp_path, inertial(mass=1e-320, moment=1.0), large)
+    assert (verdict.standing, verdict.density) == (Standing.DOUBTFUL, 0.0)
+    assert verdict.words.startswith("lighter than air")
+
+
 def test_a_part_of_the_shapes_tells_nothing(tmp_path):
     shapes = BALL + '<visual><geometry><mesh filename="package://nowhere/a.stl"/></geometry></visual>'
     verdict = verdict_on(tmp_path, inertial(mass=400), shapes)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
-from math import log
+from math import inf, log
 
 import numpy as np
 
@@ -131,7 +131,8 @@ def _of_density(density: float, has_mesh: bool) -> list[_Reason]:
         words = phrase("denser than any solid: osmium has {density} kg/m3", density=grouped(HEAVIEST_DENSITY))
         return [_Reason(standing, words, log(density / HEAVIEST_DENSITY))]
     if density < LIGHTEST_DENSITY:
-        return [_Reason(Standing.DOUBTFUL, phrase("lighter than air"), log(LIGHTEST_DENSITY / density))]
+        badness = log(LIGHTEST_DENSITY / density) if density > 0 else inf  # 0 of a mass that is next to nothing
+        return [_Reason(Standing.DOUBTFUL, phrase("lighter than air"), badness)]
     return []
 
 
