@@ -9,6 +9,8 @@ from tests.nodes.vision.seeking_robot import RADIUS, SeekingRobot
 
 pytest.importorskip("mujoco")
 
+TRIGGER = get_service("std_srvs/srv/Trigger")
+
 
 @pytest.mark.parametrize("ball", [(2.0, 0.5), (-1.5, 1.0), (0.3, -1.8)])
 def test_it_goes_to_the_ball(tmp_path, ball):
@@ -24,6 +26,10 @@ def test_it_goes_to_the_ball(tmp_path, ball):
         place = test.robot_pose()
         test.advance(2.0)
         assert test.robot_pose()[:2] == pytest.approx(place[:2], abs=0.02), "it stands still"
+        seen = {name: test.call(f"/vision/describe{name}", TRIGGER.Request()).message for name in ("", "/en", "/zh")}
+        assert seen[""] == seen["/en"]
+        assert seen["/en"].startswith("I see a ball 0.")
+        assert "球" in seen["/zh"]
 
 
 @pytest.mark.slow
@@ -32,7 +38,7 @@ def test_it_goes_to_the_red_ball_that_its_camera_sees(tmp_path):
         test.tell("/vision/go_to", "红色的球")
         assert test.go_on_until_said("我到红色的球这里了")
         assert test.distance() - RADIUS == pytest.approx(0.5, abs=0.08)
-        described = test.call("/vision/describe", get_service("std_srvs/srv/Trigger").Request())
+        described = test.call("/vision/describe", TRIGGER.Request())
         assert described.message.startswith("I see a red ball 0.")
         assert described.message.endswith(" m ahead.")
 

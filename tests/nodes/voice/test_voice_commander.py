@@ -399,7 +399,7 @@ async def test_without_a_server_it_says_so(talk, tmp_path):
 
 async def test_what_a_service_answers_is_said(stage, talk):
     kind = get_service("std_srvs/srv/Trigger")
-    stage.node.create_service(kind, "/vision/describe", lambda request, response: kind.Response(True, "a red ball"))
+    stage.node.create_service(kind, "/vision/describe/en", lambda request, response: kind.Response(True, "a red ball"))
     robot = talk()
     await stage.graph.settle()
     await robot.type("what do you see")

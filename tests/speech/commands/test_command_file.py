@@ -47,7 +47,7 @@ UNDERSTOOD = [
     ("go to the green ball", "go_to_object", {"object": "green ball"}),
     ("去蓝色的球那里", "go_to_object", {"object": "blue ball"}),
     ("what do you see", "describe", {}),
-    ("你看见什么", "describe", {}),
+    ("你看见什么", "describe_in_chinese", {}),
 ]
 
 NOTHING = [

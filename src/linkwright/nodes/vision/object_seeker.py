@@ -1,11 +1,13 @@
 """object_seeker: looks for what it is told by name, goes there or follows it, and says what it sees.
 
 ``vision/go_to`` and ``vision/follow`` take a name, perhaps with a colour (``red ball``, 红色的球), ``vision/stop``
-ends it; what comes of it is said on ``/voice/response``. ``vision/describe`` answers what is seen.
+ends it; what comes of it is said on ``/voice/response``. ``vision/describe`` answers what is seen,
+``vision/describe/en`` and ``vision/describe/zh`` do so in that language.
 """
 
 from __future__ import annotations
 
+from functools import partial
 from math import atan2, hypot, inf
 from typing import Any
 
@@ -70,7 +72,9 @@ class ObjectSeeker(SingleNode):
             self._commander.watch(node.create_subscription(text, topic, self._commander.taking(take), _DEPTH))
         node.create_subscription("std_msgs/msg/Empty", "vision/stop", lambda _: self._stop(), _DEPTH)
         node.create_subscription(get_message("sensor_msgs/msg/LaserScan"), "scan", self._feel, SENSOR_DATA_QOS)
-        node.create_service("std_srvs/srv/Trigger", "vision/describe", self._describe)
+        for name, language in (("", self._language), *((f"/{each}", each) for each in LANGUAGES)):
+            answer_in = partial(self._describe, language)
+            node.create_service("std_srvs/srv/Trigger", f"vision/describe{name}", answer_in)
         node.create_timer(_PERIOD, self._step)
 
     def close(self) -> None:
@@ -139,14 +143,14 @@ class ObjectSeeker(SingleNode):
     def _feel(self, scan: Any) -> None:
         self._scan = scan
 
-    def _describe(self, _request: Any, response: Any) -> Any:
+    def _describe(self, language: str, _request: Any, response: Any) -> Any:
         pose = self._poses.pose(self._fixed, self._base, 0)
         since = self._now_ns() - round(_SEEN_NOW_SECONDS * 1e9)
         if pose is None or self._seen.heard_ns is None or self._seen.heard_ns < since:
             things = []
         else:
             things = [Sighting(each.name, each.colour, *_within(pose, each)) for each in self._seen.things]
-        response.success, response.message = True, described(things, self._language)
+        response.success, response.message = True, described(things, language)
         self._node.get_logger().info(response.message)
         return response
 
