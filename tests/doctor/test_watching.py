@@ -131,6 +131,7 @@ async def test_what_a_bridge_hands_on_is_neither_a_second_publisher_nor_far_from
     simulator, bridge = joined.create_node("gazebo"), joined.create_node("ros_gz_bridge")
     clock = simulator.create_publisher("rosgraph_msgs/msg/Clock", "/clock", 10)
     own = simulator.create_publisher(TRANSFORMS, "/model/vehicle/tf", 10)
+    other = simulator.create_publisher(TRANSFORMS, "/robot1/tf", 10)
     handed_on = bridge.create_publisher(TRANSFORMS, "/tf", 10)
     watched = asyncio.ensure_future(seen_of(joined, Outside(), seconds=0.5))
     message = own.msg_type()
@@ -139,11 +140,12 @@ async def test_what_a_bridge_hands_on_is_neither_a_second_publisher_nor_far_from
     message.transforms[0].header.stamp.sec = 5
     while not watched.done():
         clock.publish(Clock(clock=message.transforms[0].header.stamp))
-        for each in (own, handed_on):
+        for each in (own, other, handed_on):
             each.publish(message)
         await asyncio.sleep(0.01)
     (transform,) = watched.result().transforms
     assert len(transform.senders) == 1
+    assert {each.topic for each in watched.result().stamps} == {"/robot1/tf", "/tf"}
     assert {each.behind_ns for each in watched.result().stamps} == {0}
 
 

@@ -38,6 +38,8 @@ if TYPE_CHECKING:
 
 _TF, _JOINT_STATE = "tf2_msgs/msg/TFMessage", "sensor_msgs/msg/JointState"
 _TRANSFORMS = ("tf", "tf_static")
+_MODELS = "/model/"
+"""What topics of gz begin with, which are not ROS's before a bridge hands them on."""
 _STRING, _CLOCK = "std_msgs/msg/String", "rosgraph_msgs/msg/Clock"
 _ENVIRONMENT = (
     "ROS_DOMAIN_ID",
@@ -173,8 +175,8 @@ class _Watcher:
         topic, kind = endpoint.name, endpoint.type_name
         last = topic.rpartition("/")[2]
         if kind == _TF:
-            if last not in _TRANSFORMS:  # such as the poses of a simulated world, which are of no frames
-                return
+            if last not in _TRANSFORMS or topic.startswith(_MODELS):
+                return  # the poses of a simulated world are of no frames; a bridge takes those of gz's models to /tf
             is_static = last == _TRANSFORMS[1]
             self._listen(endpoint, lambda message, info: self._on_transforms(topic, is_static, message, info))
         elif kind == _JOINT_STATE:
