@@ -153,6 +153,17 @@ class Firefox:
         source = {"type": "key", "id": "keyboard", "actions": actions}
         self.call("input.performActions", context=self._tab, actions=[source])
 
+    def drag(self, x: float, y: float, right: float, down: float) -> None:
+        """Press the mouse at a place of the window, move it in five steps, and let go; pixels."""
+        moves = [
+            {"type": "pointerMove", "x": round(x + right * step / 5), "y": round(y + down * step / 5), "duration": 20}
+            for step in range(6)
+        ]
+        button = {"button": 0}
+        actions = [moves[0], {"type": "pointerDown", **button}, *moves[1:], {"type": "pointerUp", **button}]
+        source = {"type": "pointer", "id": "mouse", "parameters": {"pointerType": "mouse"}, "actions": actions}
+        self.call("input.performActions", context=self._tab, actions=[source])
+
     def picture(self, selector: str) -> Image.Image:
         """What is on the screen where the first element of a selector is."""
         box = self.evaluate(f"document.querySelector({json.dumps(selector)}).getBoundingClientRect()")

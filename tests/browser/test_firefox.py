@@ -6,6 +6,7 @@ import os
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -101,6 +102,39 @@ def test_two_robots_are_compared_and_one_is_edited(start, launch, tmp_path):
     browser.evaluate("document.querySelector('.edit-bar .primary').click()")
     wait_until(lambda: 'xyz="0 0 0.25"' in file.read_text(), what=file.read_text)
     browser.until("document.querySelector('.comparison-count').innerText === '2 differences'")
+    assert browser.errors == []
+
+
+def test_a_handle_is_dragged(start, launch, tmp_path):
+    file = tmp_path / "crate.urdf"
+    file.write_text(CRATE)
+    program = start("view", str(file))
+    browser = launch(headless=False)
+    browser.goto(program.url)
+    browser.until("lw.ready")
+    browser.evaluate("document.querySelector('[data-tab-panel-id=displays]').focus()")
+    browser.press(RIGHT, ENTER)
+    browser.until("document.querySelector('.link-row[data-link=lid]')")
+    browser.evaluate("document.querySelector('.link-row[data-link=lid] .link-name').click()")
+    browser.until("document.querySelector('.selection-card .edit-link')")
+    browser.evaluate("document.querySelector('.selection-card .edit-link').click()")
+    browser.until("lw.panels.editing?.handles?.z")
+    seen: list[Any] = []
+
+    def is_still() -> bool:  # the panel that came took its room from the scene
+        seen.append(browser.evaluate("window.linkwright.panels.editing.handles.z"))
+        return len(seen) > 5 and seen[-1] == seen[-5]
+
+    wait_until(is_still)
+    handle = seen[-1]
+    canvas = browser.evaluate("document.querySelector('.canvas-box canvas').getBoundingClientRect()")
+    browser.drag(canvas["x"] + handle["x"], canvas["y"] + handle["y"], 0, -60)
+    browser.until("lw.panels.editing.draft?.xyz[2] > 0.01")
+    assert browser.evaluate("window.linkwright.panels.editing.draft.xyz.slice(0, 2)") == [0, 0]
+    browser.until("document.querySelector('.edit-diff .added')")
+    assert file.read_text() == CRATE
+    browser.evaluate("document.querySelector('.edit-bar .primary').click()")
+    wait_until(lambda: "<origin" in file.read_text(), what=file.read_text)
     assert browser.errors == []
 
 

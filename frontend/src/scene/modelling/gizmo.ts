@@ -55,7 +55,8 @@ export class Gizmo {
   seenAt(axis: Vector3): { x: number; y: number } {
     const { camera, size } = this.stage.viewport;
     const angle = camera instanceof PerspectiveCamera ? (camera.fov * Math.PI) / 180 : 1;
-    const reach = REACH * this.frame.position.distanceTo(camera.position) * this.controls.size * Math.tan(angle / 2);
+    const eye = new Vector3().setFromMatrixPosition(camera.matrixWorld);
+    const reach = REACH * this.frame.position.distanceTo(eye) * this.controls.size * Math.tan(angle / 2);
     const tip = axis.clone().multiplyScalar(reach).applyQuaternion(this.frame.quaternion).add(this.frame.position).project(camera);
     return { x: ((tip.x + 1) / 2) * size.width, y: ((1 - tip.y) / 2) * size.height };
   }
