@@ -2,7 +2,7 @@
 
 Each one has been told of all by the router once it asks for all: in a hall of robots that is the square of their
 number. So a client of a router, as robots are, asks only for what the nodes and endpoints of its own have to do with,
-until somebody asks for the graph (`docs/decisions/0078-tokens-on-demand.md`).
+until somebody asks for the graph (`docs/decisions/0076-tokens-on-demand.md`).
 """
 
 from __future__ import annotations
