@@ -66,6 +66,7 @@ export class WordsState {
   async begin(name: string): Promise<void> {
     if (this.recording !== null) return;
     this.recording = name;
+    this.judged.delete(name); // what is told after this is about this recording
     this.changed.emit();
     const begun = await this.voice.record(() => {
       if (this.recording === name) this.connection.send({ type: "begin_take", name });
