@@ -16,6 +16,7 @@ from linkwright.sdf.models import Model
 from linkwright.sdf.resources import ResourceFinder
 from linkwright.sdf.saved import as_saved
 from linkwright.sdf.worlds import World, gravity_of, physics_of
+from linkwright.simulation.bouncing import Bouncing
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.scene.bodies import COLLISION_GROUP
 from linkwright.simulation.scene.compiling import compiled, count_links, refused_models, whole_step
@@ -249,6 +250,7 @@ class Simulation:
         """Go on with a model of MuJoCo and its state."""
         self.model, self.data = model, data
         self._state: tuple[Array, Array] = data.qpos, data.qvel
+        self._bouncing = Bouncing(model, data)
         self._solving.take(model, data, self.time, self.step)
 
     def reset(self) -> None:
@@ -288,7 +290,7 @@ class Simulation:
         mujoco, (positions, velocities) = self._mujoco, self._state
         before = positions.tobytes(), velocities.tobytes()  # in half of the time of a copy into arrays
         try:
-            mujoco.mj_step(self.model, self.data, count)
+            self._bouncing.make_steps(count)
         except mujoco.FatalError as error:
             said = str(error).splitlines()[0]
             raise LinkwrightError(Diagnostic("SIM121", phrase("MuJoCo gave up: {said}", said=foreign(said)))) from None
@@ -309,7 +311,7 @@ class Simulation:
         mujoco, model, data, before = self._mujoco, self.model, self.data, (positions, velocities)
         for _ in range(count):
             data.qpos[:], data.qvel[:] = before
-            mujoco.mj_step(model, data)
+            self._bouncing.make_steps(1)
             if not self._is_sound():
                 break
             before = data.qpos.copy(), data.qvel.copy()

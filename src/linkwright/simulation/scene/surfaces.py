@@ -20,6 +20,8 @@ _SOFT = (0.05, 1.0)
 """Time constant in s and damping ratio of what slides: soft enough to leave the load to the wheels beside it."""
 _HARD_STEPS = 4.0
 """The time constant of wheels, in steps; two are the least that is stable."""
+RESTITUTION_DATA = 2
+"""So many numbers of its own a geom of MuJoCo has that bounces: its coefficient of restitution, and its threshold."""
 _HARD_IMPEDANCE = (0.99, 0.999, 0.001, 0.5, 2.0)
 
 
@@ -37,6 +39,8 @@ def apply_surface(geom: Any, surface: Surface) -> None:
     if surface.torsional is not None and surface.torsional.coefficient > 0:
         geom.condim = 4
         geom.friction = [geom.friction[0], surface.torsional.coefficient * _patch(surface), geom.friction[2]]
+    if surface.restitution > 0:
+        geom.userdata = [min(surface.restitution, 1.0), surface.bounce_threshold]
     if surface.collide_without_contact:
         geom.contype = geom.conaffinity = 0
 

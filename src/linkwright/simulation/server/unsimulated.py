@@ -13,8 +13,6 @@ from linkwright.xmltree import Element
 _NOWHERE = frozenset({"audio_source", "fluid_added_mass", "gripper", "particle_emitter", "projector", "soft_contact"})
 _IN = frozenset({("actor", "animation"), ("geometry", "image")})
 """What is simulated elsewhere, with the element in which it is not."""
-_BOUNCE = "restitution_coefficient"
-"""MuJoCo's contacts take the speed of what hits hard; nothing bounces as far as its coefficient says."""
 _WITHOUT_PLUGINS = frozenset({"actor", "visual"})
 
 
@@ -36,7 +34,7 @@ def _named(roots: Iterable[Element]) -> list[str]:
         while pending:
             element = pending.pop()
             for child in element.elements():
-                if child.tag in _NOWHERE or (child.tag == _BOUNCE and _is_positive(child)):
+                if child.tag in _NOWHERE:
                     found[f"<{child.tag}>"] = None
                 elif element.tag == "world" and child.tag == "joint" and child.first("sensor") is not None:
                     found["<sensor> in <joint> of <world>"] = None
@@ -49,13 +47,6 @@ def _named(roots: Iterable[Element]) -> list[str]:
                 elif child.tag not in OPEN and child.tag != "state":
                     pending.append(child)
     return sorted(found)
-
-
-def _is_positive(element: Element) -> bool:
-    try:
-        return float(element.text()) > 0.0
-    except ValueError:
-        return False
 
 
 def _roots(world: World) -> Iterator[Element]:

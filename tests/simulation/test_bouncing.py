@@ -1,0 +1,103 @@
+"""What bounces, and how high."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from math import sqrt
+
+import pytest
+
+from linkwright.simulation.simulation import NANOSECONDS, Simulation
+from tests.simulation.worlds import simulated
+
+MILLISECOND = NANOSECONDS // 1000
+RADIUS = 0.1
+G = 9.81
+BALL = f"<sphere><radius>{RADIUS}</radius></sphere>"
+BLOCK = "<box><size>0.2 0.2 0.2</size></box>"
+
+
+def bouncy(coefficient: float, more: str = "") -> str:
+    return (
+        f"<surface><bounce><restitution_coefficient>{coefficient}</restitution_coefficient>{more}</bounce></surface>"
+        if coefficient
+        else ""
+    )
+
+
+def floor(coefficient: float = 1.0) -> str:
+    return (
+        '<model name="floor"><static>true</static><link name="l"><collision name="c"><geometry><plane>'
+        f"<normal>0 0 1</normal></plane></geometry>{bouncy(coefficient)}</collision></link></model>"
+    )
+
+
+def thing(pose: str, coefficient: float, shape: str = BALL, mass: float = 2.0, more: str = "", name: str = "b") -> str:
+    moment = 0.4 * mass * RADIUS**2
+    return (
+        f'<model name="{name}"><pose>{pose}</pose><link name="l"><inertial><mass>{mass}</mass><inertia>'
+        f"<ixx>{moment}</ixx><iyy>{moment}</iyy><izz>{moment}</izz></inertia></inertial>"
+        f'<collision name="c"><geometry>{shape}</geometry>{bouncy(coefficient, more)}</collision></link></model>'
+    )
+
+
+def heights(simulation: Simulation, milliseconds: int) -> list[float]:
+    found = []
+    for _ in range(milliseconds):
+        simulation.advance(MILLISECOND)
+        found.append(simulation.link_pose("b::l")[2] - RADIUS)
+    return found
+
+
+def rise(simulation: Simulation, height: float) -> float:
+    """How high a thing comes after it has hit for the first time."""
+    fall = round(sqrt(2 * height / G) * 1000) + 5
+    return max(heights(simulation, 2 * fall)[fall:])
+
+
+@pytest.mark.parametrize("shape", [BALL, BLOCK])
+@pytest.mark.parametrize("height", [0.3, 1.0, 3.0])
+@pytest.mark.parametrize("coefficient", [0.3, 0.5, 0.9])
+def test_things_rise_as_high_as_their_coefficient_says(coefficient: float, height: float, shape: str):
+    found = rise(simulated(floor(), thing(f"0 0 {height + RADIUS} 0 0 0", coefficient, shape)), height)
+    assert sqrt(max(found, 0.0) / height) == pytest.approx(coefficient, abs=0.02)
+
+
+def test_the_coefficient_of_two_surfaces_is_their_product():
+    start = f"0 0 {1 + RADIUS} 0 0 0"
+    assert sqrt(rise(simulated(floor(0.8), thing(start, 0.8)), 1.0)) == pytest.approx(0.64, abs=0.02)
+    assert rise(simulated(floor(0.0), thing(start, 0.8)), 1.0) < 0.01
+    slow = thing(start, 0.8, more="<threshold>6</threshold>")  # it hits at 4.4 m/s
+    assert rise(simulated(floor(), slow), 1.0) < 0.01
+
+
+def test_what_has_bounced_comes_to_rest():
+    simulation = simulated(floor(), thing(f"0 0 {0.3 + RADIUS} 0.2 0.3 0", 0.5, BLOCK))
+    assert max(abs(b - a) for a, b in pairwise(heights(simulation, 5000)[-1000:])) < 1e-6
+    assert simulation.link_pose("b::l")[2] == pytest.approx(RADIUS, abs=1e-3)
+
+
+def test_a_ball_that_hits_at_a_slant_is_set_rolling():
+    simulation = simulated(floor(), thing(f"0 0 {1 + RADIUS} 0 0 0", 0.5))
+    simulation.set_model_velocity("b", (1.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    heights(simulation, 600)
+    (x, _, _), (_, turn, _) = simulation.link_velocity("b::l")
+    assert x == pytest.approx(5 / 7, abs=0.01)  # a solid ball, without slipping
+    assert turn == pytest.approx(x / RADIUS, rel=0.03)
+
+
+def test_equal_balls_change_their_speeds():
+    simulation = simulated(thing("0 0 1 0 0 0", 1.0, name="a"), thing("0.5 0 1 0 0 0", 1.0, name="b"), gravity="0 0 0")
+    simulation.set_model_velocity("a", (2.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    simulation.advance(400 * MILLISECOND)
+    speeds = [simulation.link_velocity(f"{each}::l")[0][0] for each in "ab"]
+    assert speeds == pytest.approx([0.0, 2.0], abs=0.02)
+
+
+def test_twice_the_same_bounces_give_the_same_bits():
+    def run() -> bytes:
+        simulation = simulated(floor(), thing("0 0 0.7 0.3 0.2 0", 0.8, BLOCK))
+        simulation.advance(NANOSECONDS)
+        return bytes(simulation.data.qpos.tobytes())
+
+    assert run() == run()
