@@ -56,15 +56,20 @@ def test_variables_of_ros_are_followed(variables, expected):
     assert read_settings(variables).range is expected
 
 
-def test_the_subnet_is_as_rmw_cyclonedds_has_it():
+THIS_MACHINE = {"address": "127.0.0.1", "PruneDelay": "inf"}
+
+
+def test_the_subnet_is_as_rmw_cyclonedds_has_it_and_this_machine_is_told_for_good():
+    """A node of Fast DDS that keeps to this machine listens for nobody else's announcements."""
     said = elements(read_settings({"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET", "ROS_STATIC_PEERS": "192.0.2.7;host"}))
     assert said == {
         "": [{}],
         "Discovery": [{}],
         "Discovery/ParticipantIndex": ["auto"],
         "Discovery/MaxAutoParticipantIndex": ["32"],
+        "Discovery/SPDPInterval": ["3 s"],
         "Discovery/Peers": [{}],
-        "Discovery/Peers/Peer": [{"address": "192.0.2.7"}, {"address": "host"}],
+        "Discovery/Peers/Peer": [THIS_MACHINE, {"address": "192.0.2.7"}, {"address": "host"}],
     }
 
 
@@ -78,7 +83,7 @@ def test_localhost_is_this_machine_on_all_its_ways():
 def test_localhost_with_peers_is_as_rmw_cyclonedds_has_it():
     said = elements(read_settings({"ROS_LOCALHOST_ONLY": "1", "ROS_STATIC_PEERS": "192.0.2.7"}))
     assert said["General/AllowMulticast"] == ["false"]
-    assert said["Discovery/Peers/Peer"] == [{"address": "localhost"}, {"address": "192.0.2.7"}]
+    assert said["Discovery/Peers/Peer"] == [THIS_MACHINE, {"address": "192.0.2.7"}]
 
 
 def test_the_users_configuration_goes_last():

@@ -133,6 +133,18 @@ def _range(variables: Mapping[str, str], warnings: list[str]) -> Range:
 
 _AUTO_INDEX = "<ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>{0}</MaxAutoParticipantIndex>"
 
+_REPEATED = "<SPDPInterval>3 s</SPDPInterval>"
+"""How often a process announces itself where that goes beyond the machine: as often as Fast DDS does."""
+
+_THIS_MACHINE = '<Peer address="127.0.0.1" PruneDelay="inf"/>'
+"""The ports of this machine, for as long as the process lives.
+
+A node of Fast DDS on LOCALHOST announces itself on loopback alone, and what arrives there Cyclone leaves aside unless
+loopback is one of its interfaces. So we announce ourselves to it, and it answers at our address on the network. Were
+loopback an interface, its address would be told to the network, and Fast DDS on other machines sends all data to their
+own loopback as well.
+"""
+
 _BUFFERS = (
     "<Internal><Watermarks><WhcHigh>16 MB</WhcHigh><WhcHighInit>1 MB</WhcHighInit></Watermarks>"
     "<SocketReceiveBufferSize max='8 MB'/></Internal>"
@@ -189,13 +201,11 @@ def _fragments(reach: Range, peers: list[str], most: int) -> list[str]:
     from xml.sax.saxutils import quoteattr  # with it come the modules of urllib, which the usual case does without
 
     local = reach is Range.LOCALHOST
-    listed = "".join(f"<Peer address={quoteattr(peer)}/>" for peer in (["localhost"] if local else []) + peers)
+    listed = _THIS_MACHINE + "".join(f"<Peer address={quoteattr(peer)}/>" for peer in peers)
     return [
         "<CycloneDDS><Domain>"
         + ("<General><AllowMulticast>false</AllowMulticast></General>" if local else "")
-        + f"<Discovery>{_AUTO_INDEX.format(32)}"
-        + (f"<Peers>{listed}</Peers>" if listed else "")
-        + "</Discovery></Domain></CycloneDDS>"
+        + f"<Discovery>{_AUTO_INDEX.format(32)}{_REPEATED}<Peers>{listed}</Peers></Discovery></Domain></CycloneDDS>"
     ]
 
 
