@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import combinations
+from itertools import combinations, product
 from math import inf, isfinite
 from pathlib import Path
 from types import MappingProxyType
@@ -19,7 +19,7 @@ from linkwright.sdf.poses import SEPARATOR, WORLD
 from linkwright.sdf.worlds import World, gravity_of, physics_of
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.scene.bodies import SECOND_AXIS, BodyWriter, hinge_anchors
-from linkwright.simulation.scene.connections import Connected, connections_of
+from linkwright.simulation.scene.connections import Connected, connections_of, model_of
 from linkwright.simulation.scene.couplings import geared, threaded
 from linkwright.simulation.scene.figures import draw, figures_of
 from linkwright.simulation.scene.meshes import MeshLibrary, changed_at
@@ -336,6 +336,37 @@ class Scene:
         self.models[joint.partition(SEPARATOR)[0]].parts.append(equality)
         return str(equality.name)
 
+    def weld(self, parent: str, child: str, pose: Transform) -> None:
+        """Hold a link fast at another one, until `unweld` or until one of them goes; their models do not touch.
+
+        Args:
+            parent: the name of the link that holds.
+            child: that of the link that is held.
+            pose: where the frame of the child is in that of the parent.
+        """
+        name = _weld_name(parent, child)
+        equality = self._equality(self._mujoco.mjtEq.mjEQ_WELD, (parent, child))
+        x, y, z, qx, qy, qz, qw = pose
+        equality.name = name
+        equality.data[:10] = [0.0, 0.0, 0.0, x, y, z, qw, qx, qy, qz]
+        models = {model_of(parent), model_of(child)}
+        if len(models) > 1:
+            links = ([held.link for held in self.models[each].structure.links] for each in sorted(models))
+            touching = ([link.name for link in each if link.link.collisions] for each in links)
+            for number, (one, other) in enumerate(product(*touching)):
+                self.spec.add_exclude(name=f"{name}{number}", bodyname1=one, bodyname2=other)
+
+    def unweld(self, parent: str, child: str) -> None:
+        """End what `weld` has begun."""
+        name = _weld_name(parent, child)
+        parts = (*self.spec.equalities, *self.spec.excludes)
+        for part in [each for each in parts if each.name.startswith(name)]:
+            self.spec.delete(part)
+
+    def is_welded(self, parent: str, child: str) -> bool:
+        """Whether `weld` holds a link at another one."""
+        return self.spec.equality(_weld_name(parent, child)) is not None
+
     def _actuator(self, joint: str, limit: float) -> Any:
         self._motors += 1
         actuator = self.spec.add_actuator(name=f"{joint}#motor{self._motors}", target=joint)
@@ -463,6 +494,10 @@ class Scene:
         for one, other in {tuple(sorted((each.parent, each.child))): None for each in joints}:
             if WORLD not in (one, other):
                 yield self.spec.add_exclude(bodyname1=one, bodyname2=other)
+
+
+def _weld_name(parent: str, child: str) -> str:
+    return f"{parent}#{child}#"
 
 
 def _collides(said: bool | None, model: Model) -> bool:

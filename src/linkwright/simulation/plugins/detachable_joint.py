@@ -1,0 +1,138 @@
+"""A joint that holds a link of another model until it is told to let go: ``gz-sim-detachable-joint-system``.
+
+Source: gz-sim (parameters, topics and their names; the state is published when it changes). What is attached does not
+touch the model that holds it, as there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from linkwright.diagnostics import phrase
+from linkwright.geometry.single import compose, invert
+from linkwright.messages import get_message
+from linkwright.sdf.poses import SEPARATOR
+from linkwright.simulation.plugins.plugin import SimulatedPlugin
+from linkwright.simulation.solving import wake
+
+_LOOKS = 100.0
+"""How often it is looked in a simulated second whether a model has come that is to be attached."""
+_OWN = "__model__"
+
+
+@dataclass(frozen=True, kw_only=True)
+class DetachableJointParameters:
+    """Of the plugin."""
+
+    parent_link: str
+    child_model: str
+    child_link: str
+    topic: str = ""
+    detach_topic: str = ""
+    attach_topic: str = ""
+    output_topic: str = ""
+    initial_attach: bool = True
+    suppress_child_warning: bool = False
+
+
+class GzDetachableJoint(SimulatedPlugin[DetachableJointParameters]):
+    """``gz-sim-detachable-joint-system``."""
+
+    PARAMETERS = DetachableJointParameters
+
+    def start(self) -> None:
+        """Find the link that holds, attach what is there, and listen.
+
+        Raises:
+            LinkwrightError: SIM133 the model has no such link.
+        """
+        said, begin = self.parameters, f"/model/{self.place.path}/detachable_joint"
+        self._is_attached, self._is_wanted = False, said.initial_attach
+        self._parent, self._child = self.link(said.parent_link), ""
+        self._is_told = said.suppress_child_warning
+        state = said.output_topic or f"/model/{said.child_model}/detachable_joint/state"
+        self._output = self.node.publisher("std_msgs/msg/String", state)
+        detach = said.detach_topic or said.topic or f"{begin}/detach"
+        self.node.subscribe("std_msgs/msg/Empty", detach, self._let_go)
+        self.node.subscribe("std_msgs/msg/Empty", said.attach_topic or f"{begin}/attach", self._hold)
+        if self._is_wanted and self._found_child():
+            self._attach()
+        self.every(_LOOKS, self._look)
+
+    def reset(self) -> None:
+        """Be as at the start."""
+        self._detach()
+        self._is_wanted = self.parameters.initial_attach
+        if self._is_wanted and self._found_child():
+            self._attach()
+
+    def go_on(self, before: SimulatedPlugin[DetachableJointParameters]) -> None:
+        """Hold what one before held."""
+        assert isinstance(before, GzDetachableJoint)
+        if before._is_attached or before._is_wanted:
+            self._hold(None)
+        else:
+            self._detach()
+
+    def stop(self) -> None:
+        """Let go: the model may be about to leave."""
+        self._unweld()
+
+    def _hold(self, _: Any) -> None:
+        if not self._is_attached:
+            self._is_wanted = True
+            self._look()
+
+    def _let_go(self, _: Any) -> None:
+        self._detach()
+
+    def _look(self) -> None:
+        """Attach what is to be attached, and has come or come anew."""
+        if self._is_attached and not self.simulation.scene.is_welded(self._parent, self._child):
+            self._is_attached, self._is_wanted = False, True
+        if not self._is_wanted:
+            return
+        if self._found_child():
+            self._attach()
+        elif not self._is_told:
+            self._is_told = True
+            name = f"{self.parameters.child_model}{SEPARATOR}{self.parameters.child_link}"
+            message = phrase("plugin '{plugin}': there is no link '{name}'", plugin=self.place.name, name=name)
+            self.node.logger.warning(message)
+
+    def _found_child(self) -> bool:
+        """Whether the link that is to be held is there: of a model of the world, or of one within its own."""
+        said, bodies = self.parameters, self.simulation.scene.bodies
+        model = self.place.path if said.child_model == _OWN else said.child_model
+        link = f"{model}{SEPARATOR}{said.child_link}"
+        ways = (link, f"{self.place.path}{SEPARATOR}{link}")
+        self._child = next((each for each in ways if each in bodies and each != self._parent), "")
+        return bool(self._child)
+
+    def _attach(self) -> None:
+        simulation = self.simulation
+        parent, child = (simulation.link_pose(each) for each in (self._parent, self._child))
+        simulation.scene.weld(self._parent, self._child, compose(invert(parent), child))
+        self._renew()
+        self._tell(attached=True)
+
+    def _detach(self) -> None:
+        self._is_wanted = False
+        if self._is_attached:
+            self._unweld()
+            self._tell(attached=False)
+
+    def _unweld(self) -> None:
+        if self._is_attached:
+            self.simulation.scene.unweld(self._parent, self._child)
+            self._renew()
+
+    def _renew(self) -> None:
+        self.simulation.set_altered()
+        self.simulation.refresh()
+        wake(self.simulation.data)
+
+    def _tell(self, *, attached: bool) -> None:
+        self._is_attached, self._is_wanted = attached, False
+        self._output.publish(get_message("std_msgs/msg/String")(data="attached" if attached else "detached"))
