@@ -23,6 +23,7 @@ wheels:
 PLUGINS = {
     "classic": ("libgazebo_ros2_control.so", "gazebo_ros2_control", "gazebo_ros2_control/GazeboSystem"),
     "gz": ("gz_ros2_control-system", "gz_ros2_control::GazeboSimROS2ControlPlugin", "gz_ros2_control/GazeboSimSystem"),
+    "copy": ("libvendor_ros2_control.so", "ign_ros2_control::IgnitionROS2ControlPlugin", "vendor/IgnitionSystem"),
 }
 IMU = "<sensor name='imu' type='imu'><update_rate>10</update_rate></sensor>"
 
@@ -239,3 +240,10 @@ async def test_a_robot_that_comes_anew_has_no_controllers_yet(file):
         server.spawn(model(text), "mbot")
         await world.go_on(0.1)
         assert (await world.ask("list_controllers")).controller == []
+
+
+async def test_a_vendors_copy_of_the_plugin_is_told_of_once(file):
+    two = controlled(file, "copy", "<controller_manager_name>other</controller_manager_name>")
+    async with served(GROUND, controlled(file, "copy"), two.replace('"mbot"', '"two"')) as (_, __, log):
+        told = [each.text for each in log if "is simulated as" in each.text]
+    assert told == ["'libvendor_ros2_control.so' is simulated as 'ign_ros2_control-system', whose class it names"]

@@ -58,13 +58,22 @@ def needs_nothing(filename: str) -> bool:
     return filename in _NONE or library_name(filename) in _BUILT_IN
 
 
-def plugin_class(filename: str) -> PluginClass | None:
-    """What simulates a plugin; None where nothing does.
+def plugin_class(library: str) -> PluginClass | None:
+    """What simulates the plugin in a library, which is given by its `library_name`; None where nothing does.
 
     Raises:
         LinkwrightError: SIM136 the package that brings it cannot be imported.
     """
-    return _loaded(PLUGINS, library_name(filename))
+    return _loaded(PLUGINS, library)
+
+
+def original_library(class_name: str) -> str:
+    """The library that a class comes from: ``ign_ros2_control-system`` for one in the namespace ``ign_ros2_control``.
+
+    Vendors ship copies of libraries under names of their own, ``franka_ign_ros2_control-system``, that keep the class.
+    """
+    namespace, separator, _ = class_name.strip().partition("::")
+    return f"{namespace}-system" if separator else ""
 
 
 def sensor_class(kind: str) -> PluginClass | None:

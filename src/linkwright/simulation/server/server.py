@@ -24,7 +24,14 @@ from linkwright.simulation.plugins.node import PluginNode
 from linkwright.simulation.plugins.parameters import parameters_from
 from linkwright.simulation.plugins.places import of_model, of_world
 from linkwright.simulation.plugins.plugin import PluginClass, PluginPlace, SimulatedPlugin
-from linkwright.simulation.plugins.registry import is_of_gz, needs_nothing, plugin_class, sensor_class
+from linkwright.simulation.plugins.registry import (
+    is_of_gz,
+    library_name,
+    needs_nothing,
+    original_library,
+    plugin_class,
+    sensor_class,
+)
 from linkwright.simulation.plugins.ros_element import node_of
 from linkwright.simulation.scene.scene import SceneModel
 from linkwright.simulation.server.carrying import motion_of, resume
@@ -297,7 +304,15 @@ class SimulationServer:
         if place.plugin is None:
             assert place.sensor is not None
             return sensor_class(place.sensor.sensor.type)
-        return plugin_class(place.plugin.filename)
+        filename, original = place.plugin.filename, original_library(place.plugin.name)
+        found = plugin_class(library_name(filename))
+        if found is None and (found := plugin_class(original)) is not None and filename not in self._told:
+            self._told.add(filename)
+            copied = phrase(
+                "'{copy}' is simulated as '{original}', whose class it names", copy=filename, original=original
+            )
+            self.node.get_logger().info(copied)
+        return found
 
     def _started(self, kind: PluginClass, place: PluginPlace, namespace: str) -> SimulatedPlugin[object]:
         parameters, findings = parameters_from(
