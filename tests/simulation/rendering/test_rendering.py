@@ -154,6 +154,52 @@ def test_an_image_that_is_not_there_is_told_once(tmp_path):
     assert str(finding.message).startswith("an image is left out: ")
 
 
+QUARTERS = ((255, 0, 0), (0, 255, 0), (0, 0, 255), (255, 255, 0))
+"""The colours of an image: above left and right, below left and right."""
+WEARING = """<model name="thing"><static>true</static><pose>2 0 0 0 0 0</pose><link name="link"><visual name="v">
+<geometry>{shape}</geometry><material><pbr><metal><albedo_map>file://{image}</albedo_map></metal></pbr></material></visual></link></model>"""
+
+
+@pytest.mark.parametrize(
+    ("shape", "distance", "order"),
+    [
+        ("<box><size>1 1 1</size></box>", 1.5, (0, 1, 2, 3)),
+        ("<plane><normal>-1 0 0</normal><size>1 1</size></plane>", 2.0, None),
+        ("<cylinder><radius>0.5</radius><length>1</length></cylinder>", 1.5, None),
+        ("<sphere><radius>0.6</radius></sphere>", 1.4, None),
+    ],
+)
+def test_simple_shapes_wear_images(make, tmp_path, shape, distance, order, request):
+    image = Image.new("RGB", (64, 64))
+    for place, quarter in enumerate(QUARTERS):
+        column, row = 32 * (place % 2), 32 * (place // 2)
+        image.paste(quarter, (column, row, column + 32, row + 32))
+    image.save(tmp_path / "quarters.png")
+    text = WEARING.format(shape=shape, image=tmp_path / "quarters.png")
+    simulation = simulated(text)
+    assert not simulation.scene.diagnostics
+    picture = make(simulation).render(optics_of(CAMERA), IDENTITY, Wanted.COLOUR | Wanted.DEPTH)
+    assert picture.depth[60, 80] == pytest.approx(distance, abs=2e-3)
+    if request.node.callspec.params["make"] in ("embree", "mujoco"):  # rays: one colour a shape
+        red, green, blue = picture.colour[60, 80].astype(int)
+        assert red == green > 0
+        assert blue == pytest.approx(red / 2, abs=2)
+        return
+    colour = picture.colour.astype(int)
+    corners = [tuple(colour[row, column] > 40) for row in (50, 70) for column in (70, 90)]
+    known = [tuple(np.array(quarter) > 0) for quarter in QUARTERS]
+    assert set(corners) <= set(known)
+    assert len(set(corners)) >= 2
+    if order is not None:
+        assert corners == [known[each] for each in order]
+
+
+def test_a_box_whose_image_is_missing_has_its_own_colour_and_that_is_told(tmp_path):
+    simulation = simulated(WEARING.format(shape="<box><size>1 1 1</size></box>", image=tmp_path / "none.png"))
+    assert [each.code for each in simulation.scene.diagnostics] == ["SIM112"]
+    assert simulation.model.nmesh == 0
+
+
 @pytest.mark.parametrize("point", [(2.0, 0.5, 0.3), (2.0, -1.2, -0.6), (3.0, 2.0, 1.5)])
 def test_things_are_where_a_pinhole_has_them(make, point):
     x, y, z = point

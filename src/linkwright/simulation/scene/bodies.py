@@ -169,7 +169,7 @@ class BodyWriter:
                 geom.group = VISUAL_GROUP
                 geom.contype = geom.conaffinity = 0
                 if visual.material is not None:
-                    geom.material = self._meshes.worn(geom, visual)
+                    geom.material = self._meshes.worn(visual) if self._meshes.has_room_for_image(geom) else ""
                 if visual.material is not None or not geom.material:
                     geom.rgba = _colour(visual, _WHITE if geom.material else _GREY)
 
@@ -192,12 +192,13 @@ class BodyWriter:
     ) -> Iterable[Any]:
         """The geoms of a shape, with their names; `counts` has how many there are of each name of a part."""
         collision = isinstance(part, Collision)
-        simple = add_shape(body, part.geometry, pose, fixed=fixed)
+        geoms = [] if isinstance(part, Collision) else self._meshes.wrapped(body, part, pose)
+        simple = None if geoms else add_shape(body, part.geometry, pose, fixed=fixed)
         if simple is not None:
             geoms = [simple]
-        elif collision:
+        elif isinstance(part, Collision):
             geoms = self._meshes.collisions(body, part.geometry, pose, part.element, fixed=fixed)
-        else:
+        elif not geoms:
             geoms = self._meshes.visuals(body, part.geometry, pose, part.element)
         for geom in geoms:
             index = counts[part.name]

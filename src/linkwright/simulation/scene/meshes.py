@@ -16,14 +16,15 @@ from linkwright.geometry.mesh_files import BadMeshError, beside, told_triangles
 from linkwright.geometry.mesh_parts import MeshPart, Triangles, read_parts, read_png
 from linkwright.geometry.meshes import read_mesh, unreadable
 from linkwright.geometry.polygon import triangulated
-from linkwright.geometry.single import Transform
+from linkwright.geometry.single import Transform, compose, rotation_from_z
 from linkwright.geometry.vectors import Vector3
 from linkwright.sdf.links import Visual
 from linkwright.sdf.resources import Missing, ResourceFinder
-from linkwright.sdf.shapes import Cone, Heightmap, Mesh, Polyline, Shape
+from linkwright.sdf.shapes import Cone, Heightmap, Mesh, Plane, Polyline, Shape
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.scene.heights import read_heights
 from linkwright.simulation.scene.shapes import cone_corners, set_pose
+from linkwright.simulation.scene.wrapping import wrapped
 from linkwright.xmltree import Element
 
 _MOST_PIECES = 300
@@ -145,15 +146,35 @@ class MeshLibrary:
             positions = triangles.positions * np.asarray(shape.scale)
             if _area(positions, faces) <= _LEAST_AREA:
                 continue
-            name = f"mesh {len(self.spec.meshes)}"
-            mesh = self.spec.add_mesh(name=name, inertia=load_mujoco().mjtMeshInertia.mjMESH_INERTIA_SHELL)
-            mesh.uservert = _flat(_four(positions))
-            mesh.userface = _flat(faces[:, ::-1] if np.prod(shape.scale) < 0 else faces, np.int32)
-            if triangles.coordinates is not None:
-                mesh.usertexcoord = _flat(_four(triangles.coordinates))
-                self._mapped.add(name)
+            faces = faces[:, ::-1] if np.prod(shape.scale) < 0 else faces
+            name = self._seen(positions, faces, triangles.coordinates)
             self._give_look(name, part)
             yield name
+
+    def _seen(self, positions: Array, faces: Any, coordinates: Array | None) -> str:
+        """The name of a new mesh, which may have coordinates of an image."""
+        name = f"mesh {len(self.spec.meshes)}"
+        mesh = self.spec.add_mesh(name=name, inertia=load_mujoco().mjtMeshInertia.mjMESH_INERTIA_SHELL)
+        mesh.uservert = _flat(_four(positions))
+        mesh.userface = _flat(faces, np.int32)
+        if coordinates is not None:
+            mesh.usertexcoord = _flat(_four(coordinates))
+            self._mapped.add(name)
+        return name
+
+    def wrapped(self, body: Any, visual: Visual, pose: Transform) -> list[Any]:
+        """Add a simple shape to a body as triangles that can wear an image; nothing for one that wears none."""
+        shape = visual.geometry
+        triangles = wrapped(shape) if self.worn(visual) else None
+        if triangles is None:
+            return []
+        key = ("wrapped", shape)
+        if key not in self._assets:
+            faces = triangles.indices.reshape(-1, 3)
+            self._assets[key] = [self._seen(triangles.positions, faces, triangles.coordinates)]
+        if isinstance(shape, Plane):
+            pose = compose(pose, (0.0, 0.0, 0.0, *rotation_from_z(shape.normal)))
+        return [self._geom(body, pose, name) for name in self._assets[key]]
 
     def _give_look(self, mesh: str, part: MeshPart) -> None:
         if part.own is None:
@@ -171,15 +192,19 @@ class MeshLibrary:
         self.spec.assets = {**self.spec.assets, texture.file: image}
         material.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = texture.name
 
-    def worn(self, geom: Any, visual: Visual) -> str:
-        """The name of MuJoCo's material with the image that a visual says its mesh wears; empty for none.
+    def has_room_for_image(self, geom: Any) -> bool:
+        """Whether a geom is a mesh with coordinates of an image."""
+        return geom.meshname in self._mapped
+
+    def worn(self, visual: Visual) -> str:
+        """The name of MuJoCo's material with the image that a visual says it wears; empty for none.
 
         An image of what glows stands for that of a colour which is not there.
         """
         workflow = (
             visual.material and visual.material.pbr and (visual.material.pbr.metal or visual.material.pbr.specular)
         )
-        if not workflow or geom.meshname not in self._mapped:
+        if not workflow:
             return ""
         path = self._image(workflow.albedo_map or workflow.emissive_map, visual.element)
         if path is None:

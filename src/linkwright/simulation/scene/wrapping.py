@@ -1,0 +1,103 @@
+"""Simple shapes as triangles that wear an image.
+
+Source: gz-common's ``MeshManager``. A box shows the image on each side, upright on those beside. On a cylinder and a
+ball it goes round clockwise as seen from the end; a cylinder's stands on its head, and a ball's poles are along y.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from math import cos, pi, sin
+
+import numpy as np
+
+from linkwright.geometry.arrays import Array
+from linkwright.geometry.mesh_parts import Triangles
+from linkwright.geometry.shapes import Box, Cylinder, Sphere
+from linkwright.sdf.shapes import Plane, Shape
+
+_SIDE, _FLOOR = 4, 16
+"""Into how many squares a side of a box and a plane are cut each way: light is computed at corners."""
+_AROUND, _DOWN = 64, 32
+"""Into how many parts what is round is cut, round its axis and along it."""
+_SIDES = (
+    ((1, 0, 0), (0, 1, 0), (0, 0, 1)),
+    ((-1, 0, 0), (0, -1, 0), (0, 0, 1)),
+    ((0, 1, 0), (-1, 0, 0), (0, 0, 1)),
+    ((0, -1, 0), (1, 0, 0), (0, 0, 1)),
+    ((0, 0, 1), (0, -1, 0), (1, 0, 0)),
+    ((0, 0, -1), (0, -1, 0), (-1, 0, 0)),
+)
+"""Of each side of a box where it looks to, and where the right and the upper edge of its image are."""
+
+
+_LEAST_AREA = 1e-15
+"""In m2: triangles at poles that have none are left out."""
+
+
+def wrapped(shape: Shape) -> Triangles | None:
+    """A shape with the coordinates of an image; None for one that wears none.
+
+    A plane is so great as it is said to be drawn, and has z for its normal.
+    """
+    match shape:
+        case Box(size) if min(size) > 0:
+            half = np.array(size) / 2
+            return _joined([_sheet(np.array(side, dtype=np.float64) * half, _SIDE) for side in _SIDES])
+        case Plane(_, (x, y)) if min(x, y) > 0:
+            return _sheet(np.array([[0.0, 0.0, 0.0], [x / 2, 0.0, 0.0], [0.0, y / 2, 0.0]]), _FLOOR)
+        case Cylinder(radius, length) if radius > 0 and length > 0:
+            end = length / 2
+            tube = _rings([(radius, -end, 0.0), (radius, end, 1.0)])
+            caps = (_rings([(radius, end, 1.0), (0.0, end, 0.0)]), _rings([(0.0, -end, 0.0), (radius, -end, 0.0)]))
+            return _joined([tube, *caps])
+        case Sphere(radius) if radius > 0:
+            downs = [down / _DOWN for down in reversed(range(_DOWN + 1))]
+            upright = _rings([(radius * sin(down * pi), radius * cos(down * pi), down) for down in downs])
+            faces = upright.indices.reshape(-1, 3)[:, ::-1]  # what is exchanged is seen in a mirror
+            return replace(upright, positions=upright.positions[:, [0, 2, 1]], indices=faces.ravel())
+    return None
+
+
+def _sheet(side: Array, count: int) -> Triangles:
+    """A rectangle.
+
+    Args:
+        side: where its middle is, and from there its right and its upper edge, shape (3, 3).
+        count: into how many squares it is cut each way.
+    """
+    share = np.linspace(0.0, 1.0, count + 1)
+    down, right = (each.reshape(-1, 1) for each in np.meshgrid(share, share, indexing="ij"))
+    middle, to_right, upwards = side
+    positions = middle + (2 * right - 1) * to_right + (1 - 2 * down) * upwards
+    return _woven(positions, np.hstack([right, down]), count)
+
+
+def _rings(rings: Sequence[tuple[float, float, float]]) -> Triangles:
+    """What is round about z: of each ring its radius, its height and where in the image it is, from the top."""
+    turns = np.linspace(0.0, 2 * pi, _AROUND + 1)
+    radius, height, down = (np.repeat(each, _AROUND + 1) for each in np.array(rings).T)
+    turn = np.tile(turns, len(rings))
+    positions = np.stack([radius * np.sin(turn), radius * np.cos(turn), height], axis=1)
+    return _woven(positions, np.stack([turn / (2 * pi), down], axis=1), _AROUND)
+
+
+def _woven(positions: Array, coordinates: Array, columns: int) -> Triangles:
+    """Triangles between rows of corners."""
+    start = np.arange(len(positions) - columns - 1).reshape(-1, columns + 1)[:, :-1].ravel()
+    below = start + columns + 1
+    faces = np.concatenate([np.stack([start, below, start + 1], 1), np.stack([start + 1, below, below + 1], 1)])
+    one, two, three = (positions[faces[:, corner]] for corner in range(3))
+    seen = np.linalg.norm(np.cross(two - one, three - one), axis=1) > _LEAST_AREA
+    return Triangles(positions, faces[seen].ravel(), None, coordinates)
+
+
+def _joined(parts: Sequence[Triangles]) -> Triangles:
+    counts = np.cumsum([0, *(len(part.positions) for part in parts)])
+    return Triangles(
+        np.concatenate([part.positions for part in parts]),
+        np.concatenate([part.indices + count for part, count in zip(parts, counts, strict=False)]),
+        None,
+        np.concatenate([part.coordinates for part in parts if part.coordinates is not None]),
+    )
