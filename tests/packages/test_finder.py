@@ -73,6 +73,28 @@ def test_colcon_install_folders_are_found_from_inside_the_workspace(tmp_path: Pa
     assert finder(inside).packages()["arm"] == share
 
 
+def test_packages_of_the_prefix_that_one_stands_in_are_found_by_their_markers(tmp_path: Path) -> None:
+    share = install(tmp_path / "ros", "arm-data")
+    make_source(share, "arm_descriptions")  # addresses say the marker's name
+    (share / "urdf").mkdir()
+    other = install(tmp_path / "ros", "meshes")
+    found = finder(share / "urdf")
+    assert found.share("arm-data") == share
+    assert found.share("meshes") == other
+    assert found.packages()["arm-data"] == share
+    with pytest.raises(PackageNotFoundError) as caught:
+        found.share("nobody")
+    assert any(str(tmp_path / "ros") in str(note) for note in caught.value.diagnostics[0].notes)
+
+
+def test_a_folder_called_share_without_an_index_is_no_prefix(tmp_path: Path) -> None:
+    inside = tmp_path / "share" / "arm"
+    inside.mkdir(parents=True)
+    (tmp_path / "share" / "elsewhere").mkdir()
+    make_source(tmp_path / "share" / "elsewhere", "other_name")
+    assert finder(inside).find("elsewhere") is None
+
+
 def test_a_folder_that_is_merely_called_install_is_none(tmp_path: Path) -> None:
     install(tmp_path / "install", "arm")
     assert finder(tmp_path).find("arm") is None

@@ -39,6 +39,11 @@ def environment_prefixes(environment: Mapping[str, str]) -> list[Path]:
     return [Path(entry) for entry in environment.get(PREFIX_PATH, "").split(os.pathsep) if entry]
 
 
+def is_share_of_prefix(folder: Path) -> bool:
+    """Whether a folder is the ``share`` of a prefix: it is called so and holds an ament resource index."""
+    return folder.name == "share" and (folder.parent / _MARKERS).is_dir()
+
+
 def share_in_prefix(prefix: Path, name: str) -> Path | None:
     """The share folder of a package in one prefix, or None.
 

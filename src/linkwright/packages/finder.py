@@ -28,7 +28,8 @@ class PackageFinder:
 
     1. `extra`, given by the caller;
     2. the prefixes of ``AMENT_PREFIX_PATH`` (a sourced ROS or workspace);
-    3. colcon's ``install`` folders in the start folders and in the folders above them, merged or isolated;
+    3. colcon's ``install`` folders in the start folders and in the folders above them, merged or isolated, and the
+       prefix that a start folder lies in, such as ``/opt/ros/humble`` where nobody sourced it;
     4. source trees: the package a start folder lies in and the packages beside that one, the packages below
        a start folder, and those below ``src`` of the folders above it;
     5. the packages shipped with Linkwright;
@@ -136,6 +137,8 @@ class PackageFinder:
             yield ament.share_in_prefix(prefix, name)
         for install in self._installs():
             yield ament.share_in_install(install, name)
+        for prefix in self._holding():
+            yield ament.share_in_prefix(prefix, name)
         yield _share_of(name, dict(self._enclosing()).get(name))
         for root in self._source_roots():
             yield _share_of(name, self._scan(root).find(name))
@@ -147,6 +150,8 @@ class PackageFinder:
             yield from ament.packages_in_prefix(prefix)
         for install in self._installs():
             yield from ament.packages_in_install(install)
+        for prefix in self._holding():
+            yield from ament.packages_in_prefix(prefix)
         yield from self._enclosing()
         for root in self._source_roots():
             yield from self._scan(root).packages().items()
@@ -166,6 +171,9 @@ class PackageFinder:
             install = folder / "install"
             if ament.is_colcon_install(install):
                 yield install
+
+    def _holding(self) -> Iterator[Path]:
+        return (folder.parent for folder in self._upwards() if ament.is_share_of_prefix(folder))
 
     def _enclosing(self) -> Iterator[tuple[str, Path]]:
         for start in self._starts:
@@ -208,6 +216,7 @@ class PackageFinder:
         places += [
             phrase("colcon install folder {install}", install=display_path(install)) for install in self._installs()
         ]
+        places += [phrase("the packages installed in {prefix}", prefix=display_path(each)) for each in self._holding()]
         for root in self._source_roots():
             scan = self._scan(root)
             if scan.truncated:
