@@ -135,11 +135,13 @@ async def test_six_axes_may_be_limited(line, stage):
     assert (one.out[0].linear.x, one.out[0].angular.z) == pytest.approx((0.1, 0.1))
 
 
-async def test_stamped_velocities_go_through_stamped(line, stage):
-    one = line(kind=STAMPED)
+@pytest.mark.parametrize("kind", [TWIST, STAMPED])
+async def test_either_type_goes_through_and_nothing_is_said_of_the_other(line, stage, said, kind):
+    one = line(kind=kind)
     await one.send(0.5)
     await stage.clock.advance(0.06)
     assert one.speeds() == [0.125]
+    assert said("WARN") == []
 
 
 async def test_numbers_that_are_none_are_left_out(line, stage, said):

@@ -12,6 +12,17 @@ TWIST_STAMPED = "geometry_msgs/msg/TwistStamped"
 _DEPTH = 10
 
 
+def velocity_types(node: Node, topic: str, stamped: bool | None) -> tuple[str, ...]:
+    """The types to subscribe to for velocities: one where ``stamped`` says which, otherwise both.
+
+    The type that is published already is the first, so that nothing is told of a type that nobody subscribes to.
+    """
+    if stamped is not None:
+        return (TWIST_STAMPED if stamped else TWIST,)
+    published = {each.topic_type for each in node.get_publishers_info_by_topic(topic)}
+    return (TWIST_STAMPED, TWIST) if TWIST_STAMPED in published else (TWIST, TWIST_STAMPED)
+
+
 class VelocityTopic:
     """A topic of velocities; it is left alone where it carries something else.
 

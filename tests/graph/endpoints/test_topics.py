@@ -239,6 +239,20 @@ async def test_different_types_on_a_topic_are_told(graph, log):
     assert graph.topics()["/topic"] == ["std_msgs/msg/Header", "std_msgs/msg/String"]
 
 
+async def test_a_node_that_takes_both_types_is_not_warned(graph, log):
+    node, other = graph.create_node("node"), graph.create_node("other")
+    received = []
+    for kind in (String, Header):
+        node.create_subscription(kind, "topic", received.append, 1)
+    other.create_publisher(String, "topic", 1).publish(String("x"))
+    other.create_publisher(Header, "topic", 1).publish(Header(frame_id="map"))
+    await graph.settle()
+    assert [type(each) for each in received] == [String, Header]
+    assert log == []
+    other.create_subscription(Header, "topic", print, 1)
+    assert ["'/other' subscribes to std_msgs/msg/Header" in each.text for each in log] == [True]
+
+
 async def test_a_message_of_another_type_is_refused(graph):
     publisher = graph.create_node("node").create_publisher(String, "topic", 1)
     with pytest.raises(TypeError, match="topic '/topic' carries std_msgs/msg/String, not Header"):

@@ -61,17 +61,24 @@ class Bus:
             if isinstance(endpoint, Publisher):
                 self._publishers.add(endpoint)
                 for subscription in self._subscriptions.of(endpoint.name):
-                    match(endpoint, subscription)
+                    self._match(endpoint, subscription)
             elif isinstance(endpoint, Subscription):
                 self._subscriptions.add(endpoint)
                 for publisher in self._publishers.of(endpoint.name):
-                    match(publisher, endpoint)
+                    self._match(publisher, endpoint)
             elif isinstance(endpoint, Service):
                 self._services.add(endpoint)
                 self._find_servers(endpoint.name)
             elif isinstance(endpoint, Client):
                 self._clients.add(endpoint)
                 self._find_servers(endpoint.name)
+
+    def _match(self, publisher: Publisher[Any], subscription: Subscription[Any]) -> None:
+        """Connect the two, or warn; not of a type that another subscription of the same node takes."""
+        kind = publisher.type_name
+        others = () if subscription.type_name == kind else self._subscriptions.of(subscription.name)
+        if not any(each.node is subscription.node and each.type_name == kind for each in others):
+            match(publisher, subscription)
 
     def remove(self, endpoint: Endpoint) -> None:
         """Remove an endpoint. What a publisher sent is still delivered; the queue of a subscription is dropped."""

@@ -37,7 +37,7 @@ from linkwright.nodes.navigation.goals import GoalServer
 from linkwright.nodes.navigation.managed import ManagedNode, ManagedServer
 from linkwright.nodes.navigation.plugins import texts_of, type_of
 from linkwright.nodes.settings import bad_value, positive
-from linkwright.nodes.velocity_topic import TWIST, TWIST_STAMPED, VelocityTopic
+from linkwright.nodes.velocity_topic import VelocityTopic, velocity_types
 
 _DEPTH = 10
 _SILENT_COSTMAP = 5.0
@@ -118,8 +118,9 @@ class BehaviorNode(ManagedNode):
         raw, polygon = get_message("nav2_msgs/msg/Costmap"), get_message("geometry_msgs/msg/PolygonStamped")
         self.keep(self.create_subscription(raw, self._topic("costmap"), self._on_costmap, DESCRIPTION_QOS))
         self.keep(self.create_subscription(polygon, self._topic("footprint"), self._on_footprint, _DEPTH))
-        for kind in (TWIST, TWIST_STAMPED) if self._stamped is None else (TWIST_STAMPED if self._stamped else TWIST,):
-            self.keep(self.create_subscription(kind, self._value("cmd_vel_teleop"), self._on_asked, _DEPTH))
+        asked = self._value("cmd_vel_teleop")
+        for kind in velocity_types(self, asked, self._stamped):
+            self.keep(self.create_subscription(kind, asked, self._on_asked, _DEPTH))
         self._output = VelocityTopic(self, "cmd_vel", self._stamped)
         for plugin in texts_of(self, "behavior_plugins", list(_TYPES)):
             kind = type_of(self, plugin, {name: each for name, (each, _) in _TYPES.items()})

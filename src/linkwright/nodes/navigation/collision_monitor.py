@@ -24,7 +24,7 @@ from linkwright.nodes.navigation.collision_sources import Source
 from linkwright.nodes.navigation.collision_zones import Zone
 from linkwright.nodes.navigation.managed import ManagedNode, ManagedServer
 from linkwright.nodes.navigation.plugins import texts_of
-from linkwright.nodes.velocity_topic import TWIST, TWIST_STAMPED, VelocityTopic
+from linkwright.nodes.velocity_topic import VelocityTopic, velocity_types
 
 _DEPTH = 10
 _NO_SOURCE = "invalid source"
@@ -81,9 +81,8 @@ class MonitorNode(ManagedNode):
         if topic:
             self._state = self.keep(self.create_publisher("nav2_msgs/msg/CollisionMonitorState", topic, _DEPTH))
         self._output = VelocityTopic(self, str(self._value("cmd_vel_out_topic")), self._stamped)
-        kinds = (TWIST, TWIST_STAMPED) if self._stamped is None else (TWIST_STAMPED if self._stamped else TWIST,)
-        for kind in kinds:
-            topic = str(self._value("cmd_vel_in_topic"))
+        topic = str(self._value("cmd_vel_in_topic"))
+        for kind in velocity_types(self, topic, self._stamped):
             commander = Commander(self._on_lost, DriverWatch.of(self))
             take = commander.taking(self._on_velocity)
             heard: Subscription[Any] = self.create_subscription(kind, topic, take, _DEPTH)

@@ -21,7 +21,7 @@ from linkwright.graph.lifecycle.states import LifecycleState, TransitionCallback
 from linkwright.messages import get_message
 from linkwright.nodes.navigation.managed import ManagedNode, ManagedServer
 from linkwright.nodes.teleop.smoothing import Limits, smoothed
-from linkwright.nodes.velocity_topic import TWIST, TWIST_STAMPED, VelocityTopic
+from linkwright.nodes.velocity_topic import VelocityTopic, velocity_types
 
 _DEPTH = 10
 _NANOSECONDS = 1e9
@@ -74,10 +74,9 @@ class _ManagedSmoother(ManagedNode):
         """Read the parameters and join the topics."""
         self._read()
         stamped = self._stamped
-        kinds = (TWIST, TWIST_STAMPED) if stamped is None else (TWIST_STAMPED if stamped else TWIST,)
         self._output = VelocityTopic(self, "cmd_vel_smoothed", stamped)
         commander = Commander(self._lose, DriverWatch.of(self))
-        for kind in kinds:
+        for kind in velocity_types(self, "cmd_vel", stamped):
             heard: Subscription[Any] = self.create_subscription(kind, "cmd_vel", commander.taking(self._heard), _DEPTH)
             commander.watch(self.keep(heard))
         if self._value("feedback") == "CLOSED_LOOP":
