@@ -221,6 +221,14 @@ class TestFailures:
         assert done.messages == ["others go on"]
         assert not done.succeeded
 
+    async def test_a_terminal_that_does_not_exist(self, launch, monkeypatch) -> None:
+        monkeypatch.setenv("PATH", "/no/such/folder")
+        done = await launch(python("0", prefix="xterm -e"), LogInfo(msg="others go on"))
+        assert "program 'xterm' does not exist" in done.err
+        assert "install 'xterm'" in done.err
+        assert "linkwright run" in done.err
+        assert done.messages == ["others go on"]
+
     async def test_a_folder_that_does_not_exist(self, launch) -> None:
         done = await launch(python("0", cwd="/no/such/folder"))
         assert "folder '/no/such/folder' does not exist" in done.err

@@ -30,6 +30,8 @@ _LONGEST_LINE = 100_000
 """Characters that are kept until the line ends that they belong to."""
 _HURRIED_SECONDS = {"SIGTERM": 0.0, "SIGKILL": 0.5}
 """How long to wait for the end before these when the user does not want to wait."""
+_TERMINALS = frozenset({"xterm", "gnome-terminal", "konsole", "terminator", "x-terminal-emulator", "xfce4-terminal"})
+"""Programs that launch files start others in, as ``prefix``, so that those have a keyboard."""
 
 
 class RunningProcess:
@@ -229,6 +231,12 @@ class RunningProcess:
             )
             if " " in program:
                 hint = phrase("give program and arguments as separate items of cmd, or set shell=True")
+            elif program in _TERMINALS:
+                hint = phrase(
+                    "install '{program}', which opens a window for the process, or run the process in a terminal of "
+                    "its own with 'linkwright run'",
+                    program=program,
+                )
         else:
             reason = error.strerror if isinstance(error, OSError) else str(error)
             message = phrase(
