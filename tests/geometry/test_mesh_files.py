@@ -1,4 +1,4 @@
-"""What is known of a mesh file before it is parsed."""
+"""What is known of a mesh file before it is parsed, and what is read of one that is broken in parts."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from linkwright.geometry.mesh_files import told_triangles
+from linkwright.geometry.mesh_files import placed_meshes, told_triangles
+from tests.geometry.test_mesh_faults import COLLADA
 
 FACET = b"facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
 
@@ -29,3 +30,19 @@ def test_triangles_are_counted_without_parsing(tmp_path: Path, name: str, data: 
 
 def test_a_file_that_is_not_there_says_nothing(tmp_path: Path) -> None:
     assert told_triangles(tmp_path / "a.stl") is None
+
+
+@pytest.mark.parametrize(
+    "materials",
+    ["", '<library_materials><material id="red"><instance_effect url="#none"/></material></library_materials>'],
+    ids=["no material", "a material without its effect"],
+)
+def test_collada_keeps_what_wears_a_material_that_cannot_be_read(materials: str) -> None:
+    bound = (
+        '<bind_material><technique_common><instance_material symbol="m" target="#red"/></technique_common>'
+        "</bind_material></instance_geometry>"
+    )
+    plain = '<node id="n"><instance_geometry url="#g"/></node>'
+    worn = plain.replace('"n"', '"worn"').replace('"#g"/>', '"#g">' + bound)
+    text = COLLADA.replace(plain, plain + worn).replace("<library_visual", materials + "<library_visual", 1)
+    assert len(placed_meshes(text.encode(), "dae")) == 2

@@ -126,7 +126,7 @@ def _parsed(data: bytes, kind: str, **options: Any) -> Iterator[PlacedMesh]:
     logger = logging.getLogger("trimesh")
     if not logger.handlers:
         logger.addHandler(logging.NullHandler())  # what it warns of is no concern of the user
-    scene: Any = trimesh.load_scene(BytesIO(data), file_type=kind, process=False, **options)
+    scene: Any = _collada_scene(data, **options) if kind == "dae" else _scene(data, kind, **options)
     for node in scene.graph.nodes_geometry:
         matrix, name = scene.graph[node]
         mesh = scene.geometry[name]
@@ -134,6 +134,42 @@ def _parsed(data: bytes, kind: str, **options: Any) -> Iterator[PlacedMesh]:
             unit = _collada_unit(mesh) if kind == "dae" else 1.0
             yield PlacedMesh(mesh, np.asarray(matrix, dtype=np.float64), unit, frozenset((name, node)))
     scene.__dict__.clear()  # it holds itself in a circle, and with it the bytes of the file
+
+
+def _scene(data: bytes, kind: str, **options: Any) -> Any:
+    import trimesh
+
+    return trimesh.load_scene(BytesIO(data), file_type=kind, process=False, **options)
+
+
+def _collada_scene(data: bytes, **options: Any) -> Any:
+    """The scene of a COLLADA file; what refers to a material that cannot be read comes without one.
+
+    pycollada can pass over what is broken, and passes over the geometry that wears it, too. So it is asked to be strict
+    first, and a file that it refuses is read again without those references.
+    """
+    from collada.common import DaeError  # type: ignore[import-untyped]  # pycollada has no types
+
+    try:
+        return _scene(data, "dae", ignore_broken=False, **options)
+    except DaeError:
+        return _scene(_without_broken_materials(data), "dae", ignore_broken=True, **options)
+
+
+def _without_broken_materials(data: bytes) -> bytes:
+    """A COLLADA file without its references to materials that are not there or cannot be read."""
+    from collada import Collada  # type: ignore[import-untyped]  # pycollada has no types
+    from collada.common import DaeError
+
+    document = Collada(BytesIO(data), ignore=[DaeError])
+    known = {f"#{material.id}" for material in document.materials}
+    for bound in document.xmlnode.iter(document.tag("technique_common")):
+        for material in bound.findall(document.tag("instance_material")):
+            if material.get("target") not in known:
+                bound.remove(material)
+    written = BytesIO()
+    document.xmlnode.write(written)
+    return written.getvalue()
 
 
 def said_by_parser(error: Exception) -> Phrase:
