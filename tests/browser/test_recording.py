@@ -76,6 +76,18 @@ def test_all_topics_are_recorded_fetched_and_open_again(page: Page, open_page, s
     assert again.get_by_role("button", name="Record", exact=True).count() == 0
 
 
+def test_what_was_recorded_is_seen_at_once(page: Page):
+    choose(page, "Record all topics")
+    until(page, "lw.recording.length >= 2")
+    stop(page)
+    is_stopped(page, 1)
+    page.get_by_role("dialog").get_by_role("button", name="Open here").click()
+    until(page, "lw.timeline?.live === false && lw.timeline.length > 1 && lw.frames.tip")
+    page.go_back()
+    until(page, "lw.timeline?.live && lw.frames.tip")
+    assert Path(state(page, "recording")["files"][0]).exists()
+
+
 def test_chosen_topics_are_recorded(page: Page):
     choose(page, "Record chosen topics…")
     dialog = page.get_by_role("dialog")

@@ -9,7 +9,7 @@ export interface NamedFile {
 /** The server does not take it; the text says why. */
 export class RefusedError extends Error {}
 
-/** Sends the files of a recording to the server, one after the other, and has it shown. */
+/** Sends the files of a recording to the server, one after the other, and has it shown; or one that the server has. */
 export class Upload {
   private request: XMLHttpRequest | null = null;
   private key = "";
@@ -17,11 +17,13 @@ export class Upload {
 
   /**
    * @param base - the address of the page.
+   * @param language - what refusals are told in.
    * @param progress - told how many bytes were sent.
    */
   constructor(
     private readonly base: string,
     private readonly tokens: Tokens,
+    private readonly language: string,
     private readonly progress: (sent: number) => void,
   ) {}
 
@@ -36,6 +38,11 @@ export class Upload {
     }
     this.progress(before);
     return (await this.ask("POST", `recordings/${this.key}`, null))?.recording ?? null;
+  }
+
+  /** What the server calls a recording that it made itself, by the address of its file; null where it was cancelled. */
+  async show(file: string): Promise<string | null> {
+    return (await this.ask("POST", file, null))?.recording ?? null;
   }
 
   cancel(): void {
@@ -66,6 +73,7 @@ export class Upload {
   private address(path: string): string {
     const url = new URL(path, new URL(".", this.base));
     const { current } = this.tokens;
+    url.searchParams.set("language", this.language);
     if (current !== null) url.searchParams.set("token", current);
     return url.href;
   }

@@ -88,7 +88,7 @@ export class RecordButton {
     ];
   }
 
-  /** Says where it is, and has it fetched if the user likes. */
+  /** Says where it is, and has it shown or fetched if the user likes. */
   private offer(file: RecordedFile): void {
     const words = strings.recording;
     new Dialog(
@@ -107,7 +107,15 @@ export class RecordButton {
             return undefined;
           },
         },
-        { label: strings.shell.ok, main: true },
+        { label: strings.shell.ok },
+        {
+          label: words.openHere,
+          main: true,
+          run: () => {
+            this.session.recording.wanted.emit(file);
+            return undefined;
+          },
+        },
       ],
     ).open();
   }

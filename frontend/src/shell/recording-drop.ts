@@ -4,11 +4,11 @@ import { RefusedError, Upload } from "../connection/upload";
 import { h } from "../dom";
 import { amountOf } from "../panels/timeline-text";
 import type { Session } from "../state/session";
-import { strings } from "../strings";
+import { language, strings } from "../strings";
 import { Dialog, tell } from "./dialog";
 import { filesOf, recordingAmong, type Dropped } from "./recording-files";
 
-/** Recordings that the user drops on the page, or chooses: they go to the server, and a page with their timeline opens. */
+/** Recordings that the user drops on the page, chooses or has made: they go to the server, and a page with their timeline opens. */
 export class RecordingDrop {
   private readonly veil = h("div", { class: "drop-veil" }, h("p", {}, strings.recording.dropHere));
   private sending = false;
@@ -33,6 +33,7 @@ export class RecordingDrop {
       event.preventDefault();
       void filesOf(event.dataTransfer).then((dropped) => this.take(dropped));
     });
+    session.recording.wanted.on(({ name, url }) => void this.open(name, 0, (upload) => upload.show(url)));
     session.connection.on("timeline", ({ live }) => this.check(live));
   }
 
@@ -56,9 +57,15 @@ export class RecordingDrop {
     else void this.send(dropped);
   }
 
-  private async send({ name, files }: Dropped): Promise<void> {
-    const words = strings.recording;
+  private send({ name, files }: Dropped): Promise<void> {
     const whole = files.reduce((sum, { file }) => sum + file.size, 0);
+    return this.open(name, whole, (upload) => upload.send(name, files));
+  }
+
+  /** Goes to the page of a recording when the server shows it; until then a dialog says how far it is. `whole` are bytes. */
+  private async open(name: string, whole: number, bring: (upload: Upload) => Promise<string | null>): Promise<void> {
+    const words = strings.recording;
+    if (this.sending) return;
     const bar = h("progress", { class: "wide", aria: { label: words.sending(name) } });
     const text = h("p", { role: "status" });
     const show = (sent: number): void => {
@@ -67,7 +74,7 @@ export class RecordingDrop {
       else bar.removeAttribute("value");
       text.textContent = sent < whole ? amountOf(sent, whole) : words.opening;
     };
-    const upload = new Upload(document.baseURI, this.tokens, show);
+    const upload = new Upload(document.baseURI, this.tokens, language, show);
     let done = false;
     const dialog = new Dialog(words.sending(name), [bar, text], [{ label: strings.shell.cancel, main: true }]);
     dialog.element.addEventListener("close", () => {
@@ -77,7 +84,7 @@ export class RecordingDrop {
     show(0);
     dialog.open();
     try {
-      const recording = await upload.send(name, files);
+      const recording = await bring(upload);
       if (recording !== null) location.assign(addressOf(location.href, recording));
     } catch (error) {
       done = true;

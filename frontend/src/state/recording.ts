@@ -9,6 +9,8 @@ export class RecordingControl {
   readonly made = new Signal<RecordedFile>();
   /** What this page asked for could not be done, or ended early; why. */
   readonly refused = new Signal<string>();
+  /** The user wants to see one that was made. */
+  readonly wanted = new Signal<RecordedFile>();
   private told: RecordingState | null = null;
   private asked = false;
 

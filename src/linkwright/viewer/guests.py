@@ -1,4 +1,4 @@
-"""Recordings that pages gave: each in a graph and a viewer of its own, on the server of the viewer it was given to.
+"""Recordings that pages gave, or had made: each in a graph and a viewer of its own, on that viewer's server.
 
 Nothing of them comes to the graph of that viewer, nor to the network.
 """
@@ -33,7 +33,7 @@ class _Guest:
     bag: BagReader
     graph: Graph
     viewer: Viewer
-    scratch: TemporaryDirectory[str]
+    scratch: TemporaryDirectory[str] | None
     left: float
 
 
@@ -50,12 +50,12 @@ class GuestRecordings:
         self._looking: asyncio.TimerHandle | None = None
         self._closing: set[asyncio.Task[None]] = set()
 
-    async def open(self, path: Path, scratch: TemporaryDirectory[str]) -> str:
+    async def open(self, path: Path, scratch: TemporaryDirectory[str] | None) -> str:
         """Show a recording until a minute after its last page has gone; what pages name it by.
 
         Args:
             path: of its file or folder.
-            scratch: the folder that it is in, which is removed afterwards.
+            scratch: the folder that it is in, which is removed afterwards; None for one that stays where it is.
 
         Raises:
             LinkwrightError: BAG101, BAG102, BAG107, see `BagReader`; BAG111, as many are shown as may be.
@@ -134,4 +134,5 @@ async def _end(guest: _Guest) -> None:
     await guest.viewer.close()
     await guest.graph.close()
     guest.bag.close()
-    guest.scratch.cleanup()
+    if guest.scratch is not None:
+        guest.scratch.cleanup()

@@ -51,10 +51,9 @@ class Sender:
         self.base = f"{parts.scheme}://{parts.netloc}"
         self.token = parse_qs(parts.query)["token"][0]
 
-    async def ask(self, method: str, path: str, **options: object) -> tuple[int, dict[str, str]]:
-        async with self.session.request(
-            method, f"{self.base}/{path}", params={"token": self.token}, **options
-        ) as answer:
+    async def ask(self, method: str, path: str, language: str = "en", **options: object) -> tuple[int, dict[str, str]]:
+        params = {"token": self.token, "language": language}
+        async with self.session.request(method, f"{self.base}/{path}", params=params, **options) as answer:
             if answer.content_type != "application/json":
                 return answer.status, {"text": await answer.text()}
             said = await answer.json()
@@ -189,6 +188,34 @@ async def test_what_cannot_be_read_is_said_without_where_it_lay(scratch: Path, d
         assert "'x.mcap'" in answer["problem"]
         assert str(scratch) not in answer["problem"]
         assert not left(scratch)
+
+
+@skipping
+async def test_why_not_is_said_in_the_language_of_the_page():
+    async with host() as (_, sender):
+        announced = {"name": "x", "files": [{"name": "x.txt", "size": 1}]}
+        for language, words in (("en", "is no file of a recording"), ("zh", "不是录制")):
+            _, answer = await sender.ask("POST", "recordings", language, json=announced)
+            assert words in answer["problem"], answer
+
+
+@skipping
+async def test_what_the_program_recorded_is_shown_and_stays(tmp_path: Path):
+    (path,) = recorded(tmp_path).glob("*.mcap")
+    async with host() as (made, sender):
+        url = made.viewer.context.downloads.keep(path).lstrip("/")
+        status, answer = await sender.ask("POST", url)
+        assert status == 200, answer
+        async with seen(sender, answer["recording"]) as client:
+            assert not (await client.until("timeline"))["live"]
+        await asyncio.sleep(4 * SECONDS)
+        assert made.viewer.guests.audience(answer["recording"]) is None
+        assert path.exists()
+        path.write_bytes(b"not a recording")
+        assert (await sender.ask("POST", url))[0] == REFUSED
+        assert (await sender.ask("POST", "export/other/x.mcap"))[0] == 404
+        sender.token = "another"
+        assert (await sender.ask("POST", url))[0] == 401
 
 
 @skipping

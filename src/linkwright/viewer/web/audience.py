@@ -9,6 +9,8 @@ from contextlib import contextmanager
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+from linkwright.diagnostics.translation import language as language_of_terminal
+from linkwright.diagnostics.translation import language_of
 from linkwright.graph import run_logged
 from linkwright.viewer.protocol.message import (
     BadMessageError,
@@ -23,7 +25,7 @@ from linkwright.viewer.protocol.voice import SoundBlock, unpack_sound
 from linkwright.viewer.web.outbox import BULK, TRANSFORMS, InPieces, Line, Made, Outbox, Payload, ScaledData
 
 if TYPE_CHECKING:
-    from aiohttp.web import WebSocketResponse
+    from aiohttp.web import Request, WebSocketResponse
 
     from linkwright.graph import Logger
 
@@ -35,6 +37,11 @@ _PATIENCE = 20
 
 _QUIET = 0.3
 """Seconds of an idle line after which a page is sent all of what it has only a part of."""
+
+
+def language_asked(request: Request) -> str:
+    """The language that a page asks for in an address, one of `LANGUAGES`; the terminal's where it asks for none."""
+    return language_of(request.query.get("language", "")) or language_of_terminal()
 
 
 class Page:

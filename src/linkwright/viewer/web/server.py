@@ -11,6 +11,7 @@ import re
 import socket
 import stat
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 from urllib.parse import quote
@@ -19,10 +20,8 @@ from aiohttp import web
 from aiohttp.http_exceptions import HttpProcessingError
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
-from linkwright.diagnostics.translation import language as language_of_terminal
-from linkwright.diagnostics.translation import language_of
 from linkwright.viewer.web.access import TOKEN_PARAMETER, Admission, Gate, security_headers
-from linkwright.viewer.web.audience import Page
+from linkwright.viewer.web.audience import Page, language_asked
 from linkwright.viewer.web.files import CONTENT_TYPES, Downloads, FileRefusedError, MeshFolders
 from linkwright.viewer.web.uploads import Guests, Uploads
 
@@ -139,6 +138,7 @@ class WebServer:
         application.router.add_get("/export/{key}/{name}", self._export, allow_head=False)
         if self._uploads is not None:
             self._uploads.add_routes(application.router, self._shielded)
+            application.router.add_post("/export/{key}/{name}", self._shielded(partial(self._show_kept, self._uploads)))
         application.router.add_get("/{path:.+}", self._page_file)
         self._runner = web.AppRunner(
             application,
@@ -276,6 +276,13 @@ class WebServer:
             body=file.data, headers={"Content-Type": file.content_type, "Content-Disposition": _attached(file.name)}
         )
 
+    async def _show_kept(self, uploads: Uploads, request: web.Request) -> web.Response:
+        """Show a recording that this program made: its file is here already."""
+        kept = self._downloads.path(request.match_info["key"])
+        if kept is None:
+            raise web.HTTPNotFound(text="There is no such recording.\n")
+        return await uploads.show(request, kept)
+
     def _shielded(
         self, handler: Callable[[web.Request], Awaitable[web.Response]]
     ) -> Callable[[web.Request], Awaitable[web.StreamResponse]]:
@@ -305,8 +312,7 @@ class WebServer:
             await socket.prepare(request)
         if request.transport is not None:
             keep_short(request.transport)
-        language = language_of(request.query.get("language", "")) or language_of_terminal()
-        page = Page(socket, _own_displays(request), is_here=_is_from_here(request), language=language)
+        page = Page(socket, _own_displays(request), is_here=_is_from_here(request), language=language_asked(request))
         await audience.attend(page, socket)
         return socket
 

@@ -21,6 +21,7 @@ from aiohttp import web
 from linkwright.bag.scratch import scratch_folder
 from linkwright.diagnostics import LinkwrightError, Phrase, foreign, in_one_line, phrase
 from linkwright.diagnostics.translation import localized
+from linkwright.viewer.web.audience import language_asked
 
 if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable
@@ -44,8 +45,8 @@ _DOTS = frozenset({".", ".."})
 class Guests(Protocol):
     """Shows recordings to pages of this server."""
 
-    async def open(self, path: Path, scratch: TemporaryDirectory[str]) -> str:
-        """Show a recording; what pages name it by. `scratch` is removed when it is no longer shown.
+    async def open(self, path: Path, scratch: TemporaryDirectory[str] | None) -> str:
+        """Show a recording; what pages name it by. `scratch`, if any, is removed when it is no longer shown.
 
         Raises:
             LinkwrightError: it cannot be shown; `scratch` is still there.
@@ -131,6 +132,13 @@ class Uploads:
             upload.scratch.cleanup()
         self._uploads.clear()
 
+    async def show(self, request: web.Request, path: Path) -> web.Response:
+        """Show a recording that is on this machine, and stays there; the answer to the page that asks."""
+        try:
+            return web.json_response({"recording": await self._guests.open(path, None)})
+        except LinkwrightError as error:
+            return _refused(request, in_one_line(error.diagnostics))
+
     # --- requests ----------------------------------------------------------------------------------------------
 
     async def _announce(self, request: web.Request) -> web.Response:
@@ -141,9 +149,11 @@ class Uploads:
         names = [each.name for each in announced.files]
         wrong = next((each for each in names if not _FILE.fullmatch(each)), None)
         if wrong is not None:
-            return _refused(phrase("'{name}' is no file of a recording: these are .mcap and .db3", name=wrong[:100]))
+            return _refused(
+                request, phrase("'{name}' is no file of a recording: these are .mcap and .db3", name=wrong[:100])
+            )
         if not names or len(names) != len(set(names)) or len(names) > _MOST_FILES:
-            return _refused(phrase("there is no recording in what was dropped: its files are .mcap or .db3"))
+            return _refused(request, phrase("there is no recording in what was dropped: its files are .mcap or .db3"))
         if (
             not _NAME.fullmatch(announced.name)
             or announced.name in _DOTS
@@ -152,14 +162,14 @@ class Uploads:
             return web.Response(status=400, text="A name without slashes, and sizes.\n")
         if len(self._uploads) >= _MOST_AT_ONCE:
             return _refused(
-                phrase("{count} other recordings are being sent: wait for one of them", count=_MOST_AT_ONCE)
+                request, phrase("{count} other recordings are being sent: wait for one of them", count=_MOST_AT_ONCE)
             )
         scratch = scratch_folder()
         needed = sum(each.size for each in announced.files)
         free = shutil.disk_usage(scratch.name).free
         if needed + self._left_free > free:
             scratch.cleanup()
-            return _refused(_no_room(needed, free))
+            return _refused(request, _no_room(needed, free))
         key = secrets.token_urlsafe(16)
         upload = self._uploads[key] = _Upload(announced, scratch)
         await asyncio.to_thread(upload.folder.mkdir)
@@ -180,7 +190,7 @@ class Uploads:
             if request.transport is None:
                 return web.Response(status=400)  # the page has gone
             return _refused(
-                phrase("the recording could not be taken: {reason}", reason=foreign(error.strerror or error))
+                request, phrase("the recording could not be taken: {reason}", reason=foreign(error.strerror or error))
             )
         finally:
             upload.busy = False
@@ -197,7 +207,7 @@ class Uploads:
         try:
             shown = await self._guests.open(upload.target, upload.scratch)
         except LinkwrightError as error:
-            found = localized(in_one_line(error.diagnostics))
+            found = localized(in_one_line(error.diagnostics), language_asked(request))
             self._remove(request.match_info["key"])
             # Where it lies for a moment says nothing to whoever has dropped it.
             return _problem(found.replace(f"{upload.folder}/", ""))
@@ -247,8 +257,8 @@ class Uploads:
             self._sweep_later()
 
 
-def _refused(message: Phrase) -> web.Response:
-    return _problem(localized(message))
+def _refused(request: web.Request, message: Phrase) -> web.Response:
+    return _problem(localized(message, language_asked(request)))
 
 
 def _problem(text: str) -> web.Response:
