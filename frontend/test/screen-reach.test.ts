@@ -18,6 +18,11 @@ test("the nearest corners reach farthest", () => {
   expect(reachOf(BOX, from(5), CANVAS).right).toBeCloseTo(450);
 });
 
+test("it is told from where a box is seen", () => {
+  expect(reachOf(BOX, from(2), CANVAS).left).toBeCloseTo(200);
+  expect(reachOf(BOX, from(0.5), CANVAS).left).toBe(-Infinity);
+});
+
 test("what is shifted on the canvas reaches less far", () => {
   const camera = from(2);
   camera.setViewOffset(800, 400, 100, 0, 800, 400);

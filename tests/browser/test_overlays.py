@@ -123,6 +123,22 @@ def test_the_card_does_not_lie_over_the_robot(start, open_page, tmp_path, width,
     becomes(lambda: state(page, "robotsReach"), pytest.approx(before, abs=1))
 
 
+def test_what_makes_room_stays_on_the_canvas(start, open_page, tmp_path):
+    """A robot that takes nearly all of the canvas goes aside only until it meets the canvas's edge."""
+    (tmp_path / "wide.urdf").write_text(WIDE)
+    page = open_page(start("view", str(tmp_path / "wide.urdf")))
+    page.keyboard.press("Shift+F")
+    until(page, "lw.settled")
+    before = state(page, "robotsReach")
+    page.locator(".inspect > button").click()
+    page.locator(".inspect-card").wait_for()
+    becomes(lambda: state(page, "robotsReach") < before, True)
+    until(page, "lw.settled")
+    with Image.open(io.BytesIO(page.locator(".canvas-box canvas").screenshot())) as picture:
+        edge = picture.convert("RGB").crop((0, 0, 1, picture.height))
+    assert not [color for _, color in edge.getcolors(1 << 16) if color[0] > 60 > 2 * max(color[1:])]
+
+
 TALL = """\
 <robot name="tall">
   <link name="base"><visual><origin xyz="0 0 1"/><geometry><box size="0.2 0.2 2"/></geometry></visual></link>

@@ -39,11 +39,14 @@ export class FreeRoom {
     return { width: width - right, height: height - above };
   }
 
-  /** What the camera looks at goes to the middle of what nothing at the right lies over. */
+  /** What the camera looks at goes to the middle of what nothing at the right lies over, as far as robots stay on the canvas. */
   makeRoom(): void {
     const { viewport } = this;
     const before = viewport.aside;
-    viewport.aside = Math.min(this.covered(), viewport.size.width * MOST_COVERED) / 2;
+    viewport.aside = 0;
+    const wanted = Math.min(this.covered(), viewport.size.width * MOST_COVERED) / 2;
+    const reach = wanted > 0 ? this.reach() : null;
+    viewport.aside = reach ? Math.max(0, Math.min(wanted, reach.left)) : wanted;
     if (viewport.aside !== before) this.invalidate();
   }
 

@@ -2,8 +2,9 @@ import { Vector3, type Camera } from "three";
 import type { ViewSize } from "../state/views/camera";
 import type { Span } from "../state/views/fit";
 
-/** Where a box is on a canvas: how far from the left edge it reaches, and from where to where below the upper edge, pixels. */
+/** Where a box is on a canvas: from where to where right of its left edge, and below its upper edge, pixels. */
 export interface ScreenReach {
+  readonly left: number;
   readonly right: number;
   readonly top: number;
   readonly bottom: number;
@@ -14,8 +15,9 @@ export function reachOf({ min, max }: Span, camera: Camera, { width, height }: V
   const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((corner) => {
     return new Vector3(...([0, 1, 2] as const).map((axis) => ((corner >> axis) & 1 ? max : min)[axis])).applyMatrix4(camera.matrixWorldInverse);
   });
-  if (corners.some(({ z }) => z >= 0)) return { right: Infinity, top: -Infinity, bottom: Infinity };
+  if (corners.some(({ z }) => z >= 0)) return { left: -Infinity, right: Infinity, top: -Infinity, bottom: Infinity };
   const seen = corners.map((corner) => corner.applyMatrix4(camera.projectionMatrix));
+  const xs = seen.map(({ x }) => ((x + 1) / 2) * width);
   const ys = seen.map(({ y }) => ((1 - y) / 2) * height);
-  return { right: Math.max(...seen.map(({ x }) => ((x + 1) / 2) * width)), top: Math.min(...ys), bottom: Math.max(...ys) };
+  return { left: Math.min(...xs), right: Math.max(...xs), top: Math.min(...ys), bottom: Math.max(...ys) };
 }
