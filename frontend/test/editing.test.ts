@@ -2,11 +2,16 @@ import { describe, expect, it, vi } from "vitest";
 import { placeText, shortPath } from "../src/panels/place";
 import { materialFiles } from "../src/scene/meshes/obj";
 import { formatColor, parseColor } from "../src/tree/colors";
-import { clamp, formatNumber, parseNumber, stepFor } from "../src/tree/numbers";
+import { clamp, formatFixed, formatNumber, parseNumber, stepFor } from "../src/tree/numbers";
 
 vi.mock("../src/strings", async () => ({ strings: (await import("../src/strings/en")).en }));
 
 describe("numbers in rows", () => {
+  it("show the digits that are asked for, and an exponent where they would fill the row", () => {
+    const positions = [0.12345, -0.00004, 999999.5, -1e16, Infinity];
+    expect(positions.map((each) => formatFixed(each, 3))).toEqual(["0.123", "0.000", "999999.500", "-1.00e+16", "Infinity"]);
+  });
+
   it("show six significant digits", () => {
     expect([0.785398163, 1e-7, 10, -0, 1234567].map(formatNumber)).toEqual([
       "0.785398",

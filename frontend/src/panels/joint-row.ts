@@ -4,7 +4,7 @@ import type { JointControl } from "../protocol";
 import type { AngleUnits } from "../state/angle-unit";
 import { mimicText } from "../state/joint-table";
 import { strings } from "../strings";
-import { clamp, parseNumber } from "../tree/numbers";
+import { clamp, formatFixed, parseNumber } from "../tree/numbers";
 
 /** After the user's last touch, how long the server's positions wait before they move the slider, ms. */
 const HANDS_OFF_MS = 250;
@@ -135,8 +135,6 @@ export class JointRow {
   }
 
   private format(position: number): string {
-    const digits = this.scale !== 1 ? 1 : 3;
-    const text = (position * this.scale).toFixed(digits);
-    return Number(text) === 0 ? (0).toFixed(digits) : text;
+    return formatFixed(position * this.scale, this.scale !== 1 ? 1 : 3);
   }
 }

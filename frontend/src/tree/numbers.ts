@@ -1,8 +1,18 @@
+/** From here on a number is written with an exponent where digits after the point are asked for. */
+const LARGE = 1e6;
+
 /** A number as a property row shows it: at most six significant digits, no trailing zeros. */
 export function formatNumber(value: number): string {
   if (!Number.isFinite(value)) return String(value);
   const text = String(Number(value.toPrecision(6)));
   return text === "-0" ? "0" : text;
+}
+
+/** A number with so many digits after the point, and none that is minus zero; a large one, as a limit that is none, with an exponent. */
+export function formatFixed(value: number, digits: number): string {
+  if (Math.abs(value) >= LARGE) return value.toExponential(2);
+  const text = value.toFixed(digits);
+  return Number(text) === 0 ? (0).toFixed(digits) : text;
 }
 
 /** Reads what a user typed, a comma for a point included; null when it is no number. */
