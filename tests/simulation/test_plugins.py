@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import pytest
 
-from linkwright.diagnostics import LinkwrightError
-from linkwright.graph import Graph, LogRecord
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity
+from linkwright.graph import Graph, LogLevel, LogRecord
 from linkwright.messages import get_message
 from linkwright.sdf.text import parse_as_gazebo
 from linkwright.simulation.exchange import Exchange
@@ -214,3 +214,10 @@ async def test_a_magnetometer_feels_the_field_in_its_axes():
         field = recording.last.magnetic_field
         assert (field.x, field.y, field.z) == pytest.approx((2.0, -1.0, 3.0))
         assert recording.last.header.frame_id == "one/link/compass"
+
+
+async def test_warnings_and_errors_are_told_one_after_another():
+    warning = Diagnostic("SIM100", "odd", severity=Severity.WARNING)
+    async with served(GROUND) as (server, _, log):
+        server.tell([warning, Diagnostic("SIM100", "wrong"), warning])
+        assert [(each.level, each.text) for each in log] == [(LogLevel.WARN, "odd"), (LogLevel.ERROR, "wrong")]

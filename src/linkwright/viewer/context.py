@@ -134,5 +134,7 @@ class ViewerContext:
         """Show a finding in the terminal."""
         where = f"{diagnostic.span}: " if diagnostic.span else ""
         logger = self.node.get_logger()
-        log: Callable[[str], object] = logger.error if diagnostic.severity is Severity.ERROR else logger.warning
-        log(where + diagnostic.message)
+        if diagnostic.severity is Severity.ERROR:  # two lines, as a logger knows its calls by their lines
+            logger.error(where + diagnostic.message)
+        else:
+            logger.warning(where + diagnostic.message)

@@ -388,7 +388,10 @@ class SimulationServer:
             self._told.add(text)
             logger = self.node.get_logger()
             line = f"{text} ({each.hint})" if each.hint else text
-            (logger.error if each.severity is Severity.ERROR else logger.warning)(line)
+            if each.severity is Severity.ERROR:  # two lines, as a logger knows its calls by their lines
+                logger.error(line)
+            else:
+                logger.warning(line)
 
 
 def is_shared(place: PluginPlace) -> bool:
