@@ -10,7 +10,8 @@ from linkwright.geometry.single import Transform
 from linkwright.inference import Drive
 from linkwright.inference.applying import completed
 from linkwright.sdf.from_urdf import model_from_robot
-from linkwright.simulation.simulation import Motor, Simulation
+from linkwright.simulation.actuators import Motor
+from linkwright.simulation.simulation import Simulation
 from linkwright.urdf import read
 from tests.inference.test_robots import CASES, read_and_inferred
 from tests.simulation.worlds import GROUND, simulated

@@ -8,7 +8,8 @@ from math import atan, cos, hypot, pi, sin, sqrt
 import pytest
 
 from linkwright.geometry.single import rpy_from_quaternion
-from linkwright.simulation.simulation import NANOSECONDS, Motor, Simulation
+from linkwright.simulation.actuators import Motor
+from linkwright.simulation.simulation import NANOSECONDS, Simulation
 from tests.simulation.worlds import GROUND, box, mbot, simulated
 
 MILLISECOND = NANOSECONDS // 1000

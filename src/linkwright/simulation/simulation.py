@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from math import inf, isfinite
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -16,6 +16,7 @@ from linkwright.sdf.models import Model
 from linkwright.sdf.resources import ResourceFinder
 from linkwright.sdf.saved import as_saved
 from linkwright.sdf.worlds import World, gravity_of, physics_of
+from linkwright.simulation.actuators import Motor, Servo
 from linkwright.simulation.bouncing import Bouncing
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.scene.bodies import COLLISION_GROUP
@@ -28,8 +29,6 @@ from linkwright.simulation.solving import Solving, wake
 
 NANOSECONDS = 1_000_000_000
 
-_SERVO_SPEED = 2.0
-"""How fast a servo moves in rad/s or m/s where nothing says it."""
 _BEYOND = 1e10
 """A position or velocity that is no less, in m, rad, m/s or rad/s, is taken for an explosion, as MuJoCo does."""
 _SURELY = _BEYOND * _BEYOND
@@ -496,104 +495,3 @@ class Simulation:
 def _outlook(world: World) -> tuple[object, ...]:
     """What MuJoCo's model, or pictures of it, are made anew for."""
     return gravity_of(world), physics_of(world).max_step_size, world.scene, world.lights
-
-
-class Motor:
-    """A motor of a joint that holds a velocity."""
-
-    def __init__(self, simulation: Simulation, name: str) -> None:
-        self._simulation = simulation
-        self._name = name
-        self._revision = -1
-        self._number = -1
-        self._gain = 0.0
-
-    @property
-    def target(self) -> float:
-        """The velocity that it is to hold, in rad/s (m/s)."""
-        number = self._actuator()
-        return float(self._simulation.data.ctrl[number])
-
-    @target.setter
-    def target(self, velocity: float) -> None:
-        number = self._actuator()
-        self._simulation.data.ctrl[number] = velocity
-        if self._gain:
-            self._set_gain(number, self._gain)
-            self._gain = 0.0
-
-    def release(self) -> None:
-        """Let the joint turn as it will until there is a target again; to be said anew after the model has changed."""
-        number = self._actuator()
-        gain = float(self._simulation.model.actuator_gainprm[number, 0])
-        if gain:
-            self._gain = gain
-            self._set_gain(number, 0.0)
-
-    def _set_gain(self, number: int, gain: float) -> None:
-        model = self._simulation.model
-        model.actuator_gainprm[number, 0], model.actuator_biasprm[number, 2] = gain, -gain
-
-    def _actuator(self) -> int:
-        """The number of the actuator in MuJoCo's model of this moment."""
-        simulation = self._simulation
-        simulation.renew()
-        if self._revision != simulation.revision:
-            self._number = int(simulation.model.actuator(self._name).id)
-            self._revision = simulation.revision
-        return self._number
-
-
-class Servo:
-    """Holds a joint of one axis in a position, and moves it to others.
-
-    Args:
-        simulation: the simulation.
-        joint: the name of the joint.
-        name: that of the constraint.
-        speed: how fast it may move in rad/s (m/s).
-    """
-
-    def __init__(self, simulation: Simulation, joint: str, name: str, speed: float) -> None:
-        self._simulation = simulation
-        self._joint = joint
-        self._name = name
-        limit = simulation.scene.joints[joint].axes[0][0].limit.velocity
-        speed = min(speed, limit) if isfinite(limit) and limit > 0.0 else speed
-        self._speed = speed if isfinite(speed) else _SERVO_SPEED
-        self.restart()
-
-    @property
-    def position(self) -> float:
-        """Where it holds the joint, in rad (m)."""
-        return self._position
-
-    def restart(self) -> None:
-        """Hold it where it is."""
-        self._position = self._simulation.joint_state(self._joint)[0]
-        self._hold()
-
-    def release(self) -> None:
-        """Let the joint go, until it is to hold it again."""
-        simulation = self._simulation
-        simulation.refresh()
-        simulation.data.eq_active[simulation.model.equality(self._name).id] = 0
-
-    def move(self, target: float, seconds: float) -> None:
-        """Go on to a position within the joint's limits, in rad (m), for so many seconds."""
-        model = self._simulation.model
-        joint = model.joint(self._joint)
-        if model.jnt_limited[joint.id]:
-            lower, upper = model.jnt_range[joint.id]
-            target = min(max(target, float(lower)), float(upper))
-        way = self._speed * seconds
-        self._position = min(max(target, self._position - way), self._position + way)
-        self._hold()
-
-    def _hold(self) -> None:
-        self._simulation.refresh()
-        model = self._simulation.model
-        start = model.qpos0[model.joint(self._joint).qposadr[0]]
-        number = model.equality(self._name).id
-        model.eq_data[number, 0] = self._position - start
-        self._simulation.data.eq_active[number] = 1

@@ -9,7 +9,8 @@ from types import MappingProxyType
 from linkwright.control.hardware.description import ComponentDescription
 from linkwright.control.hardware.interfaces import EFFORT, POSITION, VELOCITY, CommandInterface, StateInterface
 from linkwright.control.motion.pid import Pid
-from linkwright.simulation.simulation import Motor, Servo, Simulation
+from linkwright.simulation.actuators import Motor, Servo
+from linkwright.simulation.simulation import Simulation
 
 _GAIN = 20.0
 """Torque of a motor in N m for each rad/s that its joint is too slow."""

@@ -17,6 +17,7 @@ from linkwright.kinematics.drives import DifferentialDrive
 from linkwright.kinematics.planar import PlanarPose
 from linkwright.messages import Header
 from linkwright.sdf.poses import SEPARATOR
+from linkwright.simulation.actuators import Motor
 from linkwright.simulation.plugins.gz_drive import (
     GZ_RATE,
     GZ_TORQUE,
@@ -35,7 +36,7 @@ from linkwright.simulation.plugins.odometry import (
 )
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
-from linkwright.simulation.simulation import NANOSECONDS, Motor
+from linkwright.simulation.simulation import NANOSECONDS
 
 P = TypeVar("P")
 
