@@ -37,9 +37,10 @@ class Bouncing:
 
     def __init__(self, model: Any, data: Any) -> None:
         self._mujoco, self._model, self._data = load_mujoco(), model, data
-        self._coefficients = self._thresholds = np.empty(0)
+        self._coefficients: Array = np.empty(0)
+        self._thresholds: Array = np.empty(0)
         if model.nuser_geom >= RESTITUTION_DATA:
-            said = np.array(model.geom_user)
+            said: Array = np.array(model.geom_user)
             self._coefficients, self._thresholds = said[:, 0], said[:, 1]
         self._bounces = np.count_nonzero(self._coefficients) > 1
 

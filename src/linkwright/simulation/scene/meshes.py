@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, display_path, phrase
 from linkwright.geometry.arrays import Array
@@ -142,7 +143,7 @@ class MeshLibrary:
             return
         for part in parts:
             triangles = part.triangles
-            faces = triangles.indices.reshape(-1, 3)
+            faces: NDArray[np.int64] = triangles.indices.reshape(-1, 3)
             positions = triangles.positions * np.asarray(shape.scale)
             if _area(positions, faces) <= _LEAST_AREA:
                 continue
