@@ -85,7 +85,7 @@ def test_a_request_that_comes_to_nothing_is_told_once(processes):
     (text,) = a.warnings()
     assert "A request to service '/flip' was not answered" in text
     assert not future.done()
-    assert not client.service_is_ready()
+    a.spin_until(lambda: not client.service_is_ready())  # the news that it has gone comes by another way
 
 
 class LateQuery:
