@@ -27,6 +27,11 @@ def known(process):
     return sorted(node.name for node in process.transport.remote_nodes())
 
 
+def followed(process, session):
+    """How many listeners a process has for what a session does."""
+    return sum(session in key for key in tuple(process.transport._zenoh_engine._interests._declared))
+
+
 def test_what_own_endpoints_need_is_known_and_nothing_else(processes):
     talker, other = processes("talker"), processes("other")
     publisher = talker.node.create_publisher(String, "chatter", 10)
@@ -136,3 +141,17 @@ def test_a_publisher_that_was_killed_is_lost_and_one_that_left_is_not(processes,
     victim.kill()
     ours.spin_until(lambda: lost)
     assert lost == ["victim"]
+
+
+def test_sessions_that_have_gone_are_followed_no_more(processes):
+    """A robot that runs for months hears many come and go."""
+    ours = processes("ours")
+    subscription = ours.node.create_subscription(Int32, "flood", print, 10)
+    subscription.watch_lost(print)
+    for name in ("one", "two"):
+        other = processes(name)
+        other.node.create_publisher(Int32, "flood", 10)
+        session = other.transport._zenoh_engine._session_id
+        ours.spin_until(lambda session=session: followed(ours, session) == 2)
+        other.close()
+        ours.spin_until(lambda session=session: followed(ours, session) == 0)

@@ -248,10 +248,10 @@ class Engine:
         while self._news:
             came, key = self._news.popleft()
             self._has_changed = self._note(came=came, key=key) or self._has_changed
-        if self._departures.is_watched and (self._has_changed or not self._follows):
-            self._follows = True
-            for session in self._remote.publishing_sessions():
-                self._interests.follow(session)
+        follows = self._departures.is_watched and not self._interests.in_all
+        if follows and (self._has_changed or not self._follows):
+            self._interests.follow(self._remote.sessions(EndpointKind.PUBLISHER), self._remote.sessions())
+        self._follows = follows
 
     @property
     def runs_this(self) -> bool:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable
+from collections.abc import Set as AbstractSet
 from typing import Any
 
 import zenoh
@@ -36,7 +37,7 @@ class Interests:
         self._sessions = f"{OURS}/{domain_id}"
         self._counts: Counter[str] = Counter()
         self._declared: dict[str, Any] = {}
-        self._followed: set[str] = set()
+        self._followed: AbstractSet[str] = frozenset()
         self.in_all = False
         """Whether all tokens of the domain are heard of."""
 
@@ -57,13 +58,23 @@ class Interests:
             declared.undeclare()
         return not self.in_all
 
-    def follow(self, session: str) -> None:
-        """Hear of all tokens of another session, by which it shows how it leaves."""
-        if self.in_all or session in self._followed:
-            return
-        self._followed.add(session)
-        self._declare(f"{self._sessions}/{session}/*")
-        self._declare(self._all.replace("**", f"{session}/**"))
+    def follow(self, publishing: AbstractSet[str], there: AbstractSet[str]) -> None:
+        """Hear of all tokens of other sessions, by which they show how they leave, until nothing of them is there.
+
+        Args:
+            publishing: the sessions whose publishers are known; not asked for once all tokens are heard of.
+            there: those of which any token is known.
+        """
+        for session in self._followed - there:
+            for key in self._keys_of(session):
+                self._declared.pop(key).undeclare()
+        for session in publishing - self._followed:
+            for key in self._keys_of(session):
+                self._declare(key)
+        self._followed = self._followed & there | publishing
+
+    def _keys_of(self, session: str) -> tuple[str, str]:
+        return f"{self._sessions}/{session}/*", self._all.replace("**", f"{session}/**")
 
     def add_all(self) -> None:
         """Hear of all tokens of the domain."""

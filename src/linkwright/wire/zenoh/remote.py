@@ -101,10 +101,10 @@ class RemoteGraph:
         """Whether there is a token."""
         return key in self._tokens
 
-    def publishing_sessions(self) -> set[str]:
-        """The sessions that publish something."""
+    def sessions(self, kind: EndpointKind | None = None) -> set[str]:
+        """The sessions that anything is known of, or that have endpoints of a kind."""
         with self._lock:
-            return {each.session for each in self._tokens.values() if each.kind is EndpointKind.PUBLISHER}
+            return {each.session for each in self._tokens.values() if kind is None or each.kind is kind}
 
     def nodes(self) -> list[NodeIdentity]:
         """The nodes of other sessions."""
