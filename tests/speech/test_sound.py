@@ -157,6 +157,14 @@ def test_speech_is_found_where_it_is(noise):
     assert abs(last * HOP - (len(samples) - 0.6 * RATE)) < 0.08 * RATE
 
 
+def test_speech_is_found_where_the_noise_fades_as_a_browser_suppresses_it():
+    samples = say(WORDS["forward"], silence=1.2, noise=0.0)
+    fading = 5.0 * np.exp(-np.arange(len(samples)) / RATE) * np.random.default_rng(3).normal(size=len(samples))
+    first, last, _ = speech_span(mel_frames(np.rint(samples + fading).astype(np.int16)))
+    assert abs(first * HOP - 1.2 * RATE) < 0.06 * RATE
+    assert abs(last * HOP - (len(samples) - 1.2 * RATE)) < 0.08 * RATE
+
+
 def spoken(samples):
     activity = VoiceActivity()
     return np.array([activity.step(frame) for frame in mel_frames(samples)])

@@ -21,6 +21,7 @@ _LEAST_POWER = 1.0  # below the noise of any microphone at 16 bits
 _BEGINS, _GOES_ON = 3.0, 2.0  # dB above the floor, mean of all bands, of the last frames
 _IN_A_TAKE = 4.0  # dB, of an example, which is to be clear
 _MOST_OF_A_BAND = 25.0  # dB: one band alone, as of a whistle, is no speech
+_BELOW_THE_LOUDEST = 45.0  # dB: what is softer is no part of a take, whatever the noise was
 _SMOOTHED = 3  # frames
 _TO_BEGIN = 4  # frames in a row
 _WATCHED = 80  # frames in which the least is looked for
@@ -92,7 +93,10 @@ def speech_span(powers: Powers) -> tuple[int, int, NDArray[np.float64]]:
     smooth[1:-1] = (smooth[:-2] + smooth[1:-1] + smooth[2:]) / 3.0
     floor = np.maximum(_LEAST_POWER, _OVER_THE_LEAST * np.quantile(smooth, 0.1, axis=0))
     above = np.mean(np.clip(10.0 * np.log10(smooth / floor), 0.0, _MOST_OF_A_BAND), axis=1)
-    loud = np.flatnonzero(above > _IN_A_TAKE)
+    # A browser's noise suppression leaves ever less of the noise, so that at first it is far above the floor.
+    totals = smooth.sum(axis=1)
+    heard = totals > 10.0 ** (-_BELOW_THE_LOUDEST / 10.0) * totals.max()
+    loud = np.flatnonzero((above > _IN_A_TAKE) & heard)
     if not len(loud):
         return 0, 0, floor
     cuts = np.flatnonzero(np.diff(loud) > HANGOVER) + 1
