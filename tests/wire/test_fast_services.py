@@ -95,6 +95,7 @@ class _Heard:
 class _Service:
     name = "/our_echo"
     srv_type = SetCameraInfo
+    type_name, type_hash, raw = SetCameraInfo.TYPE_NAME, "", False
     destroyed = False
 
     def __init__(self):

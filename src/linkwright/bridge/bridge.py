@@ -92,6 +92,7 @@ async def _carry(first: Side, second: Side, directions: tuple[Direction, Directi
                 direction.add()
             unsettled_until = loop.time() + _UNSETTLED
         settled = [direction.settle() for direction in directions]
+        settled += [directions[0].show(directions[1]), directions[1].show(directions[0])]
         pause = _SELDOM if all(settled) and loop.time() > unsettled_until else _SOON
         waiting = asyncio.ensure_future(news.wait())
         try:

@@ -7,18 +7,22 @@ from collections import deque
 from typing import NamedTuple
 
 from linkwright.bridge.filters import NameFilter
-from linkwright.bridge.mirrors import MirroredPublisher, MirroredService, Stream, Tap
+from linkwright.bridge.mirrors import MirroredPublisher, MirroredService, Tap
 from linkwright.bridge.side import Side, provision_of
+from linkwright.bridge.streams import Stream, awaited_streams, hash_of, stream_of
 from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind, MessageInfo
+from linkwright.graph.endpoints.presence import Presence
 from linkwright.graph.log.logger import Logger
 from linkwright.graph.loop.node_handle import NodeHandle
 from linkwright.graph.names.identity import NodeIdentity
-from linkwright.messages import InterfaceNotFoundError, get_interface
 
 _KNOWN_WITHIN = 2.0
 """Seconds for which a message waits until its publisher is known."""
 
 _MOST_EARLY = 1000
+
+_SHOWN_WITHIN = 1.0
+"""Seconds within which a subscription is shown, though its topic is not listened to yet."""
 
 _QUIET = 3
 """How many times in a row nothing waits of what publishers said that have left, before their mirrors leave."""
@@ -43,8 +47,9 @@ class Early(NamedTuple):
 class Direction:
     """Carries from a source to a target.
 
-    A node at the source has one of its name at the target, with the publishers and the services that it has at home.
-    The bridge's own node listens at the source, to a topic that somebody at the target hears, and asks its services.
+    A node at the source has one of its name at the target, with the publishers and the services that it has at home;
+    its subscriptions and clients are only shown there, see `Presence`. The bridge's own node listens at the source, to
+    a topic that somebody at the target hears, and asks its services.
 
     Args:
         source: where what is carried is at home.
@@ -61,7 +66,10 @@ class Direction:
         self._nodes: dict[str, NodeHandle] = {}
         self._publishers: dict[bytes, MirroredPublisher] = {}
         self._services: dict[tuple[str, str, str], MirroredService] = {}
+        self._presences: dict[bytes, Presence] = {}
         self._taps: dict[Stream, Tap] = {}
+        self._awaited: set[Stream] = set()
+        """What publishers may come to that somebody at the target hears."""
         self._early: deque[Early] = deque(maxlen=_MOST_EARLY)
         self._aliases: dict[bytes, bytes] = {}
         self._leaving: dict[bytes, int] = {}
@@ -69,6 +77,9 @@ class Direction:
         self._wanted_nodes: dict[str, NodeIdentity] = {}
         self._wanted_publishers: dict[bytes, EndpointInfo] = {}
         self._wanted_services: dict[tuple[str, str, str], EndpointInfo] = {}
+        self._wanted_presences: dict[bytes, EndpointInfo] = {}
+        self._unseen: dict[bytes, float] = {}
+        """When presences that are not shown yet are, by the steady clock."""
         self._told: set[str] = set()
 
     # --- after changes -----------------------------------------------------------------------------------------------
@@ -81,6 +92,8 @@ class Direction:
         }
         for key in self._services.keys() - self._wanted_services.keys():
             self._services.pop(key).close()
+        for gid in self._presences.keys() - self._wanted_presences.keys():
+            self._presences.pop(gid).destroy()
         self._let_go()
 
     def add(self) -> None:
@@ -90,10 +103,35 @@ class Direction:
                 self._nodes[name] = self._target.open_node(node)
         for gid, info in self._wanted_publishers.items():
             if gid not in self._publishers:
-                self._publishers[gid] = MirroredPublisher(self._node_of(info), info)
+                stream = stream_of(info, keyed=self._source.needs_hashes)
+                self._publishers[gid] = MirroredPublisher(self._node_of(info), info, stream)
         for key, info in self._wanted_services.items():
             if key not in self._services:
                 self._services[key] = MirroredService(self._node_of(info), self._source.own, info)
+
+    def show(self, back: Direction) -> bool:
+        """Have who hears and who calls at the source seen at the target; whether all are.
+
+        Publishers there may say something as soon as they see a subscription, and it has to be heard by then.
+
+        Args:
+            back: the other way, which listens at the target.
+        """
+        now = time.monotonic()
+        for gid in self._unseen.keys() - self._wanted_presences.keys():
+            del self._unseen[gid]
+        for gid in self._wanted_presences.keys() - self._presences.keys():
+            info = self._wanted_presences[gid]
+            until = self._unseen.setdefault(gid, now + _SHOWN_WITHIN)
+            if info.kind is EndpointKind.CLIENT or now >= until or back.hears(info.name):
+                node = self._node_of(info)
+                self._presences[gid] = node.add(Presence(node, info))
+                del self._unseen[gid]
+        return not self._unseen
+
+    def hears(self, name: str) -> bool:
+        """Whether a topic is listened to at the source."""
+        return any(stream.name == name for stream in self._taps)
 
     def settle(self) -> bool:
         """Do what had to wait; whether nothing waits any more."""
@@ -131,6 +169,7 @@ class Direction:
         """What of the source is to be had at the target."""
         seen, there = self._source.seen, self._target.seen
         self._wanted_publishers, self._wanted_services, self._wanted_nodes = {}, {}, {}
+        self._wanted_presences = {}
         hidden = {node.full_name for node in seen.nodes}
         for info in seen.endpoints:
             if info.node is None or not self._names.passes(info.name):
@@ -138,41 +177,46 @@ class Direction:
             hidden.discard(info.node.full_name)
             if provision_of(info) in there.carried:
                 continue
-            if info.kind is EndpointKind.PUBLISHER and self._can_publish(info):
+            if info.kind is EndpointKind.PUBLISHER and self._can_carry(info):
                 self._wanted_publishers[info.gid] = info
-            elif info.kind is EndpointKind.SERVICE and info.name not in there.served and self._can_serve(info):
+            elif info.kind is EndpointKind.SERVICE and info.name not in there.served and self._can_carry(info):
                 self._wanted_services[info.node.full_name, info.name, info.type_name] = info
+            elif info.kind in (EndpointKind.SUBSCRIPTION, EndpointKind.CLIENT):
+                self._wanted_presences[info.gid] = info
             else:
                 continue
             self._wanted_nodes[info.node.full_name] = info.node
         for node in seen.nodes:
             if node.full_name not in hidden and node.full_name not in there.carried_nodes:
                 self._wanted_nodes[node.full_name] = node
+        self._awaited = {
+            stream
+            for info in there.endpoints
+            if info.kind is EndpointKind.SUBSCRIPTION
+            and self._names.passes(info.name)
+            and provision_of(info) not in seen.carried
+            for stream in awaited_streams(info, keyed=self._source.needs_hashes)
+        }
 
-    def _can_publish(self, info: EndpointInfo) -> bool:
-        if not self._target.needs_hashes or info.type_hash or _is_known(info.type_name):
+    def _can_carry(self, info: EndpointInfo) -> bool:
+        """Whether a topic or service of this type can be had at the target; it is said once that it cannot."""
+        if not self._target.needs_hashes or hash_of(info):
             return True
-        self._tell_unknown(info, f"and its publisher at {self._source.label} does not tell the hash of it")
-        return False
-
-    def _can_serve(self, info: EndpointInfo) -> bool:
-        if _is_known(info.type_name):
-            return True
-        self._tell_unknown(info, "and requests and responses have to be read")
-        return False
-
-    def _tell_unknown(self, info: EndpointInfo, why: str) -> None:
         if info.name not in self._told:
             self._told.add(info.name)
+            whose = "publisher" if info.kind is EndpointKind.PUBLISHER else "server"
             self._logger.warning(
                 f"'{info.name}' is not carried from {self._source.label} to {self._target.label}: no package here has "
-                f"its type {info.type_name}, {why}. Run the bridge where the package is found"
+                f"its type {info.type_name}, and its {whose} at {self._source.label} does not tell the hash of it. Run "
+                "the bridge where the package is found"
             )
+        return False
 
     def _tap(self) -> None:
         """Listen to what somebody at the target hears.
 
-        What lasts is listened to until its publishers are gone: heard once more, late joiners would get it twice.
+        What lasts is listened to until its publishers are gone: heard once more, late joiners would get it twice. As
+        long as a topic has no publisher, and while the first is being met, all that might come is listened to.
         """
         demanded = self._target.seen.demanded
         wanted = {
@@ -181,6 +225,8 @@ class Direction:
             if (publisher.stream in self._taps and publisher.stream.lasts)
             or (publisher.info.name in demanded and publisher.listeners())
         }
+        met = {publisher.info.name for publisher in self._publishers.values() if not publisher.waits}
+        wanted |= {stream for stream in self._awaited if stream.name not in met}
         for stream in self._taps.keys() - wanted:
             self._taps.pop(stream).close()
         for stream in wanted - self._taps.keys():
@@ -203,6 +249,8 @@ class Direction:
         now = time.monotonic()
         for _ in range(len(self._early)):
             early = self._early.popleft()
+            if early.tap is not self._taps.get(early.tap.stream):
+                continue  # it is listened to no more, for another bridge carries it
             publisher = self._publisher(early.gid)
             if publisher is None and now < early.until:
                 self._early.append(early)
@@ -221,11 +269,3 @@ class Direction:
                 self._aliases[early.gid] = gid
                 return publisher
         return None
-
-
-def _is_known(type_name: str) -> bool:
-    try:
-        get_interface(type_name)
-    except InterfaceNotFoundError:
-        return False
-    return True

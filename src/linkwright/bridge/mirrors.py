@@ -6,85 +6,22 @@ import time
 from collections import deque
 from collections.abc import Callable
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Any
 
+from linkwright.bridge.streams import KEPT, Stream, offered
 from linkwright.graph.endpoints.client import Client
 from linkwright.graph.endpoints.info import EndpointInfo, MessageInfo
 from linkwright.graph.endpoints.publisher import Publisher
 from linkwright.graph.endpoints.service import Service
 from linkwright.graph.endpoints.subscription import Subscription
 from linkwright.graph.loop.node_handle import NodeHandle
-from linkwright.graph.qos.profile import (
-    DurabilityPolicy,
-    HistoryPolicy,
-    LivelinessPolicy,
-    QoSProfile,
-    ReliabilityPolicy,
-)
+from linkwright.graph.qos.profile import QoSProfile
 
 _MATCHED_WITHIN = 1.0
 """Seconds for which what a new publisher says waits for those who listen to it."""
 
-_WAITING = 1000
-"""Messages that wait where they must not be lost: history for late joiners, and what a new publisher says."""
-
 _QUEUE = 100
 """Messages that wait for their turn on a topic without history; requests of a service, ten times as many."""
-
-_UNTOLD_DEPTH = 10
-"""What a publisher keeps that does not tell how much, as one of Fast DDS does not."""
-
-
-class Stream(NamedTuple):
-    """What one subscription of a bridge can hear all of.
-
-    Attributes:
-        name: the topic.
-        type_name: its type.
-        type_hash: of the type; empty where it is not told.
-        reliability: what its publishers offer.
-        durability: what its publishers offer.
-        history: what its publishers offer.
-    """
-
-    name: str
-    type_name: str
-    type_hash: str
-    reliability: ReliabilityPolicy
-    durability: DurabilityPolicy
-    history: HistoryPolicy
-
-    @property
-    def lasts(self) -> bool:
-        """Whether late joiners get what was published before."""
-        return self.durability is DurabilityPolicy.TRANSIENT_LOCAL
-
-
-def stream_of(publisher: EndpointInfo) -> Stream:
-    """The stream that a publisher is part of."""
-    qos = offered(publisher.qos)
-    return Stream(
-        publisher.name, publisher.type_name, publisher.type_hash, qos.reliability, qos.durability, qos.history
-    )
-
-
-def offered(qos: QoSProfile) -> QoSProfile:
-    """What a publisher offers, in the place of what it does not tell ROS's defaults."""
-    lasts = qos.durability is DurabilityPolicy.TRANSIENT_LOCAL
-    keeps_all = qos.history is HistoryPolicy.KEEP_ALL
-    told = qos.history in (HistoryPolicy.KEEP_LAST, HistoryPolicy.KEEP_ALL)
-    best_effort = qos.reliability is ReliabilityPolicy.BEST_EFFORT
-    manual = qos.liveliness is LivelinessPolicy.MANUAL_BY_TOPIC
-    return QoSProfile(
-        depth=qos.depth if told else _WAITING if lasts else _UNTOLD_DEPTH,
-        history=HistoryPolicy.KEEP_ALL if keeps_all else HistoryPolicy.KEEP_LAST,
-        reliability=ReliabilityPolicy.BEST_EFFORT if best_effort else ReliabilityPolicy.RELIABLE,
-        durability=DurabilityPolicy.TRANSIENT_LOCAL if lasts else DurabilityPolicy.VOLATILE,
-        deadline=qos.deadline,
-        lifespan=qos.lifespan,
-        liveliness=LivelinessPolicy.MANUAL_BY_TOPIC if manual else LivelinessPolicy.AUTOMATIC,
-        liveliness_lease_duration=qos.liveliness_lease_duration,
-    )
 
 
 class Tap:
@@ -98,7 +35,7 @@ class Tap:
 
     def __init__(self, node: NodeHandle, stream: Stream, take: Callable[[Tap, bytes, MessageInfo], None]) -> None:
         qos = QoSProfile(
-            depth=_WAITING if stream.lasts else _QUEUE,
+            depth=KEPT if stream.lasts else _QUEUE,
             history=stream.history,
             reliability=stream.reliability,
             durability=stream.durability,
@@ -109,6 +46,7 @@ class Tap:
 
         subscription: Subscription[Any] = Subscription(node, stream.type_name, stream.name, qos, receive, raw=True)
         subscription.type_hash = stream.type_hash
+        subscription.is_listed = False
         self.stream = stream
         self._subscription = node.add(subscription)
 
@@ -129,15 +67,16 @@ class MirroredPublisher:
     Args:
         node: the bridge's node that has the name of the publisher's.
         info: the publisher.
+        stream: what it is part of at home.
     """
 
-    def __init__(self, node: NodeHandle, info: EndpointInfo) -> None:
+    def __init__(self, node: NodeHandle, info: EndpointInfo, stream: Stream) -> None:
         self.info = info
-        self.stream = stream_of(info)
+        self.stream = stream
         publisher: Publisher[Any] = Publisher(node, info.type_name, info.name, offered(info.qos))
         publisher.type_hash = info.type_hash
         publisher.raw = True
-        self._waiting: deque[bytes] | None = deque(maxlen=_WAITING)
+        self._waiting: deque[bytes] | None = deque(maxlen=KEPT)
         self._patience = time.monotonic() + _MATCHED_WITHIN
         self._publisher = node.add(publisher)
 
@@ -149,6 +88,11 @@ class MirroredPublisher:
     def listeners(self) -> int:
         """How many subscriptions of others hear it, those of other bridges too."""
         return self._publisher.get_subscription_count() - len(self._publisher.matched())
+
+    @property
+    def waits(self) -> bool:
+        """Whether what it says waits for somebody to listen."""
+        return self._waiting is not None
 
     def say(self, data: bytes) -> None:
         """Publish a message."""
@@ -184,7 +128,9 @@ class MirroredService:
         self.info = info
         self._node = node
         self._qos = QoSProfile(10 * _QUEUE)
-        client: Client[Any, Any] = Client(home, info.type_name, info.name, self._qos)
+        client: Client[Any, Any] = Client(home, info.type_name, info.name, self._qos, raw=True)
+        client.type_hash = info.type_hash
+        client.is_listed = False
         self._client = home.add(client)
         self._service: Service[Any, Any] | None = None
 
@@ -192,8 +138,9 @@ class MirroredService:
         """Offer the service once it can be asked; whether it is offered."""
         if self._service is None and self._client.service_is_ready():
             service: Service[Any, Any] = Service(
-                self._node, self.info.type_name, self.info.name, self._qos, self._ask, replying=True
+                self._node, self.info.type_name, self.info.name, self._qos, self._ask, replying=True, raw=True
             )
+            service.type_hash = self.info.type_hash
             self._service = self._node.add(service)
         return self._service is not None
 

@@ -11,6 +11,7 @@ from linkwright.graph.endpoints.base import Endpoint
 from linkwright.graph.endpoints.bus import Bus
 from linkwright.graph.endpoints.client import Client
 from linkwright.graph.endpoints.info import EndpointInfo
+from linkwright.graph.endpoints.presence import Presence
 from linkwright.graph.endpoints.publisher import Publisher
 from linkwright.graph.endpoints.service import Service
 from linkwright.graph.endpoints.subscription import Subscription
@@ -278,6 +279,8 @@ def _open(transport: Transport, endpoint: Endpoint) -> None:
         transport.open_service(endpoint)
     elif isinstance(endpoint, Client):
         transport.open_client(endpoint)
+    elif isinstance(endpoint, Presence):
+        transport.open_presence(endpoint)
 
 
 def _close(transport: Transport, endpoint: Endpoint) -> None:
@@ -289,3 +292,5 @@ def _close(transport: Transport, endpoint: Endpoint) -> None:
         transport.close_service(endpoint)
     elif isinstance(endpoint, Client):
         transport.close_client(endpoint)
+    elif isinstance(endpoint, Presence):
+        transport.close_presence(endpoint)

@@ -23,6 +23,7 @@ from linkwright.wire.switch import is_switched_off
 if TYPE_CHECKING:
     from linkwright.graph.computation_graph import Graph
     from linkwright.graph.endpoints.client import Client
+    from linkwright.graph.endpoints.presence import Presence
     from linkwright.graph.endpoints.publisher import Publisher
     from linkwright.graph.endpoints.service import Service
     from linkwright.graph.endpoints.subscription import Subscription
@@ -71,8 +72,11 @@ class Engine(Protocol):
     def open_client(self, client: Any) -> None:
         """Mirror a client."""
 
+    def open_presence(self, presence: Any) -> None:
+        """Show an endpoint that takes no part."""
+
     def close_endpoint(self, endpoint: Any) -> None:
-        """Stop mirroring a subscription, a service or a client."""
+        """Stop mirroring a subscription, a service, a client or a presence."""
 
 
 Work = deque[Callable[[Engine], None]]
@@ -242,6 +246,14 @@ class BackgroundTransport(ABC):
     def close_client(self, client: Client[Any, Any]) -> None:
         """Stop mirroring a client."""
         self._mirror(lambda engine: engine.close_endpoint(client))
+
+    def open_presence(self, presence: Presence) -> None:
+        """Show an endpoint that takes no part."""
+        self._mirror(lambda engine: engine.open_presence(presence))
+
+    def close_presence(self, presence: Presence) -> None:
+        """Show it no longer."""
+        self._mirror(lambda engine: engine.close_endpoint(presence))
 
     def look_around(self) -> None:  # noqa: B027 - nothing is to be done where all is discovered anyhow
         """Find out what there is outside, for who asks next; only where that is not done all the time."""

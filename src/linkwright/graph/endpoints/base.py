@@ -79,10 +79,14 @@ class Endpoint(Part):
         qos_profile: the QoS that it offers or requests.
         type_hash: of the type (``RIHS01_...``) as others have told it, which goes before that of the type that is known
             here; empty where nobody has.
+        is_listed: whether others are to see it in the graph; a transport that carries nothing unseen shows it anyhow.
+        raw: whether what goes over it is bytes alone, CDR with its header, so that the type need not be known here.
     """
 
     kind: EndpointKind
     type_hash = ""
+    is_listed = True
+    raw = False
     _check_interface: Callable[[Any], None]
     """Raises an error for the class of an interface that the endpoint cannot carry."""
 
@@ -156,13 +160,11 @@ class TopicEndpoint(Endpoint, Generic[M]):
     Attributes:
         callback_group: the group that decides which callbacks may run at the same time as its own.
         events: its QoS events; None where there are no callbacks for them.
-        raw: whether messages are bytes alone, so that the type need not be known here.
     """
 
     callback_group: CallbackGroup
     events: MatchListener | None
     _check_interface = staticmethod(check_is_valid_msg_type)
-    raw = False
     _outside_count = 0
 
     @property
@@ -206,3 +208,17 @@ class ServiceEndpoint(Endpoint):
     def srv_type(self) -> Any:
         """The class of the service."""
         return self.interface
+
+    def check_half(self, message: Any, half: str) -> None:
+        """Check that a request or a response can be sent.
+
+        Args:
+            message: the request or response.
+            half: ``Request`` or ``Response``.
+
+        Raises:
+            TypeError: it is not of the service's type, or not bytes where those are sent.
+        """
+        wanted = bytes if self.raw else getattr(self.srv_type, half)
+        if not isinstance(message, wanted):
+            raise TypeError(f"Expected {wanted}, got {type(message)}: the {half.lower()} of '{self.name}'")

@@ -55,9 +55,12 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         srv_name: str,
         qos_profile: QoSProfile,
         callback_group: CallbackGroup | None = None,
+        *,
+        raw: bool = False,
     ) -> None:
         Entity.__init__(self, node, callback_group)
         self._describe(node, srv_type, srv_name, qos_profile)
+        self.raw = raw
         self.outside: OutsideService | None = None
         """The server in another process; None while there is none. See `set_outside`."""
         self._server: Service[Request, Response] | None = None
@@ -100,8 +103,7 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
             InvalidHandleError: the client was destroyed.
         """
         self.check_alive()
-        if not isinstance(request, self.srv_type.Request):
-            raise TypeError(f"Expected {self.srv_type.Request}, got {type(request)}: the request of '{self.name}'")
+        self.check_half(request, "Request")
         if self.node.copies_messages:
             request = copy_of(request)
         future: Future[Response] = Future()

@@ -32,6 +32,7 @@ class Service(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         callback: called with the request and an empty response, returns the response; it may be a coroutine function.
         replying: whether the callback gets, in place of the empty response, a function that sends the response, which
             it may call later.
+        raw: whether requests and responses are bytes, CDR with its header; the callback has to be `replying` then.
     """
 
     kind = EndpointKind.SERVICE
@@ -50,11 +51,13 @@ class Service(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         callback_group: CallbackGroup | None = None,
         *,
         replying: bool = False,
+        raw: bool = False,
     ) -> None:
         Entity.__init__(self, node, callback_group)
         self._describe(node, srv_type, srv_name, qos_profile)
         self.callback: Callable[[Any, Any], Any] = callback
         self._replying = replying
+        self.raw = raw
 
     @property
     def what(self) -> str:
@@ -93,8 +96,7 @@ class Service(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         Raises:
             TypeError: the response is not of the service's type.
         """
-        if not isinstance(response, self.srv_type.Response):
-            raise TypeError(f"Expected {self.srv_type.Response}, got {type(response)}: the response of '{self.name}'")
+        self.check_half(response, "Response")
         header(copy_of(response) if self.node.copies_messages else response)
 
     def retire(self) -> None:

@@ -11,6 +11,7 @@ from typing import Any, Protocol
 
 from linkwright.graph.endpoints.client import Client
 from linkwright.graph.endpoints.info import EndpointInfo
+from linkwright.graph.endpoints.presence import Presence
 from linkwright.graph.endpoints.publisher import Publisher
 from linkwright.graph.endpoints.service import Service
 from linkwright.graph.endpoints.subscription import Subscription
@@ -56,6 +57,12 @@ class Transport(Protocol):
 
     def close_client(self, client: Client[Any, Any]) -> None:
         """Stop mirroring a client."""
+
+    def open_presence(self, presence: Presence) -> None:
+        """Show an endpoint that takes no part."""
+
+    def close_presence(self, presence: Presence) -> None:
+        """Show it no longer."""
 
     def look_around(self) -> None:
         """Find out what there is outside; called by who is about to ask.

@@ -20,6 +20,7 @@ from linkwright.wire.dds.discovery import Discovery
 from linkwright.wire.dds.discovery_info import NodeEntities
 from linkwright.wire.dds.domain import Domain
 from linkwright.wire.dds.participant import SERVICES_NAME, Participant
+from linkwright.wire.dds.presences import QuietClient, QuietReader, open_presence
 from linkwright.wire.dds.remote import RemoteGraph
 from linkwright.wire.dds.rtps.participant import RtpsParticipant
 from linkwright.wire.dds.services import IncomingService, OutsideServer
@@ -85,6 +86,7 @@ class Engine:
         self._incoming: dict[Any, IncomingTopic] = {}
         self._services: dict[Any, IncomingService] = {}
         self._clients: dict[Any, OutsideServer] = {}
+        self._presences: dict[Any, QuietReader | QuietClient] = {}
         self._leaving: dict[OutgoingTopic, float] = {}
         self._is_told = False
         self._told_at = time.monotonic()
@@ -186,9 +188,17 @@ class Engine:
         self._control.attach(outside.pair.writer, outside.on_writer_status)
         self._is_told = False
 
-    def close_endpoint(self, endpoint: Any) -> None:
-        """Delete what mirrors a subscription, a service or a client."""
+    def open_presence(self, presence: Any) -> None:
+        """Show an endpoint that takes no part."""
+        self._presences[presence] = open_presence(presence, self._domain)
         self._is_told = False
+
+    def close_endpoint(self, endpoint: Any) -> None:
+        """Delete what mirrors a subscription, a service, a client or a presence."""
+        self._is_told = False
+        presence = self._presences.pop(endpoint, None)
+        if presence is not None:
+            presence.close()
         topic = self._incoming.pop(endpoint, None)
         if topic is not None:
             self._reception.detach(topic.entity)
@@ -317,6 +327,9 @@ class Engine:
             for endpoint, mirrored in pairs.items():
                 readers.setdefault(endpoint.node.identity, []).append(mirrored.pair.reader_guid)
                 writers.setdefault(endpoint.node.identity, []).append(mirrored.pair.writer_guid)
+        for presence, quiet in self._presences.items():
+            readers.setdefault(presence.node.identity, []).append(quiet.reader_guid)
+            writers.setdefault(presence.node.identity, []).extend(quiet.writer_guids)
         described = []
         for node, count in self._nodes.items():
             described.append(NodeEntities(node.namespace, node.name, readers[node], writers[node]))

@@ -17,11 +17,11 @@ from threading import Lock
 from typing import TYPE_CHECKING, Any
 
 from linkwright.graph.endpoints.service_introspection import RequestId
-from linkwright.messages import definition_of, serialize
 from linkwright.wire.dds.names import Role, dds_topic
 from linkwright.wire.dds.rtps.participant import RtpsParticipant
 from linkwright.wire.dds.rtps.values import NO_NUMBER, PREFIX, is_reader, read_related_identity, related_identity
-from linkwright.wire.dds.service_messages import read_or_warn, service_facts
+from linkwright.wire.dds.service_types import halves, service_facts
+from linkwright.wire.service_messages import read_or_warn, written
 from linkwright.wire.type_names import dds_type
 
 if TYPE_CHECKING:
@@ -76,8 +76,8 @@ class FastServer:
     def __init__(self, service: Service[Any, Any], participant: RtpsParticipant) -> None:
         self._service = service
         self._participant = participant
-        facts = service_facts(os.urandom(16), service.srv_type, is_server=True)
-        request, response = _types(service.srv_type)
+        facts = service_facts(os.urandom(16), service, is_server=True)
+        request, response = map(dds_type, halves(service.type_name))
         self._late: deque[tuple[float, bytes, int, Any]] = deque()
         self._early: list[EarlyRequest] = []
         self._seen: dict[bytes, deque[tuple[int, int]]] = {}
@@ -123,7 +123,7 @@ class FastServer:
         self._ask(sample.payload or b"", sample.writer, client, sample.number)
 
     def _ask(self, body: bytes, writer: bytes, client: bytes, number: int) -> None:
-        request = read_or_warn(body, self._service.srv_type.Request, self._service)
+        request = read_or_warn(body, "Request", self._service)
         if request is not None:
             self._service.receive(request, partial(self._reply, client, number), RequestId(writer, number))
 
@@ -132,7 +132,7 @@ class FastServer:
             return
         if self._can_reach(client):
             inline = related_identity(client, number)
-            self._participant.write(self._replies, serialize(response), inline=inline, to=client[:PREFIX])
+            self._participant.write(self._replies, written(response), inline=inline, to=client[:PREFIX])
         else:
             with self._lock:
                 self._late.append((due or time.monotonic() + _REPLY_WAITS, client, number, response))
@@ -178,8 +178,8 @@ class FastClient:
         self._client = client
         self._participant = participant
         self._is_dead = is_dead
-        facts = service_facts(os.urandom(16), client.srv_type, is_server=False)
-        request, response = _types(client.srv_type)
+        facts = service_facts(os.urandom(16), client, is_server=False)
+        request, response = map(dds_type, halves(client.type_name))
         self._answers: dict[int, Callable[[Any], None]] = {}
         self._lock = Lock()
         self._replies = participant.add_reader(dds_topic(Role.REPLY, client.name), response, facts, self._on_data)
@@ -190,7 +190,7 @@ class FastClient:
         """Write a request; returns a function that gives it up."""
         inline = related_identity(self._replies.reader.guid, NO_NUMBER)
         with self._lock:
-            number = self._participant.write(self._requests, serialize(request), inline=inline)
+            number = self._participant.write(self._requests, written(request), inline=inline)
             self._answers[number] = answer
         return partial(self._forget, number)
 
@@ -218,15 +218,10 @@ class FastClient:
         with self._lock:
             answer = self._answers.pop(told[1], None)
         if answer is not None:
-            response = read_or_warn(sample.payload or b"", self._client.srv_type.Response, self._client)
+            response = read_or_warn(sample.payload or b"", "Response", self._client)
             if response is not None:
                 answer(response)
 
 
 def _is_settled(heard_at: float | None, now: float) -> bool:
     return heard_at is not None and now >= heard_at + _SETTLED
-
-
-def _types(service: Any) -> tuple[str, str]:
-    """The DDS types of requests and replies."""
-    return dds_type(definition_of(service.Request).type_name), dds_type(definition_of(service.Response).type_name)

@@ -21,7 +21,6 @@ from threading import Lock
 from typing import TYPE_CHECKING, Any
 
 from linkwright.graph.endpoints.service_introspection import RequestId
-from linkwright.messages import definition_of, serialize
 from linkwright.wire.dds.cyclone import (
     ANY_STATE,
     DATA_AVAILABLE,
@@ -35,7 +34,8 @@ from linkwright.wire.dds.fast_services import EarlyRequest, FastClient, FastServ
 from linkwright.wire.dds.names import Role, dds_topic
 from linkwright.wire.dds.qos import endpoint_qos
 from linkwright.wire.dds.remote import RemoteEndpoint, is_fast
-from linkwright.wire.dds.service_messages import read_or_warn, service_facts
+from linkwright.wire.dds.service_types import halves, service_facts
+from linkwright.wire.service_messages import read_or_warn, written
 
 if TYPE_CHECKING:
     from linkwright.graph.endpoints.base import Endpoint
@@ -54,7 +54,7 @@ _REPLY_WAITS = 1.0
 """Seconds for which a reply waits until the client's reader is known; then it is written all the same."""
 
 
-class _Pair:
+class Pair:
     """The reader and the writer that a client or a service consists of.
 
     Args:
@@ -69,10 +69,11 @@ class _Pair:
         self.name = endpoint.name
         self.request_topic = dds_topic(Role.REQUEST, endpoint.name)
         self.reply_topic = dds_topic(Role.REPLY, endpoint.name)
-        service = endpoint.interface
-        facts = service_facts(os.urandom(16), service, is_server=is_server)
-        request = participant.create_topic(self.request_topic, _described(domain, service.Request))
-        reply = participant.create_topic(self.reply_topic, _described(domain, service.Response))
+        facts = service_facts(os.urandom(16), endpoint, is_server=is_server)
+        # By their names alone: requests of Fast DDS come without the header.
+        described = (domain.types.by_name(each) for each in halves(endpoint.type_name))
+        request = participant.create_topic(self.request_topic, next(described))
+        reply = participant.create_topic(self.reply_topic, next(described))
         self._topics = (request, reply)
         with endpoint_qos(endpoint.qos_profile, facts) as qos:
             self.reader = participant.create_reader(request if is_server else reply, qos)
@@ -97,7 +98,7 @@ class _Pair:
 
     def write(self, client_id: int, number: int, message: Any) -> None:
         """Write a request or a reply."""
-        write(self.writer, _LITTLE_ENDIAN + HEADER.pack(client_id, number) + serialize(message)[_ENCAPSULATION:])
+        write(self.writer, _LITTLE_ENDIAN + HEADER.pack(client_id, number) + written(message)[_ENCAPSULATION:])
 
     def close(self) -> None:
         """Delete both."""
@@ -118,7 +119,7 @@ class OutsideServer:
         self._matched = matched
         self._remote = domain.remote
         self._dds = load()
-        self.pair = _Pair(client, domain, is_server=False)
+        self.pair = Pair(client, domain, is_server=False)
         self._client_id = int.from_bytes(os.urandom(8), "little")
         self._answers: dict[int, Callable[[Any], None]] = {}
         self._is_ready = False
@@ -147,7 +148,7 @@ class OutsideServer:
             client_id, number, body = _divided(data)
             answer = self._answers.pop(number, None) if client_id == self._client_id else None
             if answer is not None:
-                response = read_or_warn(body, self._client.srv_type.Response, self._client)
+                response = read_or_warn(body, "Response", self._client)
                 if response is not None:
                     answer(response)
         return count == _AT_ONCE
@@ -202,7 +203,7 @@ class IncomingService:
         self._waits = waits
         self._remote = domain.remote
         self._dds = load()
-        self.pair = _Pair(service, domain, is_server=True)
+        self.pair = Pair(service, domain, is_server=True)
         self._fast: FastServer | None = None
         self._early: list[EarlyRequest] = []
         self._late: deque[tuple[float, RemoteEndpoint | None, int, int, Any]] = deque()
@@ -217,7 +218,7 @@ class IncomingService:
             if self._from_fast(sender, data, info):
                 continue
             client_id, number, body = _divided(data)
-            request = read_or_warn(body, self._service.srv_type.Request, self._service) if body else None
+            request = read_or_warn(body, "Request", self._service) if body else None
             if request is None:
                 continue
             gid = bytes(16) if sender is None else sender.guid
@@ -289,11 +290,6 @@ def _belong_together(a: RemoteEndpoint | None, b: RemoteEndpoint | None, key: st
     if key in a.facts or key in b.facts:
         return a.facts.get(key) == b.facts.get(key)
     return a.participant == b.participant
-
-
-def _described(domain: Domain, message_class: Any) -> Any:
-    """A type by its name alone: requests of Fast DDS come without the header."""
-    return domain.types.by_name(definition_of(message_class).type_name)
 
 
 def _divided(data: bytes) -> tuple[int, int, bytes]:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from linkwright.graph.endpoints.bus import describe_mismatch, report_to_publisher, report_to_subscription
 from linkwright.graph.endpoints.info import MessageInfo
 from linkwright.graph.qos.compatibility import incompatible_policies
-from linkwright.graph.qos.profile import DurabilityPolicy, HistoryPolicy
+from linkwright.graph.qos.profile import DurabilityPolicy, HistoryPolicy, QoSProfile
 from linkwright.messages import InterfaceNotFoundError, serialize, type_hash
 from linkwright.wire.dds.cyclone import (
     ANY_STATE,
@@ -36,7 +36,7 @@ from linkwright.wire.dds.qos import endpoint_qos
 from linkwright.wire.dds.settings import LEASE
 
 if TYPE_CHECKING:
-    from linkwright.graph.endpoints.base import TopicEndpoint
+    from linkwright.graph.endpoints.base import Endpoint
     from linkwright.graph.endpoints.publisher import Publisher
     from linkwright.graph.endpoints.subscription import Subscription
 
@@ -54,7 +54,7 @@ def type_facts(message_class: Any) -> bytes:
     return f"typehash={type_hash(message_class)};".encode()
 
 
-class _MirroredTopic(ABC):
+class MirroredTopic(ABC):
     """A reader or a writer that stands for an endpoint of the process.
 
     Args:
@@ -66,12 +66,12 @@ class _MirroredTopic(ABC):
     _STATUS: int
     """Called with changes."""
 
-    def __init__(self, endpoint: TopicEndpoint[Any], domain: Domain, mismatch: Callable[[Any], None]) -> None:
+    def __init__(self, endpoint: Endpoint, domain: Domain, mismatch: Callable[[Any], None]) -> None:
         self._dds = load()
         self._mismatch = mismatch
         self._participant = domain.participant
         self._remote = domain.remote
-        profile = endpoint.qos_profile
+        profile = self._profile_of(endpoint)
         self.topic_name = dds_topic(Role.TOPIC, endpoint.name, plain=profile.avoid_ros_namespace_conventions)
         described, facts = self._describe_type(endpoint, domain)
         self._topic = self._participant.create_topic(self.topic_name, described)
@@ -82,7 +82,7 @@ class _MirroredTopic(ABC):
         self._dds.dds_set_status_mask(self.entity, self._STATUS)
         self._told = _Told()
 
-    def _describe_type(self, endpoint: TopicEndpoint[Any], domain: Domain) -> tuple[Any, bytes]:
+    def _describe_type(self, endpoint: Endpoint, domain: Domain) -> tuple[Any, bytes]:
         """The type's description for Cyclone, and its hash for others in USER_DATA.
 
         A type that no package here has goes by its name, where the bytes alone are wanted.
@@ -95,13 +95,18 @@ class _MirroredTopic(ABC):
                 raise
             return domain.types.by_name(endpoint.type_name), told
 
+    def _profile_of(self, endpoint: Any) -> QoSProfile:
+        """The quality of service that is offered or asked for."""
+        profile: QoSProfile = endpoint.qos_profile
+        return profile
+
     @abstractmethod
     def _create(self, qos: Any) -> int:
         """Make the reader or the writer."""
 
 
-class OutgoingTopic(_MirroredTopic):
-    """A publisher's writer; see `_MirroredTopic` for the arguments."""
+class OutgoingTopic(MirroredTopic):
+    """A publisher's writer; see `MirroredTopic` for the arguments."""
 
     _STATUS = PUBLICATION_MATCHED | OFFERED_INCOMPATIBLE_QOS
 
@@ -197,8 +202,8 @@ class OutgoingTopic(_MirroredTopic):
                 report_to_publisher(self._publisher, policies[-1].name, sides)
 
 
-class IncomingTopic(_MirroredTopic):
-    """A subscription's reader; see `_MirroredTopic` for the arguments."""
+class IncomingTopic(MirroredTopic):
+    """A subscription's reader; see `MirroredTopic` for the arguments."""
 
     _STATUS = DATA_AVAILABLE | SUBSCRIPTION_MATCHED | REQUESTED_INCOMPATIBLE_QOS | SAMPLE_LOST | LIVELINESS_CHANGED
 

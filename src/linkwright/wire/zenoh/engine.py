@@ -180,6 +180,12 @@ class Engine:
         token = self._token_of(client, EndpointKind.CLIENT)
         self._announce(client, OutsideServer(client, token, self._session, self._matches_changed))
 
+    def open_presence(self, presence: Any) -> None:
+        """Show an endpoint that takes no part: its token is all there is of it."""
+        token = self._token_of(presence, presence.kind)
+        presence.gid = token.gid
+        self._tokens[presence] = self._session.liveliness().declare_token(token.key)
+
     def close_endpoint(self, endpoint: Any) -> None:
         """Stop mirroring an endpoint; its token goes first, so that nobody counts on it any more."""
         token = self._tokens.pop(endpoint, None)
@@ -196,7 +202,8 @@ class Engine:
     def _announce(self, endpoint: Any, mirrored: Any) -> None:
         """Have an endpoint known that can be reached by now."""
         self._mirrored[endpoint] = mirrored
-        self._tokens[endpoint] = self._session.liveliness().declare_token(mirrored.token.key)
+        if endpoint.is_listed:
+            self._tokens[endpoint] = self._session.liveliness().declare_token(mirrored.token.key)
         kind = _OPPOSITE.get(mirrored.token.kind)
         if kind is not None:
             self._interests.add(tokens.of_others(mirrored.token, kind))
@@ -229,7 +236,7 @@ class Engine:
         try:
             return type_hash(endpoint.type_name)
         except InterfaceNotFoundError:
-            if kind is EndpointKind.SUBSCRIPTION and endpoint.raw:  # the bytes alone are wanted
+            if kind in (EndpointKind.SUBSCRIPTION, EndpointKind.CLIENT) and endpoint.raw:  # the bytes alone are wanted
                 return tokens.NO_HASH
             raise
 

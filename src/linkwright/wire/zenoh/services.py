@@ -12,9 +12,8 @@ from weakref import WeakSet
 import zenoh
 from zenoh.handlers import Callback
 
-from linkwright.diagnostics import LinkwrightError
 from linkwright.graph.endpoints.service_introspection import RequestId
-from linkwright.messages import deserialize, serialize
+from linkwright.wire.service_messages import read_or_warn, written
 from linkwright.wire.zenoh import attachment
 from linkwright.wire.zenoh.tokens import Token
 
@@ -64,7 +63,7 @@ class OutsideServer:
         self._answers[number] = answer
         handler: Any = Callback(partial(self._receive, number), partial(self._end, number), indirect=False)
         about = attachment.write(number, time.time_ns(), self.token.gid)
-        self._querier.get(handler, payload=serialize(request), attachment=about)
+        self._querier.get(handler, payload=written(request), attachment=about)
         return partial(self._forget, number)
 
     def review(self, count: int) -> None:
@@ -96,7 +95,7 @@ class OutsideServer:
             return
         answer = self._answers.pop(number, None)
         if answer is not None:
-            response = _read(sample.payload.to_bytes(), self._client.srv_type.Response, self._client)
+            response = read_or_warn(sample.payload.to_bytes(), "Response", self._client)
             if response is not None:
                 answer(response)
 
@@ -153,7 +152,7 @@ class IncomingService:
         if about is None or body is None:
             query.drop()
             return
-        request = _read(body, self._service.srv_type.Request, self._service)
+        request = read_or_warn(body, "Request", self._service)
         if request is None:
             query.drop()
             return
@@ -190,18 +189,9 @@ class _Question:
     def answer(self, response: Any, key: str) -> None:
         """Send the response."""
         enclosed = attachment.write(self._about.number, time.time_ns(), self._about.gid)
-        self._query.reply(key, serialize(response), attachment=enclosed)
+        self._query.reply(key, written(response), attachment=enclosed)
         self._query.drop()
 
     def drop(self) -> None:
         """Tell the client that there will be no reply."""
         self._query.drop()
-
-
-def _read(body: bytes, message_class: Any, endpoint: Any) -> Any:
-    """A request or response; None when it cannot be read, which is logged."""
-    try:
-        return deserialize(body, message_class)
-    except LinkwrightError as error:
-        endpoint.node.logger.warning(f"Dropped a malformed message of service '{endpoint.name}': {error}")
-        return None

@@ -1,0 +1,116 @@
+"""What one subscription of a bridge can hear all of: the publishers of a topic that are of one kind."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from linkwright.graph.endpoints.info import EndpointInfo
+from linkwright.graph.qos.profile import (
+    DurabilityPolicy,
+    HistoryPolicy,
+    LivelinessPolicy,
+    QoSProfile,
+    ReliabilityPolicy,
+)
+from linkwright.messages import InterfaceNotFoundError, type_hash
+
+KEPT = 1000
+"""Messages that wait where they must not be lost: history for late joiners, and what a new publisher says."""
+
+_UNTOLD_DEPTH = 10
+"""What a publisher keeps that does not tell how much, as one of Fast DDS does not."""
+
+
+class Stream(NamedTuple):
+    """What one subscription of a bridge can hear all of.
+
+    Attributes:
+        name: the topic.
+        type_name: its type.
+        type_hash: of the type; empty where it is not told.
+        reliability: what its publishers offer.
+        durability: what its publishers offer.
+        history: what its publishers offer.
+    """
+
+    name: str
+    type_name: str
+    type_hash: str
+    reliability: ReliabilityPolicy
+    durability: DurabilityPolicy
+    history: HistoryPolicy
+
+    @property
+    def lasts(self) -> bool:
+        """Whether late joiners get what was published before."""
+        return self.durability is DurabilityPolicy.TRANSIENT_LOCAL
+
+
+def stream_of(publisher: EndpointInfo, *, keyed: bool) -> Stream:
+    """The stream that a publisher is part of.
+
+    Args:
+        publisher: the publisher.
+        keyed: whether topics are told apart by the hash of their type, and quality of service keeps nobody apart, as
+            over Zenoh.
+    """
+    qos = offered(publisher.qos)
+    reliability = ReliabilityPolicy.RELIABLE if keyed else qos.reliability
+    return _stream(publisher, keyed, reliability, qos.durability, qos.history)
+
+
+def awaited_streams(subscription: EndpointInfo, *, keyed: bool) -> set[Stream]:
+    """The streams by which a subscription might be reached: what volatile publishers say. What lasts comes later, too.
+
+    Args:
+        subscription: the subscription.
+        keyed: see `stream_of`; where it is not so, the history is told by hardly anybody.
+    """
+    volatile, last = DurabilityPolicy.VOLATILE, HistoryPolicy.KEEP_LAST
+    reliable = ReliabilityPolicy.RELIABLE
+    found = {_stream(subscription, keyed, reliable, volatile, last)}
+    if keyed or subscription.qos.history is HistoryPolicy.KEEP_ALL:
+        found.add(_stream(subscription, keyed, reliable, volatile, HistoryPolicy.KEEP_ALL))
+    if not keyed and subscription.qos.reliability is not reliable:
+        found.add(_stream(subscription, keyed, ReliabilityPolicy.BEST_EFFORT, volatile, last))
+    return found
+
+
+def hash_of(endpoint: EndpointInfo) -> str:
+    """The hash of an endpoint's type, as it tells it or as the package here has it; empty where neither is so."""
+    if endpoint.type_hash:
+        return endpoint.type_hash
+    try:
+        return type_hash(endpoint.type_name)
+    except InterfaceNotFoundError:
+        return ""
+
+
+def _stream(
+    endpoint: EndpointInfo,
+    keyed: bool,
+    reliability: ReliabilityPolicy,
+    durability: DurabilityPolicy,
+    history: HistoryPolicy,
+) -> Stream:
+    hashed = hash_of(endpoint) if keyed else ""
+    return Stream(endpoint.name, endpoint.type_name, hashed, reliability, durability, history)
+
+
+def offered(qos: QoSProfile) -> QoSProfile:
+    """What a publisher offers, in the place of what it does not tell ROS's defaults."""
+    lasts = qos.durability is DurabilityPolicy.TRANSIENT_LOCAL
+    keeps_all = qos.history is HistoryPolicy.KEEP_ALL
+    told = qos.history in (HistoryPolicy.KEEP_LAST, HistoryPolicy.KEEP_ALL)
+    best_effort = qos.reliability is ReliabilityPolicy.BEST_EFFORT
+    manual = qos.liveliness is LivelinessPolicy.MANUAL_BY_TOPIC
+    return QoSProfile(
+        depth=qos.depth if told else KEPT if lasts else _UNTOLD_DEPTH,
+        history=HistoryPolicy.KEEP_ALL if keeps_all else HistoryPolicy.KEEP_LAST,
+        reliability=ReliabilityPolicy.BEST_EFFORT if best_effort else ReliabilityPolicy.RELIABLE,
+        durability=DurabilityPolicy.TRANSIENT_LOCAL if lasts else DurabilityPolicy.VOLATILE,
+        deadline=qos.deadline,
+        lifespan=qos.lifespan,
+        liveliness=LivelinessPolicy.MANUAL_BY_TOPIC if manual else LivelinessPolicy.AUTOMATIC,
+        liveliness_lease_duration=qos.liveliness_lease_duration,
+    )

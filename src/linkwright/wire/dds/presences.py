@@ -1,0 +1,75 @@
+"""Endpoints that others see in a domain, and that take no part: readers that nobody takes samples from."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from copy import copy
+from typing import TYPE_CHECKING, Any
+
+from linkwright.graph.endpoints.info import EndpointKind
+from linkwright.graph.qos.profile import HistoryPolicy, QoSProfile
+from linkwright.wire.dds.domain import Domain
+from linkwright.wire.dds.services import Pair
+from linkwright.wire.dds.topics import MirroredTopic
+
+if TYPE_CHECKING:
+    from linkwright.graph.endpoints.presence import Presence
+
+
+def open_presence(presence: Presence, domain: Domain) -> QuietReader | QuietClient:
+    """Have an endpoint seen.
+
+    Args:
+        presence: the endpoint.
+        domain: where the others are.
+    """
+    return (QuietReader if presence.kind is EndpointKind.SUBSCRIPTION else QuietClient)(presence, domain)
+
+
+class QuietReader(MirroredTopic):
+    """A reader that keeps the last sample, which nobody takes; writers send it nothing that others here do not get."""
+
+    _STATUS = 0
+    writer_guids: Sequence[bytes] = ()
+
+    def __init__(self, presence: Presence, domain: Domain) -> None:
+        super().__init__(presence, domain, _ignore)
+
+    @property
+    def reader_guid(self) -> bytes:
+        """The reader's GUID, 16 bytes."""
+        return self.guid
+
+    def close(self) -> None:
+        """Delete the reader."""
+        self._participant.delete(self.entity, self._topic)
+
+    def _profile_of(self, endpoint: Any) -> QoSProfile:
+        profile: QoSProfile = copy(endpoint.qos_profile)
+        profile.history, profile.depth = HistoryPolicy.KEEP_LAST, 1
+        return profile
+
+    def _create(self, qos: Any) -> int:
+        return self._participant.create_reader(self._topic, qos)
+
+
+class QuietClient:
+    """The two ends of a client that asks nothing.
+
+    Args:
+        presence: the client.
+        domain: where the others are.
+    """
+
+    def __init__(self, presence: Presence, domain: Domain) -> None:
+        self._pair = Pair(presence, domain, is_server=False)
+        self.reader_guid = self._pair.reader_guid
+        self.writer_guids = (self._pair.writer_guid,)
+
+    def close(self) -> None:
+        """Delete both."""
+        self._pair.close()
+
+
+def _ignore(_: Any) -> None:
+    """Who has another quality of service tells its own users so."""

@@ -1,0 +1,37 @@
+"""What the two ways to call services over DDS tell others: with Cyclone, and with participants of Fast DDS."""
+
+from __future__ import annotations
+
+from linkwright.graph.endpoints.base import Endpoint
+from linkwright.messages import InterfaceNotFoundError, type_hash
+from linkwright.wire.dds.names import endpoint_id
+
+
+def service_facts(identity: bytes, endpoint: Endpoint, *, is_server: bool) -> bytes:
+    """The USER_DATA of both endpoints of a client or a server, which names them as belonging together.
+
+    Args:
+        identity: 16 bytes of their own.
+        endpoint: the client or the service.
+        is_server: which of the two.
+    """
+    key = "serviceid" if is_server else "clientid"
+    told = _hash_of(endpoint)
+    return (f"{key}={endpoint_id(identity)};" + (f"typehash={told};" if told else "")).encode()
+
+
+def halves(service_type: str) -> tuple[str, str]:
+    """The ROS types of the requests and the responses of a service, such as ``std_srvs/srv/SetBool``."""
+    return f"{service_type}_Request", f"{service_type}_Response"
+
+
+def _hash_of(endpoint: Endpoint) -> str:
+    """The hash of a service's type as it was told, or of the type; empty where bytes of an unknown one are carried."""
+    if endpoint.type_hash:
+        return endpoint.type_hash
+    try:
+        return type_hash(endpoint.type_name)
+    except InterfaceNotFoundError:
+        if not endpoint.raw:
+            raise
+        return ""
