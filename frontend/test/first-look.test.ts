@@ -39,8 +39,10 @@ class Hall implements LookedAt {
     private readonly walls: readonly (readonly [x: number, height: number])[] = [],
   ) {}
 
+  fallen = false;
+
   extents(): { robots: Box3; world: Box3 } {
-    return { robots: this.hasRobots ? ROBOT : new Box3(), world: HALL };
+    return { robots: this.hasRobots && !this.fallen ? ROBOT : new Box3(), world: HALL };
   }
 
   cameraOfFile(): Matrix4 | null {
@@ -75,6 +77,17 @@ describe("the first look at a world", () => {
     view.update({ Distance: 1 });
     lookFirst(hall, view, SIZE);
     expect(view.values["Distance"]).toBe(1);
+  });
+
+  it("shows all of it, once, where the robot has fallen out of it", () => {
+    const view = viewOf(true);
+    const hall = new Hall(true);
+    hall.fallen = true;
+    lookFirst(hall, view, SIZE);
+    expect(view.camera.focal).toEqual([0, 0, 1.5]);
+    hall.fallen = false;
+    lookFirst(hall, view, SIZE);
+    expect(view.camera.focal).toEqual([0, 0, 1.5]);
   });
 
   it("does not move a camera that a file, or somebody, has put somewhere", () => {

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import pytest
 
+from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.graph import DESCRIPTION_QOS, SENSOR_DATA_QOS, TF_QOS, DurabilityPolicy, QoSProfile
 from linkwright.messages import String, TFMessage, get_message, get_service
+from tests.browser.conftest import state, until
 from tests.browser.live import configuration
 from tests.waiting import wait_until
 
@@ -113,6 +115,44 @@ def test_the_bar_is_there_with_the_simulation_and_the_mouse_handles_models(live,
     page.mouse.click(x, y, button="right")
     page.get_by_role("menuitem", name="Add a model here").click()
     assert page.get_by_role("dialog").is_visible()
+
+
+SEEN = """\
+<robot name="seen"><link name="base"><visual><geometry><box size="1 1 1"/></geometry></visual></link>
+  <joint name="turns" type="continuous"><parent link="base"/><child link="wheel"/></joint>
+  <joint name="rolls" type="continuous"><parent link="base"/><child link="roll"/></joint>
+  <link name="wheel"><visual><geometry><sphere radius="0.2"/></geometry></visual></link>
+  <link name="roll"><visual><geometry><sphere radius="0.2"/></geometry></visual></link></robot>
+"""
+
+
+def test_the_camera_looks_at_the_world_and_not_at_a_robot_that_fell_which_is_told(start, open_page, tmp_path):
+    (tmp_path / "seen.urdf").write_text(SEEN)
+    page = open_page(start("sim", "empty", "seen.urdf", "-x", "7", "-z", "-900"))
+    page.locator(".banner").get_by_text("no link of 'seen' has a <collision>").wait_for()
+    drawn = "lw.displays.find(({ name }) => name === 'World').drawn.links['seen::base'].visuals[0].bounds.max[2] < -800"
+    until(page, drawn)
+    # Without a ground of its own, a world that is empty is looked at where the robot was put.
+    assert abs(state(page, "view.values['Focal Point/Z']")) < 1
+
+
+def test_a_robot_that_touches_nothing_is_told_over_the_scene_until_that_is_closed(live, open_page):
+    viewer = described(live)
+    page = open_page(viewer)
+    falls = phrase("no link of '{name}' has a <collision>: it touches nothing, and falls", name="seen")
+    small = phrase("links without a mass")
+    both = [Diagnostic(code, text, severity=Severity.WARNING) for code, text in (("SDF172", small), ("SIM143", falls))]
+    viewer.run(lambda: viewer.viewer.show_diagnostics(both))
+    banner = page.locator(".banner")
+    banner.get_by_text("no link of 'seen'").wait_for()
+    banner.get_by_role("button", name="Close this message").click()
+    banner.wait_for(state="hidden")
+    broken = Diagnostic("URDF101", phrase("links without a mass"))
+    viewer.run(lambda: viewer.viewer.show_diagnostics([*both, broken]))
+    banner.get_by_text("links without a mass").wait_for()
+    assert banner.get_by_role("button", name="Close this message").count() == 0
+    viewer.run(lambda: viewer.viewer.show_diagnostics(both))
+    banner.wait_for(state="hidden")
 
 
 LAMPS = """

@@ -67,6 +67,21 @@ async def test_the_page_shows_the_world_standing_still():
     assert await running
 
 
+async def test_a_robot_that_falls_for_want_of_collisions_is_told_in_the_viewers(tmp_path: Path):
+    file = tmp_path / "seen.urdf"
+    visual = '<visual><geometry><sphere radius="1"/></geometry></visual>'
+    file.write_text(f'<robot name="seen">\n<link name="base">{visual}</link></robot>')
+    description = examine(file)
+    world = SimulatedWorld("empty", file, description, description.text, "seen", headless=True)
+    view = SimulatedView(world, PackageFinder(start=tmp_path), OPTIONS, LaunchLog(io.StringIO(), io.StringIO()))
+    running = asyncio.create_task(view.run(None))
+    await eventually(lambda: "SIM143" in [each.code for each in view.reload.findings()] or running.done())
+    [finding] = [each for each in view.reload.findings() if each.code == "SIM143"]
+    assert (finding.span.file, finding.span.line) == (str(file), 2)
+    view.interrupt("the test is over")
+    assert await running
+
+
 async def test_a_robot_with_the_name_of_a_model_of_the_world_ends_it(tmp_path: Path):
     named = '<model name="mbot"><static>true</static><link name="link"/></model>'
     (tmp_path / "a.world").write_text(f'<sdf version="1.7"><world name="w">{named}</world></sdf>')

@@ -246,6 +246,24 @@ async def test_a_robot_can_be_there_from_the_start(tmp_path):
         assert it.simulator.server.simulation.model_pose("r")[:3] == (1.0, 2.0, 0.5)
 
 
+async def test_what_is_wrong_with_a_model_is_among_the_findings_while_that_is_in_the_world(tmp_path):
+    seen = URDF.replace("collision>", "visual>")
+    async with simulator(tmp_path, robot_description=seen, robot_name="first", pause=False) as it:
+        server = it.simulator.server
+        told: list[list[str]] = []
+        server.on_findings.append(lambda: told.append([each.code for each in server.findings]))
+        [finding] = server.findings
+        assert (finding.code, finding.span.line) == ("SIM143", 1)
+        it.simulator.services.renew(seen.replace('mass value="1"', 'mass value="2"'), "first")
+        await eventually(lambda: told == [[], ["SIM143"]])
+        it.simulator.services.renew(URDF, "first")
+        await eventually(lambda: told[2:] == [[]])
+        await it.ask("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="second", xml=seen)
+        assert [each.code for each in server.findings] == ["SIM143"]
+        await it.ask("gazebo_msgs/srv/DeleteEntity", "/delete_entity", name="second")
+        assert server.findings == []
+
+
 async def test_a_world_may_be_given_as_text_or_by_the_names_of_ros_gz(tmp_path):
     text = f'<sdf version="1.7"><world name="told">{box("crate", "0 0 1 0 0 0")}</world></sdf>'
     async with simulator(tmp_path, world_sdf_string=text) as it:

@@ -26,7 +26,7 @@ export interface LookedAt {
 
 /**
  * Puts a camera that nobody has put anywhere where a world's file says; else before its robots, with what is around
- * them; or, until there are some, where all of the world is seen.
+ * them; or, until there are some, where all of the world is seen, as when they have fallen out of it.
  */
 export function lookFirst(world: LookedAt, view: ViewState, size: ViewSize): void {
   if (!view.awaitsFit(world.hasRobots ? ROBOTS_SEEN : WORLD_SEEN)) return;
@@ -38,7 +38,7 @@ export function lookFirst(world: LookedAt, view: ViewState, size: ViewSize): voi
   const extents = world.extents();
   const [robots, all] = [spanOf(extents.robots), spanOf(extents.world)];
   if (robots) view.propose(around(view.values, robots, size, (eye, place) => sees(world, eye, place)), ROBOTS_SEEN, true);
-  else view.propose(all ? overview(view.values, all, size) : {}, WORLD_SEEN, false);
+  else view.propose(all ? overview(view.values, all, size) : {}, WORLD_SEEN, world.hasRobots);
 }
 
 /** The values of an Orbit that looks as a camera of the world's file does, but for its roll. */

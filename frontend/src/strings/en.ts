@@ -84,6 +84,7 @@ export const en = {
     note: "Note",
     lastGood: "The last good robot stays until this is mended.",
     show: "Show",
+    close: "Close this message",
     more: (count: number): string => `and ${count} more`,
   },
   interactive: {

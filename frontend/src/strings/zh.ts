@@ -72,6 +72,7 @@ export const zh: Strings = {
     note: "说明",
     lastGood: "修复之前，保留上一个正确的机器人。",
     show: "查看",
+    close: "关闭此消息",
     more: (count) => `另有 ${count} 条`,
   },
   interactive: {

@@ -62,6 +62,11 @@ class LiveReload:
         """Call `apply` no longer."""
         self._targets[call].remove(apply)
 
+    def show(self, about: object, diagnostics: Iterable[Diagnostic]) -> None:
+        """Show what is wrong with something, which has been printed; nothing wrong clears it."""
+        self._findings[about] = tuple(diagnostics)
+        self._show(self.findings())
+
     def report(self, about: object, diagnostics: Iterable[Diagnostic]) -> None:
         """Print what is wrong with a description and show it; nothing wrong clears it.
 
@@ -69,11 +74,10 @@ class LiveReload:
         """
         findings = tuple(diagnostics)
         known = {_essence(finding) for finding in self._findings.get(about, ())}
-        self._findings[about] = findings
         self._log.diagnostics(
             finding for finding in findings if finding.severity is Severity.ERROR or _essence(finding) not in known
         )
-        self._show(self.findings())
+        self.show(about, findings)
 
     def findings(self) -> list[Diagnostic]:
         """All that is wrong now."""

@@ -22,6 +22,8 @@ _LOAD_WORLD = "simulation_interfaces/srv/LoadWorld"
 def follow_files(running: RunningNode, session: Supervisor, launcher: Callable[[], Node]) -> None:
     """Have a simulator take over its world, and robots that were spawned, when their files are saved.
 
+    What is wrong with the models in it is shown in the viewers.
+
     A robot is followed where its description is a text that this process has expanded from a file.
 
     Args:
@@ -33,7 +35,15 @@ def follow_files(running: RunningNode, session: Supervisor, launcher: Callable[[
 
     if not isinstance(running, Simulator):
         return
-    loop, world = asyncio.get_running_loop(), running.services.worlds.loaded
+    loop, world, server = asyncio.get_running_loop(), running.services.worlds.loaded, running.server
+    about = f"what {running.node.get_fully_qualified_name()} simulates"
+
+    def show() -> None:
+        if not running.node.handle.is_destroyed:
+            session.reload.show(about, server.findings)
+
+    server.on_findings.append(lambda: loop.call_soon_threadsafe(show))
+    show()
     if world.path.is_file():
         call = session.descriptions.begin_with(world)
         session.reload.bind(call, lambda path: session.spawn(_load_world(call, path, session, launcher(), running)))

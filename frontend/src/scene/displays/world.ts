@@ -16,7 +16,7 @@ const RAYS = "rays ";
 
 /** What is so much flatter than it is wide is a ground, as a rule. */
 const FLAT = 0.02;
-/** What is lower has fallen out of a world without a ground, m. */
+/** What is so much lower than the ground has fallen out of the world, m. */
 const FALLEN = -1;
 
 /** linkwright/World: the links of all models of a simulated world. */
@@ -121,13 +121,15 @@ export class WorldDrawing implements Drawing {
     return (this.scene?.robots.length ?? 0) > 0;
   }
 
-  /** The box around the models that are robots, and that around all but grounds and what fell, in the fixed frame, m. */
+  /** The boxes around the models that are robots, and around all but grounds, without what fell, in the fixed frame, m. */
   extents(): { robots: Box3; world: Box3 } {
     const [robots, world, all] = [new Box3(), new Box3(), new Box3()];
     const names = new Set(this.scene?.robots);
-    for (const [link, box] of this.shown?.boundsOfLinks() ?? []) {
-      if (box.isEmpty() || this.isFlat(link)) continue;
-      if (names.has(modelOf(link))) robots.union(box);
+    const boxes = [...(this.shown?.boundsOfLinks() ?? [])].filter(([, box]) => !box.isEmpty());
+    const lowest = Math.min(0, ...boxes.map(([link, box]) => (names.has(modelOf(link)) ? 0 : box.min.z)));
+    for (const [link, box] of boxes) {
+      if (this.isFlat(link)) continue;
+      if (names.has(modelOf(link)) && box.max.z >= lowest + FALLEN) robots.union(box);
       if (box.max.z < FALLEN) continue;
       if (!isLikeGround(box)) world.union(box);
       all.union(box);

@@ -76,6 +76,7 @@ class SimulationServer:
         exchange: messages to the graph, and commands from there.
         on_change: called after models have come or gone.
         on_reset: called after a reset.
+        on_findings: called after `findings` are others.
         left: what plugins leave for those that come in their places.
     """
 
@@ -85,6 +86,7 @@ class SimulationServer:
         self.exchange = Exchange()
         self.on_change: list[Callable[[], None]] = []
         self.on_reset: list[Callable[[], None]] = []
+        self.on_findings: list[Callable[[], object]] = []
         self._options = options or ServerOptions()
         self._usual: set[str] | None = set() if self._options.usual_names else None
         self._bridged = BridgedTopics(node, self.exchange)
@@ -94,6 +96,7 @@ class SimulationServer:
         self._of_world = set(simulation.scene.models)
         self._node_names: set[str] = set()
         self._told: set[str] = set()
+        self._findings: dict[str, list[Diagnostic]] = {}
 
     def start(self) -> None:
         """Load the plugins of the world and of its models."""
@@ -103,6 +106,11 @@ class SimulationServer:
         for scene_model in tuple(self.simulation.scene.models.values()):
             self._load(scene_model.name, of_model(self.simulation.world, scene_model.model, scene_model.name), "")
         self._changed()
+
+    @property
+    def findings(self) -> list[Diagnostic]:
+        """What is wrong with the models that came into the world and are in it; safe to call from any thread."""
+        return [each for found in tuple(self._findings.values()) for each in tuple(found)]
 
     @property
     def gazebo_mistakes(self) -> bool:
@@ -133,7 +141,7 @@ class SimulationServer:
             raise LinkwrightError(Diagnostic("SIM102", phrase("there is already a model '{name}'", name=name)))
         self._exchange((), (Coming(model, name, pose, namespace),))
         stand_up(self.simulation, name)
-        self.tell(touches_nothing(self.simulation, name))
+        self.tell(touches_nothing(self.simulation, name), name)
         self._tell_unsimulated(unsimulated_in(model))
 
     def renew(self, model: Model, name: str) -> None:
@@ -151,6 +159,7 @@ class SimulationServer:
         coming = Coming(model, name, before.pose, self._namespaces.get(name, ""), here=True)
         check(self.simulation.world, self.simulation, (coming,), self.simulation.finder)
         self._exchange((), (replace(coming, motion=motion_of(self.simulation, name)),))
+        self.tell(touches_nothing(self.simulation, name), name)
 
     def load(self, world: World, finder: ResourceFinder, allow: Callable[[Sequence[Diagnostic]], object]) -> None:
         """Make the world that runs another one; what is the same in both goes on as it is, and what was spawned stays.
@@ -191,6 +200,7 @@ class SimulationServer:
             before[name] = self._plugins.pop(name, [])
             self._end(before[name])
             simulation.delete(name)
+        self._forget_findings(leaving)
         if coming:
             come_into(simulation, coming)
         for each in coming:
@@ -379,9 +389,13 @@ class SimulationServer:
         except LinkwrightError as error:
             self.tell(error.diagnostics)
 
-    def tell(self, findings: Iterable[Diagnostic]) -> None:
-        """Log what is wrong, each thing once."""
-        for each in findings:
+    def tell(self, findings: Iterable[Diagnostic], model: str = _WORLD) -> None:
+        """Log what is wrong, each thing once; of a model, it is among the `findings` until that goes."""
+        found = list(findings)
+        if found and model != _WORLD:
+            self._findings.setdefault(model, []).extend(found)
+            self._findings_changed()
+        for each in found:
             text = f"{each.span}: {each.message}" if each.span else str(each.message)
             if text in self._told:
                 continue
@@ -392,6 +406,17 @@ class SimulationServer:
                 logger.error(line)
             else:
                 logger.warning(line)
+
+    def _forget_findings(self, models: Collection[str]) -> None:
+        gone = models & self._findings.keys()
+        for name in gone:
+            del self._findings[name]
+        if gone:
+            self._findings_changed()
+
+    def _findings_changed(self) -> None:
+        for function in self.on_findings:
+            function()
 
 
 def is_shared(place: PluginPlace) -> bool:

@@ -117,7 +117,7 @@ class Services:
         placed = compose(pose, transform_of(entity.model.pose.pose))
         name = name or entity.model.name
         self._server.spawn(entity.model, name, placed, namespace)
-        self._server.tell(entity.diagnostics)
+        self._server.tell(entity.diagnostics, name)
         return name
 
     def renew(self, text: str, name: str) -> None:
@@ -137,6 +137,7 @@ class Services:
         def renew() -> None:
             try:
                 self._server.renew(entity.model, name)
+                self._server.tell(entity.diagnostics, name)
             except LinkwrightError as error:
                 self._server.node.get_logger().error(told(error.diagnostics[0]))
 

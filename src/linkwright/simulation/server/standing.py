@@ -46,8 +46,13 @@ def touches_nothing(simulation: Simulation, name: str) -> list[Diagnostic]:
     if not simulation.free_links(name):
         return []
     message = phrase("no link of '{name}' has a <collision>: it touches nothing, and falls", name=name)
-    hint = phrase("`linkwright drive FILE` gives a robot masses and collisions, and tells which")
-    return [Diagnostic("SIM143", message, severity=Severity.WARNING, hint=hint)]
+    hint = phrase(
+        "give its links a <collision> each, or run `linkwright drive FILE`, which infers masses and collisions; "
+        "with --write it puts them into the file"
+    )
+    element = next((link.element for link in links if link.element is not None), None)
+    span, source = (None, None) if element is None else (element.span(), element.source)
+    return [Diagnostic("SIM143", message, span, severity=Severity.WARNING, hint=hint, source=source)]
 
 
 def _depth(simulation: Simulation, name: str) -> float:
