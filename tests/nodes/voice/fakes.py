@@ -9,6 +9,7 @@ import numpy as np
 
 from linkwright import extensions
 from linkwright.diagnostics import Diagnostic
+from linkwright.graph import Time
 from linkwright.messages import get_message
 from linkwright.nodes import NodeOptions
 from linkwright.nodes.voice.audio_messages import AUDIO_STAMPED, audio_stamped
@@ -95,12 +96,18 @@ class Talk:
         self.button.publish(BOOL(data=held))
         await self.stage.graph.settle()
 
-    async def say(self, *heard: Heard) -> None:
-        """Have the engine hear something, and wait until it was told; its thread takes its time."""
+    async def say(self, *heard: Heard, stamp: float | None = None) -> None:
+        """Have the engine hear something, and wait until it was told; its thread takes its time.
+
+        Args:
+            heard: what it makes of a tenth of a second of sound.
+            stamp: of that sound, seconds; now where it is not given.
+        """
         ToldEngine.says[len(ToldEngine.says) + 1] = list(heard)
         block = np.full(BLOCK, len(ToldEngine.says), np.int16)
         before = len(self.said["text"]) + len(self.said["partial_text"])
-        self.sound.publish(audio_stamped(block.tobytes(), self.stage.node.get_clock().now().to_msg()))
+        now = self.stage.node.get_clock().now() if stamp is None else Time(nanoseconds=round(stamp * 1e9))
+        self.sound.publish(audio_stamped(block.tobytes(), now.to_msg()))
         await self.stage.graph.settle()
         if heard:
             told = len(heard) + before

@@ -216,6 +216,35 @@ async def test_what_is_uncertain_is_not_done(engine, talk):
     assert robot.velocities == []
 
 
+async def test_what_has_a_gap_is_asked_for_again_and_stop_is_done(engine, talk):
+    robot = talk(engine="told")
+    await robot.hold(True)
+    for each in range(5):
+        await robot.say(stamp=10.0 + 0.1 * each)
+    await robot.say(final("forward", start=-0.5), stamp=11.0)  # half a second is missing
+    assert robot.said["text"] == ["forward"]
+    assert robot.said["command"] == []
+    assert robot.said["response"] == ["I did not hear all of that: say it again"]
+    await robot.say(final("forward", start=0.8), stamp=11.1)
+    assert robot.said["command"] == ["forward"]
+    for each in range(3):
+        await robot.say(stamp=11.2 + 0.1 * each)
+    await robot.say(final("stop", start=0.5), stamp=13.0)
+    assert robot.said["command"] == ["forward", "stop"]
+    assert robot.speed == (0.0, 0.0, 0.0)
+
+
+async def test_the_next_press_of_the_button_has_no_gap_before_it(engine, talk):
+    robot = talk(engine="told")
+    await robot.hold(True)
+    for each in range(5):
+        await robot.say(stamp=10.0 + 0.1 * each)
+    await robot.hold(False)
+    await robot.hold(True)
+    await robot.say(final("forward", start=0.0), stamp=15.0)
+    assert robot.said["command"] == ["forward"]
+
+
 async def test_stop_is_done_from_what_is_heard_so_far_and_once(engine, talk):
     robot = talk(engine="told", open_listening=True)
     await robot.say(final("forward"))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from linkwright.graph import Duration, Node, Publisher
+from linkwright.graph import Node, Publisher, Time
 from linkwright.nodes.voice.audio_messages import (
     AUDIO,
     AUDIO_DEPTH,
@@ -16,7 +16,8 @@ from linkwright.nodes.voice.audio_messages import (
     audio_info,
     audio_stamped,
 )
-from linkwright.speech.sound.samples import RATE, Samples
+from linkwright.nodes.voice.sound_gaps import SampleStamps
+from linkwright.speech.sound.samples import Samples
 
 NAMESPACE = "/audio"
 
@@ -35,11 +36,17 @@ class AudioTopics:
         self._stamped: Publisher[Any] = node.create_publisher(AUDIO_STAMPED, f"{namespace}/audio_stamped", AUDIO_DEPTH)
         self._info: Publisher[Any] = node.create_publisher(AUDIO_INFO, f"{namespace}/audio_info", INFO_QOS)
         self._info.publish(audio_info(AudioForm()))
+        self._stamps = SampleStamps()
+
+    def restart(self) -> None:
+        """What is published next does not follow what was published before."""
+        self._stamps.restart()
 
     def publish(self, samples: Samples) -> None:
-        """Publish a block whose last sample was heard now."""
+        """Publish the next block of the stream, whose last sample was heard now or some time ago."""
         data = samples.astype("<i2").tobytes()
-        began = self._node.get_clock().now() - Duration(nanoseconds=samples.size * 10**9 // RATE)
+        now = self._node.get_clock().now()
+        began = Time(nanoseconds=self._stamps.stamp(samples.size, now.nanoseconds), clock_type=now.clock_type)
         self._stamped.publish(audio_stamped(data, began.to_msg()))
         self._plain.publish(audio_data(data))
 

@@ -10,10 +10,13 @@ from queue import SimpleQueue
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.graph import Node
 from linkwright.speech.engine import Heard, SpeechEngine
-from linkwright.speech.sound.samples import Samples
+from linkwright.speech.sound.samples import RATE, Samples
 
 _MOST_WAITING = 100
 """Blocks: an engine that is 10 s behind hears nothing new until it has caught up."""
+
+_MOST_GAPS = 100
+_NEAR = 0.2  # s: engines do not know to the frame where a word begins
 
 
 class Listener:
@@ -36,6 +39,8 @@ class Listener:
         failed: Callable[[LinkwrightError], None],
     ) -> None:
         self._make, self._heard, self._warn, self._failed = make, heard, warn, failed
+        self._handed = 0
+        self._gaps: deque[float] = deque(maxlen=_MOST_GAPS)
         self._sound: SimpleQueue[Samples | bool | None] = SimpleQueue()
         self._found: deque[Heard | Diagnostic | LinkwrightError] = deque()
         self._ready = node.create_guard_condition(self._tell)
@@ -45,9 +50,19 @@ class Listener:
     def hear(self, samples: Samples) -> bool:
         """Take a block of sound; whether the engine keeps up, else it is dropped."""
         if self._sound.qsize() >= _MOST_WAITING:
+            self.note_gap()
             return False
+        self._handed += samples.size
         self._sound.put(samples)
         return True
+
+    def note_gap(self) -> None:
+        """Some of the sound before what comes next is missing."""
+        self._gaps.append(self._handed / RATE)
+
+    def is_whole(self, heard: Heard) -> bool:
+        """Whether no sound was missing in what was heard, nor just before or after it."""
+        return not any(heard.start - _NEAR <= gap <= heard.end + _NEAR for gap in self._gaps)
 
     def finish(self) -> None:
         """The utterance has ended."""

@@ -31,6 +31,7 @@ from linkwright.nodes.voice.conversation import Conversation
 from linkwright.nodes.voice.driving import Driver, Ending
 from linkwright.nodes.voice.listening import Listener
 from linkwright.nodes.voice.requests import Requests
+from linkwright.nodes.voice.sound_gaps import SoundGaps
 from linkwright.speech.commands.command_file import DEFAULT_FILE, read_command_file
 from linkwright.speech.engine import EngineOptions, Heard, make_engine
 
@@ -144,6 +145,7 @@ class VoiceCommander(SingleNode):
         node = self._node
         self._listener = Listener(node, make, self._heard, self._warn, self._failed)
         self._reader = AudioReader()
+        self._gaps = SoundGaps()
         node.create_subscription(AUDIO_INFO, "audio/audio_info", self._on_info, INFO_QOS)
         self._audio: Subscription[Any] = node.create_subscription(
             AUDIO_STAMPED, "audio/audio_stamped", self._on_audio, AUDIO_DEPTH
@@ -168,6 +170,14 @@ class VoiceCommander(SingleNode):
         if not (self._held or self._open) or self._listener is None:
             return
         samples = self._reader.read(message.audio.data)
+        stamp = message.header.stamp
+        missing = self._gaps.missing(stamp.sec * 10**9 + stamp.nanosec, samples.size)
+        if missing:
+            self._listener.note_gap()
+            self._node.get_logger().warning(
+                phrase("{seconds} s of sound were lost on the way", seconds=f"{missing:.1f}"),
+                throttle_duration_sec=5.0,
+            )
         if not self._listener.hear(samples):
             self._node.get_logger().warning(
                 phrase("the speech engine is too slow for this machine: sound is left out"), throttle_duration_sec=5.0
@@ -176,6 +186,8 @@ class VoiceCommander(SingleNode):
     def _on_listen(self, held: bool) -> None:
         if self._held and not held and self._listener is not None:
             self._listener.finish()
+        if held:
+            self._gaps.restart()  # nothing is published while no button is held
         self._stopped = False
         self._held = held
 
@@ -189,11 +201,14 @@ class VoiceCommander(SingleNode):
         # After a stop nothing else of the utterance is done, but a command in which the word is: "go to the stop sign".
         if stopped and not (self._commands.is_stop(heard.text) and self._commands.is_other(heard.text)):
             return
+        is_whole = self._listener is None or self._listener.is_whole(heard)
         is_certain = heard.confidence >= self._confidence
-        if is_certain and self._take(heard.text, by_voice=True):
+        if is_certain and is_whole and self._take(heard.text, by_voice=True):
             return
         if self._commands.is_stop(heard.text) and (self._held or self._conversation.is_busy):
             self._conversation.stop(heard.text)
+        elif heard.text and is_certain and not is_whole:
+            self._conversation.answer(phrase("I did not hear all of that: say it again"))
 
     def _stop_early(self, text: str) -> None:
         """Stop from what was heard so far, unless it is another command in which that word is."""

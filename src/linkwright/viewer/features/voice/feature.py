@@ -103,6 +103,8 @@ class VoiceFeature(PageFeature):
                 _DEPTH,
                 event_callbacks=PublisherEventCallbacks(matched=self._listeners_changed),
             )
+        if self._audio is not None:
+            self._audio.restart()
         self._pass_on()
         if not self._floor and self._audio is not None:
             self._audio.close()
@@ -143,8 +145,9 @@ class VoiceFeature(PageFeature):
         if not budget.spend(block.samples.size):
             self._cut.add(page)
             self._talk(page, Talk("off"))
-        elif self._words.hear(page, block.samples):
-            pass  # it is an example of a word
+        elif self._words.hear(page, block.samples):  # it is an example of a word
+            if self._audio is not None:
+                self._audio.restart()
         elif page is self._floor.talker and self._audio is not None:
             self._audio.publish(block.samples)
 

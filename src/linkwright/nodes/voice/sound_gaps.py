@@ -1,0 +1,73 @@
+"""Stamps of sound by which a reader knows that some of it is missing.
+
+AudioDataStamped has no number that counts messages. A source of ours stamps each block with the end of the one before,
+and follows the clock slowly, so that a jump ahead means that sound was lost on the way.
+"""
+
+from __future__ import annotations
+
+from linkwright.speech.sound.samples import RATE
+
+_SECOND = 10**9
+_MOST_BEHIND = 10 * _SECOND
+"""A source that has stood still hands on what waited for it, and is late meanwhile; who is later has begun anew."""
+
+_MOST_AHEAD = _SECOND
+_DRIFT = 0.01  # of a block: how much the stamps come nearer to the clock with each
+
+_STEADY = 5 * 10**6
+_STEADY_BLOCKS = 3  # that follow each other without a jump: then who publishes counts samples
+_JUMP = 50 * 10**6
+
+
+class SampleStamps:
+    """Stamps the blocks of a stream of sound, in nanoseconds of a clock."""
+
+    def __init__(self) -> None:
+        self._next: int | None = None
+
+    def restart(self) -> None:
+        """What comes next does not follow what came before."""
+        self._next = None
+
+    def stamp(self, samples: int, now: int) -> int:
+        """When the first sample of a block was heard.
+
+        Args:
+            samples: how many it has.
+            now: the time, when its last sample was heard or some time later.
+        """
+        length = samples * _SECOND // RATE
+        began = max(0, now - length)
+        if self._next is not None and -_MOST_AHEAD < (behind := began - self._next) < _MOST_BEHIND:
+            most = round(_DRIFT * length)
+            began = self._next + min(max(behind, -most), most)
+        self._next = began + length
+        return began
+
+
+class SoundGaps:
+    """Finds out from stamps whether sound is missing before a block, where who publishes counts samples."""
+
+    def __init__(self) -> None:
+        self.restart()
+
+    def restart(self) -> None:
+        """What comes next need not follow what came before."""
+        self._next: int | None = None
+        self._steady = 0
+
+    def missing(self, stamp: int, samples: int) -> float:
+        """The seconds of sound that are missing before a block.
+
+        Args:
+            stamp: of its first sample, nanoseconds.
+            samples: how many it has, at 16 kHz.
+        """
+        length = samples * _SECOND // RATE
+        jump = 0 if self._next is None else stamp - self._next
+        self._next = stamp + length
+        if self._steady >= _STEADY_BLOCKS and jump > _JUMP:
+            return jump / _SECOND
+        self._steady = self._steady + 1 if abs(jump) <= _STEADY else 0
+        return 0.0

@@ -1,0 +1,67 @@
+"""Stamps of sound: by samples, and what is missing between them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from linkwright.nodes.voice.sound_gaps import SampleStamps, SoundGaps
+from linkwright.speech.sound.samples import BLOCK
+
+SECOND = 10**9
+LENGTH = SECOND // 10
+
+
+def stamped(arrivals):
+    """The stamps of blocks of a tenth of a second that came at these seconds."""
+    stamps = SampleStamps()
+    return [stamps.stamp(BLOCK, round(at * SECOND)) for at in arrivals]
+
+
+def missing(stamps):
+    gaps = SoundGaps()
+    return [gaps.missing(each, BLOCK) for each in stamps]
+
+
+def test_stamps_count_samples_while_blocks_come_early_and_late():
+    late = np.random.default_rng(1).uniform(0, 0.08, 200)
+    stamps = stamped(10.0 + 0.1 * np.arange(200) + late)
+    assert np.max(np.abs(np.diff(stamps) - LENGTH)) <= 0.01 * LENGTH
+    assert not any(missing(stamps))
+
+
+def test_what_waited_while_the_source_stood_still_is_no_gap():
+    arrivals = [10.0 + 0.1 * max(each, 40) if each >= 10 else 10.0 + 0.1 * each for each in range(100)]
+    assert not any(missing(stamped(arrivals)))
+
+
+def test_stamps_follow_the_clock():
+    stamps = stamped(10.0 + 0.1005 * np.arange(2000))  # the clock of the microphone is slow by 0.5 %
+    assert abs(stamps[-1] - (10.0 + 0.1005 * 1999 - 0.1) * SECOND) < 0.01 * SECOND
+
+
+def test_lost_blocks_are_told_where_they_were():
+    stamps = stamped(10.0 + 0.1 * np.arange(20))
+    found = missing(stamps[:10] + stamps[12:])
+    assert np.allclose(found, [0.0] * 10 + [0.2] + [0.0] * 7, atol=0.005)
+
+
+def test_a_stream_that_begins_anew_has_no_gap_before_it():
+    stamps = SampleStamps()
+    first = [stamps.stamp(BLOCK, round((10.0 + 0.1 * each) * SECOND)) for each in range(10)]
+    stamps.restart()
+    assert stamps.stamp(BLOCK, 15 * SECOND) == 15 * SECOND - LENGTH
+    gaps = SoundGaps()
+    assert not any(gaps.missing(each, BLOCK) for each in first)
+    gaps.restart()
+    assert gaps.missing(15 * SECOND, BLOCK) == 0.0
+
+
+def test_of_who_stamps_what_comes_when_it_comes_nothing_is_told():
+    late = np.random.default_rng(2).uniform(0, 0.2, 200)
+    assert not any(missing([round((10.0 + 0.1 * each + late[each]) * SECOND) for each in range(200)]))
+
+
+def test_the_clock_may_jump_back_and_stand_still():
+    stamps = stamped([10.0 + 0.1 * each for each in range(20)] + [11.9] * 40 + [3.0 + 0.1 * each for each in range(20)])
+    assert not any(missing(stamps))
+    assert stamped([0.0, 0.0]) == [0, LENGTH - LENGTH // 100]
