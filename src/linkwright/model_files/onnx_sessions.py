@@ -109,7 +109,7 @@ def _unloadable(file: Path, error: Exception) -> UnloadableNetworkError:
     if _TOO_NEW.search(str(reason)):
         newer = phrase("it is made for a newer onnxruntime: update onnxruntime, or export it with a lower opset")
         return UnloadableNetworkError(reason, newer)
-    if "external" in str(reason):
+    if "external" in str(reason).lower():
         beside = phrase("its weights are in a second file, which has to stand beside it")
         return UnloadableNetworkError(reason, beside)
     return UnloadableNetworkError(reason, export)

@@ -267,9 +267,10 @@ def test_a_file_for_a_newer_onnxruntime(tmp_path, change):
     assert "onnxruntime_src" not in message
 
 
-def test_weights_in_a_second_file_that_is_not_there(tmp_path):
+@pytest.mark.parametrize("size_threshold", [0, 64])
+def test_weights_in_a_second_file_that_is_not_there(tmp_path, size_threshold):
     path = columns(tmp_path / "two.onnx", metadata=NAMES)
-    onnx.save(onnx.load(path), path, save_as_external_data=True, location="weights.bin", size_threshold=0)
+    onnx.save(onnx.load(path), path, save_as_external_data=True, location="weights.bin", size_threshold=size_threshold)
     (tmp_path / "weights.bin").unlink()
     code, _, hint = refused(path)
     assert (code, "second file" in hint) == ("VISION103", True)
