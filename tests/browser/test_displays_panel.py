@@ -7,10 +7,19 @@ import yaml
 
 from linkwright.messages import get_message
 from tests.browser.conftest import state, until
+from tests.browser.live import configuration
 
 pytestmark = pytest.mark.browser
 
 PointStamped = get_message("geometry_msgs/msg/PointStamped")
+
+_SILENT = """
+- Class: rviz_default_plugins/PointStamped
+  Enabled: true
+  Name: Clicks
+  Topic:
+    Value: /clicked_point
+"""
 
 
 def names(page) -> list[str]:
@@ -134,3 +143,25 @@ def test_a_menu_of_each_display(grouped):
     page.get_by_role("menuitem", name="Put into a new group").click()
     until(page, "lw.displays.length === 5")
     assert names(page) == ["Grid", "Marks", "Group", "Axes", "Radar"]
+
+
+def test_why_a_display_shows_nothing_is_told_where_one_looks(live, open_page):
+    """On its name, below the list when it is selected, and in the diagnostics, from where its row is found."""
+    viewer = live(configuration(_SILENT))
+    page = open_page(viewer, wait=False)
+    why = "Topic: No messages received: nobody publishes the topic"
+    card = page.locator(".diagnostic", has_text="Clicks")
+    card.wait_for()
+    assert why in card.inner_text()
+    assert page.get_by_text("No problems found.").is_hidden()
+    assert page.locator("[data-key='display-1'] .row-title").get_attribute("title").splitlines() == ["Clicks", why]
+    card.get_by_role("button", name="Clicks").click()
+    page.locator(".help .trouble").wait_for()
+    assert page.locator(".help .trouble").inner_text() == why
+    assert page.locator("[role=treeitem][aria-selected=true]").get_attribute("data-key") == "display-1"
+    viewer.place("tip", 0.0, 0.0, 0.0)
+    message = PointStamped()
+    message.header.frame_id = "tip"
+    viewer.publish("/clicked_point", message)
+    page.get_by_text("No problems found.").wait_for()
+    assert page.locator(".help .trouble").count() == 0

@@ -1,34 +1,73 @@
-import { button, h } from "../dom";
+import { button, coalesced, h } from "../dom";
 import { icon, LEVEL_ICONS } from "../icons";
-import type { DiagnosticItem, DiagnosticNote } from "../protocol";
+import type { DiagnosticItem, DiagnosticNote, StatusRow } from "../protocol";
+import { troublesOf, type DisplayState } from "../state/displays";
 import type { Session } from "../state/session";
 import { strings } from "../strings";
+import { troubleText } from "./display-items";
 import type { Panel } from "./panel";
 import { placeText, shortPath } from "./place";
 
-/** What is wrong with the description, with the lines it is about. */
+/** What is wrong with the description, with the lines it is about, and why displays show nothing. */
 export class DiagnosticsPanel implements Panel {
   readonly id = "diagnostics";
   readonly icon = "warn";
   readonly element = h("div", { class: "panel diagnostics" });
+  private readonly findings = h("div", { aria: { live: "polite" } });
+  private readonly displays = h("div");
+  private readonly none = h("p", { class: "empty" }, icon("check", "level-ok"), strings.diagnostics.none);
+  private shown = "";
 
   constructor(private readonly session: Session) {
-    this.element.setAttribute("aria-live", "polite");
-    session.diagnosticsChanged.on(() => this.show());
-    this.show();
+    this.element.append(this.none, this.findings, this.displays);
+    session.diagnosticsChanged.on(() => this.showFindings());
+    const { displays } = session;
+    const show = coalesced(() => this.showDisplays());
+    for (const signal of [displays.statusChanged, displays.enabledChanged, displays.treeChanged]) {
+      (signal as { on(listener: () => void): void }).on(show);
+    }
+    this.showFindings();
+    this.showDisplays();
   }
 
-  private show(): void {
-    const { diagnostics } = this.session;
-    if (diagnostics.length === 0) {
-      this.element.replaceChildren(
-        h("p", { class: "empty" }, icon("check", "level-ok"), strings.diagnostics.none),
-      );
-      return;
-    }
+  private showFindings(): void {
     const show = (file: string, line: number): void => this.session.description.placeAsked.emit({ file, line });
-    this.element.replaceChildren(...diagnostics.map((item) => card(item, show)));
+    this.findings.replaceChildren(...this.session.diagnostics.map((item) => card(item, show)));
+    this.showNone();
   }
+
+  private showDisplays(): void {
+    const { displays } = this.session;
+    const inTrouble = displays.displays.filter((each) => each.troubles.length > 0);
+    const all = troublesOf(displays.globalStatus);
+    const key = JSON.stringify([all, ...inTrouble.map((each) => [each.id, each.name, each.troubles])]);
+    if (key === this.shown) return;
+    this.shown = key;
+    this.displays.replaceChildren(
+      ...(all.length > 0 ? [troubleCard(strings.tree.globalStatus, all)] : []),
+      ...inTrouble.map((each) => troubleCard(this.rowButton(each), each.troubles)),
+    );
+    this.showNone();
+  }
+
+  private showNone(): void {
+    this.none.hidden = this.findings.childElementCount + this.displays.childElementCount > 0;
+  }
+
+  private rowButton(display: DisplayState): HTMLElement {
+    const { displays } = this.session;
+    return button(strings.diagnostics.showDisplay, () => displays.rowAsked.emit(display), "to-display", display.name);
+  }
+}
+
+function troubleCard(title: Node | string, troubles: readonly StatusRow[]): HTMLElement {
+  const level = troubles[0]?.level ?? "ok";
+  return h(
+    "article",
+    { class: `diagnostic ${level === "warn" ? "warning" : level}` },
+    h("header", {}, icon(LEVEL_ICONS[level], `level-${level}`), h("strong", {}, title)),
+    h("ul", {}, ...troubles.map((row) => h("li", {}, troubleText(row)))),
+  );
 }
 
 type Show = (file: string, line: number) => void;

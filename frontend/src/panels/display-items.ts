@@ -56,6 +56,7 @@ function displayItem(
     severally: true,
     muted: !drawn || !display.enabled,
     ...(drawn && display.enabled ? { level: worstWithin(session, display) } : {}),
+    ...(display.troubles.length > 0 ? { hint: [display.name, ...display.troubles.map(troubleText)].join("\n") } : {}),
     ...(drawn ? {} : { badge: strings.tree.notDrawn }),
     expanded: display.isGroup || (display.enabled && isOnlyContent(session, display)),
     children: () => [...status, ...displayRows(display, session, set).map(offered), ...within()],
@@ -88,6 +89,11 @@ function offerTopics(
 
 function isDrawn(display: DisplayState): boolean {
   return display.isGroup || (display.supported && DRAWINGS.has(display.drawing));
+}
+
+/** A row of a status in one line. */
+export function troubleText({ name, text }: StatusRow): string {
+  return `${name}: ${text}`;
 }
 
 /** What a display is, in a sentence or two. */

@@ -1,6 +1,7 @@
 import { button, h } from "../dom";
-import { icon } from "../icons";
+import { icon, LEVEL_ICONS } from "../icons";
 import { keyText, SHORTCUTS } from "../shell/shortcuts";
+import type { StatusRow } from "../protocol";
 import type { DisplayState } from "../state/displays";
 import type { Session } from "../state/session";
 import { strings } from "../strings";
@@ -8,7 +9,7 @@ import { filterItems } from "../tree/filter-items";
 import { TreeView } from "../tree/tree-view";
 import { DisplayCommands } from "./display-commands";
 import { DisplayDrag } from "./display-drag";
-import { describe, displayItems } from "./display-items";
+import { describe, displayItems, troubleText } from "./display-items";
 import { followLiveValues } from "./live-values";
 import { openMenuAt } from "./menu";
 import type { Panel } from "./panel";
@@ -25,6 +26,7 @@ export class DisplaysPanel implements Panel {
   private readonly nothing = h("p", { class: "empty" }, strings.displays.nothingFound);
   /** Comes with the first row that is selected. */
   private readonly help = h("div", { class: "help", aria: { live: "polite" } });
+  private explained = "";
   private readonly needsDisplay: HTMLButtonElement[] = [];
 
   constructor(private readonly session: Session) {
@@ -97,16 +99,27 @@ export class DisplaysPanel implements Panel {
       this.tree.forgetExpansion((key) => below.some((start) => key.startsWith(start)));
     });
     displays.statusChanged.on(this.tree.refresh);
+    displays.statusChanged.on((display) => {
+      if (display && this.tree.selection === display.id) this.explainDisplay(display);
+    });
+    displays.rowAsked.on((display) => {
+      this.filter.value = "";
+      this.tree.reveal(pathTo(display));
+      this.explainDisplay(display);
+      this.enableButtons();
+    });
     displays.enabledChanged.on(this.tree.refresh);
     displays.treeChanged.on(() => {
       this.enableButtons();
       const { selected } = this;
-      if (selected && this.tree.selection === selected.id) this.explain(selected.name, describe(selected));
+      if (selected && this.tree.selection === selected.id) this.explainDisplay(selected);
     });
     frames.tableChanged.on(this.tree.refresh);
     followLiveValues(this.tree, this.session);
     this.tree.selected.on((item) => {
-      this.explain(item.name, item.description);
+      const display = this.session.displays.find(item.key);
+      if (display) this.explainDisplay(display);
+      else this.explain(item.name, item.description);
       this.selectLink(item.key);
       this.enableButtons();
     });
@@ -163,9 +176,18 @@ export class DisplaysPanel implements Panel {
     for (const each of this.needsDisplay) each.disabled = none;
   }
 
-  private explain(name: string, description: string): void {
-    this.help.hidden = description === "";
-    this.help.replaceChildren(h("strong", {}, name), h("p", {}, description));
+  private explain(name: string, description: string, troubles: readonly StatusRow[] = []): void {
+    const key = JSON.stringify([name, description, troubles]);
+    if (key === this.explained) return; // said once, not again with each message that comes
+    this.explained = key;
+    this.help.hidden = description === "" && troubles.length === 0;
+    const said = troubles.map((row) => h("p", { class: `trouble ${row.level}` }, icon(LEVEL_ICONS[row.level], `level-${row.level}`), troubleText(row)));
+    this.help.replaceChildren(h("strong", {}, name), ...said, h("p", {}, description));
+  }
+
+  /** What a display is, and before that what is wrong with it. */
+  private explainDisplay(display: DisplayState): void {
+    this.explain(display.name, describe(display), display.troubles);
   }
 
   private selectLink(key: string): void {
@@ -183,4 +205,9 @@ export class DisplaysPanel implements Panel {
     const path = display && linkPath(display, this.session, selected.link.name);
     if (path) this.tree.reveal(path);
   }
+}
+
+/** The keys of the rows from the outermost group to a display. */
+function pathTo(display: DisplayState): string[] {
+  return [...(display.group ? pathTo(display.group) : []), display.id];
 }

@@ -4,6 +4,11 @@ import { Signal } from "./signal";
 
 const GROUP = "rviz_common/Group";
 
+/** The rows of a status that are no "ok", errors first. */
+export function troublesOf(status: readonly StatusRow[]): StatusRow[] {
+  return [...status.filter((row) => row.level === "error"), ...status.filter((row) => row.level === "warn")];
+}
+
 /** One display as the server describes it. */
 export class DisplayState {
   readonly id: string;
@@ -25,6 +30,11 @@ export class DisplayState {
     this.cls = display.cls;
     this.drawing = display.drawing;
     this.update(display);
+  }
+
+  /** What of its status is no "ok", the worst first; nothing while it is off. */
+  get troubles(): StatusRow[] {
+    return this.enabled ? troublesOf(this.status) : [];
   }
 
   get enabledId(): string {
@@ -72,6 +82,8 @@ export class DisplaysState {
   readonly enabledChanged = new Signal<DisplayState>();
   /** One value; `display` is null for a global option. */
   readonly valueChanged = new Signal<{ node: PropertyNode; display: DisplayState | null }>();
+  /** Somebody wants to see the row of a display in the list. */
+  readonly rowAsked = new Signal<DisplayState>();
   readonly displays: DisplayState[] = [];
   globalOptions = new PropertyRows([]);
   globalStatus: readonly StatusRow[] = [];

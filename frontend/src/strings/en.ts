@@ -85,6 +85,7 @@ export const en = {
     lastGood: "The last good robot stays until this is mended.",
     show: "Show",
     close: "Close this message",
+    showDisplay: "Show it in the list of displays",
     more: (count: number): string => `and ${count} more`,
   },
   interactive: {

@@ -73,6 +73,7 @@ export const zh: Strings = {
     lastGood: "修复之前，保留上一个正确的机器人。",
     show: "查看",
     close: "关闭此消息",
+    showDisplay: "在显示项列表中查看",
     more: (count) => `另有 ${count} 条`,
   },
   interactive: {

@@ -15,6 +15,8 @@ export interface TreeItem {
   readonly showLevelIcon?: boolean;
   readonly strong?: boolean;
   readonly muted?: boolean;
+  /** What the name says when the pointer is over it; without it, the name. */
+  readonly hint?: string;
   /** Its name takes the whole row. */
   readonly wide?: boolean;
   /** Several of such rows can be selected at once. */

@@ -38,7 +38,8 @@ export class TreeRow {
     if (item.children) this.element.setAttribute("aria-expanded", String(expanded));
     else this.element.removeAttribute("aria-expanded");
     if (this.title.textContent !== item.name) this.title.textContent = item.name;
-    this.title.title = item.name;
+    const hint = item.hint ?? item.name;
+    if (this.title.title !== hint) this.title.title = hint;
     const badge = item.badge ?? "";
     if (this.badge.textContent !== badge) this.badge.textContent = badge;
     this.showSigns(item);

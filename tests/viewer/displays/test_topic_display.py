@@ -251,3 +251,36 @@ async def test_a_topic_of_another_type_is_told(monkeypatch):
             "No messages received: the topic carries std_msgs/msg/String, not geometry_msgs/msg/PointStamped",
         )
         await eventually(lambda: w.status("PointStamped")["Topic"] == told)
+
+
+@skipping
+async def test_stamps_of_another_clock_are_told_of():
+    async with world(config()) as w:
+        publisher = w.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
+        w.move({("base", "tip"): (0, 0, 0, 0, 0, 0, 1)})
+        publisher.publish(point_at(w.graph.timebase.now_ns() + 60_000_000_000, "tip"))
+        await w.settle()
+        await asyncio.sleep(2)
+        level, text = w.status("PointStamped")["Transform"]
+        assert level == "error"
+        assert text.startswith("The message is stamped 60 s after the time here: look at the clocks of both computers")
+
+
+@pytest.mark.parametrize(
+    ("policy", "remedy"),
+    [
+        (QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT), "Choose Best Effort for Reliability Policy"),
+        (QoSProfile(depth=5, durability=DurabilityPolicy.VOLATILE), "Choose Volatile for Durability Policy"),
+    ],
+)
+async def test_a_publisher_that_offers_less_is_told_of_with_the_row_to_change(policy, remedy):
+    wanted = {"Reliability Policy": "Reliable", "Durability Policy": "Transient Local"}
+    async with world(config()) as w:
+        display = w.display("PointStamped")
+        for row, value in wanted.items():
+            if row.split()[0] in remedy:
+                display.set_property(("Topic", row), value)
+        w.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", policy)
+        await w.settle()
+        level, text = w.status("PointStamped")["Topic"]
+        assert (level, f"{remedy} below Topic" in text) == ("warn", True), text

@@ -14,7 +14,7 @@ export const sharing = {
   slowPageHint: "The browser does not draw as fast as the robot moves: fewer or simpler displays, a smaller window or a graphics card help.",
   plainLight: "Where the light is Automatic, it is the camera's: a studio would be slower.",
   software: (name: string): string => `The browser draws without a graphics card (${name}).`,
-  points: (step: number): string => `1 of ${step} points`,
+  points: (step: number): string => `1 in ${step} points`,
   image: ({ columns, rows, width, height, quality }: ReducedImage): string =>
     `WebP ${columns} × ${rows} of ${width} × ${height}, quality ${quality}`,
   share: "Share",

@@ -95,6 +95,15 @@ _LATE = 1.0
 _COUNT_PERIOD = 1.0
 """Seconds between two updates of the row that counts messages or says why there are none."""
 
+_OFFERED_LESS = {
+    "RELIABILITY": ("Reliability Policy", "Best Effort"),
+    "DURABILITY": ("Durability Policy", "Volatile"),
+}
+"""Rows of a topic in which too much may be asked for, and the value that takes what every publisher offers."""
+
+_OTHER_CLOCK = 5.0
+"""Seconds between a message's stamp and the time here from which on clocks are to blame, and not a slow computer."""
+
 _MOST_OTHERS = 3
 """Topics with such messages that are named where nobody publishes the one that is shown."""
 
@@ -277,6 +286,15 @@ class TopicDisplay(DataDisplay, ABC):
         self._incompatibility = phrase(
             "A publisher offers incompatible QoS. Last incompatible policy: {policy}", policy=policy
         )
+        row, offered = _OFFERED_LESS.get(policy, ("", ""))
+        if row:
+            self._incompatibility = phrase(
+                "{problem}. Choose {offered} for {row} below {topic}",
+                problem=self._incompatibility,
+                offered=offered,
+                row=row,
+                topic=TOPIC,
+            )
         if self._count == 0:
             self._tell_count()
 
@@ -370,21 +388,40 @@ class TopicDisplay(DataDisplay, ABC):
                 fixed_frame=self._fixed_frame,
                 reason=error.diagnostics[0].message,
             )
-            self._could_not_place(reason, is_late=isinstance(error, ExtrapolationException))
+            self._could_not_place(reason, stamp_ns, is_late=isinstance(error, ExtrapolationException))
             return False
         self._in_time()
         self.say(TRANSFORM, "ok", phrase("Transform OK"))
         self._take(message, pose)
         return True
 
-    def _could_not_place(self, reason: Phrase, *, is_late: bool) -> None:
+    def _could_not_place(self, reason: Phrase, stamp_ns: int, *, is_late: bool) -> None:
         """Say so, if it is only that transforms are late then when nothing could be placed for a while."""
         if not is_late:
             self.say(TRANSFORM, "error", reason)
             return
-        self._late_reason = reason
+        self._late_reason = self._with_clocks(reason, stamp_ns)
         if self._late is None:
             self._late = asyncio.get_running_loop().call_later(_LATE, self._tell_late)
+
+    def _with_clocks(self, reason: Phrase, stamp_ns: int) -> Phrase:
+        """With what is to be looked at where a message has the time of another clock."""
+        ahead = (stamp_ns - self.context.node.get_clock().now().nanoseconds) * 1e-9
+        if abs(ahead) < _OTHER_CLOCK:
+            return reason
+        if ahead > 0:
+            return phrase(
+                "The message is stamped {seconds:.0f} s after the time here: look at the clocks of both computers "
+                "and at use_sim_time of their nodes. {reason}",
+                seconds=ahead,
+                reason=reason,
+            )
+        return phrase(
+            "The message is stamped {seconds:.0f} s before the time here: look at the clocks of both computers "
+            "and at use_sim_time of their nodes. {reason}",
+            seconds=-ahead,
+            reason=reason,
+        )
 
     def _tell_late(self) -> None:
         self._late = None
