@@ -56,7 +56,12 @@ def test_variables_of_ros_are_followed(variables, expected):
     assert read_settings(variables).range is expected
 
 
-THIS_MACHINE = {"address": "127.0.0.1", "PruneDelay": "inf"}
+def for_good(address: str) -> dict[str, str]:
+    """An address that is asked though nobody answers for long."""
+    return {"address": address, "PruneDelay": "inf"}
+
+
+THIS_MACHINE = for_good("127.0.0.1")
 
 
 def test_the_subnet_is_as_rmw_cyclonedds_has_it_and_this_machine_is_told_for_good():
@@ -69,7 +74,7 @@ def test_the_subnet_is_as_rmw_cyclonedds_has_it_and_this_machine_is_told_for_goo
         "Discovery/MaxAutoParticipantIndex": ["32"],
         "Discovery/SPDPInterval": ["3 s"],
         "Discovery/Peers": [{}],
-        "Discovery/Peers/Peer": [THIS_MACHINE, {"address": "192.0.2.7"}, {"address": "host"}],
+        "Discovery/Peers/Peer": [THIS_MACHINE, for_good("192.0.2.7"), for_good("host")],
     }
 
 
@@ -83,7 +88,7 @@ def test_localhost_is_this_machine_on_all_its_ways():
 def test_localhost_with_peers_is_as_rmw_cyclonedds_has_it():
     said = elements(read_settings({"ROS_LOCALHOST_ONLY": "1", "ROS_STATIC_PEERS": "192.0.2.7"}))
     assert said["General/AllowMulticast"] == ["false"]
-    assert said["Discovery/Peers/Peer"] == [THIS_MACHINE, {"address": "192.0.2.7"}]
+    assert said["Discovery/Peers/Peer"] == [THIS_MACHINE, for_good("192.0.2.7")]
 
 
 def test_the_users_configuration_goes_last():

@@ -201,7 +201,7 @@ def _fragments(reach: Range, peers: list[str], most: int) -> list[str]:
     from xml.sax.saxutils import quoteattr  # with it come the modules of urllib, which the usual case does without
 
     local = reach is Range.LOCALHOST
-    listed = _THIS_MACHINE + "".join(f"<Peer address={quoteattr(peer)}/>" for peer in peers)
+    listed = _THIS_MACHINE + "".join(f"<Peer address={quoteattr(peer)} PruneDelay='inf'/>" for peer in peers)
     return [
         "<CycloneDDS><Domain>"
         + ("<General><AllowMulticast>false</AllowMulticast></General>" if local else "")

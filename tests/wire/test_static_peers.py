@@ -1,0 +1,58 @@
+"""Machines that are asked without multicast, as ROS_STATIC_PEERS has them: they may come late, and again."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from importlib.util import find_spec
+
+import pytest
+
+from tests.wire.programs import Program
+from tests.wire.zenoh.hosts import CLOUD, DESK, DESKS_CLOUD_ADDRESS, Hosts, why_not
+
+FORGOTTEN_AFTER = 2
+"""Seconds after which Cyclone asks an address no more that does not answer; 30 by itself."""
+
+
+def configuration(interface: str) -> str:
+    """Cyclone's, without multicast."""
+    return (
+        "<CycloneDDS><Domain><General><AllowMulticast>false</AllowMulticast>"
+        f"<Interfaces><NetworkInterface name='{interface}'/></Interfaces></General>"
+        f"<Discovery><InitialLocatorPruneDelay>{FORGOTTEN_AFTER} s</InitialLocatorPruneDelay></Discovery>"
+        "</Domain></CycloneDDS>"
+    )
+
+
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(find_spec("cyclonedds") is None, reason="without DDS"),
+]
+
+
+@pytest.fixture
+def hosts() -> Iterator[Hosts]:
+    reason = why_not()
+    if reason:
+        pytest.skip(reason)
+    made = Hosts()
+    yield made
+    made.close()
+
+
+def test_a_static_peer_is_found_that_comes_late_and_again(hosts):
+    def start(host: str, other: str, name: str, **environment: str) -> Program:
+        settings = {"CYCLONEDDS_URI": configuration(f"to{other}"), "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}
+        return Program("far_program", name, within=hosts.within(host), **settings, **environment)
+
+    desk = start(DESK, CLOUD, "desk", ROS_STATIC_PEERS=DESKS_CLOUD_ADDRESS)
+    try:
+        for name in ("first", "second"):
+            time.sleep(2 * FORGOTTEN_AFTER)
+            late = start(CLOUD, DESK, name)
+            desk.ask_until(lambda nodes, name=name: name in nodes, "nodes")
+            late.end()
+            desk.ask_until(lambda nodes, name=name: name not in nodes, "nodes")
+    finally:
+        desk.end()
