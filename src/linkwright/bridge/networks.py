@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import os
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -86,11 +85,13 @@ class Network:
         graph = Graph(on_log=log, on_namesakes=_nobody_minds)
         transport = kind.open(self.domain_id, bridge_id, graph.get_logger(self.kind))
         graph.attach(transport)
-        await asyncio.to_thread(transport.wait_until_ready, _JOINED_WITHIN)
-        if transport.problem is not None:
+        side = Side(self.label, graph, transport, bridge_id, needs_hashes=kind.needs_hashes)
+        try:
+            await side.join(_JOINED_WITHIN)
+        except BaseException:
             await graph.close()
-            raise transport.problem
-        return Side(self.label, graph, transport, bridge_id, needs_hashes=kind.needs_hashes)
+            raise
+        return side
 
 
 def read_network(text: str) -> Network:

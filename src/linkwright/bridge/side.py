@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -65,6 +66,20 @@ class Side:
         self._enclave = f"{ENCLAVE}/{bridge_id}"
         self.seen = Seen()
         self.own = self.open_node(NodeIdentity(f"linkwright_bridge_{bridge_id}", "/"))
+
+    async def join(self, seconds: float) -> None:
+        """Wait until the network is joined.
+
+        Args:
+            seconds: at most; where settings have it wait for a router that is as long as they say.
+
+        Raises:
+            LinkwrightError: DDS102, DDS111, DDS112, it cannot be joined.
+        """
+        while not await asyncio.to_thread(self._transport.wait_until_ready, seconds) and self._transport.waits:
+            pass  # it says what it waits for
+        if self._transport.problem is not None:
+            raise self._transport.problem
 
     def open_node(self, node: NodeIdentity) -> NodeHandle:
         """A node of the bridge's, with a name and nothing else."""

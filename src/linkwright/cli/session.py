@@ -236,7 +236,8 @@ async def join_others(graph: Graph, spin_time: float | None, *, only_looks: bool
                 hint=phrase("unset LINKWRIGHT_DDS") if os.environ.get("LINKWRIGHT_DDS") else None,
             )
         )
-    await asyncio.to_thread(transport.wait_until_ready, _LONGEST_JOINING)
+    while not await asyncio.to_thread(transport.wait_until_ready, _LONGEST_JOINING) and transport.waits:
+        pass  # it says what it waits for
     if transport.problem is not None:
         raise transport.problem
     if spin_time is not None:

@@ -30,6 +30,8 @@ class ZenohRouter(SingleNode):
             raise LinkwrightError(
                 Diagnostic("NODE003", phrase("a router of Zenoh needs Zenoh"), hint=install_hint("zenoh"))
             )
+        from linkwright.wire.zenoh.opening import Telling
+        from linkwright.wire.zenoh.reaching import asked_for
         from linkwright.wire.zenoh.session import configuration, listening_at, open_with
         from linkwright.wire.zenoh.settings import read_router_settings
 
@@ -40,9 +42,17 @@ class ZenohRouter(SingleNode):
         except LinkwrightError:
             self._session.close()
             raise
-        self._node.get_logger().info(f"Zenoh router at {', '.join(listening_at(config))}")
+        logger = self._node.get_logger()
+        logger.info(f"Zenoh router at {', '.join(listening_at(config))}")
+        self._telling = Telling(config, self._tell, lambda: bool(self._session.info.routers_zid()))
+        if asked_for(config):
+            self._telling.start()
+
+    def _tell(self, reasons: str) -> None:
+        self._node.get_logger().warning(f"Not connected yet, which is tried again and again: {reasons}")
 
     def close(self) -> None:
         """End it."""
+        self._telling.end()
         self._session.close()
         super().close()

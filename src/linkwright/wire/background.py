@@ -141,6 +141,7 @@ class BackgroundTransport(ABC):
         self._engine: Engine | None = None
         self._work: Work = deque()
         self._decided = threading.Event()
+        self._given_up = threading.Event()
         self._closed = False
         self._joining = threading.Lock()
         self._has_left = False
@@ -163,6 +164,11 @@ class BackgroundTransport(ABC):
     def _has_settled(self, quiet: float) -> bool:
         """Whether discovery counts as complete, seconds after the last news or after joining."""
 
+    @property
+    def waits(self) -> bool:
+        """Whether it waits for others without whom the domain cannot be joined, as long as its settings say."""
+        return False
+
     # --- for whoever joined ------------------------------------------------------------------------------------------
 
     def wait_until_ready(self, timeout: float | None = None) -> bool:
@@ -175,7 +181,10 @@ class BackgroundTransport(ABC):
             Whether it is so; False at once when the domain cannot be joined, or was left.
         """
         deadline = None if timeout is None else time.monotonic() + timeout
-        if not self._decided.wait(timeout) or self._engine is None:
+        while not self._decided.wait(_CLOSED_WITHIN) and not self._closed:
+            if deadline is not None and time.monotonic() >= deadline:
+                return False
+        if self._engine is None:
             return False
         done = threading.Event()
         self._do(lambda _: done.set())
@@ -280,9 +289,10 @@ class BackgroundTransport(ABC):
         if self._closed:
             return
         self._closed = True
+        self._given_up.set()
         _open_transports.discard(self)
         if self._starter.ident is not None:  # Ctrl-C may have come before it was started
-            self._starter.join(_JOINED_WITHIN)
+            self._end_joining()
         with self._joining:
             self._has_left = True
             engine, self._engine = self._engine, None
@@ -291,6 +301,13 @@ class BackgroundTransport(ABC):
         self._work.clear()
 
     # --- inside ------------------------------------------------------------------------------------------------------
+
+    def _end_joining(self) -> None:
+        until = time.monotonic() + _JOINED_WITHIN
+        while self._starter.is_alive() and time.monotonic() < until:
+            self._starter.join(_CLOSED_WITHIN)
+            if self.waits:  # for others, it may be in a call that nobody can end
+                break
 
     def abandon(self) -> None:
         """In a process that was forked off: take no part."""
@@ -327,7 +344,7 @@ class BackgroundTransport(ABC):
         except LinkwrightError as error:
             self.problem = error
             self._work.clear()
-            if not self._must_join:
+            if not self._must_join and not self._closed:
                 log_join_failure(self._logger, error)
         except RuntimeError:
             # From Python 3.12 on no thread can be started any more once the main one has ended.

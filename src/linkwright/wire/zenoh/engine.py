@@ -26,9 +26,10 @@ from linkwright.wire.type_names import dds_type
 from linkwright.wire.zenoh import qos_text, tokens
 from linkwright.wire.zenoh.departures import Departures
 from linkwright.wire.zenoh.interests import OURS, Interests
+from linkwright.wire.zenoh.opening import Patience
 from linkwright.wire.zenoh.remote import RemoteGraph
 from linkwright.wire.zenoh.services import IncomingService, OutsideServer
-from linkwright.wire.zenoh.session import is_client, open_session
+from linkwright.wire.zenoh.session import configuration, is_client
 from linkwright.wire.zenoh.settings import Settings
 from linkwright.wire.zenoh.tokens import Token
 
@@ -48,13 +49,20 @@ class Engine:
         departures: judges how publishers outside went.
         work: what there is to do, called with the engine; others append to it and `wake`.
         logger: for what there is to tell.
+        patience: opens the session.
 
     Raises:
         LinkwrightError: the session cannot be opened.
     """
 
     def __init__(
-        self, settings: Settings, remote: RemoteGraph, departures: Departures, work: Work, logger: Logger
+        self,
+        settings: Settings,
+        remote: RemoteGraph,
+        departures: Departures,
+        work: Work,
+        logger: Logger,
+        patience: Patience,
     ) -> None:
         self._settings = settings
         self._remote = remote
@@ -62,7 +70,7 @@ class Engine:
         self._work = work
         self._logger = logger
         self._is_client = is_client(settings)
-        self._session = open_session(settings)
+        self._session = patience.open(configuration(settings))
         self._session_id = str(self._session.zid())
         self._ids = itertools.count()
         self._nodes: dict[NodeIdentity, list[tuple[str, Any]]] = {}

@@ -7,12 +7,14 @@ import re
 
 import zenoh
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, foreign, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, foreign, phrase
+from linkwright.wire.zenoh.reaching import obstacles
 from linkwright.wire.zenoh.settings import OVERRIDES, Settings
 
 _PLACE = re.compile(r"\s+at /\S+?:\d+\.?")
 _NOT_CONNECTED = "Unable to connect"
 _TAKEN = "already in use"
+_TLS_FILES = "new TLS listener"
 
 
 def open_session(settings: Settings) -> zenoh.Session:
@@ -33,13 +35,25 @@ def open_with(config: zenoh.Config) -> zenoh.Session:
     try:
         return zenoh.open(config)
     except zenoh.ZError as error:
-        raise LinkwrightError(
-            Diagnostic(
-                "DDS112",
-                phrase("a session of Zenoh cannot be opened: {reason}", reason=foreign(_reason(error))),
-                hint=_advice(str(error)),
-            )
-        ) from error
+        raise refusal(error, config) from error
+
+
+def refusal(error: zenoh.ZError, config: zenoh.Config) -> LinkwrightError:
+    """What there is to say of a session that cannot be opened, DDS112."""
+    found = obstacles(config) if could_not_connect(error) else []
+    return LinkwrightError(
+        Diagnostic(
+            "DDS112",
+            phrase("a session of Zenoh cannot be opened: {reason}", reason=foreign(_reason(error))),
+            notes=tuple(Note(each) for each in found),
+            hint=None if found else _advice(str(error)),
+        )
+    )
+
+
+def could_not_connect(error: zenoh.ZError) -> bool:
+    """Whether a session cannot be opened because nobody is reached that it connects to."""
+    return _NOT_CONNECTED in str(error)
 
 
 def is_client(settings: Settings) -> bool:
@@ -111,5 +125,10 @@ def _advice(reason: str) -> Phrase:
         return phrase(
             "only one process can listen at an address of 'listen/endpoints': give the others port 0, which is any free"
             " one, or leave it out"
+        )
+    if _TLS_FILES in reason:
+        return phrase(
+            "see the files of 'listen_certificate' and 'listen_private_key' below 'transport/link/tls': they have to be"
+            " readable and belong together, and are looked for in the folder where the command runs"
         )
     return phrase("an address to listen at may be in use by another program, or not be one of this machine")

@@ -14,6 +14,7 @@ from linkwright.wire.zenoh.settings import Settings
 
 if TYPE_CHECKING:
     from linkwright.wire.zenoh.engine import Engine as ZenohEngine
+    from linkwright.wire.zenoh.opening import Patience
 
 SETTLED_AFTER = 0.4
 """Seconds without news after which discovery counts as complete, where another session is linked to this one."""
@@ -45,6 +46,7 @@ class ZenohTransport(BackgroundTransport):
         self._remote = RemoteGraph()
         self._departures = Departures(self._remote)
         self._zenoh_engine: ZenohEngine | None = None
+        self._patience: Patience | None = None
         self._linked_at = 0.0
         self._looks = False
         self._looking = Lock()
@@ -71,6 +73,11 @@ class ZenohTransport(BackgroundTransport):
             self._looked.wait(_ANSWERED_WITHIN)
         self._looked.set()
 
+    @property
+    def waits(self) -> bool:
+        """Whether it waits for a router without which the session is not to be opened."""
+        return self._patience is not None and self._patience.waits
+
     def _wait_until_told(self, told: Event) -> None:
         """Wait for the answer, and until nothing more comes, which now and then it does."""
         told.wait(_ANSWERED_WITHIN)
@@ -84,8 +91,11 @@ class ZenohTransport(BackgroundTransport):
 
     def _make_engine(self) -> Engine:
         from linkwright.wire.zenoh.engine import Engine as ZenohEngine
+        from linkwright.wire.zenoh.opening import Patience
 
-        engine = ZenohEngine(self._settings, self._remote, self._departures, self._work, self._logger)
+        patience = Patience(self._logger, self._given_up)
+        self._patience = patience
+        engine = ZenohEngine(self._settings, self._remote, self._departures, self._work, self._logger, patience)
         self._zenoh_engine = engine
         return engine
 

@@ -1,0 +1,126 @@
+"""Opening a session that waits for those it connects to, until it is given up; it says what it waits for."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from typing import Any
+
+import zenoh
+
+from linkwright.diagnostics import joined
+from linkwright.graph.log.logger import Logger
+from linkwright.wire.zenoh.reaching import asked_for, obstacles, of_mode
+from linkwright.wire.zenoh.session import could_not_connect, open_with, refusal
+
+_AGAIN = 1.0
+"""Seconds after which the addresses are called again."""
+
+_SAID_AFTER = 1.0
+"""Seconds after which it is said what is waited for."""
+
+_SAID_AGAIN_AFTER = 10.0
+
+
+class Patience:
+    """Opens sessions for as long as their configuration says, or until it is given up.
+
+    Zenoh waits by itself, too, but cannot be interrupted then, and says nothing.
+
+    Args:
+        logger: for what is waited for.
+        given_up: set when nobody wants the session any more.
+    """
+
+    def __init__(self, logger: Logger, given_up: threading.Event) -> None:
+        self._logger = logger
+        self._given_up = given_up
+        self.waits = False
+        """Whether a session is being opened that waits for others."""
+
+    def open(self, config: zenoh.Config) -> zenoh.Session:
+        """A session.
+
+        Raises:
+            LinkwrightError: DDS112, it cannot be opened, or nobody was reached in time, or before it was given up.
+        """
+        seconds = _waits(config)
+        if seconds == 0:
+            return open_with(config)
+        config.insert_json5("connect/timeout_ms", "0")
+        self.waits = True
+        telling = Telling(config, self._say)
+        try:
+            telling.start()
+            return self._open_until(config, time.monotonic() + seconds)
+        finally:
+            telling.end()
+            self.waits = False
+
+    def _open_until(self, config: zenoh.Config, until: float) -> zenoh.Session:
+        while True:
+            opened = _try(config)
+            if isinstance(opened, zenoh.Session):
+                return opened
+            rest = until - time.monotonic()
+            if not could_not_connect(opened) or rest <= 0 or self._given_up.wait(min(_AGAIN, rest)):
+                raise refusal(opened, config) from opened
+
+    def _say(self, reasons: str) -> None:
+        self._logger.warning(f"Waiting for a Zenoh router: {reasons}")
+
+
+class Telling:
+    """Says in a thread what stands in the way of the addresses that a session connects to.
+
+    Args:
+        config: the session's.
+        say: called from a thread with what stands in the way.
+        linked: whether there is nothing to be said for now.
+    """
+
+    def __init__(
+        self, config: zenoh.Config, say: Callable[[str], None], linked: Callable[[], bool] = lambda: False
+    ) -> None:
+        self._config = config
+        self._say = say
+        self._linked = linked
+        self._over = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="linkwright-zenoh-waits", daemon=True)
+
+    def start(self) -> None:
+        """Begin."""
+        self._thread.start()
+
+    def end(self) -> None:
+        """Say no more; it takes a moment where an address is just being called."""
+        self._over.set()
+
+    def _run(self) -> None:
+        pause = _SAID_AFTER
+        while not self._over.wait(pause):
+            if self._linked():
+                pause = _SAID_AFTER
+                continue
+            reasons = joined(obstacles(self._config), "; ") or f"{', '.join(asked_for(self._config))} takes nobody in"
+            if not self._over.is_set() and not self._linked():
+                self._say(reasons)
+            pause = _SAID_AGAIN_AFTER
+
+
+def _try(config: zenoh.Config) -> zenoh.Session | zenoh.ZError:
+    """A session, or why there is none."""
+    try:
+        return zenoh.open(config)
+    except zenoh.ZError as error:
+        return error
+
+
+def _waits(config: zenoh.Config) -> float:
+    """Seconds for which a configuration has a session wait until it is connected, before it is there."""
+    is_client = of_mode(config, "mode", default="peer") == "client"
+    if not asked_for(config) or not of_mode(config, "connect/exit_on_failure", default=is_client):
+        return 0.0
+    milliseconds: Any = of_mode(config, "connect/timeout_ms", default=0 if is_client else -1)
+    return float("inf") if milliseconds < 0 else milliseconds / 1000

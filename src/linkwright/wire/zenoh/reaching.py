@@ -1,0 +1,182 @@
+"""Why nobody is reached at an address: Zenoh itself says no more than that it is so.
+
+The address is called as Zenoh calls it, as far as sockets and TLS go.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import socket
+import ssl
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import zenoh
+
+from linkwright.diagnostics import Phrase, foreign, phrase
+
+_PATIENCE = 2.0
+"""Seconds for which an address may take to answer."""
+
+_ADDRESS = re.compile(r"(?P<kind>\w+)/(?P<host>\[[^]]+\]|[^:/?#]+):(?P<port>\d+)(?:[?#].*)?")
+_LAST_PORT = 65535
+_CALLED = ("tcp", "tls")
+"""Kinds of addresses that are called here; others (QUIC, UDP, serial lines) are Zenoh's alone."""
+
+
+def asked_for(config: zenoh.Config) -> list[str]:
+    """The addresses that a configuration has a session connect to."""
+    addresses = of_mode(config, "connect/endpoints", default=[])
+    flat = [each for group in addresses for each in (group if isinstance(group, list) else [group])]
+    return [str(each) for each in flat]
+
+
+def of_mode(config: zenoh.Config, key: str, *, default: Any) -> Any:
+    """A setting that may be another one in each mode, such as ``{client: 0, peer: -1}``."""
+    value = json.loads(config.get_json(key))
+    if isinstance(value, dict):
+        value = value.get(json.loads(config.get_json("mode")) or "peer")
+    return default if value is None else value
+
+
+def obstacles(config: zenoh.Config) -> list[Phrase]:
+    """What stands in the way of each address that a session connects to; nothing where none is found."""
+    tls = json.loads(config.get_json("transport/link/tls")) or {}
+    found = [found for each in asked_for(config) if (found := obstacle(each, tls))]
+    if not found and json.loads(config.get_json("id")) is not None:
+        found.append(phrase("who listens there may have the same 'id': leave 'id' out of the configuration"))
+    return found
+
+
+def obstacle(address: str, tls: Mapping[str, Any]) -> Phrase:
+    """What stands in the way of an address; empty where nothing is found.
+
+    Args:
+        address: such as ``tls/cloud.example.com:7448``.
+        tls: the settings below ``transport/link/tls``.
+    """
+    parts = _ADDRESS.fullmatch(address)
+    if parts is None:
+        if address.partition("/")[0] not in _CALLED:
+            return Phrase("")
+        return phrase("'{address}' is not an address: write it as tcp/HOST:PORT or tls/HOST:PORT", address=address)
+    if parts["kind"] not in _CALLED:
+        return Phrase("")
+    host, port = parts["host"].strip("[]"), int(parts["port"])
+    if port > _LAST_PORT:
+        return phrase("'{address}' is not an address: there are ports up to 65535", address=address)
+    try:
+        with socket.create_connection((host, port), _PATIENCE) as called:
+            return _tls_obstacle(address, called, host, tls) if parts["kind"] == "tls" else _silence(address, called)
+    except socket.gaierror as error:
+        return phrase("the name of {address} is not known here: {reason}", address=address, reason=_said(error))
+    except ConnectionRefusedError:
+        return phrase("nobody listens at {address}: start a router there, or correct the port", address=address)
+    except TimeoutError:
+        return phrase(
+            "{address} does not answer: its machine is off or out of reach, or a firewall lets nothing through",
+            address=address,
+        )
+    except OSError as error:
+        return phrase("{address} is out of reach: {reason}", address=address, reason=_said(error))
+
+
+def _silence(address: str, called: socket.socket) -> Phrase:
+    """Whether who listens hangs up on a first message of Zenoh's, as one does that speaks TLS or something else."""
+    called.settimeout(_PATIENCE / 4)
+    try:
+        called.sendall(b"\x04\0\x01\x08\0\0")
+        answer = called.recv(16)
+    except TimeoutError:
+        return Phrase("")
+    except OSError:
+        answer = b""
+    is_tls = answer[:1] == b"\x15"
+    if is_tls:
+        return phrase("who listens at {address} speaks TLS: write tls/ in place of tcp/", address=address)
+    return Phrase("")
+
+
+def _tls_obstacle(address: str, called: socket.socket, host: str, tls: Mapping[str, Any]) -> Phrase:
+    if any(tls.get(f"{each}_base64") for each in ("root_ca_certificate", "connect_certificate", "connect_private_key")):
+        return Phrase("")
+    context = ssl.create_default_context()
+    context.check_hostname = tls.get("verify_name_on_connect") is not False
+    authority, certificate, key = (
+        tls.get(each) or "" for each in ("root_ca_certificate", "connect_certificate", "connect_private_key")
+    )
+    for path in (authority, certificate, key):
+        problem = _unreadable(path)
+        if problem:
+            return problem
+    try:
+        if authority:
+            context.load_verify_locations(authority)
+    except ssl.SSLError:
+        return phrase("'{path}' holds no certificate of an authority in PEM", path=authority)
+    try:
+        if certificate and key and tls.get("enable_mtls"):
+            context.load_cert_chain(certificate, key)
+    except ssl.SSLError:
+        return phrase(
+            "'{certificate}' and '{key}' are not a certificate and its key in PEM", certificate=certificate, key=key
+        )
+    called.settimeout(_PATIENCE)
+    is_agreed = False
+    try:
+        with context.wrap_socket(called, server_hostname=host) as secured:
+            is_agreed = True
+            secured.settimeout(_PATIENCE / 2)
+            secured.recv(1)  # with TLS 1.3 who is refused hears of it after the handshake
+    except TimeoutError:
+        return Phrase("") if is_agreed else _no_tls(address)
+    except ssl.SSLCertVerificationError as error:
+        return phrase(
+            "the certificate of {address} is refused here: {reason}",
+            address=address,
+            reason=foreign(error.verify_message.rstrip(".")),
+        )
+    except ssl.SSLError as error:
+        return _refused(address, certificate, str(error.reason or error))
+    except OSError as error:
+        return phrase("{address} hangs up during TLS: {reason}", address=address, reason=_said(error))
+    return Phrase("")
+
+
+def _refused(address: str, certificate: str, reason: str) -> Phrase:
+    if "WRONG_VERSION" in reason or "RECORD_LAYER" in reason:
+        return _no_tls(address)
+    if "CERTIFICATE_REQUIRED" in reason:
+        return phrase(
+            "{address} asks for a certificate: set enable_mtls, connect_certificate and connect_private_key below"
+            " transport/link/tls",
+            address=address,
+        )
+    if "ALERT" in reason:
+        return phrase(
+            "{address} refuses the certificate '{certificate}': {reason}",
+            address=address,
+            certificate=certificate,
+            reason=foreign(reason.lower().replace("_", " ")),
+        )
+    return phrase("TLS fails at {address}: {reason}", address=address, reason=foreign(reason.lower().replace("_", " ")))
+
+
+def _no_tls(address: str) -> Phrase:
+    return phrase("who listens at {address} does not speak TLS: write tcp/ in place of tls/", address=address)
+
+
+def _unreadable(path: str) -> Phrase:
+    try:
+        if path:
+            with Path(path).open("rb"):
+                pass
+    except OSError as error:
+        return phrase("'{path}' cannot be read: {reason}", path=path, reason=_said(error))
+    return Phrase("")
+
+
+def _said(error: OSError) -> Phrase:
+    return foreign(error.strerror or error)
