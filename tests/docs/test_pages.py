@@ -84,6 +84,14 @@ def test_the_readmes_show_the_same_commands() -> None:
     assert commands(READMES[0]) == commands(READMES[1])
 
 
+@pytest.mark.parametrize("page", pages(), ids=identifier)
+def test_programs_of_a_page_are_run_where_rclpy_is_found(page: Path) -> None:
+    shown = blocks(page)
+    nodes = {block.title for block in shown if "import rclpy" in block.text or "nav2_simple_commander" in block.text}
+    lines = {line.strip() for block in shown if block.language == "bash" for line in block.text.splitlines()}
+    assert not lines & {f"{python} {name}" for python in ("python", "python3") for name in nodes if name}
+
+
 def _documented_names(action: argparse.Action) -> list[str]:
     if action.option_strings:
         return [name for name in action.option_strings if "_" not in name]
