@@ -5,6 +5,7 @@ import { displayRows, linkOfKey, linkPath } from "../src/panels/robot-rows";
 import type { JointScene, Property, ServerMessage } from "../src/protocol";
 import { composed, relative } from "../src/state/pose-numbers";
 import { Session } from "../src/state/session";
+import { formatPoint } from "../src/tree/numbers";
 import type { TreeItem } from "../src/tree/tree-item";
 import { display, property, robot, tree } from "./messages";
 
@@ -246,5 +247,14 @@ describe("poses", () => {
     const a = [1, 2, 3, 0, HALF, 0, HALF] as const;
     const b = [-1, 0.5, 2, HALF, 0, 0, HALF] as const;
     relative(a, composed(a, b)).forEach((part, i) => expect(part).toBeCloseTo(b[i]!));
+  });
+});
+
+describe("a point in one line", () => {
+  it("has five digits for its largest number, and no finer ones for the others", () => {
+    expect(formatPoint([1.5, 0.00002399, 0.3])).toBe("1.5; 0; 0.3");
+    expect(formatPoint([0, 0, -20050.26])).toBe("0; 0; -20050");
+    expect(formatPoint([0.000123456, 0, -0.00002])).toBe("0.00012346; 0; -0.00002");
+    expect(formatPoint([0, -0, 0])).toBe("0; 0; 0");
   });
 });

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import sqlite3
 import subprocess
 import sys
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -304,3 +306,30 @@ def test_wrong_overrides_are_told(document: object, said: str) -> None:
     (diagnostic,) = error.value.diagnostics
     assert diagnostic.code == "BAG106"
     assert said in f"{diagnostic.message} {diagnostic.hint}"
+
+
+@pytest.mark.parametrize(
+    ("name", "beginning", "said"),
+    [
+        ("a.mcap", b"", "the file is empty"),
+        ("a.mcap", b"no recording", "it does not begin as a file of MCAP does"),
+        ("a.db3", b"no recording", "it does not begin as a file of SQLite does"),
+        ("a.mcap", b"#ROSBAG V2.0\n", "it is of ROS 1"),
+        ("a.mcap", b"\x89MCAP0\r\n\x01", "it is an MCAP file that is damaged or cut off"),
+        ("a.mcap", b"\n<!DOCTYPE html><html>", "it is a web page"),
+        ("a.mcap", b"version https://git-lfs.github.com/spec/v1\n", "it is a pointer of Git LFS"),
+        ("a.mcap", b"\x28\xb5\x2f\xfd1234", "it is compressed with zstd"),
+    ],
+)
+def test_what_a_file_is_instead_of_a_recording_is_told(tmp_path: Path, name: str, beginning: bytes, said: str) -> None:
+    (tmp_path / name).write_bytes(beginning)
+    with pytest.raises(LinkwrightError, match=said) as error:
+        BagReader(tmp_path / name)
+    assert error.value.diagnostics[0].hint
+
+
+def test_a_database_of_something_else_is_told(tmp_path: Path) -> None:
+    with closing(sqlite3.connect(tmp_path / "a.db3")) as database:
+        database.execute("CREATE TABLE cats (name TEXT)")
+    with pytest.raises(LinkwrightError, match="a database without the tables of a recording"):
+        BagReader(tmp_path / "a.db3")

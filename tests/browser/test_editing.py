@@ -139,3 +139,18 @@ def test_a_file_that_was_changed_meanwhile_is_not_written_over(start, open_page,
     becomes(lambda: number(page, "xyz2").input_value(), "0.7")
     assert page.get_by_role("button", name="Write", exact=True).is_disabled()
     assert file.read_text() == mine
+
+
+def test_what_an_edit_comes_to_has_room_beside_its_numbers(start, browser, file: Path) -> None:
+    page = browser.new_page(viewport={"width": 1024, "height": 768}, locale="en-US")
+    page.goto(start("view", str(file)).url)
+    page.wait_for_function("window.linkwright?.ready === true")
+    edited(page, "mast")
+    type_in(page, "xyz0", "0.1")
+    page.locator(".edit-diff").first.wait_for()
+    text, numbers = page.locator(".edit-text").bounding_box(), page.locator(".editing-numbers").bounding_box()
+    assert text is not None
+    assert numbers is not None
+    assert text["x"] >= numbers["x"] + numbers["width"]
+    assert text["height"] > 100
+    page.close()

@@ -130,12 +130,18 @@ export function isNarrow(api: DockviewApi): boolean {
   return api.width <= NARROW;
 }
 
+/** Of all the window the scene has at least this much there, besides the line of its tools and the timeline that comes later. */
+const SCENE_SHARE = 0.5;
+const LINES_HEIGHT = 54;
+const MOST_BELOW = 0.45;
+
 /** On a phone: the scene, and below it one group with everything else. */
 function narrowHome(api: DockviewApi, id: PanelId): Home {
   if (id === "scene") return HOMES.scene;
   const others = (Object.keys(HOMES) as PanelId[]).filter((each) => each !== "scene" && each !== id);
   const beside: Home["beside"] = [...others.map((each) => [each, "within"] as const), ["scene", "below"]];
-  return { beside, height: Math.round(api.height * 0.45), inactive: !IN_FRONT.includes(id) };
+  const left = api.height - LINES_HEIGHT - SCENE_SHARE * window.innerHeight;
+  return { beside, height: Math.round(Math.min(left, api.height * MOST_BELOW)), inactive: !IN_FRONT.includes(id) };
 }
 
 function wideHome(api: DockviewApi, id: PanelId): Home {

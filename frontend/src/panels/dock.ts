@@ -6,10 +6,12 @@ import { ColumnWidths } from "./column-widths";
 import { addPanels, isNarrow, USUAL } from "./default-layout";
 import { DisplayPanels } from "./display-panels";
 import { FILE_PANELS } from "./file-panels";
+import { FrontTabs } from "./front-tabs";
 import type { Layout, Layouts } from "./layouts";
 import type { Panel, PanelId } from "./panel";
 import { PanelTab } from "./panel-tab";
 import { takeTabKeys } from "./tab-keys";
+import { SceneTab } from "./scene-tab";
 import { TimeStrip } from "./time-strip";
 
 /** The dockable panels; their arrangement is remembered by the browser, for each file. */
@@ -27,6 +29,8 @@ export class Dock {
   private readonly api: DockviewApi;
   private readonly widths: ColumnWidths;
   private readonly strip: TimeStrip;
+  private readonly sceneTab: SceneTab;
+  private readonly frontTabs: FrontTabs;
   private readonly panels: ReadonlyMap<string, Panel>;
   private readonly tabs = new Map<string, PanelTab>();
   private narrow: boolean;
@@ -46,6 +50,8 @@ export class Dock {
     });
     this.widths = new ColumnWidths(this.api);
     this.strip = new TimeStrip(this.api);
+    this.sceneTab = new SceneTab(this.api);
+    this.frontTabs = new FrontTabs(this.api);
     takeTabKeys(parent, (id) => this.tabs.get(id));
     // Panels get their sizes when they are added; the dock's own observer would tell its size only later.
     this.api.layout(parent.clientWidth, parent.clientHeight);
@@ -54,10 +60,10 @@ export class Dock {
     const latest = layouts.latest(this.narrow);
     if (latest && this.restore(latest)) this.file = latest.file;
     else this.reset();
-    this.strip.follow();
+    this.followLone();
     this.widths.take();
     this.api.onDidLayoutChange(() => {
-      this.strip.follow();
+      this.followLone();
       this.widths.follow();
       this.remember();
       this.changed.emit();
@@ -91,6 +97,7 @@ export class Dock {
   /** A number behind a panel's title; 0 takes it away. */
   setCount(id: PanelId, count: number): void {
     this.api.getPanel(id)?.api.setTitle(count > 0 ? `${title(id)} (${count})` : title(id));
+    this.frontTabs.follow();
   }
 
   /** The arrangement of the first visit. */
@@ -109,7 +116,7 @@ export class Dock {
       this.reset();
       return false;
     }
-    this.strip.follow();
+    this.followLone();
     this.displayPanels.restore();
     this.widths.take();
     this.rearranged.emit();
@@ -138,9 +145,16 @@ export class Dock {
   private build(ids: readonly PanelId[]): void {
     this.api.clear();
     addPanels(this.api, this.narrow ? [...ids.filter((id) => id !== "time"), ...ids.filter((id) => id === "time")] : ids);
-    this.strip.follow();
+    this.followLone();
     this.displayPanels.restore();
     this.widths.take();
+  }
+
+  /** What is alone in its place may need no tab. */
+  private followLone(): void {
+    this.strip.follow();
+    this.sceneTab.follow(this.narrow);
+    this.frontTabs.follow();
   }
 
   /** The window became narrow or wide: the same panels, as they were in such a window or where they belong. */

@@ -17,7 +17,7 @@ export class JointsPanel implements Panel {
   readonly element: HTMLElement;
   private readonly list = h("div", { class: "joints" });
   private readonly filter = h("input", { class: "field filter" });
-  private readonly bars: readonly HTMLElement[];
+  private readonly bars: HTMLElement;
   private rows: JointRow[] = [];
 
   constructor(private readonly session: Session) {
@@ -27,8 +27,8 @@ export class JointsPanel implements Panel {
     this.filter.setAttribute("aria-label", words.filter);
     this.filter.addEventListener("input", () => this.applyFilter());
     const bar = jointBar(session);
-    this.bars = [new PoseBar(session).element, new SweepBar(joints).element];
-    this.element = h("div", { class: "panel" }, bar, ...this.bars, this.filter, this.list);
+    this.bars = h("div", { class: "joint-bars" }, new PoseBar(session).element, new SweepBar(joints).element);
+    this.element = h("div", { class: "panel joints-panel" }, bar, this.bars, this.filter, this.list);
     joints.controlsChanged.on(() => this.build());
     joints.positionsChanged.on(() => this.update());
     angles.changed.on(() => this.rows.forEach((row) => row.showUnit()));
@@ -43,7 +43,7 @@ export class JointsPanel implements Panel {
     this.list.replaceChildren(...this.rows.map((row) => row.element));
     const none = this.rows.length === 0;
     if (none) this.list.append(h("p", { class: "empty" }, strings.joints.none));
-    for (const bar of this.bars) bar.hidden = none;
+    this.bars.hidden = none;
     this.filter.hidden = this.rows.length < FILTER_FROM;
     if (this.filter.hidden) this.filter.value = "";
     this.applyFilter();

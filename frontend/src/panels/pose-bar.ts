@@ -16,7 +16,7 @@ export class PoseBar {
 
   constructor(private readonly session: Session) {
     const words = strings.description.poses;
-    this.name.placeholder = words.name;
+    this.name.placeholder = words.nameShort;
     this.name.setAttribute("aria-label", words.name);
     this.name.maxLength = 60;
     this.name.addEventListener("keydown", (event) => {

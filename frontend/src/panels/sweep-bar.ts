@@ -28,16 +28,14 @@ export class SweepBar {
     fill(this.speed, words.speed, SPEEDS.map((speed) => [String(speed), `${speed}×`]));
     this.speed.value = "1";
     this.order.addEventListener("change", () => this.sweep && this.begin());
-    this.start = button(words.start, () => (this.sweep ? this.end() : this.begin()), "tool", icon("play"));
+    this.start = button(words.start, () => (this.sweep ? this.end() : this.begin()), "tool bare", icon("play"));
     const row = h(
       "div",
       { class: "bar-row" },
       h("span", { class: "bar-label", title: words.hint }, words.label),
       this.order,
       this.speed,
-      h("span", { class: "spacer" }),
-      handsOnSwitch(joints),
-      this.start,
+      h("span", { class: "bar-buttons" }, handsOnSwitch(joints), this.start),
     );
     this.element = h("div", { class: "joint-bar sweep", role: "group", aria: { label: words.label } }, row);
     joints.controlsChanged.on(() => this.end());

@@ -6,6 +6,7 @@ import { FIXED_FRAME, type ViewState } from "../state/view";
 import { shortName } from "../state/views/catalog";
 import type { ViewValues } from "../state/views/view-controller";
 import { strings } from "../strings";
+import { formatPoint } from "../tree/numbers";
 import type { TreeItem } from "../tree/tree-item";
 import { TreeView } from "../tree/tree-view";
 import type { Panel } from "./panel";
@@ -33,6 +34,8 @@ export class ViewsPanel implements Panel {
       () => this.items(),
       () => [FIXED_FRAME, ...frames.names],
     );
+    const zero = button(words.zeroHint, () => view.zero(), "tool", icon("zero"), h("span", { class: "tool-name" }, words.zero));
+    zero.setAttribute("aria-label", words.zero);
     this.remove = button(words.removeHint, () => this.removeChosen(), "tool", words.remove);
     this.rename = button(words.renameHint, () => this.startRename(), "tool", words.rename);
     this.type.addEventListener("change", () => view.setClass(this.type.value));
@@ -43,12 +46,12 @@ export class ViewsPanel implements Panel {
     this.name.hidden = true;
     this.element = h(
       "div",
-      { class: "panel" },
+      { class: "panel views-panel" },
       h(
         "div",
         { class: "toolbar" },
         h("label", { class: "view-type" }, h("span", { class: "toolbar-label" }, words.type), this.type),
-        button(words.zeroHint, () => view.zero(), "tool", icon("zero"), words.zero),
+        zero,
         button(words.resetHint, () => view.reset(), "tool bare", icon("reset")),
       ),
       tree.element,
@@ -171,5 +174,5 @@ function rows(
 
 /** `1; 2; 3` for a point. */
 function summary(children: readonly Property[], values: ViewValues): string {
-  return children.map(({ id, value }) => String(Number(Number(values[id] ?? value).toPrecision(4)))).join("; ");
+  return formatPoint(children.map(({ id, value }) => Number(values[id] ?? value)));
 }

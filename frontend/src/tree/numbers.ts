@@ -8,6 +8,13 @@ export function formatNumber(value: number): string {
   return text === "-0" ? "0" : text;
 }
 
+/** `1; 2; 3`, with five digits for the largest number as RViz has them, and no finer ones for the others. */
+export function formatPoint(values: readonly number[]): string {
+  const largest = Math.max(...values.map(Math.abs));
+  const digits = largest > 0 ? Math.min(Math.max(4 - Math.floor(Math.log10(largest)), 0), 12) : 0;
+  return values.map((value) => formatNumber(Number(value.toFixed(digits)))).join("; ");
+}
+
 /** A number with so many digits after the point, and none that is minus zero; a large one, as a limit that is none, with an exponent. */
 export function formatFixed(value: number, digits: number): string {
   if (Math.abs(value) >= LARGE) return value.toExponential(2);

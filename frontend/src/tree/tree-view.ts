@@ -125,8 +125,9 @@ export class TreeView {
     if (this.scrollTo === null) return;
     const row = this.rows.get(this.scrollTo);
     this.scrollTo = null;
-    row?.element.scrollIntoView({ block: "nearest" });
     if (row) this.selected.emit(row.item);
+    // What tells of it may only now take its place below the rows.
+    row?.element.scrollIntoView({ block: "nearest" });
   }
 
   private flatten(items: readonly TreeItem[], depth: number): void {
@@ -159,7 +160,9 @@ export class TreeView {
     this.selectedKey = key;
     this.showSelection();
     const row = this.rows.get(key);
-    if (row && news) this.selected.emit(row.item);
+    if (!row || !news) return;
+    this.selected.emit(row.item);
+    row.element.scrollIntoView({ block: "nearest" });
   }
 
   private showSelection(): void {

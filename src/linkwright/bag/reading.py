@@ -13,6 +13,7 @@ from linkwright.bag.moments import Moments, Recorded
 from linkwright.bag.names import SUFFIXES
 from linkwright.bag.qos import from_bag
 from linkwright.bag.unfinished import is_unfinished, made_readable
+from linkwright.bag.unreadable import verdict_on
 from linkwright.diagnostics import (
     Diagnostic,
     LinkwrightError,
@@ -20,7 +21,6 @@ from linkwright.diagnostics import (
     Severity,
     did_you_mean,
     display_path,
-    foreign,
     missing_extra,
     phrase,
 )
@@ -284,14 +284,12 @@ def _profiles(connection: Any) -> list[Any]:
 
 
 def _unreadable(path: Path, error: Exception) -> LinkwrightError:
-    hint = None
-    if path.suffix == ".bag":
-        hint = phrase("a recording of ROS 1 becomes one of ROS 2 by 'rosbags-convert --src X.bag --dst X'")
-    reason = str(error).strip().rstrip(".") or type(error).__name__
+    reason, hint, note = verdict_on(path, error)
     return LinkwrightError(
         Diagnostic(
             "BAG102",
-            phrase("'{path}' cannot be read as a recording: {reason}", path=display_path(path), reason=foreign(reason)),
+            phrase("'{path}' cannot be read as a recording: {reason}", path=display_path(path), reason=reason),
+            notes=() if note is None else (Note(note),),
             hint=hint,
         )
     )

@@ -74,6 +74,7 @@ export class VoicePanel implements Panel {
       field.value = "";
     };
     const field = textField(words.command, () => undefined);
+    field.placeholder = words.commandShort;
     field.maxLength = 200;
     field.addEventListener("keydown", (event) => {
       if (event.key === "Enter" && !event.isComposing) send();

@@ -101,6 +101,7 @@ export const description = {
     save: "Save",
     saveHint: "Keep where the joints stand under a name",
     name: "Name of the pose",
+    nameShort: "Name",
     recall: (name: string): string => `Move the joints to '${name}'`,
     remove: (name: string): string => `Forget '${name}'`,
     more: "More about poses",

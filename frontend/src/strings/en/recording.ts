@@ -36,6 +36,6 @@ export const recording = {
   notOpened: (name: string): string => `${name} was not opened`,
   broken: "The connection to the program was lost.",
   gone: "The recording is not open any longer",
-  goneHint: "It is closed a minute after its last page. Drop it again to see it.",
+  goneHint: "It is closed a minute after its last page. Open it again, or drop it here, to see it.",
   key: "Last minutes: mark a part from here, to here",
 };

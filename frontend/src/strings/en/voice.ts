@@ -18,6 +18,7 @@ export const voice = {
   listening: "Listening",
   openListening: "Listening all the time",
   command: "Command as text, such as: turn left 90 degrees",
+  commandShort: "E.g. turn left",
   send: "Send",
   sendHint: "Send the command as if it had been said (Enter)",
   noTextListener: "Nobody takes commands as text: no voice_commander runs.",

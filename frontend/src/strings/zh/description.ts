@@ -100,6 +100,7 @@ export const description: DescriptionStrings = {
     save: "保存",
     saveHint: "给关节现在的位置起个名字保存下来",
     name: "姿态名称",
+    nameShort: "名称",
     recall: (name) => `把关节移到“${name}”`,
     remove: (name) => `删除“${name}”`,
     more: "更多姿态操作",

@@ -38,6 +38,6 @@ export const recording: typeof english = {
   notOpened: (name: string): string => `没有打开 ${name}`,
   broken: "与程序的连接断开了。",
   gone: "录制已不再打开",
-  goneHint: "最后一个页面关闭一分钟后，录制随之关闭。再次拖放即可查看。",
+  goneHint: "最后一个页面关闭一分钟后，录制随之关闭。要查看，请再次打开，或拖放到这里。",
   key: "最近几分钟：标记的部分从这里开始、到这里结束",
 };

@@ -20,6 +20,7 @@ export const voice: typeof english = {
   listening: "正在聆听",
   openListening: "持续聆听中",
   command: "输入命令，例如：左转九十度",
+  commandShort: "命令，例如：左转九十度",
   send: "发送",
   sendHint: "发送命令，如同说出一样（Enter）",
   noTextListener: "没有节点接收文字命令：voice_commander 未运行。",

@@ -1,0 +1,87 @@
+"""What a file that cannot be read as a recording is instead, told by its first bytes."""
+
+from __future__ import annotations
+
+from contextlib import closing
+from pathlib import Path
+from typing import NamedTuple
+
+from linkwright.diagnostics import Phrase, foreign, phrase
+
+_MCAP, _SQLITE = b"\x89MCAP0\r\n", b"SQLite format 3\0"
+_HEAD = 64
+
+
+class Verdict(NamedTuple):
+    """Why a file is no recording, what to do, and what else is known of it."""
+
+    reason: Phrase
+    hint: Phrase | None
+    note: Phrase | None = None
+
+
+def verdict_on(path: Path, error: Exception) -> Verdict:
+    """Why a recording cannot be read.
+
+    Args:
+        path: of its file or folder.
+        error: what the library says, which is told where the file itself tells nothing.
+    """
+    if path.suffix == ".bag":
+        return _ros1()
+    try:
+        with path.open("rb") as file:
+            head = file.read(_HEAD)
+    except OSError:
+        head = None
+    said = foreign(str(error).strip().rstrip(".") or type(error).__name__)
+    if head is not None and (found := _by_its_beginning(path, head)) is not None:
+        is_mcap = head.startswith(_MCAP)  # of which the library knows what is wrong
+        return found._replace(note=phrase("the reader says: {words}", words=said)) if is_mcap else found
+    return Verdict(said, None)
+
+
+def _by_its_beginning(path: Path, head: bytes) -> Verdict | None:
+    if not head:
+        return Verdict(phrase("the file is empty"), phrase("copy or record it again"))
+    if head.startswith(b"#ROSBAG V"):
+        return _ros1()
+    if head.startswith(_SQLITE):
+        if _has_tables(path):
+            return None
+        hint = phrase("take the .db3 file that 'ros2 bag record' wrote, with its metadata.yaml")
+        return Verdict(phrase("it is a database without the tables of a recording"), hint)
+    if head.startswith(_MCAP):
+        hint = phrase("copy it again; 'mcap recover FILE -o OUT.mcap' saves what is whole of it")
+        return Verdict(phrase("it is an MCAP file that is damaged or cut off"), hint)
+    if head.lstrip().lower().startswith((b"<!doctype html", b"<html")):
+        hint = phrase("what was downloaded is not the file: open it in a browser, which shows what the server said")
+        return Verdict(phrase("it is a web page"), hint)
+    if head.startswith(b"version https://git-lfs"):
+        return Verdict(phrase("it is a pointer of Git LFS to the real file"), phrase("fetch that by 'git lfs pull'"))
+    for begin, kind in ((b"\x28\xb5\x2f\xfd", "zstd"), (b"\x1f\x8b", "gzip"), (b"PK\x03\x04", "zip")):
+        if head.startswith(begin):
+            return Verdict(phrase("it is compressed with {kind}", kind=foreign(kind)), phrase("unpack it first"))
+    by_name = {".mcap": "MCAP", ".db3": "SQLite"}
+    if path.suffix not in by_name:
+        return None
+    hint = phrase("a name that ends with {ending} does not make it one; copy or record it again", ending=path.suffix)
+    reason = phrase("it does not begin as a file of {kind} does", kind=foreign(by_name[path.suffix]))
+    return Verdict(reason, hint)
+
+
+def _has_tables(path: Path) -> bool:
+    """Whether a database has what recordings have, or is too damaged to tell."""
+    import sqlite3
+
+    try:
+        with closing(sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro", uri=True)) as database:
+            names = {name for (name,) in database.execute("SELECT name FROM sqlite_master")}
+    except sqlite3.Error:
+        return True
+    return {"topics", "messages"} <= names
+
+
+def _ros1() -> Verdict:
+    hint = phrase("a recording of ROS 1 becomes one of ROS 2 by 'rosbags-convert --src X.bag --dst X'")
+    return Verdict(phrase("it is of ROS 1"), hint)
