@@ -1,7 +1,10 @@
 from __future__ import annotations
 
+import threading
+
 import pytest
 
+from linkwright.bridge.outlet import Outlet
 from linkwright.graph.actions.client import ActionClient
 from linkwright.graph.actions.server import ActionServer
 from linkwright.graph.endpoints.client import Client
@@ -17,6 +20,7 @@ from linkwright.wire.zenoh.session import open_session
 from linkwright.wire.zenoh.settings import read_settings
 from linkwright.wire.zenoh.tokens import Token
 from tests.bridge.conftest import spin_all
+from tests.waiting import SECONDS, wait_until
 
 LASTING = QoSProfile(3, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 EVERYTHING = QoSProfile(history=HistoryPolicy.KEEP_ALL)
@@ -238,6 +242,24 @@ def test_actions_go_over_with_their_feedback(networks, server, client):
             break
     else:
         raise AssertionError(heard)
+
+
+def test_who_waits_for_a_listener_that_has_stopped_holds_up_nothing_else():
+    goes_on, published = threading.Event(), []
+
+    def publish(data: bytes) -> None:
+        goes_on.wait(SECONDS)
+        published.append(data)
+
+    outlet = Outlet(publish)
+    for number in range(3):
+        outlet.put(b"%d" % number)
+    assert outlet.has_more()
+    assert published == []
+    goes_on.set()
+    wait_until(lambda: not outlet.has_more())
+    assert published == [b"0", b"1", b"2"]
+    outlet.close()
 
 
 def test_a_service_that_both_networks_have_is_left_alone(networks):

@@ -59,9 +59,12 @@ async def run_bridge(
         try:
             logger = first.graph.get_logger("bridge")
             ready()
-            await _carry(
-                first, second, (Direction(first, second, names, logger), Direction(second, first, names, logger))
-            )
+            directions = (Direction(first, second, names, logger), Direction(second, first, names, logger))
+            try:
+                await _carry(first, second, directions)
+            finally:
+                for direction in directions:
+                    direction.close()
         finally:
             await second.graph.close()
     finally:

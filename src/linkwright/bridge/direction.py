@@ -145,14 +145,21 @@ class Direction:
         self._tap()
         return is_settled and not self._early
 
+    def close(self) -> None:
+        """Carry no more."""
+        for publisher in self._publishers.values():
+            publisher.close()
+
     # --- inside ------------------------------------------------------------------------------------------------------
 
     def _let_go(self) -> None:
         """Take away publishers that have left, once what they said last was carried, and nodes that have."""
         for gid, quiet in tuple(self._leaving.items()):
-            tap = self._taps.get(self._publishers[gid].stream)
-            self._leaving[gid] = 0 if tap is not None and tap.has_more() else quiet + 1
-            if tap is None or self._leaving[gid] >= _QUIET:
+            publisher = self._publishers[gid]
+            tap = self._taps.get(publisher.stream)
+            waits = publisher.has_more() or (tap is not None and tap.has_more())
+            self._leaving[gid] = 0 if waits else quiet + 1
+            if (tap is None and not waits) or self._leaving[gid] >= _QUIET:
                 del self._leaving[gid]
                 self._publishers.pop(gid).close()
                 self._aliases = {alias: meant for alias, meant in self._aliases.items() if meant != gid}

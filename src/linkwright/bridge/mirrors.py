@@ -8,6 +8,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
+from linkwright.bridge.outlet import Outlet
 from linkwright.bridge.streams import KEPT, Stream, offered
 from linkwright.graph.endpoints.client import Client
 from linkwright.graph.endpoints.info import EndpointInfo, MessageInfo
@@ -15,7 +16,7 @@ from linkwright.graph.endpoints.publisher import Publisher
 from linkwright.graph.endpoints.service import Service
 from linkwright.graph.endpoints.subscription import Subscription
 from linkwright.graph.loop.node_handle import NodeHandle
-from linkwright.graph.qos.profile import QoSProfile
+from linkwright.graph.qos.profile import HistoryPolicy, QoSProfile
 
 _MATCHED_WITHIN = 1.0
 """Seconds for which what a new publisher says waits for those who listen to it."""
@@ -79,6 +80,7 @@ class MirroredPublisher:
         self._waiting: deque[bytes] | None = deque(maxlen=KEPT)
         self._patience = time.monotonic() + _MATCHED_WITHIN
         self._publisher = node.add(publisher)
+        self._outlet = Outlet(publisher.publish) if stream.history is HistoryPolicy.KEEP_ALL else None
 
     @property
     def gid(self) -> bytes:
@@ -97,7 +99,7 @@ class MirroredPublisher:
     def say(self, data: bytes) -> None:
         """Publish a message."""
         if self._waiting is None:
-            self._publisher.publish(data)
+            self._publish(data)
         else:
             self._waiting.append(data)
             self.settle()
@@ -107,12 +109,24 @@ class MirroredPublisher:
         if self._waiting is not None and (self.stream.lasts or self.listeners() or time.monotonic() >= self._patience):
             waiting, self._waiting = self._waiting, None
             for data in waiting:
-                self._publisher.publish(data)
+                self._publish(data)
         return self._waiting is None
 
     def close(self) -> None:
         """Take it away."""
+        if self._outlet is not None:
+            self._outlet.close()
         self._publisher.destroy()
+
+    def has_more(self) -> bool:
+        """Whether what it was given waits to be published."""
+        return self._outlet is not None and self._outlet.has_more()
+
+    def _publish(self, data: bytes) -> None:
+        if self._outlet is None:
+            self._publisher.publish(data)
+        else:
+            self._outlet.put(data)
 
 
 class MirroredService:

@@ -1,0 +1,47 @@
+"""Publishing that may have to wait for who listens, beside what must not wait for it."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from contextlib import suppress
+from queue import Queue
+
+from linkwright.graph.faults import InvalidHandleError
+
+
+class Outlet:
+    """Publishes what it is given in a thread of its own, in the order in which it came.
+
+    A publisher that keeps everything waits for a listener that has stopped, for seconds; all else that a bridge carries
+    goes on meanwhile.
+
+    Args:
+        publish: publishes a message.
+    """
+
+    def __init__(self, publish: Callable[[bytes], object]) -> None:
+        self._publish = publish
+        self._queue: Queue[bytes | None] = Queue()
+        self._thread: threading.Thread | None = None
+
+    def put(self, data: bytes) -> None:
+        """Have a message published."""
+        if self._thread is None:
+            self._thread = threading.Thread(target=self._run, name="linkwright-bridge-outlet", daemon=True)
+            self._thread.start()
+        self._queue.put(data)
+
+    def has_more(self) -> bool:
+        """Whether messages wait, or one is being published."""
+        return bool(self._queue.unfinished_tasks)
+
+    def close(self) -> None:
+        """Publish no more; what waits is lost."""
+        self._queue.put(None)
+
+    def _run(self) -> None:
+        while (data := self._queue.get()) is not None:
+            with suppress(InvalidHandleError):  # the publisher was taken away
+                self._publish(data)
+            self._queue.task_done()
