@@ -75,7 +75,7 @@ ROS_WHEELS_kilted := ros-rclpy==9.1.2 ros-rmw-fastrtps-cpp==9.3.3 ros-common-int
 
 test-ros: $(VENV)/.dev $(ROS_FOLDER)/.ready
 	LINKWRIGHT_ROS_PYTHON=$(CURDIR)/$(ROS_FOLDER)/bin/python RMW_IMPLEMENTATION=rmw_fastrtps_cpp \
-		$(BIN)/pytest tests/wire/test_real_ros.py tests/wire/test_real_services.py tests/wire/test_real_actions.py \
+		$(BIN)/pytest $(wildcard tests/wire/test_real_*.py) \
 		tests/standins/test_field_rules.py $(if $(filter jazzy,$(ROS)),tests/standins/test_real_names.py) $(ARGS)
 
 $(ROS_FOLDER)/.ready: | $(UV)

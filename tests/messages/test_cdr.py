@@ -181,10 +181,17 @@ def test_values_out_of_range_are_not_wrapped():
         serialize(stamp)
 
 
-def test_wide_texts_are_utf_16_with_the_number_of_units():
+def test_wide_texts_are_units_of_utf_16_in_four_bytes_each_after_their_number():
     cls = get_message("example_interfaces/msg/WString")
-    assert serialize(cls(data="a😀")) == b"\0\1\0\0\3\0\0\0a\0\x3d\xd8\x00\xde"
-    assert deserialize(b"\0\0\0\0\0\0\0\2\0a\0b", cls).data == "ab"
+    written = b"\0\1\0\0\3\0\0\0a\0\0\0\x3d\xd8\0\0\x00\xde\0\0"  # as Jazzy's rclpy with Fast DDS writes it
+    assert serialize(cls(data="a😀")) == written
+    assert deserialize(written, cls).data == "a😀"
+    assert deserialize(b"\0\0\0\0\0\0\0\2\0\0\0a\0\0\0b", cls).data == "ab"
+    assert deserialize(b"\0\1\0\0\0\0\0\0", cls).data == ""
+    with pytest.raises(MessageDataError, match="a unit of 65536, and UTF-16 none above 65535"):
+        deserialize(b"\0\1\0\0\1\0\0\0\0\0\1\0", cls)
+    with pytest.raises(MessageDataError, match="in the middle of the message"):
+        deserialize(b"\0\1\0\0\2\0\0\0a\0\0\0", cls)
 
 
 def test_an_empty_message_is_one_byte():

@@ -57,9 +57,11 @@ class Program:
 
     def ask(self, question: str, *arguments: Any) -> Any:
         """The answer to a question."""
-        assert self.process.stdin is not None
-        print(json.dumps([question, *arguments]), file=self.process.stdin, flush=True)
-        return self.answer()
+        return self._ask(SECONDS, question, arguments)
+
+    def ask_slowly(self, question: str, *arguments: Any) -> Any:
+        """The answer to a question that stands for much work."""
+        return self._ask(5 * SECONDS, question, arguments)
 
     def ask_until(
         self, condition: Callable[[Any], object], question: str, *arguments: Any, seconds: float = SECONDS
@@ -74,12 +76,16 @@ class Program:
             time.sleep(0.05)
 
     def answer(self, seconds: float = SECONDS) -> Any:
-        """What it says next."""
+        """What it says next; at once an error when it has ended."""
         try:
-            return json.loads(self._answers.get(timeout=seconds))
+            said = self._answers.get(timeout=seconds)
         except Empty:
+            said = ""
+        if not said:
             self.process.kill()
-            raise AssertionError(f"silence; its errors: {self.process.communicate()[1]}") from None
+            self._reader.join()
+            raise AssertionError(f"silence; its errors: {self.process.communicate()[1]}")
+        return json.loads(said)
 
     def kill(self) -> None:
         """End it as ``kill -9`` does."""
@@ -102,10 +108,16 @@ class Program:
         self.process.stderr.close()
         return self.process.returncode
 
+    def _ask(self, seconds: float, question: str, arguments: Sequence[Any]) -> Any:
+        assert self.process.stdin is not None
+        print(json.dumps([question, *arguments]), file=self.process.stdin, flush=True)
+        return self.answer(seconds)
+
     def _read(self) -> None:
         assert self.process.stdout is not None
         for line in self.process.stdout:
             self._answers.put(line)
+        self._answers.put("")
 
 
 def serve(answers: dict[str, Callable[..., Any]]) -> None:

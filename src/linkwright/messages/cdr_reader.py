@@ -150,7 +150,7 @@ class _ReaderCode:
         length = self._length()
         if kind.base == "wstring":
             self._line(f"{target}, p = wide(d, p, {length}, {self._order!r})")
-            self.place = Place(2, 0)
+            self.place = Place(4, 0)
         else:
             self._line(f"if {length}:")
             self._line(f"    q = p + {length} - 1")

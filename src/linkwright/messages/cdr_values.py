@@ -19,6 +19,7 @@ _LONGEST_BLOCK_KEPT = 8192
 _MOST_BLOCKS = 64
 _KEY = 28
 _COPIED_AT_ONCE = 4096
+_LAST_UNIT = 0xFFFF
 
 
 class DataFaultError(ValueError):
@@ -138,17 +139,26 @@ def read_bytes(data: bytes, start: int, end: int) -> list[bytes]:
 
 
 def read_wide_text(data: bytes, at: int, count: int, order: str) -> tuple[str, int]:
-    """A wide text of so many UTF-16 units, and where it ends (no terminator, as Cyclone DDS and Fast CDR 2 have it)."""
-    end = at + count * 2
+    """A wide text of so many UTF-16 units, and where it ends. Each has four bytes, and there is no terminator.
+
+    So rosidl_typesupport_fastrtps writes it, for Fast DDS and Zenoh, up to Kilted, and rmw_cyclonedds_cpp after it.
+    """
+    end = at + count * 4
     if end > len(data):
         truncated()
-    return str(data[at:end], "utf-16-le" if order == "<" else "utf-16-be"), end
+    units = array("I", data[at:end])
+    if order == ">":
+        units.byteswap()
+    most = max(units, default=0)
+    if most > _LAST_UNIT:
+        raise DataFaultError(phrase("a wide text in it has a unit of {value}, and UTF-16 none above 65535", value=most))
+    return str(array("H", units).tobytes(), "utf-16-le"), end
 
 
 def write_wide_text(text: str) -> bytes:
-    """A wide text: the number of its UTF-16 units, and these."""
-    raw = text.encode("utf-16-le")
-    return _LENGTH.pack(len(raw) // 2) + raw
+    """A wide text: the number of its UTF-16 units, and these in four bytes each."""
+    units = array("I", array("H", text.encode("utf-16-le")))
+    return _LENGTH.pack(len(units)) + units.tobytes()
 
 
 def truncated() -> None:

@@ -162,7 +162,7 @@ class _WriterCode:
     def _text(self, kind: FieldType, value: str, following: int) -> None:
         self.align(4)
         if kind.base == "wstring":
-            self._piece(self._named(f"wide({value})"), Place(2, 0))
+            self._piece(self._named(f"wide({value})"), Place(4, 0))
         elif following >= 4:
             self._piece(self._named(f"TEXT4[{value}]"), Place(4, 0))
         else:
