@@ -3,14 +3,22 @@
 from __future__ import annotations
 
 import threading
+from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 
-from linkwright.messages import get_service
-from linkwright.wire.dds.fast_services import EarlyRequest, FastServer
+from linkwright.messages import get_service, serialize
+from linkwright.wire.dds.fast_services import EarlyRequest, FastClient, FastServer
+from linkwright.wire.dds.rtps.messages import Data
+from linkwright.wire.dds.rtps.values import read_parameters, related_identity
 
 SetCameraInfo = get_service("sensor_msgs/srv/SetCameraInfo")
 LARGE = "x" * 300_000
+CLIENT = SimpleNamespace(
+    name="/echo", srv_type=SetCameraInfo, type_name="sensor_msgs/srv/SetCameraInfo", type_hash="", raw=False
+)
+ANSWER = serialize(SetCameraInfo.Response(success=True, status_message="hej"))
 
 
 def echo(request, response):
@@ -106,8 +114,6 @@ class _Service:
 
 
 def test_early_requests_get_the_numbers_before_the_first_that_was_heard(monkeypatch):
-    from linkwright.messages import serialize
-
     now = 100.0
     monkeypatch.setattr("linkwright.wire.dds.fast_services.time.monotonic", lambda: now)
     service, participant = _Service(), _Heard(heard_at=None, last=7)
@@ -125,3 +131,26 @@ def test_early_requests_get_the_numbers_before_the_first_that_was_heard(monkeypa
     assert not server.has_more_to_do
     server.came_early(EarlyRequest(b"w" * 16, serialize(says("eight")), 9_000_000, now))
     assert not server.has_more_to_do  # what comes from now on comes with its number
+
+
+def test_replies_to_others_may_come_while_a_client_is_made():
+    """A server may know the new reader before the client has it."""
+    inline, _ = read_parameters(related_identity(b"o" * 16, 1), 0, "<")
+    reply = Data(b"s" * 12, b"r" * 4, b"s" * 16, 1, "<", inline, b"")
+
+    class Hasty:
+        def add_reader(self, _topic, _type_name, _facts, on_data):
+            on_data(reply)
+            return SimpleNamespace(reader=SimpleNamespace(guid=b"r" * 16))
+
+        def add_writer(self, *_):
+            return SimpleNamespace(writer=SimpleNamespace(guid=b"w" * 16))
+
+        def write(self, *_, **__):
+            return 1
+
+    client = FastClient(CLIENT, Hasty(), lambda _: False)
+    answers = []
+    client.send(says("hej"), answers.append)
+    client._on_data(replace(reply, inline=read_parameters(related_identity(b"r" * 16, 1), 0, "<")[0], payload=ANSWER))
+    assert [answer.status_message for answer in answers] == ["hej"]

@@ -181,7 +181,9 @@ class FastClient:
         facts = service_facts(os.urandom(16), client, is_server=False)
         request, response = map(dds_type, halves(client.type_name))
         self._answers: dict[int, Callable[[Any], None]] = {}
+        self._identities: tuple[bytes, ...] = ()
         self._lock = Lock()
+        # From here on replies may come, to other clients of the service.
         self._replies = participant.add_reader(dds_topic(Role.REPLY, client.name), response, facts, self._on_data)
         self._requests = participant.add_writer(dds_topic(Role.REQUEST, client.name), request, facts)
         self._identities = (self._replies.reader.guid, self._requests.writer.guid)
