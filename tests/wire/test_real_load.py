@@ -1,0 +1,62 @@
+"""Much at once between nodes of real ROS 2 on Fast DDS and ours; see `test_real_ros`.
+
+Both sides run one program, `load_peer`: one with the real rclpy, one with ours.
+"""
+
+from __future__ import annotations
+
+import os
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+
+from linkwright.standins.process import environment
+
+PYTHON = os.environ.get("LINKWRIGHT_ROS_PYTHON", "")
+CALLS = 1000
+CLIENTS = ("theirs_1", "theirs_2", "ours_1")
+GOALS = 13
+RATE = 100.0
+
+pytestmark = pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ROS_PYTHON names no interpreter with rclpy")
+
+
+@pytest.fixture
+def peers(programs):
+    """Starts the program under a name, which says on which side."""
+
+    def start(name):
+        if name.startswith("theirs"):
+            return programs("load_peer", name, python=PYTHON, RMW_IMPLEMENTATION="rmw_fastrtps_cpp")
+        return programs("load_peer", name, PYTHONPATH=environment()["PYTHONPATH"])
+
+    return start
+
+
+@pytest.mark.parametrize("server", ["theirs", "ours"])
+def test_a_thousand_calls_of_mixed_kinds_from_three_clients_at_once(peers, server):
+    """None is lost, and none gets the answer to another one."""
+    peers(server)
+    clients = [peers(name) for name in CLIENTS]
+    with ThreadPoolExecutor(len(clients)) as threads:
+        share = CALLS // len(clients) + 1
+        asking = [
+            threads.submit(client.ask_slowly, "storm", server, share, name)
+            for name, client in zip(CLIENTS, clients, strict=True)
+        ]
+        assert [each.result() for each in asking] == [share] * len(clients)
+
+
+@pytest.mark.parametrize(("asks", "answers"), [("theirs", "ours"), ("ours", "theirs")])
+def test_goals_are_cancelled_and_preempted_while_much_else_goes_on(peers, asks, answers):
+    client, server, other = peers(asks), peers(answers), peers(f"{asks}_2")
+    client.ask("chatter", RATE, answers)
+    server.ask("chatter", RATE, asks)
+    for each in (client, server):
+        each.ask_until(lambda heard: heard > RATE, "heard")
+    with ThreadPoolExecutor(1) as threads:
+        storm = threads.submit(other.ask_slowly, "storm", answers, CALLS // 4, "other")
+        ends = client.ask_slowly("goals", answers, GOALS)
+        assert storm.result() == CALLS // 4
+    cancelled = ["CANCELED" if number % 3 == 2 else "ABORTED" for number in range(GOALS - 1)]
+    assert ends == [*cancelled, "SUCCEEDED"]
