@@ -57,8 +57,9 @@ test: $(VENV)/.dev page
 	$(BIN)/python tools/build_page.py test
 	LINKWRIGHT_CHROMIUM=$$($(BIN)/python tools/chromium.py) $(PYTEST) $(WORKERS) $(ARGS)
 
+# All of them; with CASES=5, at most five cases of each parametrised test (docs/decisions/0077).
 test-quick: $(VENV)/.dev
-	$(PYTEST) $(WORKERS) -m "not browser and not slow" $(ARGS)
+	$(PYTEST) $(WORKERS) -m "not browser and not slow" $(if $(CASES),--cases $(CASES)) $(ARGS)
 
 # The quick tests once more, with a look at which lines they reach; fails below the share named in pyproject.toml.
 coverage: $(VENV)/.dev
