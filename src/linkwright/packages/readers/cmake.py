@@ -230,11 +230,11 @@ class CMakeFile:
         below = into if item.endswith("/") else into / PurePosixPath(item).name
         for made, file in self._generated.items():
             if made == item:
-                yield replace(file, destination=str(into / (rule.renamed or PurePosixPath(made).name)))
+                yield file._replace(destination=str(into / (rule.renamed or PurePosixPath(made).name)))
             elif made.startswith(f"{item.rstrip('/')}/"):
                 inside = PurePosixPath(made).relative_to(item)
                 if rule.takes(item, inside):
-                    yield replace(file, destination=str(below / inside))
+                    yield file._replace(destination=str(below / inside))
 
     def _make(self, source: str, destination: str, values: dict[str, str] | None = None, content: str = "") -> None:
         """Note a file that the build makes and installs; more content for the same file is added to it."""

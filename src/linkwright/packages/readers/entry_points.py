@@ -6,9 +6,8 @@ import ast
 import re
 import sys
 from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 PROGRAMS = "console_scripts"
 """The group of the programs that a package installs."""
@@ -17,8 +16,7 @@ LINE = re.compile(r"\s*([^\s=]+)\s*=\s*([\w.]+)\s*(?::\s*([\w.]+))?")
 """Name, module and attribute of an entry point; the attribute may be missing."""
 
 
-@dataclass(frozen=True, slots=True)
-class EntryPoint:
+class EntryPoint(NamedTuple):
     """A function that is a program.
 
     Attributes:

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
-_PLACEHOLDER = re.compile(r"@(\w+)@|\$\{(\w+)\}")
+_PLACEHOLDER = r"@(\w+)@|\$\{(\w+)\}"
 
 
-@dataclass(frozen=True, slots=True)
-class InstalledFile:
+class InstalledFile(NamedTuple):
     """A file that is installed.
 
     Attributes:
@@ -41,4 +40,4 @@ class InstalledFile:
             return self.content
         values = self.values or {}
         text = (package / self.source).read_text(encoding="utf-8", errors="replace")
-        return _PLACEHOLDER.sub(lambda match: values.get(match[1] or match[2], ""), text)
+        return re.sub(_PLACEHOLDER, lambda match: values.get(match[1] or match[2], ""), text)

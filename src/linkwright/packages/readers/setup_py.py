@@ -1,4 +1,8 @@
-"""What a ``setup.py`` installs, read from its syntax tree without running it."""
+"""What a ``setup.py`` installs, read from its syntax tree without running it.
+
+Each ``$(find PACKAGE)`` of sources reads one. So what is only facts is a named tuple here and in what this loads:
+Python makes its class in a sixth of the time that a frozen data class takes.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from glob import glob
 from pathlib import Path
+from typing import NamedTuple
 
 from linkwright.diagnostics import SourceText, Span
 from linkwright.packages.readers.entry_points import LINE, PROGRAMS
@@ -14,16 +19,14 @@ from linkwright.packages.readers.installed_file import InstalledFile
 from linkwright.packages.readers.python_values import Pattern, PythonFile, argument_of, called_name
 
 
-@dataclass(frozen=True, slots=True)
-class SyntaxMistake:
+class SyntaxMistake(NamedTuple):
     """Why a file is no Python, and where."""
 
     message: str
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class Installed:
+class Installed(NamedTuple):
     """A file or a pattern of files that is installed.
 
     Attributes:
@@ -49,8 +52,7 @@ class Installed:
         return [name.replace("\\", "/") for name in found if (package / name).is_file()]
 
 
-@dataclass(frozen=True, slots=True)
-class Program:
+class Program(NamedTuple):
     """An executable: its name, the module and function it runs, and where that is written."""
 
     executable: str
