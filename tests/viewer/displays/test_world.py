@@ -370,6 +370,13 @@ async def test_the_rays_of_lidars_are_listened_to_while_they_are_drawn():
         assert shown["lidar"] == "scout::head::laser"
         assert shown["ranges"].reshape(16, 44)[1, :3].tolist() == [2000.0, 2023.0, 2046.0]
 
+        revision = sent(made, "world_scene").fields["revision"]  # of a recording the world is told again
+        simulation.description.publish(String(WORLD.replace("</world>", SEEING)))
+        await eventually(lambda: sent(made, "world_scene").fields["revision"] > revision)
+        assert sent(made, "world_rays") is not None
+        made.display("World").time_reset()
+        assert sent(made, "world_rays") is None
+
         made.display("World").set_property(("Lidar Rays",), "All")
         assert listened(made) == {"/world_rays", "/world_rays/others"}
         made.display("World").set_property(("Lidar Rays",), "None")

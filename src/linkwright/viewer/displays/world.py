@@ -153,7 +153,8 @@ class WorldDisplay(TopicDisplay):
         self._rays.go_on()
 
     def time_reset(self) -> None:
-        """The world is what it was: nobody would say it again."""
+        """The world is what it was: nobody would say it again. Rays are measured anew."""
+        self._rays.forget()
 
     def reset(self) -> None:
         """Show no world until there is another description."""
@@ -261,8 +262,8 @@ class WorldDisplay(TopicDisplay):
             daylight(world.scene.sky),
             fog_of(world.scene.fog),
         )
-        self._rays.describe(lidars)
         self.send(scene, key=_SCENE_KEY)
+        self._rays.describe(lidars)
         self._follow_rays()
         self.say(
             _WORLD, "ok", phrase("{models} models, {links} links", models=len(world.models), links=len(content.links))

@@ -18,6 +18,8 @@ CHOICES = ("Visualized", "All", "None")
 """Which sensors are drawn: those that say so themselves, all, or none."""
 _OTHERS = "/others"
 """Ends the topic of the lidars that do not say so."""
+_MOST_KEPT = 64
+"""Lidars whose last rays are kept until the world is known."""
 
 
 class LidarRays:
@@ -33,12 +35,21 @@ class LidarRays:
         self._show, self._hide = show, hide
         self._lidars: dict[str, ShownLidar] = {}
         self._shown: set[str] = set()
+        self._last: dict[str, Any] = {}
         self._topics: dict[str, SideTopic] = {}
         self._host = host
 
     def describe(self, lidars: Iterable[ShownLidar]) -> None:
         """Take the lidars of a world."""
         self._lidars = {each.scene.name: each for each in lidars}
+        self._let_go(set())
+        self._last = {name: message for name, message in self._last.items() if name in self._lidars}
+        for message in list(self._last.values()):
+            self._measured(message)
+
+    def forget(self) -> None:
+        """Draw no rays until others are measured."""
+        self._last.clear()
         self._let_go(set())
 
     def follow(self, topic: str, choice: str) -> Phrase | None:
@@ -82,7 +93,11 @@ class LidarRays:
         name = message.header.frame_id
         lidar = self._lidars.get(name)
         ranges = np.asarray(message.ranges, dtype=np.float32)
-        if lidar is None or ranges.size != lidar.measured[0] * lidar.measured[1]:
+        if lidar is not None and ranges.size != lidar.measured[0] * lidar.measured[1]:
+            return
+        if name in self._last or len(self._last) < _MOST_KEPT:  # its lidar may be told of only now, as in a recording
+            self._last[name] = message
+        if lidar is None:
             return
         rows, columns = lidar.every
         self._shown.add(name)
