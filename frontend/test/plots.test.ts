@@ -147,12 +147,12 @@ describe("plots", () => {
     plots.addSeries(plots.addPlot(), { topic: "/a", path: "x" });
     expect(sent).toEqual([]);
     plots.setOpen(true);
-    const wanted = { type: "watch_series", series: [{ id: plots.series[0]?.id, topic: "/a", path: "x" }] };
+    const wanted = { type: "watch_series", series: [{ id: plots.series[0]?.id, topic: "/a", path: "x" }], seconds: 30 };
     expect(sent.at(-1)).toEqual(wanted);
     connection.message.emit({ type: "hello", protocol: 3, version: "1", title: "" });
     expect(sent.filter((message) => JSON.stringify(message) === JSON.stringify(wanted))).toHaveLength(2);
     plots.setOpen(false);
-    expect(sent.at(-1)).toEqual({ type: "watch_series", series: [] });
+    expect(sent.at(-1)).toEqual({ type: "watch_series", series: [], seconds: 30 });
   });
 
   it("follow the newest value, and hold when they are paused", () => {
@@ -172,6 +172,26 @@ describe("plots", () => {
     plots.setPaused(false);
     expect(plots.window).toEqual([80, 110]);
     expect(plots.series[0]?.buffer.length).toBe(2);
+  });
+
+  it("begin anew where another time is shown, and take what was before it", () => {
+    const { plots, connection } = made();
+    plots.addSeries(plots.addPlot(), { topic: "/a", path: "x" });
+    const id = plots.series[0]?.id ?? 0;
+    const take = (...times: number[]): void =>
+      connection.samples.emit([{ id, received: Float64Array.from(times), stamps: Float64Array.from(times, () => NaN), values: Float64Array.from(times) }]);
+    const values = (): number[] => [...(plots.series[0]?.buffer.values ?? [])];
+    take(100, 101, 102);
+    connection.message.emit({ type: "time_reset" });
+    expect(values()).toEqual([100, 101, 102]);
+    take(100.5, 100.75);
+    expect(values()).toEqual([100, 100.5, 100.75]);
+    connection.message.emit({ type: "playhead", position: 50, playing: false, speed: 1, loop: false, seeks: 1, problem: "", live: false });
+    connection.message.emit({ type: "time_reset" });
+    expect(values()).toEqual([]);
+    take(50);
+    take(48, 49, 50);
+    expect(values()).toEqual([48, 49, 50]);
   });
 
   it("are remembered", () => {

@@ -95,9 +95,10 @@ export interface AskFields {
   type: "ask_fields";
 }
 
-/** All series that the page plots from now on. */
+/** All series that the page plots from now on, and how many seconds of the past it shows of them. */
 export interface WatchSeries {
   series: PlotSeries[];
+  seconds: number;
   type: "watch_series";
 }
 

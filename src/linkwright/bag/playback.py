@@ -168,6 +168,24 @@ class Playback:
         self._wanted = self._output.wanted()
         self._open_stream()
 
+    def before(self, topics: Collection[str], length_ns: int, most_bytes: int) -> list[Recorded]:
+        """The messages of some topics of so much time up to the one that is shown; none of more bytes."""
+        found: list[Recorded] = []
+        size = 0
+        try:
+            for message in self._recording.messages(topics, self.position_ns - length_ns):
+                size += len(message[2])
+                if message[1] > self.position_ns:
+                    break
+                if size > most_bytes:
+                    found = []
+                    break
+                found.append(message)
+            self._open_stream()  # of a file, only one can be read at a time
+        except LinkwrightError as error:
+            self._fail(error)
+        return found
+
     def review(self) -> None:
         """Look who listens: a topic that nobody listened to before begins with its last message."""
         wanted = self._output.wanted()

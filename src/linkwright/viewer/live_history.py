@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
 
@@ -152,6 +152,22 @@ class LiveHistory:
             before = [(name, reset, data) for name, _, data in self.history.state_at(lasting, reset - 1)]
             messages = [*before, *(each for each in messages if each[1] >= reset)]
         return in_simulated_time(messages)
+
+    def before(self, topics: Collection[str], length_ns: int, most_bytes: int) -> list[Recorded]:
+        """The messages of some topics of so much time up to the one that is shown; none of more bytes."""
+        if not self.live:
+            return self.playback.before(topics, length_ns, most_bytes)
+        history = self.history
+        end_ns = history.end_ns
+        found, size = [], 0
+        for message in history.messages(topics, end_ns - length_ns):
+            size += len(message[2])
+            if message[1] > end_ns:
+                break
+            if size > most_bytes:
+                return []
+            found.append(message)
+        return found
 
     def close(self) -> None:
         """Keep nothing more."""

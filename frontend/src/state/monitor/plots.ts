@@ -42,6 +42,7 @@ export class PlotsState {
   source: TimeSource = "received";
   private heldAt: readonly [number, number] | null = null;
   private opened = false;
+  private present = true;
   private nextId = 1;
 
   constructor(
@@ -60,6 +61,11 @@ export class PlotsState {
       this.changed.emit();
     });
     connection.on("topic_fields", (fields) => this.fieldsTold.emit(fields));
+    connection.on("playhead", ({ live }) => (this.present = live));
+    // What was plotted is of another time than the one that is shown now.
+    connection.on("time_reset", () => {
+      if (!this.present) this.clear();
+    });
     connection.samples.on((samples) => this.take(samples));
   }
 
@@ -198,6 +204,6 @@ export class PlotsState {
 
   private announce(): void {
     const series = this.opened ? this.series.map(({ id, topic, path }) => ({ id, topic, path })) : [];
-    this.connection.send({ type: "watch_series", series });
+    this.connection.send({ type: "watch_series", series, seconds: this.seconds });
   }
 }

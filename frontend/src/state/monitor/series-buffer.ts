@@ -44,6 +44,8 @@ export class SeriesBuffer {
       const time = received[index] ?? 0;
       const header = stamps[index] ?? NaN;
       const stamp = Number.isNaN(header) ? time : header;
+      // What was received before is told again: of another time of a recording, with what came before that.
+      if (this.count > 0 && time < (this.received[this.count - 1] ?? 0)) this.count = this.indexFrom("received", time);
       if (this.count > 0 && stamp < (this.stamps[this.count - 1] ?? 0) - RESET_SECONDS) this.count = 0;
       this.received[this.count] = time;
       this.stamps[this.count] = stamp;

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Callable, Collection
 from math import isfinite
 from typing import TYPE_CHECKING, ClassVar
 
@@ -25,6 +26,7 @@ from linkwright.viewer.protocol.timeline import (
 from linkwright.viewer.web.audience import Page
 
 if TYPE_CHECKING:
+    from linkwright.bag.moments import Recorded
     from linkwright.bag.playback import Playback
     from linkwright.bag.reading import BagReader
 
@@ -48,6 +50,9 @@ class TimelineFeature(PageFeature):
 
     Without a recording, nor a history of what comes, it does nothing. A recording begins to play
     when the first page opens.
+
+    Attributes:
+        jumped: called when another time is shown than the next one.
     """
 
     RECEIVES: ClassVar[tuple[type, ...]] = (Play, SeekTime, StepTime, SetPlayback, GoLive)
@@ -62,6 +67,8 @@ class TimelineFeature(PageFeature):
         self._telling: asyncio.TimerHandle | None = None
         self._live: LiveHistory | None = None
         self._was_playing = False
+        self._was_live = True
+        self.jumped: list[Callable[[], object]] = []
         self._loop = asyncio.get_running_loop()
 
     def attach(self, playback: Playback, bag: BagReader) -> None:
@@ -136,6 +143,20 @@ class TimelineFeature(PageFeature):
                 playback.set_speed(speed)
                 playback.set_loop(loop)
 
+    def before(self, topics: Collection[str], seconds: float, most_bytes: int) -> list[Recorded]:
+        """The messages of some topics of so many seconds up to the time that is shown, where they are known.
+
+        Args:
+            topics: which; of what came in the last minutes, those that the viewer is subscribed to are known.
+            seconds: how much time.
+            most_bytes: of messages that are larger together there are none.
+        """
+        if self._live is None and self._recorded is None:
+            return []
+        source = self._recorded if self._live is None else self._live
+        assert source is not None
+        return source.before(topics, round(seconds * _SECOND), most_bytes)
+
     def close(self) -> None:
         """Play nothing more."""
         if self._timer is not None:
@@ -157,12 +178,21 @@ class TimelineFeature(PageFeature):
         for manager in self.managers.all():
             manager.reset_time()
             manager.publish(TimeReset())
+        self._tell_jump()
+
+    def _tell_jump(self) -> None:
+        for jumped in self.jumped:
+            jumped()
 
     def _changed(self) -> None:
         if self._timer is not None:
             self._timer.cancel()
             self._timer = None
         live = self._live
+        if live is not None and live.live is not self._was_live:
+            self._was_live = live.live
+            if live.live:
+                self._tell_jump()
         if live is not None and not live.live:
             playing = live.playback.playing
             caught_up = live.span_ns[1] - live.playback.position_ns < _PRESENT_NS

@@ -130,9 +130,10 @@ class AskFields(PageMessage):
 
 
 class WatchSeries(PageMessage):
-    """All series that the page plots from now on."""
+    """All series that the page plots from now on, and how many seconds of the past it shows of them."""
 
     series: list[PlotSeries]
+    seconds: float = 30.0
 
 
 def pack_samples(series: Sequence[tuple[int, NDArray[Any]]]) -> bytes:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import math
+import asyncio
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from itertools import pairwise
@@ -15,8 +15,10 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import MessageInfo
 from linkwright.viewer.context import ViewerContext
 from linkwright.viewer.features.monitor.field_paths import FieldPath, FieldPathError, plot_fields
+from linkwright.viewer.features.monitor.past_samples import past_samples, sample_of
 from linkwright.viewer.features.monitor.topic_tap import Paced, TopicTap
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
+from linkwright.viewer.features.timeline import TimelineFeature
 from linkwright.viewer.protocol.monitor import (
     AskFields,
     PlotSeries,
@@ -88,7 +90,18 @@ def thinned(samples: NDArray[Any], most: int) -> NDArray[Any]:
 
 
 _PERIOD = 1 / 30
-_NANO = 1e-9
+
+_MOST_PAST = 2048
+"""Samples of a series of the time before the one that is shown: two for each column of pixels."""
+
+_MOST_PAST_BYTES = 64 << 20
+"""Of messages that are read for them."""
+
+_QUIET = 0.1
+"""Seconds without another jump of time, before the past is read: while the timeline is dragged there are many."""
+
+_LONGEST_PAST = 600.0
+"""Seconds of the past that a page may ask for."""
 
 
 @dataclass(slots=True)
@@ -99,6 +112,21 @@ class _Series:
     path: FieldPath | None
     error: str | None
     queue: SampleQueue = field(default_factory=SampleQueue)
+    past: NDArray[np.float64] | None = None
+
+    def has_samples(self) -> bool:
+        """Whether there is something to send."""
+        return self.past is not None or len(self.queue) > 0
+
+    def take(self) -> NDArray[np.float64]:
+        """What waits to be sent: array, shape (3, M). What was before comes first, and the page begins anew there."""
+        waiting, past, self.past = self.queue.take(), self.past, None
+        return waiting if past is None else np.hstack([past, waiting])
+
+    def forget(self) -> None:
+        """Drop what waits: it is of another time than the one that is shown."""
+        self.past = None
+        self.queue.take()
 
 
 class _Channel:
@@ -137,20 +165,32 @@ class _Channel:
         series.error = error
 
     def _take(self, message: Any, info: MessageInfo) -> None:
-        received = info.received_timestamp * _NANO
-        header = getattr(message, "header", None)
-        stamp = getattr(header, "stamp", None)
-        stamped = math.nan if stamp is None else stamp.nanoseconds * _NANO
-        values: dict[str, float | None] = {}
+        values: dict[str, tuple[float, float, float] | None] = {}
         for series in self.series:
             if series.error is not None or series.path is None:
                 continue
             text = series.path.text
             if text not in values:
-                values[text] = series.path.value(message)
-            value = values[text]
-            if value is not None:
-                series.queue.add(received, stamped, value)
+                values[text] = sample_of(series.path, message, info.received_timestamp)
+            sample = values[text]
+            if sample is not None:
+                series.queue.add(*sample)
+        self._came()
+
+    def take_past(self, seconds: Callable[[_Series], float], timeline: TimelineFeature) -> None:
+        """Give those that wait for it what was before the time that is shown."""
+        cls = self.tap.message_class
+        feeding = [each for each in self.series if each.error is None and each.path is not None]
+        if cls is None or not feeding:
+            return
+        longest = max(map(seconds, feeding))
+        messages = timeline.before({self.tap.topic}, longest, _MOST_PAST_BYTES)
+        for series in feeding:
+            assert series.path is not None
+            samples = past_samples(series.path, cls, messages)
+            if samples.shape[1] > 0:
+                series.forget()  # what waits is among them
+                series.past = thinned(samples, _MOST_PAST)
         self._came()
 
 
@@ -161,15 +201,16 @@ class _Plots:
 
     def __init__(self) -> None:
         self.series: dict[int, _Series] = {}
+        self.seconds = 0.0
         self.told: list[SeriesState] = []
 
     def has_samples(self) -> bool:
         """Whether there is something to send."""
-        return any(len(series.queue) for series in self.series.values())
+        return any(series.has_samples() for series in self.series.values())
 
     def since(self, seen: int) -> tuple[bytes | None, int]:
         """The frame with all samples that wait; see `Changes`."""
-        ready = [(identity, series.queue.take()) for identity, series in self.series.items() if len(series.queue)]
+        ready = [(identity, series.take()) for identity, series in self.series.items() if series.has_samples()]
         return pack_samples(ready) if ready else None, seen
 
 
@@ -182,11 +223,14 @@ class PlotsFeature(PageFeature):
         self._channels: dict[str, _Channel] = {}
         self._questions: dict[Page, TopicTap] = {}
         self._turn = Paced(self._send, _PERIOD)
+        self._timeline = viewer.add_feature(TimelineFeature)
+        self._timeline.jumped.append(self._jumped)
+        self._reading: asyncio.TimerHandle | None = None
 
     def receive(self, page: Page, message: AskFields | WatchSeries) -> None:
         """Do what a page asks for."""
         if isinstance(message, WatchSeries):
-            self._watch(page, message.series)
+            self._watch(page, message.series, message.seconds)
         else:
             self._stop_asking(page)
             if message.topic is not None:
@@ -195,7 +239,7 @@ class PlotsFeature(PageFeature):
     def page_gone(self, page: Page) -> None:
         """Forget the page's series."""
         self._stop_asking(page)
-        self._watch(page, [])
+        self._watch(page, [], 0.0)
         self._pages.pop(page, None)
 
     def close(self) -> None:
@@ -203,11 +247,16 @@ class PlotsFeature(PageFeature):
         for page in {*self._pages, *self._questions}:
             self.page_gone(page)
         self._turn.cancel()
+        self._timeline.jumped.remove(self._jumped)
+        if self._reading is not None:
+            self._reading.cancel()
 
     # --- series ------------------------------------------------------------------------------------------------
 
-    def _watch(self, page: Page, wanted: list[PlotSeries]) -> None:
+    def _watch(self, page: Page, wanted: list[PlotSeries], seconds: float) -> None:
         plots = self._pages.setdefault(page, _Plots())
+        longer = plots.seconds < seconds <= _LONGEST_PAST
+        plots.seconds = seconds if 0 < seconds <= _LONGEST_PAST else plots.seconds
         have = plots.series
         asked = {series.id: series for series in wanted}
         new = {identity: series for identity, series in asked.items() if self._is_new(have, series)}
@@ -215,9 +264,32 @@ class PlotsFeature(PageFeature):
             self._drop(have.pop(identity))
         for identity, series in new.items():
             have[identity] = self._add(series)
+        if wanted and (new or longer):
+            self._read_past_soon()
         if wanted:
             plots.told = []
             self._turn.ask()
+
+    # --- what was before the time that is shown ----------------------------------------------------------------
+
+    def _jumped(self) -> None:
+        for plots in self._pages.values():
+            for series in plots.series.values():
+                series.forget()
+        self._read_past_soon()
+
+    def _read_past_soon(self) -> None:
+        if self._reading is not None:
+            self._reading.cancel()
+        self._reading = asyncio.get_running_loop().call_later(_QUIET, self._read_past)
+
+    def _read_past(self) -> None:
+        self._reading = None
+        seconds = {id(series): plots.seconds for plots in self._pages.values() for series in plots.series.values()}
+        for channel in list(self._channels.values()):
+            channel.take_past(lambda series: seconds.get(id(series), 0.0), self._timeline)
+
+    # -----------------------------------------------------------------------------------------------------------
 
     @staticmethod
     def _is_new(have: dict[int, _Series], series: PlotSeries) -> bool:

@@ -1,0 +1,40 @@
+"""Samples for plots of messages as they were recorded."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.messages import deserialize
+from linkwright.viewer.features.monitor.field_paths import FieldPath
+
+if TYPE_CHECKING:
+    from linkwright.bag.moments import Recorded
+
+_NANO = 1e-9
+
+_MOST_READ = 3000
+"""Messages that are read; of more, evenly spread ones: reading one takes some ten microseconds."""
+
+
+def sample_of(path: FieldPath, message: Any, received_ns: int) -> tuple[float, float, float] | None:
+    """A sample: when it was received and the stamp of the header (NaN for none), seconds, and the number of a field.
+
+    None where the message has no such field.
+    """
+    value = path.value(message)
+    if value is None:
+        return None
+    stamp = getattr(getattr(message, "header", None), "stamp", None)
+    return received_ns * _NANO, math.nan if stamp is None else stamp.nanoseconds * _NANO, value
+
+
+def past_samples(path: FieldPath, cls: Any, messages: Sequence[Recorded]) -> NDArray[np.float64]:
+    """Samples of recorded messages of a class: array, shape (3, M), as `sample_of` has them in its rows."""
+    step = -(-len(messages) // _MOST_READ) or 1
+    read = [sample_of(path, deserialize(data, cls), stamp_ns) for _, stamp_ns, data in messages[::-1][::step]]
+    return np.array([each for each in reversed(read) if each is not None], dtype=np.float64).reshape(-1, 3).T
