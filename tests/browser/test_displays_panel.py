@@ -155,6 +155,11 @@ def test_why_a_display_shows_nothing_is_told_where_one_looks(live, open_page):
     assert why in card.inner_text()
     assert page.get_by_text("No problems found.").is_hidden()
     assert page.locator("[data-key='display-1'] .row-title").get_attribute("title").splitlines() == ["Clicks", why]
+    page.evaluate("window.shownFirst = document.querySelector('.diagnostic .to-display')")
+    viewer.run(lambda: viewer.node.create_publisher(PointStamped, "/clicked_point", 1))
+    card.get_by_text("nothing came yet").wait_for()
+    assert page.evaluate("window.shownFirst.isConnected"), "what is about to be clicked is not replaced"
+    why = card.locator("li").inner_text()
     card.get_by_role("button", name="Clicks").click()
     page.locator(".help .trouble").wait_for()
     assert page.locator(".help .trouble").inner_text() == why

@@ -16,7 +16,7 @@ export class DiagnosticsPanel implements Panel {
   private readonly findings = h("div", { aria: { live: "polite" } });
   private readonly displays = h("div");
   private readonly none = h("p", { class: "empty" }, icon("check", "level-ok"), strings.diagnostics.none);
-  private shown = "";
+  private cards: ReadonlyMap<string, TroubleCard> = new Map<string, TroubleCard>();
 
   constructor(private readonly session: Session) {
     this.element.append(this.none, this.findings, this.displays);
@@ -38,15 +38,21 @@ export class DiagnosticsPanel implements Panel {
 
   private showDisplays(): void {
     const { displays } = this.session;
-    const inTrouble = displays.displays.filter((each) => each.troubles.length > 0);
     const all = troublesOf(displays.globalStatus);
-    const key = JSON.stringify([all, ...inTrouble.map((each) => [each.id, each.name, each.troubles])]);
-    if (key === this.shown) return;
-    this.shown = key;
-    this.displays.replaceChildren(
-      ...(all.length > 0 ? [troubleCard(strings.tree.globalStatus, all)] : []),
-      ...inTrouble.map((each) => troubleCard(this.rowButton(each), each.troubles)),
-    );
+    const next = new Map<string, TroubleCard>();
+    const show = (id: string, name: string, troubles: readonly StatusRow[], title: () => HTMLElement): void => {
+      if (troubles.length === 0) return;
+      const card = this.cards.get(id) ?? new TroubleCard(title());
+      card.show(name, troubles);
+      next.set(id, card);
+    };
+    show("#status", strings.tree.globalStatus, all, () => h("span"));
+    for (const each of displays.displays) show(each.id, each.name, each.troubles, () => this.rowButton(each));
+    this.cards = next;
+    const elements = [...next.values()].map((each) => each.element);
+    const before = [...this.displays.children];
+    // What is there stays the same element, whatever it says: it may be about to be clicked.
+    if (elements.length !== before.length || elements.some((each, index) => each !== before[index])) this.displays.replaceChildren(...elements);
     this.showNone();
   }
 
@@ -60,14 +66,27 @@ export class DiagnosticsPanel implements Panel {
   }
 }
 
-function troubleCard(title: Node | string, troubles: readonly StatusRow[]): HTMLElement {
-  const level = troubles[0]?.level ?? "ok";
-  return h(
-    "article",
-    { class: `diagnostic ${level === "warn" ? "warning" : level}` },
-    h("header", {}, icon(LEVEL_ICONS[level], `level-${level}`), h("strong", {}, title)),
-    h("ul", {}, ...troubles.map((row) => h("li", {}, troubleText(row)))),
-  );
+/** What is wrong with a display. */
+class TroubleCard {
+  readonly element = h("article");
+  private readonly sign = h("span");
+  private readonly list = h("ul");
+  private shown = "";
+
+  constructor(private readonly title: HTMLElement) {
+    this.element.append(h("header", {}, this.sign, h("strong", {}, this.title)), this.list);
+  }
+
+  show(name: string, troubles: readonly StatusRow[]): void {
+    const key = JSON.stringify([name, troubles]);
+    if (key === this.shown) return;
+    this.shown = key;
+    const level = troubles[0]?.level ?? "ok";
+    this.element.className = `diagnostic ${level === "warn" ? "warning" : level}`;
+    this.sign.replaceChildren(icon(LEVEL_ICONS[level], `level-${level}`));
+    this.title.textContent = name;
+    this.list.replaceChildren(...troubles.map((row) => h("li", {}, troubleText(row))));
+  }
 }
 
 type Show = (file: string, line: number) => void;
