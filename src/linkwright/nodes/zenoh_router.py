@@ -32,7 +32,7 @@ class ZenohRouter(SingleNode):
             )
         from linkwright.wire.zenoh.opening import Telling
         from linkwright.wire.zenoh.reaching import asked_for
-        from linkwright.wire.zenoh.session import configuration, listening_at, open_with
+        from linkwright.wire.zenoh.session import close_session, configuration, listening_at, open_with
         from linkwright.wire.zenoh.settings import read_router_settings
 
         config = configuration(read_router_settings())
@@ -40,7 +40,7 @@ class ZenohRouter(SingleNode):
         try:
             self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         except LinkwrightError:
-            self._session.close()
+            close_session(self._session)
             raise
         logger = self._node.get_logger()
         logger.info(f"Zenoh router at {', '.join(listening_at(config))}")
@@ -53,6 +53,8 @@ class ZenohRouter(SingleNode):
 
     def close(self) -> None:
         """End it."""
+        from linkwright.wire.zenoh.session import close_session
+
         self._telling.end()
-        self._session.close()
+        close_session(self._session)
         super().close()

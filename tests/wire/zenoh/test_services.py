@@ -9,7 +9,7 @@ from linkwright.graph.names.identity import NodeIdentity
 from linkwright.messages import get_service, type_hash
 from linkwright.wire.zenoh import attachment
 from linkwright.wire.zenoh.services import IncomingService
-from linkwright.wire.zenoh.session import open_session
+from linkwright.wire.zenoh.session import configuration, open_with
 from linkwright.wire.zenoh.settings import read_settings
 from linkwright.wire.zenoh.tokens import Token
 from tests.wire.test_services import (  # noqa: F401 - the same over Zenoh
@@ -126,7 +126,7 @@ def test_a_request_that_does_not_say_whose_it_is_is_refused(processes):
     us = processes("ours")
     asked = []
     us.node.create_service(SetBool, "flip", lambda request, response: asked.append(request) or response)
-    with open_session(read_settings()) as session:
+    with open_with(configuration(read_settings())) as session:
         key = f"{read_settings().domain_id}/flip/std_srvs::srv::dds_::SetBool_/{type_hash(SetBool)}"
         asking = session.declare_querier(key)
         us.spin_until(lambda: asking.matching_status.matching)

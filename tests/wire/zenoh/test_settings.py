@@ -2,11 +2,13 @@ from __future__ import annotations
 
 import json
 import socket
+import threading
+import time
 
 import pytest
 
 from linkwright.diagnostics import LinkwrightError, render
-from linkwright.wire.zenoh.session import configuration, open_session
+from linkwright.wire.zenoh.session import close_session, configuration, open_with
 from linkwright.wire.zenoh.settings import OVERRIDES, read_router_settings, read_settings
 
 DROPPING = "transport/link/tx/queue/congestion_control/drop"
@@ -31,7 +33,7 @@ def test_how_long_they_wait_can_be_said(wait):
     ("override", "said", "advice"),
     [
         ('listen/endpoints=["tcp/127.0.0.1:{port}"]', "already in use", "port 0"),
-        ('mode="client";connect/endpoints=["tcp/127.0.0.1:{free}"]', "Unable to connect", "start a router there first"),
+        ('mode="client";connect/endpoints=["tcp/127.0.0.1:{free}"]', "Unable to connect", ": start a router there"),
     ],
 )
 def test_why_a_session_cannot_be_opened_is_told_with_what_helps(router_port, override, said, advice):
@@ -40,9 +42,39 @@ def test_why_a_session_cannot_be_opened_is_told_with_what_helps(router_port, ove
         taken.listen()
         text = override.format(port=taken.getsockname()[1], free=router_port)
         with pytest.raises(LinkwrightError) as refused:
-            open_session(read_settings({OVERRIDES: text}))
+            open_with(configuration(read_settings({OVERRIDES: text})))
     (finding,) = refused.value.diagnostics
     assert finding.code == "DDS112"
     assert said in render(finding)
     assert advice in render(finding)
     assert "/src/" not in render(finding)
+
+
+class StandsStill:
+    """A session on a line that is full, which Zenoh waits for."""
+
+    def __init__(self):
+        self.free = threading.Event()
+        self.closed = threading.Event()
+
+    def close(self):
+        self.free.wait()
+        self.closed.set()
+
+
+def test_the_end_of_a_process_does_not_wait_for_a_line_that_is_full(monkeypatch):
+    monkeypatch.setattr("linkwright.wire.zenoh.session._CLOSING_LIMIT", 0.01)
+    session = StandsStill()
+    begun = time.monotonic()
+    close_session(session)
+    assert time.monotonic() - begun < 60
+    assert not session.closed.is_set()
+    session.free.set()
+    assert session.closed.wait(60)
+
+
+def test_a_session_is_closed_when_the_end_of_a_process_goes_on():
+    session = StandsStill()
+    session.free.set()
+    close_session(session)
+    assert session.closed.is_set()

@@ -18,7 +18,7 @@ from linkwright.graph.qos.profile import (
 from linkwright.graph.time.values import Duration
 from linkwright.messages import String, serialize, type_hash
 from linkwright.wire.zenoh import transport
-from linkwright.wire.zenoh.session import open_session
+from linkwright.wire.zenoh.session import configuration, open_with
 from linkwright.wire.zenoh.settings import read_settings
 from linkwright.wire.zenoh.tokens import Token
 from linkwright.wire.zenoh.topics import OutgoingTopic
@@ -128,7 +128,7 @@ def test_closing_a_publisher_that_keeps_messages_waits_for_no_callback(processes
         told.set()
         time.sleep(0.3)  # and then needs the lock
 
-    with open_session(read_settings()) as ours, open_session(read_settings()) as theirs:
+    with open_with(configuration(read_settings())) as ours, open_with(configuration(read_settings())) as theirs:
 
         def announced(name: str, number: str, qos: QoSProfile) -> OutgoingTopic:
             publisher = node.create_publisher(String, name, qos)
@@ -191,7 +191,7 @@ def test_humble_has_no_hashes(processes, monkeypatch):
     a.spin_until(lambda: publisher.get_subscription_count() == 1)
     publisher.publish(String(data="hej"))
     b.spin_until(lambda: got)
-    with open_session(read_settings()) as session:
+    with open_with(configuration(read_settings())) as session:
         key = f"{read_settings().domain_id}/chatter/std_msgs::msg::dds_::String_/TypeHashNotSupported"
         probe = session.declare_publisher(key)
         b.spin_until(lambda: probe.matching_status.matching)
@@ -201,7 +201,7 @@ def test_a_sample_that_does_not_say_whose_it_is_is_dropped_and_told_once(process
     us = processes("ours")
     got: list[str] = []
     us.node.create_subscription(String, "chatter", lambda message: got.append(message.data), 10)
-    with open_session(read_settings()) as session:
+    with open_with(configuration(read_settings())) as session:
         key = f"{read_settings().domain_id}/chatter/std_msgs::msg::dds_::String_/{type_hash(String)}"
         stranger = session.declare_publisher(key, congestion_control=zenoh.CongestionControl.BLOCK)
         us.spin_until(lambda: stranger.matching_status.matching)
@@ -217,7 +217,7 @@ def test_bytes_of_a_type_that_is_not_known_here_are_passed_on(processes):
     us = processes("ours")
     got: list[bytes] = []
     us.node.create_subscription("strange_msgs/msg/Odd", "odd", got.append, 10, raw=True)
-    with open_session(read_settings()) as session:
+    with open_with(configuration(read_settings())) as session:
         from linkwright.wire.zenoh import attachment
 
         stranger = session.declare_publisher(f"{read_settings().domain_id}/odd/strange_msgs::msg::dds_::Odd_/RIHS01_00")

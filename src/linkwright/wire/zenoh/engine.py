@@ -29,7 +29,7 @@ from linkwright.wire.zenoh.interests import OURS, Interests
 from linkwright.wire.zenoh.opening import Patience
 from linkwright.wire.zenoh.remote import RemoteGraph
 from linkwright.wire.zenoh.services import IncomingService, OutsideServer
-from linkwright.wire.zenoh.session import configuration, is_client
+from linkwright.wire.zenoh.session import close_session, configuration, is_client
 from linkwright.wire.zenoh.settings import Settings
 from linkwright.wire.zenoh.tokens import Token
 
@@ -119,7 +119,7 @@ class Engine:
         for mirrored in self._mirrored.values():
             mirrored.close()
         self._interests.close()
-        self._session.close()
+        close_session(self._session)
 
     def abandon(self) -> None:
         """Send nothing more, and keep all that is Zenoh's for ever: in a forked process its end would wait for ever."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import threading
 
 import zenoh
 
@@ -15,15 +16,8 @@ _PLACE = re.compile(r"\s+at /\S+?:\d+\.?")
 _NOT_CONNECTED = "Unable to connect"
 _TAKEN = "already in use"
 _TLS_FILES = "new TLS listener"
-
-
-def open_session(settings: Settings) -> zenoh.Session:
-    """A session.
-
-    Raises:
-        LinkwrightError: DDS111, the configuration is refused; DDS112, the session cannot be opened with it.
-    """
-    return open_with(configuration(settings))
+_CLOSING_LIMIT = 3.0
+"""Seconds."""
 
 
 def open_with(config: zenoh.Config) -> zenoh.Session:
@@ -36,6 +30,20 @@ def open_with(config: zenoh.Config) -> zenoh.Session:
         return zenoh.open(config)
     except zenoh.ZError as error:
         raise refusal(error, config) from error
+
+
+def close_session(session: zenoh.Session) -> None:
+    """Close a session, or leave that to Zenoh where it takes long: it waits for lines that are full, without a limit.
+
+    Returns after `_CLOSING_LIMIT` at the latest; the process can end then.
+    """
+    closing = threading.Thread(target=session.close, name="linkwright-zenoh-close", daemon=True)
+    try:
+        closing.start()
+    except RuntimeError:  # Python ends already, and starts no threads any more
+        session.close()
+    else:
+        closing.join(_CLOSING_LIMIT)
 
 
 def refusal(error: zenoh.ZError, config: zenoh.Config) -> LinkwrightError:
