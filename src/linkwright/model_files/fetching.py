@@ -6,6 +6,7 @@ import http.client
 import urllib.error
 import urllib.request
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import cast
 
@@ -91,6 +92,8 @@ def _fetch_rest(entry: ModelEntry, address: str, part: Path, progress: Progress)
                     file.write(block)
                     file.flush()
                 except OSError as error:
+                    with suppress(OSError):  # from Python 3.14 on it tries again to write what could not be written
+                        file.close()
                     raise cannot_write(part, error) from None
                 done += len(block)
                 progress(done, total)
