@@ -74,14 +74,23 @@ ROS_FOLDER := .build/ros$(patsubst -jazzy,,-$(ROS))
 ROS_WHEELS_jazzy := ros-rclpy==7.1.6 ros-rmw-fastrtps-cpp==8.4.3 ros-common-interfaces==5.3.6 ros-test-msgs==2.0.3
 ROS_WHEELS_kilted := ros-rclpy==9.1.2 ros-rmw-fastrtps-cpp==9.3.3 ros-common-interfaces==5.5.1 ros-test-msgs==2.3.0
 
-test-ros: $(VENV)/.dev $(ROS_FOLDER)/.ready
+test-ros: $(VENV)/.dev $(ROS_FOLDER)/types/.ready
 	LINKWRIGHT_ROS_PYTHON=$(CURDIR)/$(ROS_FOLDER)/bin/python RMW_IMPLEMENTATION=rmw_fastrtps_cpp \
+		$(if $(shell command -v g++),LINKWRIGHT_ROS_TYPES=$(CURDIR)/$(ROS_FOLDER)/types) \
 		$(BIN)/pytest $(wildcard tests/wire/test_real_*.py) \
 		tests/standins/test_field_rules.py $(if $(filter jazzy,$(ROS)),tests/standins/test_real_names.py) $(ARGS)
 
 $(ROS_FOLDER)/.ready: | $(UV)
 	$(UV) venv --quiet --clear --python 3.12 $(ROS_FOLDER)
 	$(UV) pip install --quiet --python $(ROS_FOLDER)/bin/python $(ROS_WHEELS_$(ROS))
+	touch $@
+
+# Types that there are no wheels of, where there is a compiler: tf2's messages, and those of a package of one's own.
+ROS_TYPES := $(patsubst tests/wire/types/%,%,$(wildcard tests/wire/types/*))
+$(ROS_FOLDER)/types/.ready: tools/ros_types.py $(wildcard tests/wire/types/*/*/*.idl) $(ROS_FOLDER)/.ready
+	mkdir -p $(@D)
+	if command -v g++ > /dev/null; then AMENT_PREFIX_PATH=$(CURDIR)/$(ROS_FOLDER) PATH=$(CURDIR)/$(ROS_FOLDER)/bin:$$PATH \
+		$(ROS_FOLDER)/bin/python tools/ros_types.py $(foreach type,$(ROS_TYPES),$(type)=tests/wire/types/$(type)) $(@D); fi
 	touch $@
 
 # Over Zenoh, with nodes that another program makes of it.

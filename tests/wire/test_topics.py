@@ -9,6 +9,7 @@ from linkwright.graph.qos.profile import (
     DurabilityPolicy,
     HistoryPolicy,
     LivelinessPolicy,
+    QoSPresetProfiles,
     QoSProfile,
     ReliabilityPolicy,
 )
@@ -214,6 +215,20 @@ def test_a_publisher_outside_that_shows_no_life_is_told(processes):
     b.spin_until(lambda: seen and seen[-1].not_alive_count == 1)
     publisher.publish(String())
     b.spin_until(lambda: seen[-1].alive_count == 1 and seen[-1].not_alive_count == 0)
+
+
+def test_the_best_available_is_chosen_among_those_outside_too(processes):
+    us, them = processes("us"), processes("them")
+    best = QoSPresetProfiles.BEST_AVAILABLE.value
+    them.node.create_publisher(String, "/scan", QoSPresetProfiles.SENSOR_DATA.value)
+    them.node.create_subscription(String, "/command", print, QoSProfile(1, deadline=Duration(seconds=2)))
+    us.spin_until(lambda: us.node.count_publishers("/scan") == us.node.count_subscribers("/command") == 1)
+    us.node.create_subscription(String, "/scan", print, best)
+    us.node.create_publisher(String, "/command", best)
+    (asked,) = us.node.get_subscriptions_info_by_topic("/scan")
+    assert asked.qos_profile.reliability is ReliabilityPolicy.BEST_EFFORT
+    (offered,) = us.node.get_publishers_info_by_topic("/command")
+    assert offered.qos_profile.deadline == Duration(seconds=2)
 
 
 def test_every_type_can_be_described():

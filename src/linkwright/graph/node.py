@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from typing_extensions import Self
 
     from linkwright.graph.executors import Executor
+    from linkwright.graph.introspection.answers import TopicEndpointInfo
 
 M = TypeVar("M")
 
@@ -224,7 +225,7 @@ class Node(NodeParameters, NodeQueries):
         """
         name = self.__handle.resolve_topic_name(topic)
         qos = override_qos(self, "publisher", name, QoSProfile.of(qos_profile), qos_overriding_options)
-        others = (each.qos_profile for each in self.__local_graph.bus.subscriptions(name))
+        others = _profiles(self.get_subscriptions_info_by_topic, name)
         qos = best_available(qos, others, publisher=True)
         publisher: Publisher[M] = publisher_class(
             self.__handle, msg_type, name, qos, callback_group, event_callbacks=event_callbacks
@@ -266,7 +267,7 @@ class Node(NodeParameters, NodeQueries):
         """
         name = self.__handle.resolve_topic_name(topic)
         qos = override_qos(self, "subscription", name, QoSProfile.of(qos_profile), qos_overriding_options)
-        others = (each.qos_profile for each in self.__local_graph.bus.publishers(name))
+        others = _profiles(self.get_publishers_info_by_topic, name)
         qos = best_available(qos, others, publisher=False)
         subscription: Subscription[M] = Subscription(
             self.__handle, msg_type, name, qos, callback, callback_group, raw=raw, event_callbacks=event_callbacks
@@ -458,3 +459,8 @@ def _by_name(parameters: Mapping[str, Any] | Sequence[Parameter]) -> Mapping[str
     if isinstance(parameters, Mapping):
         return parameters
     return {parameter.name: parameter.value for parameter in parameters}
+
+
+def _profiles(ask: Callable[[str, bool], list[TopicEndpointInfo]], topic: str) -> Iterator[QoSProfile]:
+    """Those of the endpoints of a topic, in this process and outside; nobody is asked before the first is wanted."""
+    yield from (each.qos_profile for each in ask(topic, True))

@@ -1,0 +1,129 @@
+"""Every quality of service between nodes of real ROS 2 on Fast DDS and ours, and the events of it; see `test_real_ros`.
+
+Both sides run one program, `qos_peer`: one with the real rclpy, one with ours.
+"""
+
+from __future__ import annotations
+
+import os
+
+import pytest
+
+from linkwright.graph.qos.profile import QoSPolicyKind
+from linkwright.standins.process import environment
+
+PYTHON = os.environ.get("LINKWRIGHT_ROS_PYTHON", "")
+SIDES = [("theirs", "ours"), ("ours", "theirs")]
+"""Who publishes, and who subscribes."""
+SENSOR_DATA = {"preset": "sensor_data"}
+LATCHED = {"durability": "transient_local", "depth": 1}
+LIVELY = {"lease": 1.0}
+
+pytestmark = pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ROS_PYTHON names no interpreter with rclpy")
+
+
+@pytest.fixture
+def peers(programs, monkeypatch):
+    """Starts the program on one side or the other, under the name of its side."""
+    monkeypatch.setenv("ROS_DISTRO", "jazzy")  # rclpy's module of events has had its name since Iron
+
+    def start(side):
+        if side == "theirs":
+            return programs("qos_peer", side, python=PYTHON, RMW_IMPLEMENTATION="rmw_fastrtps_cpp")
+        return programs("qos_peer", side, PYTHONPATH=environment()["PYTHONPATH"])
+
+    return start
+
+
+@pytest.mark.parametrize(("says", "hears"), SIDES)
+@pytest.mark.parametrize(
+    ("offered", "requested", "policy"),
+    [
+        ({"reliability": "best_effort"}, {}, QoSPolicyKind.RELIABILITY),
+        ({}, {"durability": "transient_local"}, QoSPolicyKind.DURABILITY),
+        ({}, {"deadline": 0.5}, QoSPolicyKind.DEADLINE),
+        ({"deadline": 1.0}, {"deadline": 0.5}, QoSPolicyKind.DEADLINE),
+        ({}, {"liveliness": "manual_by_topic"}, QoSPolicyKind.LIVELINESS),
+    ],
+    ids=lambda value: str(getattr(value, "name", value)),
+)
+def test_what_does_not_fit_is_told_on_both_sides(peers, says, hears, offered, requested, policy):
+    publishes, subscribes = peers(says), peers(hears)
+    publishes.ask("publisher", "/topic", offered)
+    subscribes.ask("subscription", "/topic", requested)
+    for each in (publishes, subscribes):
+        assert each.ask_until(bool, "told", "/topic") == [["incompatible", int(policy)]]
+
+
+@pytest.mark.parametrize(("says", "hears"), SIDES)
+def test_the_best_that_is_available_always_fits(peers, says, hears):
+    publishes, subscribes = peers(says), peers(hears)
+    for number, offered in enumerate(({}, SENSOR_DATA, LATCHED, LIVELY)):
+        publishes.ask("publisher", f"/topic_{number}", offered)
+        publishes.ask("say", f"/topic_{number}", "before")
+    subscribes.ask("subscription", "/asks", LATCHED)
+    for number in range(4):
+        # What is best is chosen among those that are known then.
+        subscribes.ask_until(lambda known: known == 1, "publishers", f"/topic_{number}")
+        subscribes.ask("subscription", f"/topic_{number}", {"preset": "best_available"})
+    publishes.ask_until(lambda counts: set(counts.values()) == {1}, "listeners")
+    publishes.ask("publisher", "/asks", {"preset": "best_available"})
+    publishes.ask_until(lambda counts: counts["/asks"] == 1, "listeners")
+
+
+@pytest.mark.parametrize(("says", "hears"), SIDES)
+def test_a_deadline_that_is_missed_is_told_on_both_sides(peers, says, hears):
+    publishes, subscribes = peers(says), peers(hears)
+    publishes.ask("publisher", "/topic", {"deadline": 1.0})
+    subscribes.ask("subscription", "/topic", {"deadline": 2.0})
+    publishes.ask_until(lambda counts: counts["/topic"] == 1, "listeners")
+    publishes.ask("keep_saying", "/topic", 0.1)
+    subscribes.ask_until(lambda heard: len(heard) > 5, "heard", "/topic")
+    publishes.ask("fall_silent", "/topic")
+    for each in (publishes, subscribes):
+        each.ask_until(lambda told: [kind for kind, *_ in told].count("deadline") >= 2, "told", "/topic")
+
+
+@pytest.mark.parametrize(("says", "hears"), SIDES)
+def test_liveliness_is_lost_and_found_again(peers, says, hears):
+    """Asserted by hand, and let go."""
+    publishes, subscribes = peers(says), peers(hears)
+    by_hand = {"liveliness": "manual_by_topic", "lease": 1.0}
+    publishes.ask("publisher", "/topic", by_hand)
+    subscribes.ask("subscription", "/topic", by_hand)
+    publishes.ask_until(lambda counts: counts["/topic"] == 1, "listeners")
+    publishes.ask("assert_liveliness", "/topic")
+    subscribes.ask_until(lambda told: ["alive", 1, 0] in told, "told", "/topic")
+    subscribes.ask_until(lambda told: ["alive", 0, 1] in told, "told", "/topic")
+    publishes.ask_until(lambda told: "lost" in [kind for kind, *_ in told], "told", "/topic")
+    publishes.ask("say", "/topic", "still here")
+    subscribes.ask_until(lambda told: told.count(["alive", 1, 0]) >= 2, "told", "/topic")
+
+
+@pytest.mark.parametrize(("says", "hears"), SIDES)
+def test_a_publisher_that_is_killed_is_no_longer_alive(peers, says, hears):
+    publishes, subscribes = peers(says), peers(hears)
+    publishes.ask("publisher", "/topic", LIVELY)
+    subscribes.ask("subscription", "/topic", LIVELY)
+    subscribes.ask_until(lambda told: ["alive", 1, 0] in told, "told", "/topic")
+    publishes.kill()
+    subscribes.ask_until(lambda told: told[-1][:2] == ["alive", 0] or ["alive", 0, 1] in told, "told", "/topic")
+    subscribes.ask_until(lambda told: ["matched", 0] in told, "told", "/topic")
+
+
+@pytest.mark.parametrize(("says", "hears"), SIDES)
+def test_what_has_outlived_its_lifespan_is_told_to_nobody(peers, says, hears):
+    publishes = peers(says)
+    for topic, lifespan in (("/short", 0.5), ("/long", 300.0)):
+        publishes.ask("publisher", topic, {"durability": "transient_local", "lifespan": lifespan})
+        publishes.ask("say", topic, "old")
+    publishes.ask("publisher", "/clock", {})
+    publishes.ask("keep_saying", "/clock", 0.1)
+    subscribes = peers(hears)  # takes longer to start than the short one lives
+    subscribes.ask("subscription", "/clock", {})
+    subscribes.ask_until(lambda heard: len(heard) > 10, "heard", "/clock")
+    for topic in ("/short", "/long"):
+        subscribes.ask("subscription", topic, {"durability": "transient_local"})
+    assert subscribes.ask_until(bool, "heard", "/long") == ["old"]
+    publishes.ask("say", "/short", "new")
+    assert subscribes.ask_until(bool, "heard", "/short") == ["new"]
