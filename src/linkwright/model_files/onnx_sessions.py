@@ -16,6 +16,9 @@ CPU, CUDA = "CPUExecutionProvider", "CUDAExecutionProvider"
 _ERRORS_ONLY = 3
 _OF_THE_LIBRARY = re.compile(r"^.* failed:\s*|/onnxruntime_src/\S+ (?:.*?\) (?=[A-Z]))?")
 """Where in onnxruntime's own code something failed, which stands before the reason."""
+_SECOND_FILE = re.compile(r"\bexternal\b|cannot get file size", re.IGNORECASE)
+"""What onnxruntime says of weights in a file that is not there; the latter up to 1.23, the last one for Python 3.10."""
+
 _TOO_NEW = re.compile(r"IR version|[Oo]pset \d+")
 _START = 512
 _TEXT = frozenset(range(0x20, 0x7F)) | set(b"\t\r\n")
@@ -109,7 +112,7 @@ def _unloadable(file: Path, error: Exception) -> UnloadableNetworkError:
     if _TOO_NEW.search(str(reason)):
         newer = phrase("it is made for a newer onnxruntime: update onnxruntime, or export it with a lower opset")
         return UnloadableNetworkError(reason, newer)
-    if "external" in str(reason).lower():
+    if _SECOND_FILE.search(str(reason)):
         beside = phrase("its weights are in a second file, which has to stand beside it")
         return UnloadableNetworkError(reason, beside)
     return UnloadableNetworkError(reason, export)
