@@ -24,6 +24,8 @@ export class TreeView {
   /** What is selected besides, of the rows that can be selected severally. */
   private readonly others = new Set<string>();
   private scrollTo: string | null = null;
+  /** A row stays under the pointer from press to release, which else were on another row, and no click. */
+  private isPressed = false;
 
   constructor(
     label: string,
@@ -162,7 +164,7 @@ export class TreeView {
     const row = this.rows.get(key);
     if (!row || !news) return;
     this.selected.emit(row.item);
-    row.element.scrollIntoView({ block: "nearest" });
+    if (!this.isPressed) row.element.scrollIntoView({ block: "nearest" });
   }
 
   private showSelection(): void {
@@ -207,6 +209,8 @@ export class TreeView {
 
   /** Adding to what is selected, and the menu of several, must not move the focus: that selects one row alone. */
   private pressed(event: MouseEvent): void {
+    this.isPressed = true;
+    document.addEventListener("mouseup", () => (this.isPressed = false), { once: true });
     const key = keyOf(event.target);
     if (key === null || !this.isSeveral(key)) return;
     if (adds(event) || (event.button === 2 && this.others.size > 0 && this.isSelected(key))) event.preventDefault();
@@ -224,6 +228,7 @@ export class TreeView {
     this.select(row.item.key);
     if (target.closest(".twist")) this.setExpanded(row.item, !this.isExpanded(row.item));
     if (!target.closest(".row-value")) row.element.focus({ preventScroll: true });
+    row.element.scrollIntoView({ block: "nearest" });
   }
 
   private doubleClicked(event: MouseEvent): void {
