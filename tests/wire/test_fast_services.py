@@ -90,7 +90,8 @@ class _Heard:
     def add_writer(self, *_):
         return "writer"
 
-    def add_reader(self, *_):
+    def add_reader(self, _topic, _type_name, _facts, on_data):
+        self.deliver = on_data
         return "reader"
 
     def matched_writers(self, _):
@@ -131,6 +132,20 @@ def test_early_requests_get_the_numbers_before_the_first_that_was_heard(monkeypa
     assert not server.has_more_to_do
     server.came_early(EarlyRequest(b"w" * 16, serialize(says("eight")), 9_000_000, now))
     assert not server.has_more_to_do  # what comes from now on comes with its number
+
+
+def test_an_early_request_that_comes_late_with_its_number_is_carried_out_once(monkeypatch):
+    now = 100.0
+    monkeypatch.setattr("linkwright.wire.dds.fast_services.time.monotonic", lambda: now)
+    service, participant = _Service(), _Heard(heard_at=now, last=1)
+    server = FastServer(service, participant)
+    server.came_early(EarlyRequest(b"w" * 16, serialize(says("first")), 5_000_000, now))
+    now += 0.2
+    server.review()
+    for number, text in enumerate(["first", "second"], 1):
+        request = serialize(says(text))
+        participant.deliver(Data(b"w" * 12, b"r" * 4, b"w" * 16, number, "<", {}, request, 5_000_000 * number + 1))
+    assert service.asked == [("first", 1), ("second", 2)]
 
 
 def test_replies_to_others_may_come_while_a_client_is_made():

@@ -81,6 +81,7 @@ class FastServer:
         self._late: deque[tuple[float, bytes, int, Any]] = deque()
         self._early: list[EarlyRequest] = []
         self._seen: dict[bytes, deque[tuple[int, int]]] = {}
+        self._numbered: dict[bytes, deque[tuple[int, int]]] = {}
         self._lock = Lock()
         self._replies = participant.add_writer(dds_topic(Role.REPLY, service.name), response, facts)
         self._requests = participant.add_reader(dds_topic(Role.REQUEST, service.name), request, facts, self._on_data)
@@ -114,8 +115,11 @@ class FastServer:
         self._participant.remove(self._replies)
 
     def _on_data(self, sample: Data) -> None:
-        seen = self._seen.setdefault(sample.writer, deque(maxlen=_REMEMBERED))
-        seen.append((sample.number, sample.time))
+        with self._lock:
+            self._seen.setdefault(sample.writer, deque(maxlen=_REMEMBERED)).append((sample.number, sample.time))
+            asked = self._numbered.get(sample.writer, ())
+            if any(number == sample.number and abs(time_ - sample.time) < _SAME_TIME for number, time_ in asked):
+                return  # it came so late here that it was taken from Cyclone's reader
         told = read_related_identity(sample.inline, sample.order)
         client = sample.writer
         if told is not None and is_reader(told[0]) and told[0].startswith(sample.source):
@@ -151,16 +155,20 @@ class FastServer:
             ready = {each.writer for each in early if _is_settled(heard.get(each.writer), now)}
             self._early = [each for each in early if each.writer not in ready and now < each.came + _EARLY_WAITS]
         for writer in ready:
-            seen = tuple(self._seen.get(writer, ()))
-            known = [written for _, written in seen]
-            missed = [
-                each
-                for each in early
-                if each.writer == writer and not any(abs(each.written - time_) < _SAME_TIME for time_ in known)
-            ]
-            top = min(number for number, _ in seen) - 1 if seen else self._participant.last_of(self._requests, writer)
-            for number, request in zip(range(top - len(missed) + 1, top + 1), missed, strict=True):
+            for number, request in self._numbered_of(writer, [each for each in early if each.writer == writer]):
                 self._ask(request.body, writer, writer, number)
+
+    def _numbered_of(self, writer: bytes, early: list[EarlyRequest]) -> list[tuple[int, EarlyRequest]]:
+        """Those of the early requests of a writer that have not come here too, with their numbers."""
+        last = self._participant.last_of(self._requests, writer)
+        with self._lock:
+            seen = tuple(self._seen.get(writer, ()))
+            missed = [each for each in early if not any(abs(each.written - time_) < _SAME_TIME for _, time_ in seen)]
+            top = min(number for number, _ in seen) - 1 if seen else last
+            numbered = list(zip(range(top - len(missed) + 1, top + 1), missed, strict=True))
+            asked = self._numbered.setdefault(writer, deque(maxlen=_REMEMBERED))
+            asked.extend((number, request.written) for number, request in numbered)
+        return numbered
 
 
 class FastClient:
