@@ -80,7 +80,8 @@ class FastServer:
         request, response = map(dds_type, halves(service.type_name))
         self._late: deque[tuple[float, bytes, int, Any]] = deque()
         self._early: list[EarlyRequest] = []
-        self._seen: dict[bytes, deque[tuple[int, int]]] = {}
+        self._first: dict[bytes, tuple[int, int]] = {}
+        """Number and time of the first sample of each writer that came here; all that follow do."""
         self._numbered: dict[bytes, deque[tuple[int, int]]] = {}
         self._lock = Lock()
         self._replies = participant.add_writer(dds_topic(Role.REPLY, service.name), response, facts)
@@ -116,7 +117,7 @@ class FastServer:
 
     def _on_data(self, sample: Data) -> None:
         with self._lock:
-            self._seen.setdefault(sample.writer, deque(maxlen=_REMEMBERED)).append((sample.number, sample.time))
+            self._first.setdefault(sample.writer, (sample.number, sample.time))
             asked = self._numbered.get(sample.writer, ())
             if any(number == sample.number and abs(time_ - sample.time) < _SAME_TIME for number, time_ in asked):
                 return  # it came so late here that it was taken from Cyclone's reader
@@ -159,13 +160,14 @@ class FastServer:
                 self._ask(request.body, writer, writer, number)
 
     def _numbered_of(self, writer: bytes, early: list[EarlyRequest]) -> list[tuple[int, EarlyRequest]]:
-        """Those of the early requests of a writer that have not come here too, with their numbers."""
+        """Those of the early requests of a writer that do not come here too, with their numbers."""
         last = self._participant.last_of(self._requests, writer)
         with self._lock:
-            seen = tuple(self._seen.get(writer, ()))
-            missed = [each for each in early if not any(abs(each.written - time_) < _SAME_TIME for _, time_ in seen)]
-            top = min(number for number, _ in seen) - 1 if seen else last
-            numbered = list(zip(range(top - len(missed) + 1, top + 1), missed, strict=True))
+            if writer in self._first:
+                number, written_first = self._first[writer]
+                last = number - 1
+                early = [each for each in early if each.written < written_first - _SAME_TIME]
+            numbered = list(zip(range(last - len(early) + 1, last + 1), early, strict=True))
             asked = self._numbered.setdefault(writer, deque(maxlen=_REMEMBERED))
             asked.extend((number, request.written) for number, request in numbered)
         return numbered
