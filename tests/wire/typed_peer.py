@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import sys
 import threading
+import time
 from typing import Any
 
 import rclpy
@@ -104,6 +105,9 @@ class TypedPeer(Node):
 
         def execute(goal: Any) -> Any:
             self._asked.setdefault(name, []).append(plain(goal.request))
+            until = time.monotonic() + SECONDS / 2
+            while not self.count_subscribers(f"{_topic(name)}/_action/feedback") and time.monotonic() < until:
+                time.sleep(0.01)  # what is said before the client's subscription is known is lost
             goal.publish_feedback(made(kind.Feedback, 4))
             goal.succeed()
             return made(kind.Result, 5)
