@@ -73,15 +73,25 @@ def test_the_best_that_is_available_always_fits(peers, says, hears):
 
 @pytest.mark.parametrize(("says", "hears"), SIDES)
 def test_a_deadline_that_is_missed_is_told_on_both_sides(peers, says, hears):
+    """It begins with the first message, and is not missed while they come in time."""
     publishes, subscribes = peers(says), peers(hears)
-    publishes.ask("publisher", "/topic", {"deadline": 1.0})
-    subscribes.ask("subscription", "/topic", {"deadline": 2.0})
-    publishes.ask_until(lambda counts: counts["/topic"] == 1, "listeners")
+    for topic in ("/topic", "/silent"):
+        publishes.ask("publisher", topic, {"deadline": 2.0})
+        subscribes.ask("subscription", topic, {"deadline": 3.0})
+    publishes.ask_until(lambda counts: set(counts.values()) == {1}, "listeners")
     publishes.ask("keep_saying", "/topic", 0.1)
-    subscribes.ask_until(lambda heard: len(heard) > 5, "heard", "/topic")
+    subscribes.ask_until(lambda heard: len(heard) > 40, "heard", "/topic")
+    for each in (publishes, subscribes):
+        assert missed(each, "/topic") == 0
     publishes.ask("fall_silent", "/topic")
     for each in (publishes, subscribes):
         each.ask_until(lambda told: [kind for kind, *_ in told].count("deadline") >= 2, "told", "/topic")
+        assert missed(each, "/silent") == 0
+
+
+def missed(peer, topic):
+    """How many missed deadlines a side was told of."""
+    return [kind for kind, *_ in peer.ask("told", topic)].count("deadline")
 
 
 @pytest.mark.parametrize(("says", "hears"), SIDES)

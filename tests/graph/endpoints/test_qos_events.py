@@ -4,13 +4,14 @@ from linkwright.graph import (
     DurabilityPolicy,
     Duration,
     LivelinessPolicy,
+    MessageInfo,
     PublisherEventCallbacks,
     QoSPolicyKind,
     QoSProfile,
     ReliabilityPolicy,
     SubscriptionEventCallbacks,
 )
-from linkwright.messages import String
+from linkwright.messages import String, serialize
 
 BEST_EFFORT = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
 
@@ -73,6 +74,8 @@ async def test_missed_deadlines(graph, node, clock):
     node.create_subscription(
         String, "topic", nothing, qos, event_callbacks=SubscriptionEventCallbacks(deadline=requested.append)
     )
+    await clock.advance(5.0)
+    assert (offered, requested) == ([], [])  # it begins with the first message, as in DDS
     for _ in range(10):
         publisher.publish(String())
         await clock.advance(0.9)
@@ -83,6 +86,37 @@ async def test_missed_deadlines(graph, node, clock):
     node.destroy_node()
     await clock.advance(10.0)
     assert len(offered) == 3
+
+
+async def test_messages_of_other_processes_keep_a_deadline(node, clock):
+    missed = []
+    qos = QoSProfile(depth=1, deadline=Duration(seconds=1.0))
+    events = SubscriptionEventCallbacks(deadline=missed.append)
+    subscription = node.create_subscription(String, "topic", nothing, qos, event_callbacks=events)
+    subscription.set_outside_count(1)
+    await clock.advance(5.0)
+    for _ in range(10):
+        subscription.receive(serialize(String()), MessageInfo(1, 1, bytes(16)))
+        await clock.advance(0.9)
+    assert missed == []
+    await clock.advance(0.2)
+    assert [event.total_count for event in missed] == [1]
+
+
+async def test_a_deadline_is_missed_while_nothing_runs_the_callbacks(graph, node, clock):
+    missed = []
+    qos = QoSProfile(depth=1, deadline=Duration(seconds=1.0))
+    node.create_subscription(
+        String, "topic", nothing, qos, event_callbacks=SubscriptionEventCallbacks(deadline=missed.append)
+    )
+    publisher = node.create_publisher(String, "topic", qos)
+    node.handle.set_dispatcher(None)
+    publisher.publish(String())
+    await clock.advance(1.5)
+    assert missed == []
+    node.handle.set_dispatcher(graph.dispatcher)
+    await clock.advance(0.0)
+    assert [event.total_count for event in missed] == [1]
 
 
 async def test_liveliness(graph, node, clock):

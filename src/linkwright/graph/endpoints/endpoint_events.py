@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections import deque
 from collections.abc import Callable
 from functools import partial
@@ -30,39 +31,49 @@ from linkwright.graph.time.timebase import Alarm
 
 
 class _Watch:
-    """Calls a function whenever a limit of time passes without a sign of life."""
+    """Calls a function whenever a limit of time passes without a sign of life, of which there was one before."""
 
     def __init__(self, owner: EndpointEvents, limit: int, missed: Callable[[], None]) -> None:
         self._owner = owner
         self._limit_ns = limit
         self._missed = missed
-        self._last_ns = 0
+        self._last_ns: int | None = None
         self._alarm: Alarm | None = None
+        self._lock = threading.Lock()
 
     def sign(self) -> None:
-        """A sign of life: the limit counts from now."""
-        self._last_ns = self._owner.node.timebase.steady_ns()
-        if self._alarm is None:
+        """A sign of life, from any thread: the limit counts from now."""
+        with self._lock:
+            self._last_ns = self._owner.node.timebase.steady_ns()
+            self._arm()
+
+    def resume(self) -> None:
+        """Watch on with the owner's dispatcher of now, if there was a sign of life."""
+        with self._lock:
             self._arm()
 
     def stop(self) -> None:
         """Stop watching, until the next sign of life."""
-        if self._alarm is not None:
-            self._alarm.cancel()
-            self._alarm = None
+        with self._lock:
+            if self._alarm is not None:
+                self._alarm.cancel()
+                self._alarm = None
 
     def _arm(self) -> None:
         dispatcher = self._owner.dispatcher
-        if dispatcher is not None:
+        if dispatcher is not None and self._alarm is None and self._last_ns is not None:
             self._alarm = dispatcher.call_at(self._last_ns + self._limit_ns, self._look)
 
     def _look(self) -> None:
-        self._alarm = None
-        now_ns = self._owner.node.timebase.steady_ns()
-        if now_ns >= self._last_ns + self._limit_ns:
-            self._last_ns = now_ns
+        with self._lock:
+            self._alarm = None
+            now_ns = self._owner.node.timebase.steady_ns()
+            is_missed = self._last_ns is not None and now_ns >= self._last_ns + self._limit_ns
+            if is_missed:
+                self._last_ns = now_ns
+            self._arm()
+        if is_missed:
             self._missed()
-        self._arm()
 
 
 class EndpointEvents(Entity):
@@ -128,7 +139,7 @@ class EndpointEvents(Entity):
             watch.stop()
         super().set_dispatcher(dispatcher)
         for watch in self._watches:
-            watch.sign()
+            watch.resume()
 
     def _count(self, what: str, change: int) -> int:
         self._totals[what] = total = self._totals.get(what, 0) + change
@@ -159,12 +170,10 @@ class SubscriptionEvents(EndpointEvents):
         self._alive = 0
         self._not_alive = 0
 
-    def received(self, full: bool) -> None:
-        """A message came; `full` says that another one had to make room for it."""
+    def received(self) -> None:
+        """A message came, from this process or another."""
         if self._deadline is not None:
             self._deadline.sign()
-        if full:
-            self.lost(1)
 
     def lost(self, count: int) -> None:
         """Messages were lost."""
@@ -227,6 +236,12 @@ class PublisherEvents(EndpointEvents):
             if not self._is_alive:
                 self._is_alive = True
                 self._liveliness_changed(1)
+
+    def set_dispatcher(self, dispatcher: Dispatcher | None) -> None:
+        """Have a dispatcher run the callbacks and watch the time limits from now on; that is a sign of life, too."""
+        super().set_dispatcher(dispatcher)
+        if self._lease is not None:
+            self._lease.sign()
 
     def _liveliness_lost(self) -> None:
         if self._is_alive:

@@ -192,6 +192,8 @@ class Subscription(TopicEndpoint[M], Entity):
         """Queue a message for the callback, whatever the node's `intake` says; see `receive`."""
         if self._filter is not None and not self._is_wanted(message, self._filter):
             return
+        if self.events is not None:
+            self.events.received()
         self._waiting.append(message if info is None else Detailed(message, info))
         if not self._announced:
             dispatcher = self.dispatcher
@@ -215,8 +217,8 @@ class Subscription(TopicEndpoint[M], Entity):
                 now_ns = self.node.timebase.now_ns()
                 info = MessageInfo(now_ns, now_ns, publisher.gid)
             expires_ns = None if lifespan_ns is None else self.node.timebase.steady_ns() + lifespan_ns
-            if self.events is not None:
-                self.events.received(len(self._waiting) == self._waiting.maxlen)
+            if self.events is not None and len(self._waiting) == self._waiting.maxlen:
+                self.events.lost(1)
             self.receive(Detailed(message, info, expires_ns))
 
         return receive
