@@ -34,7 +34,7 @@ _ENDPOINTS_WITHIN = 1.3
 """Seconds within which a participant's first endpoint is heard of; Fast DDS repeats what was missed after 1 s."""
 
 _ALL_WITHIN = 3.0
-"""Seconds within which the endpoints are heard of that a participant says its nodes have."""
+"""Seconds within which a participant that listens to announcements makes one, and the endpoints in it are heard of."""
 
 
 @dataclass(slots=True)
@@ -272,14 +272,19 @@ class RemoteGraph:
     def is_complete(self) -> bool:
         """Whether all have announced their nodes, and those nodes' endpoints are known.
 
-        Of who is there, and nothing else is known of it, something is awaited for a moment.
+        Who listens to announcements belongs to ROS and makes one, too. Of who is there, and nothing else is known of
+        it, something is awaited for a moment.
         """
         now = time.monotonic()
         with self._lock:
             known = {each.participant for each in self._endpoints.values()}
+            listeners = {each.participant for each in self._endpoints.values() if each.topic == DISCOVERY_TOPIC}
             for guid, participant in self._participants.items():
                 age = now - participant.came_at
                 if guid not in known and age < _ENDPOINTS_WITHIN:
+                    return False
+                # Of Fast DDS the readers may be told a second before the writers.
+                if age < _ALL_WITHIN and guid in listeners and participant.entities is None:
                     return False
                 if age < _ALL_WITHIN and not self._endpoints.keys() >= participant.endpoints():
                     return False

@@ -1,0 +1,51 @@
+"""When what is known of other processes counts as all."""
+
+from __future__ import annotations
+
+import time
+
+import pytest
+
+from linkwright.graph import QoSProfile
+from linkwright.wire.dds.discovery_info import NodeEntities, ParticipantEntities
+from linkwright.wire.dds.names import DISCOVERY_TOPIC
+from linkwright.wire.dds.remote import RemoteEndpoint, RemoteGraph, RemoteParticipant
+
+PARTICIPANT, LISTENER, SPEAKER, TALKER = b"p" * 16, b"l" * 16, b"s" * 16, b"t" * 16
+TYPE_NAME = "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_"
+
+
+@pytest.fixture
+def remote():
+    graph = RemoteGraph()
+    graph.participant_came(RemoteParticipant(PARTICIPANT))
+    return graph
+
+
+def endpoint(guid, *, is_writer, topic=DISCOVERY_TOPIC):
+    return RemoteEndpoint(guid, 1, PARTICIPANT, is_writer, topic, TYPE_NAME, QoSProfile(1))
+
+
+def test_the_readers_of_a_node_may_be_heard_of_before_its_writers(remote):
+    """Fast DDS tells one a second before the other."""
+    assert not remote.is_complete()
+    remote.endpoint_came(endpoint(LISTENER, is_writer=False))
+    assert not remote.is_complete()
+    remote.endpoint_came(endpoint(SPEAKER, is_writer=True))
+    assert not remote.is_complete()
+    remote.entities_announced(ParticipantEntities(PARTICIPANT, [NodeEntities("/", "talker", writers=(TALKER,))]))
+    assert not remote.is_complete()
+    remote.endpoint_came(endpoint(TALKER, is_writer=True, topic="rt/chatter"))
+    assert remote.is_complete()
+
+
+def test_who_never_speaks_is_not_waited_for_for_ever():
+    remote = RemoteGraph()
+    remote.participant_came(RemoteParticipant(PARTICIPANT, came_at=time.monotonic() - 10.0))
+    remote.endpoint_came(endpoint(LISTENER, is_writer=False))
+    assert remote.is_complete()
+
+
+def test_other_programs_of_dds_are_not_waited_for(remote):
+    remote.endpoint_came(endpoint(LISTENER, is_writer=False, topic="temperature"))
+    assert remote.is_complete()
