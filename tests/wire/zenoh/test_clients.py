@@ -136,10 +136,24 @@ def test_a_publisher_that_was_killed_is_lost_and_one_that_left_is_not(processes,
     left.node.create_publisher(Int32, "flood", 10)
     victim = programs("our_program", "victim")
     ours.spin_until(lambda: subscription.get_publisher_count() == 2)
-    # Who leaves in the same moment in which it is found has not been heard to say that it will.
-    session = left.transport._zenoh_engine._session_id
-    ours.spin_until(lambda: session in ours.transport._zenoh_engine._departures._ours)
     left.close()
+    ours.spin_until(lambda: subscription.get_publisher_count() == 1)
+    victim.kill()
+    ours.spin_until(lambda: lost)
+    assert lost == ["victim"]
+
+
+def test_the_publishers_of_a_node_that_is_taken_down_are_not_lost(processes, programs):
+    ours = processes("ours")
+    lost: list[str] = []
+    subscription = ours.node.create_subscription(Int32, "flood", print, 10)
+    subscription.watch_lost(lambda publisher: lost.append(publisher.node.name))
+    lives_on = processes("lives_on")
+    unloaded = lives_on.graph.create_node("unloaded")
+    unloaded.create_publisher(Int32, "flood", 10)
+    victim = programs("our_program", "victim")
+    ours.spin_until(lambda: subscription.get_publisher_count() == 2)
+    unloaded.destroy_node()
     ours.spin_until(lambda: subscription.get_publisher_count() == 1)
     victim.kill()
     ours.spin_until(lambda: lost)

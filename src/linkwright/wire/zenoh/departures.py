@@ -1,14 +1,16 @@
 """Publishers that are lost, told from those that left.
 
-A token goes when its owner withdraws it, and when its session ends, however that ends. Linkwright's sessions say that
-they leave before they do. Others withdraw the endpoints of a node before the node itself; at the end of a session that
-was killed all its tokens go at once, in no order. So an endpoint is lost whose node went before it.
+A token goes when its owner withdraws it, and when its session ends, however that ends. Linkwright's sessions have a
+token of their own, and say that they leave before it goes: what they had is lost when it goes without that. Others
+withdraw the endpoints of a node before the node itself; at the end of a session that was killed all its tokens go at
+once, in no order. So an endpoint is lost whose node went before it.
 """
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -50,8 +52,9 @@ class Departures:
         self._now = now
         self._watchers: list[Callable[[EndpointInfo], None]] = []
         self._gone: list[_Gone] = []
-        self._ours: set[str] = set()
+        self._here: set[str] = set()
         self._left: set[str] = set()
+        self._ended: dict[str, float] = {}
         self._unordered: set[tuple[str, str]] = set()
         self._nodes_gone: dict[tuple[str, str], float] = {}
 
@@ -64,13 +67,23 @@ class Departures:
         """Whether somebody is told of publishers that are lost."""
         return bool(self._watchers)
 
-    def is_ours(self, session: str) -> None:
-        """Take note of a session of Linkwright's, which says when it leaves."""
-        self._ours.add(session)
+    @property
+    def here(self) -> AbstractSet[str]:
+        """The sessions of Linkwright's that are there, and say so when they leave."""
+        return self._here
 
-    def leaves(self, session: str) -> None:
-        """Take note of a session that leaves."""
+    def session_came(self, session: str) -> None:
+        """Take note of a session of Linkwright's."""
+        self._here.add(session)
+
+    def session_leaves(self, session: str) -> None:
+        """Take note that a session of Linkwright's is about to end."""
         self._left.add(session)
+
+    def session_ended(self, session: str) -> None:
+        """Take note that a session of Linkwright's is there no more."""
+        self._here.discard(session)
+        self._ended[session] = self._now()
 
     def went(self, key: str, token: Token) -> None:
         """Take note of a token that is gone."""
@@ -100,13 +113,17 @@ class Departures:
         token = gone.token
         if self._remote.is_there(gone.key) or token.node_key not in self._nodes_gone:
             return False
-        if token.session in self._ours:
-            return token.session not in self._left
+        if token.session in self._here or token.session in self._ended:
+            return token.session in self._ended and token.session not in self._left
         return token.node_key in self._unordered or self._remote.has_endpoints(token.node_key)
 
     def _forget(self, now: float) -> None:
-        """Forget nodes that are gone for long enough."""
+        """Forget nodes and sessions that are gone for long enough."""
         for node_key, since in tuple(self._nodes_gone.items()):
             if now - since > GRACE:
                 del self._nodes_gone[node_key]
                 self._unordered.discard(node_key)
+        for session, since in tuple(self._ended.items()):
+            if now - since > GRACE:
+                del self._ended[session]
+                self._left.discard(session)

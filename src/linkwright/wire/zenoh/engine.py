@@ -265,7 +265,8 @@ class Engine:
             self._has_changed = self._note(came=came, key=key) or self._has_changed
         follows = self._departures.is_watched and not self._interests.in_all
         if follows and (self._has_changed or not self._follows):
-            self._interests.follow(self._remote.sessions(EndpointKind.PUBLISHER), self._remote.sessions())
+            there = self._remote.sessions() | self._departures.here
+            self._interests.follow(self._remote.sessions(EndpointKind.PUBLISHER), there)
         self._follows = follows
 
     @property
@@ -323,11 +324,7 @@ class Engine:
     def _note(self, *, came: bool, key: str) -> bool:
         """Take note of a token; whether that changes what is outside."""
         if key.startswith(OURS):
-            _, _, session, what = key.split("/")
-            if came and what == "left":
-                self._departures.leaves(session)
-            elif came:
-                self._departures.is_ours(session)
+            self._note_session(came=came, key=key)
             return False
         token = tokens.read(key)
         if token is None or token.session == self._session_id:
@@ -338,6 +335,17 @@ class Engine:
             return False
         self._departures.went(key, token)
         return True
+
+    def _note_session(self, *, came: bool, key: str) -> None:
+        """Take note of a token of a session of Linkwright's."""
+        _, _, session, what = key.split("/")
+        if what == "here" and came:
+            self._departures.session_came(session)
+        elif what == "here":
+            self._departures.session_ended(session)
+            self._follows = False  # nothing more is to be heard of it
+        elif came:
+            self._departures.session_leaves(session)
 
     def _review(self, mirrored: Any) -> None:
         kind = _OPPOSITE.get(mirrored.token.kind)

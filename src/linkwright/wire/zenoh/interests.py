@@ -63,7 +63,7 @@ class Interests:
 
         Args:
             publishing: the sessions whose publishers are known; not asked for once all tokens are heard of.
-            there: those of which any token is known.
+            there: those that are there, by their own token or any other.
         """
         for session in self._followed - there:
             for key in self._keys_of(session):
