@@ -245,13 +245,13 @@ def test_actions_go_over_with_their_feedback(networks, server, client):
 
 
 def test_who_waits_for_a_listener_that_has_stopped_holds_up_nothing_else():
-    goes_on, published = threading.Event(), []
+    goes_on, published, failures = threading.Event(), [], []
 
     def publish(data: bytes) -> None:
         goes_on.wait(SECONDS)
         published.append(data)
 
-    outlet = Outlet(publish)
+    outlet = Outlet(publish, failures.append)
     for number in range(3):
         outlet.put(b"%d" % number)
     assert outlet.has_more()
@@ -259,6 +259,23 @@ def test_who_waits_for_a_listener_that_has_stopped_holds_up_nothing_else():
     goes_on.set()
     wait_until(lambda: not outlet.has_more())
     assert published == [b"0", b"1", b"2"]
+    assert not failures
+    outlet.close()
+
+
+def test_what_cannot_be_published_is_told_and_the_next_is_published():
+    published, failures = [], []
+
+    def publish(data: bytes) -> None:
+        if data == b"1":
+            raise OSError("the session has ended")
+        published.append(data)
+
+    outlet = Outlet(publish, lambda error: failures.append(str(error)))
+    for number in range(3):
+        outlet.put(b"%d" % number)
+    wait_until(lambda: not outlet.has_more())
+    assert (published, failures) == ([b"0", b"2"], ["the session has ended"])
     outlet.close()
 
 

@@ -12,6 +12,7 @@ from linkwright.messages import get_service, serialize
 from linkwright.wire.dds.fast_services import EarlyRequest, FastClient, FastServer
 from linkwright.wire.dds.rtps.messages import Data
 from linkwright.wire.dds.rtps.values import read_parameters, related_identity
+from tests.wire.test_failures import Once, told
 
 SetCameraInfo = get_service("sensor_msgs/srv/SetCameraInfo")
 LARGE = "x" * 300_000
@@ -169,3 +170,27 @@ def test_replies_to_others_may_come_while_a_client_is_made():
     client.send(says("hej"), answers.append)
     client._on_data(replace(reply, inline=read_parameters(related_identity(b"r" * 16, 1), 0, "<")[0], payload=ANSWER))
     assert [answer.status_message for answer in answers] == ["hej"]
+
+
+def test_what_fails_in_the_thread_of_the_participant_is_told_and_the_next_is_answered(processes, programs, monkeypatch):
+    us = processes("ours")
+    client = us.node.create_client(SetCameraInfo, "/fast_echo")
+    peer = programs("fast_peer")
+    us.spin_until(client.service_is_ready)
+    client.announce = Once(client.announce)
+    futures = [client.call_async(says(text)) for text in ("one", "two")]
+    us.spin_until(lambda: all(future.done() for future in futures))
+    assert told(us, "client of service '/fast_echo' failed:")
+    seen = []
+    monkeypatch.setattr(threading, "excepthook", lambda hook: seen.append((hook.thread.name, str(hook.exc_value))))
+    participant = us.transport._engine._fast
+    participant.changed = Once(participant.changed)
+    peer.end()
+    us.spin_until(lambda: seen)
+    assert seen == [("linkwright-rtps", "the user's own mistake")]
+    programs("fast_peer")
+    us.spin_until(lambda: participant.changed.calls > 2)
+    us.spin_until(client.service_is_ready)
+    again = client.call_async(says("again"))
+    us.spin_until(again.done)
+    assert again.result().status_message == "again"

@@ -15,6 +15,7 @@ from linkwright.graph.endpoints.info import EndpointInfo, MessageInfo
 from linkwright.graph.endpoints.publisher import Publisher
 from linkwright.graph.endpoints.service import Service
 from linkwright.graph.endpoints.subscription import Subscription
+from linkwright.graph.log.logger import log_failure
 from linkwright.graph.loop.node_handle import NodeHandle
 from linkwright.graph.qos.profile import HistoryPolicy, QoSProfile
 
@@ -80,7 +81,8 @@ class MirroredPublisher:
         self._waiting: deque[bytes] | None = deque(maxlen=KEPT)
         self._patience = time.monotonic() + _MATCHED_WITHIN
         self._publisher = node.add(publisher)
-        self._outlet = Outlet(publisher.publish) if stream.history is HistoryPolicy.KEEP_ALL else None
+        failed = partial(log_failure, node.logger, f"publisher of topic '{info.name}'")
+        self._outlet = Outlet(publisher.publish, failed) if stream.history is HistoryPolicy.KEEP_ALL else None
 
     @property
     def gid(self) -> bytes:

@@ -5,9 +5,11 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 from contextlib import suppress
+from functools import partial
 from queue import Queue
 
 from linkwright.graph.faults import InvalidHandleError
+from linkwright.wire.living_threads import guarded
 
 
 class Outlet:
@@ -18,10 +20,12 @@ class Outlet:
 
     Args:
         publish: publishes a message.
+        failed: called with the error when it cannot.
     """
 
-    def __init__(self, publish: Callable[[bytes], object]) -> None:
+    def __init__(self, publish: Callable[[bytes], object], failed: Callable[[Exception], object]) -> None:
         self._publish = publish
+        self._failed = failed
         self._queue: Queue[bytes | None] = Queue()
         self._thread: threading.Thread | None = None
 
@@ -42,6 +46,9 @@ class Outlet:
 
     def _run(self) -> None:
         while (data := self._queue.get()) is not None:
-            with suppress(InvalidHandleError):  # the publisher was taken away
-                self._publish(data)
+            guarded(partial(self._say, data), self._failed)
             self._queue.task_done()
+
+    def _say(self, data: bytes) -> None:
+        with suppress(InvalidHandleError):  # the publisher was taken away
+            self._publish(data)

@@ -61,6 +61,7 @@ class LocalGraph(GraphQueries):
         self.makers: dict[str, str] = {}
         self.levels = levels or LogLevels()
         self._sink = on_log or print_to_console
+        self._logger = self.get_logger("graph")
         self._nodes: dict[NodeHandle, None] = {}
         self._taken_names: Counter[str] = Counter()
         self._transport: Transport | None = None

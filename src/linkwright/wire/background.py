@@ -11,12 +11,13 @@ import weakref
 from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any, Protocol, TypedDict, TypeVar
 
 from linkwright.diagnostics import LinkwrightError, Phrase, render
 from linkwright.graph.endpoints.info import EndpointInfo
 from linkwright.graph.faults import ExternalShutdownException
-from linkwright.graph.log.logger import Logger
+from linkwright.graph.log.logger import Logger, run_logged
 from linkwright.graph.names.identity import NodeIdentity
 from linkwright.wire.switch import is_switched_off
 
@@ -277,11 +278,15 @@ class BackgroundTransport(ABC):
 
     def watch(self, changed: Callable[[], None]) -> None:
         """Have something called, from any thread, whenever nodes or endpoints outside come or go."""
-        self._outside.watch(changed)
+        self._outside.watch(partial(run_logged, self._logger, "what watches nodes and endpoints outside", changed))
 
     def watch_lost(self, lost: Callable[[EndpointInfo], None]) -> None:
         """Have something called, from any thread, with each publisher outside that is gone without having left."""
-        self._departed.watch(lost)
+
+        def tell(publisher: EndpointInfo) -> None:
+            run_logged(self._logger, "what is told of publishers that are lost", partial(lost, publisher))
+
+        self._departed.watch(tell)
         self._do(lambda _: None)  # processes are looked at from now on
 
     def close(self) -> None:

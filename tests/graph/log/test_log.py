@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import io
 import os
 import re
 
@@ -80,6 +81,14 @@ async def test_the_environment_chooses_the_stream(capsys, monkeypatch):
     monkeypatch.setenv("RCUTILS_LOGGING_USE_STDOUT", "1")
     Graph(clock=JumpClock(0)).get_logger("a").info("x")
     assert capsys.readouterr().out == "[INFO] [0.000000000] [a]: x\n"
+
+
+@pytest.mark.parametrize("stream", [None, "closed"])
+def test_without_a_console_nothing_is_printed_and_the_program_goes_on(monkeypatch, stream):
+    closed = io.StringIO()
+    closed.close()
+    monkeypatch.setattr("sys.stderr", closed if stream else None)
+    assert Graph().get_logger("a").info("nobody reads this")
 
 
 async def test_records_name_their_place(graph, log):

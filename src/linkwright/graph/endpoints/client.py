@@ -9,6 +9,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any, Generic, Protocol, TypeVar
 
+from linkwright.diagnostics import LinkwrightError
 from linkwright.graph.endpoints.info import EndpointKind
 from linkwright.graph.endpoints.service import Service, copy_of
 from linkwright.graph.endpoints.service_introspection import EventType, IntrospectedEndpoint, RequestId
@@ -68,7 +69,7 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         self._lock = threading.RLock()
         self._unsent: deque[tuple[Future[Response], Request]] = deque(maxlen=qos_profile.queue_length)
         self._pending: dict[Future[Response], Callable[[], None]] = {}
-        self._answers: deque[tuple[Future[Response], Response, RequestId]] = deque()
+        self._endings: deque[Callable[[], None]] = deque()
 
     @property
     def what(self) -> str:
@@ -152,12 +153,11 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
 
     def has_work(self) -> bool:
         """Whether responses wait."""
-        return bool(self._answers)
+        return bool(self._endings)
 
     def take(self) -> Callable[[], object] | None:
         """The call that completes the future of the oldest response."""
-        answer = self._next_of(self._answers)
-        return None if answer is None else partial(self._hand_over, *answer)
+        return self._next_of(self._endings)
 
     def retire(self) -> None:
         """Remove it from the graph, and give up all requests."""
@@ -167,7 +167,7 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         for forget in pending.values():
             forget()
         super().retire()
-        self._answers.clear()
+        self._endings.clear()
         self._server = None
         self.outside = None
         self.end_introspection()
@@ -191,7 +191,12 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
                 if not self._unsent:
                     return
                 future, request = self._unsent.popleft()
-            if not self._send(future, request):
+            try:
+                was_sent = self._send(future, request)
+            except LinkwrightError as error:  # who asked has gone on
+                self._end(future, partial(future.fail, error, self.dispatcher))
+                continue
+            if not was_sent:
                 with self._lock:
                     self._unsent.appendleft((future, request))
 
@@ -212,11 +217,15 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         return True
 
     def _receive(self, future: Future[Response], request_id: RequestId, response: Response) -> None:
+        self._end(future, partial(self._hand_over, future, request_id, response))
+
+    def _end(self, future: Future[Response], end: Callable[[], None]) -> None:
+        """Have a future ended as callbacks are called, unless it was given up."""
         if self._pending.pop(future, None) is not None:
-            self._answers.append((future, response, request_id))
+            self._endings.append(end)
             self.announce()
 
-    def _hand_over(self, future: Future[Response], response: Response, request_id: RequestId) -> None:
+    def _hand_over(self, future: Future[Response], request_id: RequestId, response: Response) -> None:
         if self.service_events is not None:
             self.service_events.tell(EventType.RESPONSE_RECEIVED, request_id, response=response)
         future.hand_over(response, self.dispatcher)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from collections import deque
 from collections.abc import Callable
+from functools import partial
 from typing import Any, TypeVar
 
 from linkwright.graph.endpoints.base import TopicEndpoint
@@ -12,6 +13,7 @@ from linkwright.graph.endpoints.endpoint_events import PublisherEvents
 from linkwright.graph.endpoints.event_types import EventHandler, PublisherEventCallbacks
 from linkwright.graph.endpoints.info import EndpointKind
 from linkwright.graph.endpoints.subscription import Subscription
+from linkwright.graph.log.logger import run_logged
 from linkwright.graph.loop.callback_groups import CallbackGroup
 from linkwright.graph.loop.node_handle import NodeHandle
 from linkwright.graph.qos.compatibility import limit_ns
@@ -205,7 +207,8 @@ class Publisher(TopicEndpoint[M]):
             held, self._held = self._held, None
             if send is not None and (self.outside is None or held is not None):
                 for message in self._still_valid() if held is None else held:
-                    send(message)
+                    what = f"sending what topic '{self.name}' has said"
+                    run_logged(self.node.logger, what, partial(send, message))  # who published it has gone on
             self.outside = send
             self._acknowledged = acknowledged if send is not None else None
 

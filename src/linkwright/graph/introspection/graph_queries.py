@@ -17,6 +17,7 @@ from linkwright.graph.introspection.answers import (
     action_names_and_types,
     names_and_types,
 )
+from linkwright.graph.log.logger import Logger, run_logged
 from linkwright.graph.loop.node_handle import NodeHandle
 from linkwright.graph.names.identity import NodeIdentity
 from linkwright.graph.names.rules import split
@@ -34,6 +35,7 @@ class GraphQueries:
     _changed: threading.Condition
     _watchers: dict[Callable[[], object], None]
     _closed: bool
+    _logger: Logger
 
     def identities(self) -> list[NodeIdentity]:
         """The nodes of this process and, as far as discovery has come, of others."""
@@ -154,10 +156,13 @@ class GraphQueries:
         with self._changed:
             self._changed.notify_all()
         for changed in tuple(self._watchers):
-            changed()
+            run_logged(self._logger, "what watches the graph", changed)
 
     def watch(self, changed: Callable[[], object]) -> None:
-        """Have something called whenever nodes or endpoints come or go, in whatever thread that happens."""
+        """Have something called whenever nodes or endpoints come or go, in whatever thread that happens.
+
+        What it raises is logged.
+        """
         self._watchers[changed] = None
 
     def unwatch(self, changed: Callable[[], object]) -> None:

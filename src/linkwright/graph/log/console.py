@@ -96,11 +96,13 @@ def print_to_console(record: LogRecord) -> None:
     Each record is written out at once, whatever RCUTILS_LOGGING_BUFFERED_STREAM says, so that none is lost with the
     process; a stream that nobody reads any more is passed over.
     """
-    stream = sys.stdout if os.environ.get("RCUTILS_LOGGING_USE_STDOUT") == "1" else sys.stderr
+    stream: TextIO | None = sys.stdout if os.environ.get("RCUTILS_LOGGING_USE_STDOUT") == "1" else sys.stderr
+    if stream is None:  # of a program without a console
+        return
     line = console_line(record)
-    if _wants_colour(stream):
-        line = f"{_COLOURS[record.level]}{line}{_NORMAL}"
     try:
+        if _wants_colour(stream):
+            line = f"{_COLOURS[record.level]}{line}{_NORMAL}"
         stream.write(f"{line}\n")
         stream.flush()
     except (OSError, ValueError):

@@ -136,9 +136,18 @@ class Future(Generic[T]):
             dispatcher: of the node that waits for it; has the done callbacks run, where it is an executor.
         """
         if not self.ended():
-            if hasattr(dispatcher, "create_task"):
-                self.set_executor(dispatcher)
+            self._run_callbacks_by(dispatcher)
             self.set_result(result)
+
+    def fail(self, exception: BaseException, dispatcher: Any) -> None:
+        """End with an exception, unless it has ended; see `hand_over`."""
+        if not self.ended():
+            self._run_callbacks_by(dispatcher)
+            self.set_exception(exception)
+
+    def _run_callbacks_by(self, dispatcher: Any) -> None:
+        if hasattr(dispatcher, "create_task"):
+            self.set_executor(dispatcher)
 
     def add_waiter(self, callback: Callable[[], object]) -> None:
         """For what runs coroutines: call something at once, in whatever thread, when the future is done or cancelled.

@@ -21,7 +21,7 @@ from linkwright.wire.dds.names import Role, dds_topic
 from linkwright.wire.dds.rtps.participant import RtpsParticipant
 from linkwright.wire.dds.rtps.values import NO_NUMBER, PREFIX, is_reader, read_related_identity, related_identity
 from linkwright.wire.dds.service_types import halves, service_facts
-from linkwright.wire.service_messages import read_or_warn, written
+from linkwright.wire.service_messages import hand_request_on, hand_response_on, written
 from linkwright.wire.type_names import dds_type
 
 if TYPE_CHECKING:
@@ -128,9 +128,7 @@ class FastServer:
         self._ask(sample.payload or b"", sample.writer, client, sample.number)
 
     def _ask(self, body: bytes, writer: bytes, client: bytes, number: int) -> None:
-        request = read_or_warn(body, "Request", self._service)
-        if request is not None:
-            self._service.receive(request, partial(self._reply, client, number), RequestId(writer, number))
+        hand_request_on(body, self._service, partial(self._reply, client, number), RequestId(writer, number))
 
     def _reply(self, client: bytes, number: int, response: Any, due: float | None = None) -> None:
         if self._service.destroyed:
@@ -230,9 +228,7 @@ class FastClient:
         with self._lock:
             answer = self._answers.pop(told[1], None)
         if answer is not None:
-            response = read_or_warn(sample.payload or b"", "Response", self._client)
-            if response is not None:
-                answer(response)
+            hand_response_on(sample.payload or b"", self._client, answer)
 
 
 def _is_settled(heard_at: float | None, now: float) -> bool:

@@ -35,7 +35,7 @@ from linkwright.wire.dds.names import Role, dds_topic
 from linkwright.wire.dds.qos import endpoint_qos
 from linkwright.wire.dds.remote import RemoteEndpoint, is_fast
 from linkwright.wire.dds.service_types import halves, service_facts
-from linkwright.wire.service_messages import read_or_warn, written
+from linkwright.wire.service_messages import hand_request_on, hand_response_on, written
 
 if TYPE_CHECKING:
     from linkwright.graph.endpoints.base import Endpoint
@@ -148,9 +148,7 @@ class OutsideServer:
             client_id, number, body = _divided(data)
             answer = self._answers.pop(number, None) if client_id == self._client_id else None
             if answer is not None:
-                response = read_or_warn(body, "Response", self._client)
-                if response is not None:
-                    answer(response)
+                hand_response_on(body, self._client, answer)
         return count == _AT_ONCE
 
     def on_writer_status(self) -> bool:
@@ -218,11 +216,10 @@ class IncomingService:
             if self._from_fast(sender, data, info):
                 continue
             client_id, number, body = _divided(data)
-            request = read_or_warn(body, "Request", self._service) if body else None
-            if request is None:
-                continue
-            gid = bytes(16) if sender is None else sender.guid
-            self._service.receive(request, partial(self._reply, sender, client_id, number), RequestId(gid, number))
+            if body:
+                gid = bytes(16) if sender is None else sender.guid
+                reply = partial(self._reply, sender, client_id, number)
+                hand_request_on(body, self._service, reply, RequestId(gid, number))
         return count == _AT_ONCE
 
     def meet_fast(self, participant: RtpsParticipant) -> None:

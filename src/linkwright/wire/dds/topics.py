@@ -237,7 +237,10 @@ class IncomingTopic(MirroredTopic):
                 if info.publication_handle != publisher:
                     publisher = info.publication_handle
                     gid = self._gid_of(publisher)
-                receive(data, MessageInfo(info.source_timestamp, received, gid, True))
+                try:
+                    receive(data, MessageInfo(info.source_timestamp, received, gid, True))
+                except Exception as error:  # noqa: BLE001 - what else was taken from Cyclone is not to be lost with it
+                    self._subscription.report(error)
         return len(samples) == AT_ONCE
 
     def _gid_of(self, handle: int) -> bytes:

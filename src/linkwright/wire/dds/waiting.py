@@ -6,14 +6,12 @@ import ctypes as c
 import threading
 import time
 from collections.abc import Callable
-from typing import TypeVar
 
 from linkwright.wire.dds.cyclone import INFINITY, checked, load
+from linkwright.wire.living_threads import guarded
 
 Handler = Callable[[], bool]
 """Does what there is to do; True when there is more, so that others get their turn first."""
-
-R = TypeVar("R")
 
 _AT_ONCE = 64
 
@@ -86,18 +84,11 @@ class WaitingThread(threading.Thread):
                 self._dds.dds_take_guardcondition(self._guard, c.byref(taken))
             for entity in entities:
                 handler = self._handlers.get(entity)
-                if handler is not None and self._guarded(handler):
+                if handler is not None and guarded(handler, self._report):
                     unfinished.add(entity)
             if self._idle is not None and not self._stopping:
-                seconds = self._guarded(self._idle)
+                seconds = guarded(self._idle, self._report)
                 due = None if seconds is None else time.monotonic() + seconds
-
-    def _guarded(self, call: Callable[[], R]) -> R | None:
-        try:
-            return call()
-        except Exception as error:  # noqa: BLE001 - everything else depends on this thread
-            self._report(error)
-            return None
 
 
 def _nanoseconds_until(due: float | None) -> int:

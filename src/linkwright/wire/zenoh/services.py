@@ -13,7 +13,7 @@ import zenoh
 from zenoh.handlers import Callback
 
 from linkwright.graph.endpoints.service_introspection import RequestId
-from linkwright.wire.service_messages import read_or_warn, written
+from linkwright.wire.service_messages import hand_request_on, hand_response_on, written
 from linkwright.wire.zenoh import attachment
 from linkwright.wire.zenoh.tokens import Token
 
@@ -95,9 +95,7 @@ class OutsideServer:
             return
         answer = self._answers.pop(number, None)
         if answer is not None:
-            response = read_or_warn(sample.payload.to_bytes(), "Response", self._client)
-            if response is not None:
-                answer(response)
+            hand_response_on(sample.payload.to_bytes(), self._client, answer)
 
     def _end(self, number: int) -> None:
         """Say once that a request has come to its end without a reply: its future stays open, as rclpy's does."""
@@ -152,19 +150,16 @@ class IncomingService:
         if about is None or body is None:
             query.drop()
             return
-        request = read_or_warn(body, "Request", self._service)
-        if request is None:
-            query.drop()
-            return
         question = _Question(query, about)
         with self._lock:
             closed = self._closed
             if not closed:
                 self._open.add(question)
-        if closed:
+        reply, request_id = partial(self._reply, question), RequestId(about.gid, about.number)
+        if closed or not hand_request_on(body, self._service, reply, request_id):
+            with self._lock:
+                self._open.discard(question)
             question.drop()
-            return
-        self._service.receive(request, partial(self._reply, question), RequestId(about.gid, about.number))
 
     def _reply(self, question: _Question, response: Any) -> None:
         with self._lock:

@@ -168,7 +168,10 @@ class IncomingTopic:
         if last is not None and number > last + 1:
             self._subscription.lost_outside(number - last - 1)
         info = MessageInfo(sent_ns, time.time_ns(), gid, True, number)
-        self._subscription.receive(sample.payload.to_bytes(), info)
+        try:
+            self._subscription.receive(sample.payload.to_bytes(), info)
+        except Exception as error:  # noqa: BLE001 - the thread is Zenoh's, which would print it and not log it
+            self._subscription.report(error)
 
     def _refuse(self) -> None:
         if not self._told:

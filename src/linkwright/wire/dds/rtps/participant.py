@@ -46,6 +46,7 @@ from linkwright.wire.dds.rtps.reader import Reader
 from linkwright.wire.dds.rtps.values import Address, MalformedError
 from linkwright.wire.dds.rtps.writer import Packet, Writer
 from linkwright.wire.dds.settings import Settings
+from linkwright.wire.living_threads import guarded
 
 _LEASE = 10.0
 _ANNOUNCED_EVERY = 3.0
@@ -225,7 +226,8 @@ class RtpsParticipant:
 
     def _run(self) -> None:
         while not self._closing:
-            timeout = self._due()
+            due = guarded(self._due)
+            timeout = _IDLE if due is None else due
             ready, _, _ = select.select([self._network.socket, self._bell], [], [], timeout)
             if self._bell in ready:
                 with suppress(BlockingIOError):
@@ -240,11 +242,14 @@ class RtpsParticipant:
                 return
             packet, source = received
             calls: list[Callable[[], None]] = []
-            with self._lock:
-                packets = self._understand(packet, source, calls)
-            self._network.send(packets)
+            guarded(partial(self._answer, packet, source, calls))
             for call in calls:
-                call()
+                guarded(call)
+
+    def _answer(self, packet: bytes, source: Address, calls: list[Callable[[], None]]) -> None:
+        with self._lock:
+            packets = self._understand(packet, source, calls)
+        self._network.send(packets)
 
     def _due(self) -> float:
         """Do what is due; seconds until the next."""

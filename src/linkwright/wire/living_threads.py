@@ -1,0 +1,37 @@
+"""Threads that others depend on, and that go on when something which they call fails."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from functools import partial
+from typing import TypeVar
+
+R = TypeVar("R")
+
+
+def guarded(call: Callable[[], R], report: Callable[[Exception], object] | None = None) -> R | None:
+    """Call something; if it fails that is told, and the thread goes on.
+
+    Args:
+        call: what to call.
+        report: told of the error. Where there is none, or it fails itself, Python tells of it as of an error that ends
+            a thread (``threading.excepthook``).
+
+    Returns:
+        What the call returns; None where it failed.
+    """
+    try:
+        return call()
+    except Exception as error:  # noqa: BLE001 - see above
+        if report is None:
+            _tell(error)
+        else:
+            guarded(partial(report, error))
+        return None
+
+
+def _tell(error: Exception) -> None:
+    threading.excepthook(
+        threading.ExceptHookArgs((type(error), error, error.__traceback__, threading.current_thread()))
+    )

@@ -1,0 +1,144 @@
+"""What users' code raises in a thread of the transport is told, and the thread goes on."""
+
+from __future__ import annotations
+
+import threading
+
+from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile
+from linkwright.messages import String, get_service
+from linkwright.wire.living_threads import guarded
+from tests.waiting import wait_until
+
+SetBool = get_service("std_srvs/srv/SetBool")
+LASTING = QoSProfile(5, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+class Once:
+    """Calls something; the first time it fails instead."""
+
+    def __init__(self, call=lambda: None):
+        self.call, self.calls = call, 0
+
+    def __call__(self, *arguments):
+        self.calls += 1
+        if self.calls == 1:
+            raise ValueError("the user's own mistake")
+        return self.call(*arguments)
+
+
+def told(process, what):
+    return [
+        text
+        for text in process.warnings()
+        if text.startswith(what) and text.endswith("ValueError: the user's own mistake")
+    ]
+
+
+def flip(request, response):
+    response.success = not request.data
+    return response
+
+
+def test_a_message_that_fails_on_its_way_in_takes_no_other_with_it(processes):
+    a, b = processes("a"), processes("b")
+    got = []
+    subscription = b.node.create_subscription(String, "chatter", lambda message: got.append(message.data), 10)
+    subscription.receive = Once(subscription.receive)
+    publisher = a.node.create_publisher(String, "chatter", 10)
+    a.spin_until(lambda: publisher.get_subscription_count() == 1)
+    for word in ("one", "two", "three"):
+        publisher.publish(String(data=word))
+    b.spin_until(lambda: len(got) == 2)
+    assert got == ["two", "three"]
+    assert len(told(b, "callback of topic '/chatter' failed:")) == 1
+
+
+def test_who_watches_the_graph_and_fails_keeps_nobody_from_knowing_it(processes):
+    a = processes("a")
+    failing, after = Once(), Once()
+    after.calls = 1
+    a.graph.watch(failing)
+    a.graph.watch(after)
+    a.transport.watch(Once())
+    b = processes("b")
+    b.node.create_service(SetBool, "flip", flip)
+    client = a.node.create_client(SetBool, "flip")
+    assert client.wait_for_service(60)
+    wait_until(lambda: "b" in a.node.get_node_names())
+    wait_until(lambda: told(a, "what watches nodes and endpoints outside failed:"))
+    assert len(told(a, "what watches the graph failed:")) == 1
+    assert after.calls > 1
+
+
+def test_a_request_and_a_response_that_fail_on_their_way_in_are_told(processes):
+    a, b = processes("a"), processes("b")
+    service = b.node.create_service(SetBool, "flip", flip)
+    client = a.node.create_client(SetBool, "flip")
+    assert client.wait_for_service(60)
+    service.receive = Once(service.receive)
+    client.announce = Once(client.announce)
+    futures = [client.call_async(SetBool.Request(data=data)) for data in (True, True, False)]
+
+    def both_spin():
+        a.executor.spin_once(timeout_sec=0.01)
+        return futures[2].done()
+
+    b.spin_until(both_spin)
+    assert futures[2].result().success
+    assert not futures[0].done()
+    assert told(b, "callback of service '/flip' failed:")
+    assert told(a, "client of service '/flip' failed:")
+
+
+def unfit(message, value):
+    """A message with a value that does not fit, which nothing has looked at."""
+    message._data = value
+    return message
+
+
+def test_a_kept_message_that_cannot_be_written_is_told_and_the_others_are_sent(processes):
+    a = processes("a", join_now=False)
+    publisher = a.node.create_publisher(String, "described", LASTING)
+    publisher._copies = False  # as of nodes that come with Linkwright, which hand their messages over
+    for message in (String(data="one"), unfit(String(), 5), String(data="three")):
+        publisher.publish(message)
+    a.join()
+    b = processes("b")
+    got = []
+    b.node.create_subscription(String, "described", lambda message: got.append(message.data), LASTING)
+    b.spin_until(lambda: len(got) == 2)
+    assert got == ["one", "three"]
+    assert [text for text in a.warnings() if text.startswith("sending what topic '/described' has said failed:")]
+
+
+def test_a_request_that_waited_and_cannot_be_written_fails_and_the_next_is_answered(processes):
+    a, b = processes("a"), processes("b")
+    a.node.handle.copies_messages = False  # as of nodes that come with Linkwright
+    client = a.node.create_client(SetBool, "flip")
+    requests = (unfit(SetBool.Request(), "neither true nor false"), SetBool.Request(data=False))
+    futures = [client.call_async(each) for each in requests]
+    b.node.create_service(SetBool, "flip", flip)
+
+    def both_spin():
+        b.executor.spin_once(timeout_sec=0.01)
+        return all(future.done() for future in futures)
+
+    a.spin_until(both_spin)
+    assert "data" in str(futures[0].exception())
+    assert futures[1].result().success
+
+
+def test_a_thread_goes_on_where_the_log_fails_too(monkeypatch):
+    seen = []
+    monkeypatch.setattr(threading, "excepthook", lambda hook: seen.append((hook.exc_type, str(hook.exc_value))))
+
+    def fail():
+        raise ValueError("first")
+
+    def report(error):
+        raise OSError(f"no log for '{error}'")
+
+    assert guarded(lambda: 5) == 5
+    assert guarded(fail) is None
+    assert guarded(fail, report) is None
+    assert seen == [(ValueError, "first"), (OSError, "no log for 'first'")]
