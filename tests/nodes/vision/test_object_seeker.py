@@ -43,6 +43,26 @@ def test_it_goes_to_the_red_ball_that_its_camera_sees(tmp_path):
         assert described.message.endswith(" m ahead.")
 
 
+@pytest.mark.parametrize("language", ["en", "zh"])
+def test_it_answers_in_the_language_that_it_is_asked_in(tmp_path, language):
+    with SeekingRobot(tmp_path, (1.0, 0.0), seeker={"language": language}) as test:
+        for topic, thing in (
+            ("go_to/zh", "ball"),
+            ("go_to/en", "球"),
+            ("follow/zh", "ball"),
+            ("follow/en", "球"),
+            ("go_to", "ball"),
+            ("go_to", "球"),
+        ):
+            test.tell(f"/vision/{topic}", thing)
+            test.settle()
+        test.tell_to_stop()
+        test.settle()
+        usual = "我在找球。" if language == "zh" else "I am looking for the ball."
+        asked = ["我在找球。", "I am looking for the ball."]
+        assert test.said() == [*asked, *asked, usual, "我在找球。", "我停下了。"]
+
+
 def test_it_follows_a_ball_that_is_moved_until_it_is_told_to_stop(tmp_path):
     with SeekingRobot(tmp_path, (1.5, 0.0)) as test:
         test.tell("/vision/follow", "ball")

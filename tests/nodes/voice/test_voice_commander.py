@@ -480,14 +480,16 @@ async def test_a_launch_file_is_started_without_a_shell_and_ended_by_stop(talk, 
 
 async def test_who_drives_to_objects_is_told_where_and_to_stop(stage, talk):
     heard = []
-    stage.node.create_subscription(STRING, "/vision/go_to", lambda message: heard.append(message.data), 10)
+    stage.node.create_subscription(STRING, "/vision/go_to/en", lambda message: heard.append(message.data), 10)
+    stage.node.create_subscription(STRING, "/vision/go_to/zh", lambda message: heard.append(("zh", message.data)), 10)
     stage.node.create_subscription("std_msgs/msg/Empty", "/vision/stop", lambda message: heard.append("stop"), 10)
     robot = talk()
     await robot.type("forward")
     await robot.type("go to the red ball")
     assert robot.speed == (0.0, 0.0, 0.0)
     await robot.type("stop")
-    assert heard == ["stop", "red ball", "stop"]
+    await robot.type("去红球那里")
+    assert heard == ["stop", "red ball", "stop", ("zh", "red ball")]
 
 
 async def test_a_file_of_commands_that_is_wrong_ends_it(talk, tmp_path, said):

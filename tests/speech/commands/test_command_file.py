@@ -43,9 +43,9 @@ UNDERSTOOD = [
     ("go home", "go_to_place", {"place": "home"}),
     ("回家", "go_to_place", {"place": "home"}),
     ("go to the red ball", "go_to_object", {"object": "red ball"}),
-    ("去红球那里", "go_to_object", {"object": "red ball"}),
+    ("去红球那里", "go_to_object_in_chinese", {"object": "red ball"}),
     ("go to the green ball", "go_to_object", {"object": "green ball"}),
-    ("去蓝色的球那里", "go_to_object", {"object": "blue ball"}),
+    ("去蓝色的球那里", "go_to_object_in_chinese", {"object": "blue ball"}),
     ("what do you see", "describe", {}),
     ("你看见什么", "describe_in_chinese", {}),
 ]

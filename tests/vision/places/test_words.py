@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from linkwright.vision.places.words import Sighting, described, named, wanted
+from linkwright.vision.places.words import Answer, Sighting, answer, described, named, wanted
 
 
 @pytest.mark.parametrize(
@@ -86,6 +86,14 @@ def test_a_round_patch_of_any_colour_is_a_ball_and_a_square_one_is_none():
 def test_what_is_said_of_it_has_no_verb():
     assert wanted("go to the ball").text == "ball"
     assert wanted("去红色的球那里").text == "红色的球"
+
+
+def test_an_answer_names_the_thing_in_its_own_language():
+    assert answer(Answer.LOOKING, wanted("red ball"), "en") == "I am looking for the red ball."
+    assert answer(Answer.LOOKING, wanted("traffic_cone"), "zh") == "我在找锥桶。"
+    assert answer(Answer.ARRIVED, wanted("red ball"), "zh") == "我到红色的球这里了。"
+    assert answer(Answer.FOUND, wanted("红球"), "zh") == "我看到红球了，正在过去。"
+    assert answer(Answer.LOST, wanted("红球"), "en") == "I have lost the red ball."
 
 
 def test_what_is_seen_in_a_sentence():

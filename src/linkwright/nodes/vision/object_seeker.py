@@ -1,8 +1,8 @@
 """object_seeker: looks for what it is told by name, goes there or follows it, and says what it sees.
 
 ``vision/go_to`` and ``vision/follow`` take a name, perhaps with a colour (``red ball``, 红色的球), ``vision/stop``
-ends it; what comes of it is said on ``/voice/response``. ``vision/describe`` answers what is seen,
-``vision/describe/en`` and ``vision/describe/zh`` do so in that language.
+ends it; what comes of it is said on ``/voice/response``. ``vision/describe`` answers what is seen. Below each of the
+three are ``en`` and ``zh`` (``vision/go_to/zh``), to be answered in that language.
 """
 
 from __future__ import annotations
@@ -57,6 +57,7 @@ class ObjectSeeker(SingleNode):
         self._poses = FramePoses(node, "it is not known where the robot is:")
         self._seen = SeenThings(node, self._poses, self._fixed)
         self._wanted: Wanted | None = None
+        self._answers_in = self._language
         self._target: Thing | None = None
         self._began_ns = 0
         self._scan: Any = None
@@ -65,15 +66,13 @@ class ObjectSeeker(SingleNode):
         self._velocity = VelocityTopic(node, "cmd_vel", frame_id=self._base)
         self._response = node.create_publisher(text, "/voice/response", _DEPTH)
         self._commander = Commander(self._commander_lost)
-        for topic, take in (
-            ("vision/go_to", self._go_to),
-            ("vision/follow", self._follow),
-        ):
-            self._commander.watch(node.create_subscription(text, topic, self._commander.taking(take), _DEPTH))
         node.create_subscription("std_msgs/msg/Empty", "vision/stop", lambda _: self._stop(), _DEPTH)
         node.create_subscription(get_message("sensor_msgs/msg/LaserScan"), "scan", self._feel, SENSOR_DATA_QOS)
-        for name, language in (("", self._language), *((f"/{each}", each) for each in LANGUAGES)):
-            answer_in = partial(self._describe, language)
+        for name, language in (("", None), *((f"/{each}", each) for each in LANGUAGES)):
+            for topic, follow in (("vision/go_to", False), ("vision/follow", True)):
+                take = self._commander.taking(partial(self._begin, language, follow))
+                self._commander.watch(node.create_subscription(text, topic + name, take, _DEPTH))
+            answer_in = partial(self._describe, language or self._language)
             node.create_service("std_srvs/srv/Trigger", f"vision/describe{name}", answer_in)
         node.create_timer(_PERIOD, self._step)
 
@@ -110,17 +109,13 @@ class ObjectSeeker(SingleNode):
     def _now_ns(self) -> int:
         return self._node.get_clock().now().nanoseconds
 
-    def _go_to(self, message: Any) -> None:
-        self._begin(message.data, follow=False)
-
-    def _follow(self, message: Any) -> None:
-        self._begin(message.data, follow=True)
-
-    def _begin(self, text: str, *, follow: bool) -> None:
-        request = wanted(text)
+    def _begin(self, language: str | None, follow: bool, message: Any) -> None:
+        """Look for what a message names; answers are in that language, or, where it is None, in that of the message."""
+        request = wanted(message.data)
         if request is None:
-            self._node.get_logger().warning(f"'{text}' names nothing to go to; say 'ball' or 'red ball'")
+            self._node.get_logger().warning(f"'{message.data}' names nothing to go to; say 'ball' or 'red ball'")
             return
+        self._answers_in = language or ("zh" if request.language == "zh" else self._language)
         if self._seeker.phase is Phase.IDLE:
             self._velocity.review()
         self._cancel_trip()
@@ -239,8 +234,7 @@ class ObjectSeeker(SingleNode):
 
     def _say(self, event: Answer) -> None:
         if self._wanted is not None:
-            language = "zh" if self._wanted.language == "zh" else self._language
-            self._speak(answer(event, self._wanted, language))
+            self._speak(answer(event, self._wanted, self._answers_in))
 
     def _speak(self, text: str) -> None:
         self._node.get_logger().info(text)

@@ -193,8 +193,9 @@ def named(name: str, colour: str | None, language: str) -> str:
 
 
 def answer(event: Answer, request: Wanted, language: str) -> str:
-    """What the robot says of what has come of a request."""
-    return _ANSWERS[event][language].format(it=request.text)
+    """What the robot says of what has come of a request; the thing as it was asked for, or as it is called there."""
+    said = request.text if request.language == language else named(request.thing, request.colour, language)
+    return _ANSWERS[event][language].format(it=said)
 
 
 def _in_english(group: Sequence[Sighting]) -> str:
