@@ -7,9 +7,17 @@ from pathlib import Path
 SUFFIXES = {".mcap": "mcap", ".db3": "sqlite3"}
 """Of the files of a recording, with the names of their storages."""
 
+PACKED = ".zstd"
+"""Put behind the name of a file that is compressed as a whole."""
+
+
+def storage_of(path: Path) -> str | None:
+    """The storage of a recording's file, compressed or not, by its name; None for another file."""
+    return SUFFIXES.get(Path(path.name.removesuffix(PACKED)).suffix)
+
 
 def is_recording(path: Path) -> bool:
     """Whether a path is that of a recording, by its names: of its file, or of the folder with its metadata or files."""
     if not path.is_dir():
-        return path.suffix in SUFFIXES
-    return (path / "metadata.yaml").exists() or any(each.suffix in SUFFIXES for each in path.iterdir())
+        return storage_of(path) is not None
+    return (path / "metadata.yaml").exists() or any(storage_of(each) is not None for each in path.iterdir())

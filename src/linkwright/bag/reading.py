@@ -10,8 +10,9 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from linkwright.bag.moments import Moments, Recorded
-from linkwright.bag.names import SUFFIXES
+from linkwright.bag.names import PACKED, storage_of
 from linkwright.bag.qos import from_bag
+from linkwright.bag.scratch import scratch_folder
 from linkwright.bag.unfinished import is_unfinished, made_readable
 from linkwright.bag.unreadable import verdict_on
 from linkwright.diagnostics import (
@@ -83,6 +84,10 @@ class BagReader:
             self._reader = Reader(self._finished(target))
             self._reader.open()
             self._open.callback(self._reader.close)
+            if target.is_file():
+                from linkwright.bag.packed import unpack_messages
+
+                unpack_messages(self._reader)
         except Exception as error:  # the library raises whatever a damaged file brings about
             self._open.close()
             raise _unreadable(self.path, error) from error
@@ -114,6 +119,10 @@ class BagReader:
 
     def _finished(self, target: Path) -> Any:
         """What is to be opened: the target, or its file with what it lacks, and without what the library refuses."""
+        if target.is_file() and target.suffix == PACKED:
+            from linkwright.bag.packed import unpacked
+
+            target = unpacked(target, Path(self._open.enter_context(scratch_folder())))
         files = sorted(target.glob("*.mcap")) if target.is_dir() else [target]
         if len(files) != 1 or files[0].suffix != ".mcap":
             return target
@@ -156,7 +165,7 @@ class BagReader:
         """The files with the messages."""
         if self.path.is_file():
             return [self.path]
-        return sorted(each for each in self.path.iterdir() if SUFFIXES.keys() & set(each.suffixes))
+        return _files_in(self.path)
 
     @property
     def start_ns(self) -> int:
@@ -254,7 +263,7 @@ def _storage_target(path: Path) -> Path:
     if not path.is_dir():
         message = phrase("'{path}' is not a recording: it is neither a file nor a folder", path=display_path(path))
         raise LinkwrightError(Diagnostic("BAG102", message))
-    files = sorted(each for each in path.iterdir() if each.suffix in SUFFIXES)
+    files = _files_in(path)
     if len(files) == 1:
         return files[0]
     found = ", ".join(each.name for each in files) or phrase("none")
@@ -270,9 +279,12 @@ def _storage_target(path: Path) -> Path:
 
 def _storage_of(target: Path) -> str:
     if target.is_file():
-        return SUFFIXES.get(target.suffix, target.suffix.lstrip("."))
-    suffixes = {suffix for each in target.iterdir() for suffix in each.suffixes}
-    return next((name for suffix, name in SUFFIXES.items() if suffix in suffixes), "")
+        return storage_of(target) or target.suffix.lstrip(".")
+    return next((name for each in _files_in(target) if (name := storage_of(each)) is not None), "")
+
+
+def _files_in(folder: Path) -> list[Path]:
+    return sorted(each for each in folder.iterdir() if storage_of(each) is not None)
 
 
 def _format_of(connection: Any) -> str:

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from contextlib import closing
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import NamedTuple
 
+import yaml
+
+from linkwright.bag.names import PACKED
 from linkwright.diagnostics import Phrase, foreign, phrase
 
-_MCAP, _SQLITE = b"\x89MCAP0\r\n", b"SQLite format 3\0"
+_MCAP, _SQLITE, _ZSTD = b"\x89MCAP0\r\n", b"SQLite format 3\0", b"\x28\xb5\x2f\xfd"
 _HEAD = 64
 
 
@@ -29,6 +32,10 @@ def verdict_on(path: Path, error: Exception) -> Verdict:
     """
     if path.suffix == ".bag":
         return _ros1()
+    if missing := _missing_files(path):
+        names = ", ".join(missing)
+        hint = phrase("copy them, too; a single file that is there can be opened by its name")
+        return Verdict(phrase("files that its metadata.yaml names are missing: {names}", names=names), hint)
     try:
         with path.open("rb") as file:
             head = file.read(_HEAD)
@@ -59,15 +66,29 @@ def _by_its_beginning(path: Path, head: bytes) -> Verdict | None:
         return Verdict(phrase("it is a web page"), hint)
     if head.startswith(b"version https://git-lfs"):
         return Verdict(phrase("it is a pointer of Git LFS to the real file"), phrase("fetch that by 'git lfs pull'"))
-    for begin, kind in ((b"\x28\xb5\x2f\xfd", "zstd"), (b"\x1f\x8b", "gzip"), (b"PK\x03\x04", "zip")):
+    if path.suffix == PACKED and head.startswith(_ZSTD):
+        hint = phrase("copy it again; 'unzstd' tells whether it is whole")
+        return Verdict(phrase("what it holds is damaged or cut off"), hint)
+    for begin, kind in ((_ZSTD, "zstd"), (b"\x1f\x8b", "gzip"), (b"PK\x03\x04", "zip")):
         if head.startswith(begin):
             return Verdict(phrase("it is compressed with {kind}", kind=foreign(kind)), phrase("unpack it first"))
-    by_name = {".mcap": "MCAP", ".db3": "SQLite"}
+    by_name = {".mcap": "MCAP", ".db3": "SQLite", PACKED: "zstd"}
     if path.suffix not in by_name:
         return None
     hint = phrase("a name that ends with {ending} does not make it one; copy or record it again", ending=path.suffix)
     reason = phrase("it does not begin as a file of {kind} does", kind=foreign(by_name[path.suffix]))
     return Verdict(reason, hint)
+
+
+def _missing_files(folder: Path) -> list[str]:
+    """The names of files that a recording's metadata name and that are not there."""
+    try:
+        metadata = yaml.safe_load((folder / "metadata.yaml").read_text(encoding="utf-8"))
+        paths = metadata["rosbag2_bagfile_information"]["relative_file_paths"]
+        names = [PurePath(each).name for each in paths]
+    except (OSError, ValueError, yaml.YAMLError, KeyError, TypeError):
+        return []
+    return [name for name in names if not (folder / name).exists()]
 
 
 def _has_tables(path: Path) -> bool:

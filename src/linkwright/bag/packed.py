@@ -1,0 +1,59 @@
+"""Compressed files of recordings without the metadata that say so, as a copy of the file alone, or a kill, leaves them.
+
+rosbag2 compresses files as a whole, or their messages one by one; that, ``metadata.yaml`` alone says.
+"""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from linkwright.bag.names import PACKED
+
+if TYPE_CHECKING:
+    from rosbags.rosbag2 import Reader
+
+if sys.version_info >= (3, 14):
+    from compression import zstd
+else:
+    from backports import zstd
+
+_MAGIC = b"\x28\xb5\x2f\xfd"
+"""How what is compressed with zstd begins (RFC 8878); messages begin with a zero."""
+
+
+def unpacked(path: Path, folder: Path) -> Path:
+    """A file in a folder that is what another one is, uncompressed; of one that was cut off, as much as there is.
+
+    Raises:
+        zstd.ZstdError: it is not compressed with zstd.
+        OSError: the disk refuses.
+    """
+    plain = folder / path.name.removesuffix(PACKED)
+    with zstd.open(path, "rb") as source, plain.open("wb") as target, suppress(EOFError):
+        shutil.copyfileobj(source, target)
+    return plain
+
+
+def unpack_messages(reader: Reader) -> None:
+    """Have the reader of a single file unpack messages, if the first one is packed.
+
+    Args:
+        reader: of the library, open.
+    """
+    storage: Any = reader.storage
+    first = next(iter(reader.messages()), None) if reader.message_count else None
+    if first is None or not first[2].startswith(_MAGIC):
+        return
+    packed = storage.messages
+
+    def messages(*arguments: Any) -> Iterator[tuple[Any, int, bytes]]:
+        for connection, stamp_ns, data in packed(*arguments):
+            yield connection, stamp_ns, zstd.decompress(data)
+
+    storage.messages = messages
+    storage.metadata = storage.metadata._replace(compression_mode="message", compression_format="zstd")
