@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from linkwright.bag import BagReader, BagWriter
+from linkwright.bag import STORAGES, BagReader, BagWriter
 from linkwright.graph import DEFAULT_QOS, DESCRIPTION_QOS, SENSOR_DATA_QOS
 from linkwright.messages import String, TFMessage, get_message, serialize
 from linkwright.viewer.recording_config import recording_config
@@ -40,3 +40,29 @@ def test_transforms_are_drawn_where_there_is_no_robot(tmp_path: Path, described:
     assert config.options.text("Fixed Frame") == "odom"
     (scan,) = [display for display in config.displays if display.cls.endswith("LaserScan")]
     assert scan.section.text("Topic", "Reliability Policy") == "Best Effort"
+
+
+def test_a_scan_without_transforms_is_looked_at_from_its_own_frame(tmp_path: Path) -> None:
+    with BagWriter(tmp_path / "bag") as writer:
+        writer.add_topic("/scan", "sensor_msgs/msg/LaserScan", [SENSOR_DATA_QOS])
+        scan = LaserScan()
+        scan.header.frame_id = "laser_frame"
+        writer.write("/scan", START, serialize(scan))
+    with BagReader(tmp_path / "bag") as bag:
+        assert recording_config(bag).options.text("Fixed Frame") == "laser_frame"
+
+
+@pytest.mark.parametrize("storage", STORAGES)
+def test_transforms_that_begin_late_tell_the_fixed_frame(tmp_path: Path, storage: str) -> None:
+    """Those of the robot after five seconds, and those on the map later still."""
+    second = 1_000_000_000
+    with BagWriter(tmp_path / "bag", storage) as writer:
+        for name in ("/tf", "/tf_static"):
+            writer.add_topic(name, "tf2_msgs/msg/TFMessage", [DEFAULT_QOS])
+        writer.write("/tf_static", START, transform("base_link", "laser"))
+        for tenth in range(50, 400):
+            writer.write("/tf", START + tenth * second // 10, transform("odom", "base_link"))
+            if tenth > 150:
+                writer.write("/tf", START + tenth * second // 10, transform("map", "odom"))
+    with BagReader(tmp_path / "bag") as bag:
+        assert recording_config(bag).options.text("Fixed Frame") == "map"

@@ -7,7 +7,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linkwright.bag import BagReader, Playback, PublishedRecording
+from linkwright.bag import BagReader, Playback
 from linkwright.graph import Node
 from linkwright.hosting.launch_log import LaunchLog
 from linkwright.hosting.plans import VIEWER, HostOptions
@@ -17,6 +17,7 @@ from linkwright.hosting.xacro_calls import XacroCall
 from linkwright.packages import PackageFinder
 
 if TYPE_CHECKING:
+    from linkwright.urdf import Robot
     from linkwright.viewer import RvizConfig, Viewer
 
 
@@ -67,8 +68,16 @@ class BagView(ModelView):
     def _publish(self) -> bool:
         """Have its topics ready."""
         self.log.diagnostics(self._bag.findings)
-        self._output = PublishedRecording(self._player, self._bag)
+        from linkwright.viewer.recorded_robot import published
+
+        self._output = published(self._bag, self._player, self._robot)
         return True
+
+    @cached_property
+    def _robot(self) -> Robot | None:
+        from linkwright.viewer.recorded_robot import robot_to_place
+
+        return robot_to_place(self._bag, self.descriptions.library)
 
     @cached_property
     def _player(self) -> Node:
@@ -90,4 +99,4 @@ class BagView(ModelView):
     def _viewer_config(self) -> RvizConfig:
         from linkwright.viewer.recording_config import recording_config
 
-        return recording_config(self._bag)
+        return recording_config(self._bag, self._robot)

@@ -60,7 +60,8 @@ class GuestRecordings:
         Raises:
             LinkwrightError: BAG101, BAG102, BAG107, see `BagReader`; BAG111, as many are shown as may be.
         """
-        from linkwright.bag import BagReader, Playback, PublishedRecording  # few viewers are ever given a recording
+        from linkwright.bag import BagReader, Playback  # few viewers are ever given a recording
+        from linkwright.viewer.recorded_robot import published, robot_to_place
         from linkwright.viewer.recording_config import recording_config
 
         if len(self._guests) >= _MOST:
@@ -75,10 +76,11 @@ class GuestRecordings:
         bag = await asyncio.to_thread(BagReader, path)
         host = self._host.context
         try:
-            config = recording_config(bag)
+            robot = robot_to_place(bag, host.library)
+            config = recording_config(bag, robot)
             graph = Graph()
             node = graph.create_node("rosbag2_player", start_parameter_services=False)
-            output = PublishedRecording(node, bag)
+            output = published(bag, node, robot)
             viewer = Viewer(
                 graph,
                 library=host.library,

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
 
 from linkwright.bag import BagReader, BagTopic
+from linkwright.bag.moments import STATIC_TRANSFORMS, TRANSFORMS
 from linkwright.graph import DurabilityPolicy, ReliabilityPolicy
-from linkwright.messages import TFMessage, deserialize
+from linkwright.messages import TFMessage, deserialize, get_message
+from linkwright.urdf import Robot
 from linkwright.viewer.config.rviz_config import RvizConfig
+from linkwright.viewer.recorded_robot import description_topic
 
-_DESCRIPTION = "robot_description"
-_TRANSFORMS = ("/tf", "/tf_static")
+_TRANSFORMS = (TRANSFORMS, STATIC_TRANSFORMS)
 _FIRST_NS = 2_000_000_000
 """How much of a recording is looked at for its frames, nanoseconds."""
 
@@ -32,16 +33,18 @@ _DISPLAYS = (
 """Types, the display that shows them, and how many of these are switched on; others of them are there, but off."""
 
 
-def recording_config(bag: BagReader) -> RvizConfig:
+def recording_config(bag: BagReader, robot: Robot | None = None) -> RvizConfig:
     """What is shown of a recording at first: its robot, and a display for each topic of the usual types.
 
     Transforms are drawn where there is no robot, which their axes would cover.
 
     Args:
         bag: the recording.
+        robot: its robot, where the recording has no transforms of it.
     """
-    described = next((each.name for each in bag.topics if each.name.rpartition("/")[2] == _DESCRIPTION), None)
-    config = RvizConfig.for_model(_fixed_frame(bag), frames=described is None, name=str(bag.path))
+    described = description_topic(bag)
+    fixed_frame = _root(bag) or (robot.root if robot is not None else _frame_of_messages(bag))
+    config = RvizConfig.for_model(fixed_frame, frames=described is None, name=str(bag.path))
     for display in list(config.displays):
         kind = display.cls.rpartition("/")[2]
         if kind == "RobotModel" and described is None:
@@ -70,15 +73,35 @@ def _add(config: RvizConfig, kind: str, topic: BagTopic, *, checked: bool) -> No
     display.checked = checked
 
 
-def _fixed_frame(bag: BagReader) -> str:
-    """The frame that all others hang on, by the transforms at the beginning."""
-    names = [each.name for each in bag.topics if each.name in _TRANSFORMS]
-    batches = [deserialize(data, TFMessage).batch for _, _, data in bag.state_at(names, bag.start_ns + _FIRST_NS)]
+def _root(bag: BagReader) -> str | None:
+    """The frame that all others hang on, by the transforms of two moments; None where there are none.
+
+    These are the beginning of the transforms and the middle of the recording: who finds out where the robot is on a map
+    may have begun later.
+    """
+    names = [each.name for each in bag.topics if each.name in _TRANSFORMS and each.count]
+    moving = [name for name in names if name == TRANSFORMS]
+    first = next(iter(bag.messages(moving or names)), None) if names else None
+    if first is None:
+        return None
+    moments = first[1] + _FIRST_NS, (bag.start_ns + bag.end_ns) // 2
+    batches = [deserialize(data, TFMessage).batch for moment in moments for _, _, data in bag.state_at(names, moment)]
     children = {name for batch in batches for name in batch.children}
     roots = dict.fromkeys(name for batch in batches for name in batch.parents if name not in children)
-    return _best(roots)
+    return next((name for name in _USUAL_ROOTS if name in roots), next(iter(roots), None))
 
 
-def _best(roots: Iterable[str]) -> str:
-    roots = list(roots)
-    return next((name for name in _USUAL_ROOTS if name in roots), roots[0] if roots else _USUAL_ROOTS[0])
+def _frame_of_messages(bag: BagReader) -> str:
+    """The frame that the first message of what is shown is in: where nothing tells of others, it is looked from."""
+    for message, _, _ in _DISPLAYS:
+        for topic in (each for each in bag.topics if each.type_name == message and each.count):
+            first = next(iter(bag.messages([topic.name])), None)
+            if first is not None and (frame := _frame_of(first[2], message)):
+                return frame
+    return _USUAL_ROOTS[0]
+
+
+def _frame_of(data: bytes, type_name: str) -> str:
+    message = deserialize(data, get_message(type_name))
+    headers = [message.header] if hasattr(message, "header") else [each.header for each in message.markers]
+    return next((str(each.frame_id) for each in headers if each.frame_id), "")

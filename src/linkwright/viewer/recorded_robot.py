@@ -1,0 +1,114 @@
+"""The robot of a recording without transforms: where its links are follows from the joint states that were recorded."""
+
+from __future__ import annotations
+
+from linkwright.bag import BagReader, PublishedRecording
+from linkwright.bag.moments import TRANSFORMS
+from linkwright.descriptions import DescriptionLibrary
+from linkwright.diagnostics import LinkwrightError
+from linkwright.graph import STATIC_TF_PUBLISHER_QOS, TF_QOS, Node
+from linkwright.messages import JointState, String, TFMessage, deserialize
+from linkwright.nodes.joint_layout import layout_of
+from linkwright.nodes.joint_settings import JointSettings
+from linkwright.nodes.robot_transforms import RobotTransforms
+from linkwright.urdf import Robot
+
+_JOINT_STATES = "sensor_msgs/msg/JointState"
+
+
+def description_topic(bag: BagReader) -> str | None:
+    """The topic with the description of the recording's robot; None where there is none."""
+    names = (each.name for each in bag.topics if each.count)
+    return next((name for name in names if name.rpartition("/")[2] == "robot_description"), None)
+
+
+def robot_to_place(bag: BagReader, library: DescriptionLibrary) -> Robot | None:
+    """The robot of a recording that has no ``/tf``; None where it has, or has no robot that can be read.
+
+    Args:
+        bag: the recording.
+        library: reads its description.
+    """
+    topic = description_topic(bag)
+    if topic is None or any(each.name == TRANSFORMS and each.count for each in bag.topics):
+        return None
+    try:
+        first = next(iter(bag.messages([topic])), None)
+        return None if first is None else library.read(deserialize(first[2], String).data).robot
+    except LinkwrightError:
+        return None  # the display of the robot says what is wrong with it
+
+
+class PlacedRobot:
+    """Publishes a recording, and the transforms of its robot by its joint states, as robot_state_publisher would.
+
+    Joints that no message has told of stand at zero, or in the middle of limits without zero.
+
+    Args:
+        recording: publishes what was recorded.
+        node: publishes the transforms.
+        bag: the recording.
+        robot: which has no transforms in it.
+    """
+
+    def __init__(self, recording: PublishedRecording, node: Node, bag: BagReader, robot: Robot) -> None:
+        self._recording = recording
+        self._description = description_topic(bag)
+        self._joint_states = next((each.name for each in bag.topics if each.type_name == _JOINT_STATES), None)
+        self._transforms = RobotTransforms(robot, "")
+        self._zeros = _zeros(robot)
+        self._positions = dict(self._zeros)
+        self._shown_ns = 0
+        self._moving = node.create_publisher(TFMessage, TRANSFORMS, TF_QOS)
+        self._fixed = node.create_publisher(TFMessage, "/tf_static", STATIC_TF_PUBLISHER_QOS)
+        node.get_logger().info("The recording has no /tf: where the robot's links are follows from its joint states")
+
+    def wanted(self) -> frozenset[str]:
+        """The topics that have subscriptions, and those that say where the robot is when somebody listens to that."""
+        wanted = self._recording.wanted()
+        if self._moving.get_subscription_count():
+            wanted |= {each for each in (self._description, self._joint_states) if each is not None}
+        return wanted
+
+    def tell_time(self, stamp_ns: int) -> None:
+        """Publish on ``/clock``."""
+        self._recording.tell_time(stamp_ns)
+
+    def publish(self, topic: str, stamp_ns: int, data: bytes) -> None:
+        """Publish a message, and what follows from it."""
+        self._recording.publish(topic, stamp_ns, data)
+        if stamp_ns < self._shown_ns:
+            self._positions = dict(self._zeros)
+        self._shown_ns = stamp_ns
+        if topic == self._description:
+            self._fixed.publish(TFMessage(batch=self._transforms.fixed(stamp_ns)))
+            if self._joint_states is None:
+                self._place(stamp_ns)
+        elif topic == self._joint_states:
+            states = deserialize(data, JointState)
+            self._positions.update(zip(states.name, states.position, strict=False))
+            self._place(states.header.stamp.nanoseconds or stamp_ns)
+
+    def _place(self, stamp_ns: int) -> None:
+        batch = self._transforms.recipe(tuple(self._positions)).batch(list(self._positions.values()), stamp_ns)
+        if len(batch):
+            self._moving.publish(TFMessage(batch=batch))
+
+
+def published(bag: BagReader, node: Node, robot: Robot | None) -> PublishedRecording | PlacedRobot:
+    """What publishes a recording that has a graph to itself.
+
+    Args:
+        bag: the recording.
+        node: publishes.
+        robot: of `robot_to_place`.
+    """
+    recording = PublishedRecording(node, bag)
+    return recording if robot is None else PlacedRobot(recording, node, bag, robot)
+
+
+def _zeros(robot: Robot) -> dict[str, float]:
+    try:
+        return {joint.name: joint.zero for joint in layout_of(robot, JointSettings()).free}
+    except LinkwrightError:  # joints that follow one another in a circle: those stand that messages tell of
+        return {}

@@ -1,0 +1,114 @@
+"""The robot of a recording that has no transforms: it stands as its joint states say, at any time that is gone to."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Sequence
+from pathlib import Path
+
+import pytest
+
+from linkwright.bag import BagReader, BagWriter, Playback
+from linkwright.descriptions import DescriptionLibrary
+from linkwright.graph import DEFAULT_QOS, DESCRIPTION_QOS, STATIC_TF_PUBLISHER_QOS, TF_QOS, Graph
+from linkwright.messages import JointState, String, TFMessage, serialize
+from linkwright.viewer.recorded_robot import PlacedRobot, published, robot_to_place
+
+START = 1_700_000_000
+SECOND = 1_000_000_000
+ARM = """
+<robot name="arm">
+  <link name="base"/> <link name="camera"/> <link name="upper"/> <link name="lower"/> <link name="finger"/>
+  <joint name="mount" type="fixed"><parent link="base"/><child link="camera"/></joint>
+  <joint name="lift" type="prismatic">
+    <parent link="base"/><child link="upper"/><axis xyz="0 0 1"/><limit lower="0" upper="9" effort="1" velocity="1"/>
+  </joint>
+  <joint name="reach" type="prismatic">
+    <parent link="upper"/><child link="lower"/><axis xyz="1 0 0"/><limit lower="2" upper="4" effort="1" velocity="1"/>
+  </joint>
+  <joint name="grip" type="prismatic">
+    <parent link="lower"/><child link="finger"/><mimic joint="reach" multiplier="2"/>
+    <limit lower="0" upper="9" effort="1" velocity="1"/>
+  </joint>
+</robot>
+"""
+
+
+def recorded(path: Path, lifts: Sequence[float], transforms: bool = False) -> Path:
+    """The arm, and a joint state each second, which tells of one joint only."""
+    with BagWriter(path) as writer:
+        writer.add_topic("/robot_description", "std_msgs/msg/String", [DESCRIPTION_QOS])
+        writer.write("/robot_description", START * SECOND, serialize(String(data=ARM)))
+        if transforms:
+            writer.add_topic("/tf", "tf2_msgs/msg/TFMessage", [DEFAULT_QOS])
+            writer.write("/tf", START * SECOND, serialize(TFMessage(transforms=[])))
+        if lifts:
+            writer.add_topic("/joint_states", "sensor_msgs/msg/JointState", [DEFAULT_QOS])
+        for second, lift in enumerate(lifts):
+            states = JointState(name=["lift", "unknown"], position=[lift, 1.0])
+            states.header.stamp.sec = START + second
+            writer.write("/joint_states", (START + second) * SECOND, serialize(states))
+    return path
+
+
+class Shown:
+    """A recording that is published, and where the links were put last, by name: x, y, z in the parent link, metres."""
+
+    def __init__(self, bag: BagReader) -> None:
+        self.graph = Graph()
+        player, listener = self.graph.create_node("player"), self.graph.create_node("listener")
+        self.output = published(bag, player, robot_to_place(bag, DescriptionLibrary()))
+        self.failures: list[Exception] = []
+        self.playback = Playback(player.handle, bag, self.output, self.failures.append)
+        self.places: dict[str, list[float]] = {}
+        listener.create_subscription(TFMessage, "/tf", self._heard, TF_QOS)
+        listener.create_subscription(TFMessage, "/tf_static", self._heard, STATIC_TF_PUBLISHER_QOS)
+        self.playback.review()
+
+    def _heard(self, message: TFMessage) -> None:
+        self.places.update(zip(message.batch.children, message.batch.poses[:, :3].tolist(), strict=True))
+
+    async def at(self, second: int) -> dict[str, list[float]]:
+        """Where the links are at a time."""
+        self.places.clear()
+        self.playback.seek((START + second) * SECOND)
+        for _ in range(4):  # a seek takes a few turns of the loop
+            await asyncio.sleep(0)
+        await self.graph.settle()
+        assert self.failures == []
+        return self.places
+
+    async def close(self) -> None:
+        self.playback.close()
+        await self.graph.close()
+
+
+async def test_its_links_are_where_the_joint_states_of_each_time_say(tmp_path: Path) -> None:
+    """Joints that nobody tells of are at zero, or in the middle of limits without it; one that mimics follows."""
+    with BagReader(recorded(tmp_path / "bag", [0.5, 1.0, 7.0])) as bag:
+        shown = Shown(bag)
+        for second, lift in ((2, 7.0), (0, 0.5), (1, 1.0)):
+            assert await shown.at(second) == {
+                "camera": [0, 0, 0],
+                "upper": [0, 0, lift],
+                "lower": [3, 0, 0],
+                "finger": [6, 0, 0],
+            }
+        await shown.close()
+
+
+async def test_without_joint_states_it_stands_at_zero(tmp_path: Path) -> None:
+    with BagReader(recorded(tmp_path / "bag", [])) as bag:
+        shown = Shown(bag)
+        places = await shown.at(0)
+        assert (places["upper"], places["camera"]) == ([0, 0, 0], [0, 0, 0])
+        await shown.close()
+
+
+@pytest.mark.parametrize("transforms", [False, True])
+async def test_recorded_transforms_are_those_that_count(tmp_path: Path, transforms: bool) -> None:
+    with BagReader(recorded(tmp_path / "bag", [0.5], transforms)) as bag:
+        shown = Shown(bag)
+        assert isinstance(shown.output, PlacedRobot) is not transforms
+        assert bool(await shown.at(0)) is not transforms
+        await shown.close()
