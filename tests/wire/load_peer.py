@@ -6,17 +6,14 @@ parameters, and one goal at a time of `Fibonacci`: a new one aborts the one befo
 
 from __future__ import annotations
 
-import sys
 import threading
 import time
 from typing import Any
 
-import rclpy
 from action_msgs.msg import GoalStatus
 from rcl_interfaces.srv import GetParameters
 from rclpy.action import ActionClient, ActionServer, CancelResponse
 from rclpy.callback_groups import ReentrantCallbackGroup
-from rclpy.executors import MultiThreadedExecutor
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
 from sensor_msgs.srv import SetCameraInfo
@@ -24,9 +21,8 @@ from std_srvs.srv import SetBool
 from test_msgs.action import Fibonacci
 from test_msgs.srv import BasicTypes
 
-from tests.wire.programs import serve
+from tests.wire.node_program import SECONDS, result_of, serve_node
 
-SECONDS = 60.0
 AT_ONCE = 3
 """So many calls of one process wait for their answers: with three such processes no more than the 10
 that a service keeps."""
@@ -89,15 +85,15 @@ class LoadPeer(Node):
             heard = threading.Event()
             order = LONG if number < count - 1 else 5
             sent = client.send_goal_async(Fibonacci.Goal(order=order), feedback_callback=lambda _, on=heard: on.set())
-            goal = _result(sent)
+            goal = result_of(sent)
             assert goal.accepted
             results.append(goal.get_result_async())
             if order == LONG:
                 assert heard.wait(SECONDS)
             if number % 3 == 2 and order == LONG:
-                assert len(_result(goal.cancel_goal_async()).goals_canceling) == 1
+                assert len(result_of(goal.cancel_goal_async()).goals_canceling) == 1
         names = {getattr(GoalStatus, f"STATUS_{name}"): name for name in ("SUCCEEDED", "ABORTED", "CANCELED")}
-        ends = [names[_result(result).status] for result in results]
+        ends = [names[result_of(result).status] for result in results]
         client.destroy()
         return ends
 
@@ -164,23 +160,5 @@ def camera(asked: Any, response: Any) -> Any:
     return response
 
 
-def _result(future: Any) -> Any:
-    came = threading.Event()
-    future.add_done_callback(lambda _: came.set())
-    if not came.wait(SECONDS):
-        raise TimeoutError
-    return future.result()
-
-
-def main() -> None:
-    rclpy.init()
-    peer = LoadPeer(sys.argv[1])
-    executor = MultiThreadedExecutor(6)
-    executor.add_node(peer)
-    threading.Thread(target=executor.spin, daemon=True).start()
-    serve({question: getattr(peer, question) for question in ("chatter", "heard", "storm", "goals")})
-    rclpy.shutdown()
-
-
 if __name__ == "__main__":
-    main()
+    serve_node(LoadPeer, "chatter heard storm goals", threads=6)

@@ -6,26 +6,20 @@ events and, of the node that it is asked to watch, the transitions.
 
 from __future__ import annotations
 
-import sys
-import threading
 import time
 from typing import Any
 
-import rclpy
 from action_msgs.msg import GoalStatus
 from lifecycle_msgs.msg import Transition, TransitionEvent
 from lifecycle_msgs.srv import ChangeState, GetAvailableTransitions, GetState
 from rcl_interfaces.msg import ParameterEvent
 from rclpy.action import ActionClient, ActionServer, CancelResponse, GoalResponse
-from rclpy.executors import MultiThreadedExecutor
 from rclpy.lifecycle import LifecycleNode
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile
 from test_msgs.action import Fibonacci
 
-from tests.wire.programs import serve
-
-SECONDS = 60.0
+from tests.wire.node_program import SECONDS, result_of, serve_node
 
 
 class ManagedPeer(LifecycleNode):
@@ -54,7 +48,7 @@ class ManagedPeer(LifecycleNode):
         sent = client.send_goal_async(
             Fibonacci.Goal(order=order), feedback_callback=lambda said: feedback.append(list(said.feedback.sequence))
         )
-        goal = _answer(sent)
+        goal = result_of(sent)
         if not goal.accepted:
             return {"accepted": False}
         result = goal.get_result_async()
@@ -62,8 +56,8 @@ class ManagedPeer(LifecycleNode):
             until = time.monotonic() + SECONDS
             while len(feedback) < cancel_after and time.monotonic() < until:
                 time.sleep(0.01)
-            assert len(_answer(goal.cancel_goal_async()).goals_canceling) == 1
-        told = _answer(result)
+            assert len(result_of(goal.cancel_goal_async()).goals_canceling) == 1
+        told = result_of(result)
         names = {getattr(GoalStatus, f"STATUS_{name}"): name for name in ("SUCCEEDED", "ABORTED", "CANCELED")}
         sequence = list(told.result.sequence)
         return {"accepted": True, "status": names[told.status], "sequence": sequence, "feedback": feedback}
@@ -72,8 +66,8 @@ class ManagedPeer(LifecycleNode):
         """How many of many goals had the result that was meant for them."""
         client = ActionClient(self, Fibonacci, action)
         assert client.wait_for_server(SECONDS)
-        goals = [_answer(client.send_goal_async(Fibonacci.Goal(order=number % 5 + 2))) for number in range(count)]
-        results = [_answer(goal.get_result_async()).result for goal in goals]
+        goals = [result_of(client.send_goal_async(Fibonacci.Goal(order=number % 5 + 2))) for number in range(count)]
+        results = [result_of(goal.get_result_async()).result for goal in goals]
         client.destroy()
         return sum(list(each.sequence) == fibonacci(number % 5 + 2) for number, each in enumerate(results))
 
@@ -141,7 +135,7 @@ class ManagedPeer(LifecycleNode):
     def _called(self, kind: Any, name: str, request: Any) -> Any:
         client = self.create_client(kind, name)
         assert client.wait_for_service(SECONDS)
-        answer = _answer(client.call_async(request))
+        answer = result_of(client.call_async(request))
         self.destroy_client(client)
         return answer
 
@@ -153,25 +147,9 @@ def fibonacci(order: int) -> list[int]:
     return sequence
 
 
-def _answer(future: Any) -> Any:
-    """What another thread hands over, in time."""
-    came = threading.Event()
-    future.add_done_callback(lambda _: came.set())
-    if not came.wait(SECONDS):
-        raise TimeoutError
-    return future.result()
-
-
-def main() -> None:
-    rclpy.init()
-    peer = ManagedPeer(sys.argv[1])
-    executor = MultiThreadedExecutor(4)
-    executor.add_node(peer)
-    threading.Thread(target=executor.spin, daemon=True).start()
-    questions = "act acts_are_right watch change state possible ends_of declare set events_of changes_seen"
-    serve({question: getattr(peer, question) for question in questions.split()})
-    rclpy.shutdown()
-
-
 if __name__ == "__main__":
-    main()
+    serve_node(
+        ManagedPeer,
+        "act acts_are_right watch change state possible ends_of declare set events_of changes_seen",
+        threads=4,
+    )

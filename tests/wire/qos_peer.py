@@ -6,14 +6,10 @@ A quality of service is given as a dictionary: ``{"preset": "sensor_data"}``, or
 
 from __future__ import annotations
 
-import sys
-import threading
 from typing import Any
 
-import rclpy
 from rclpy.duration import Duration
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
-from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import (
     DurabilityPolicy,
@@ -24,7 +20,7 @@ from rclpy.qos import (
 )
 from std_msgs.msg import String
 
-from tests.wire.programs import serve
+from tests.wire.node_program import serve_node
 
 POLICIES = {"reliability": ReliabilityPolicy, "durability": DurabilityPolicy, "liveliness": LivelinessPolicy}
 DURATIONS = {"deadline": "deadline", "lifespan": "lifespan", "lease": "liveliness_lease_duration"}
@@ -101,16 +97,8 @@ def profile(qos: dict[str, Any]) -> Any:
     return QoSProfile(depth=qos.get("depth", 10), **policies, **durations)
 
 
-def main() -> None:
-    rclpy.init()
-    peer = QosPeer(sys.argv[1])
-    executor = SingleThreadedExecutor()
-    executor.add_node(peer)
-    threading.Thread(target=executor.spin, daemon=True).start()
-    questions = "publisher subscription say keep_saying fall_silent assert_liveliness heard told listeners"
-    serve({question: getattr(peer, question) for question in [*questions.split(), "publishers"]})
-    rclpy.shutdown()
-
-
 if __name__ == "__main__":
-    main()
+    serve_node(
+        QosPeer,
+        "publisher subscription say keep_saying fall_silent assert_liveliness heard told listeners publishers",
+    )

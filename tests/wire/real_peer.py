@@ -23,6 +23,7 @@ from sensor_msgs.srv import SetCameraInfo
 from std_msgs.msg import String
 from std_srvs.srv import SetBool
 
+from tests.wire.node_program import result_of
 from tests.wire.programs import serve
 
 LASTING = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -96,7 +97,7 @@ class RealPeer:
         requests = [SetCameraInfo.Request() for _ in texts]
         for request, text in zip(requests, texts, strict=True):
             request.camera_info.distortion_model = text
-        answers = [self._answer(client.call_async(request)).status_message for request in requests]
+        answers = [result_of(client.call_async(request)).status_message for request in requests]
         self.node.destroy_client(client)
         return answers
 
@@ -110,7 +111,7 @@ class RealPeer:
         client = AsyncParameterClient(self.node, node)
         assert client.wait_for_services(60)
         try:
-            return sorted(self._answer(client.list_parameters([], 1), 2.0).result.names)
+            return sorted(result_of(client.list_parameters([], 1), 2.0).result.names)
         except TimeoutError:
             return []
 
@@ -118,17 +119,8 @@ class RealPeer:
         """Set it, and whether that was done, and what it is then."""
         client = AsyncParameterClient(self.node, node)
         assert client.wait_for_services(60)
-        done = self._answer(client.set_parameters([Parameter(name, value=value)])).results[0].successful
-        return [done, self._answer(client.get_parameters([name])).values[0].double_value]
-
-    @staticmethod
-    def _answer(future: Any, seconds: float = 30.0) -> Any:
-        """What another thread hands over, in time."""
-        came = threading.Event()
-        future.add_done_callback(lambda _: came.set())
-        if not came.wait(seconds):
-            raise TimeoutError
-        return future.result()
+        done = result_of(client.set_parameters([Parameter(name, value=value)])).results[0].successful
+        return [done, result_of(client.get_parameters([name])).values[0].double_value]
 
     def received(self, topic: str) -> list[str]:
         return [message.data for message in self.heard[topic]]

@@ -5,17 +5,14 @@
 
 from __future__ import annotations
 
-import sys
-import threading
 from typing import Any
 
-import rclpy
 from geometry_msgs.msg import TransformStamped
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from tf2_msgs.msg import TFMessage
 
-from tests.wire.programs import serve
+from tests.wire.node_program import serve_node
 
 TELLS, TELLS_LASTING = QoSProfile(depth=100), QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 HEARS, HEARS_LASTING = QoSProfile(depth=100), QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -56,13 +53,5 @@ class TfPeer(Node):
             self._heard[topic][each.child_frame_id] = [each.header.frame_id, each.transform.translation.x]
 
 
-def main() -> None:
-    rclpy.init()
-    peer = TfPeer(sys.argv[1])
-    threading.Thread(target=rclpy.spin, args=(peer,), daemon=True).start()
-    serve({question: getattr(peer, question) for question in ("tell", "keep_telling", "heard", "hashes")})
-    rclpy.shutdown()
-
-
 if __name__ == "__main__":
-    main()
+    serve_node(TfPeer, "tell keep_telling heard hashes")

@@ -6,21 +6,17 @@ meant. Topics and services are named after their types.
 
 from __future__ import annotations
 
-import sys
 import threading
 import time
 from typing import Any
 
-import rclpy
 from rclpy.action import ActionClient, ActionServer
-from rclpy.executors import MultiThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 
-from tests.wire.programs import serve
+from tests.wire.node_program import SECONDS, result_of, serve_node
 from tests.wire.values import digest, interface, large, made, plain
 
-SECONDS = 60.0
 LASTING = QoSProfile(depth=20, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
@@ -95,7 +91,7 @@ class TypedPeer(Node):
         kind = interface(name)
         client = self.create_client(kind, _topic(name))
         assert client.wait_for_service(SECONDS)
-        answers = [plain(_result(client.call_async(made(kind.Request, seed)))) for seed in range(seeds)]
+        answers = [plain(result_of(client.call_async(made(kind.Request, seed)))) for seed in range(seeds)]
         self.destroy_client(client)
         return answers
 
@@ -126,8 +122,8 @@ class TypedPeer(Node):
             feedback.append(plain(said.feedback))
             came.set()
 
-        goal = _result(client.send_goal_async(made(kind.Goal, 3), feedback_callback=hear))
-        result = plain(_result(goal.get_result_async()).result)
+        goal = result_of(client.send_goal_async(made(kind.Goal, 3), feedback_callback=hear))
+        result = plain(result_of(goal.get_result_async()).result)
         came.wait(SECONDS)
         meant = [plain(made(part, seed)) for part, seed in ((kind.Goal, 3), (kind.Feedback, 4), (kind.Result, 5))]
         return [feedback, result, meant]
@@ -163,25 +159,10 @@ def _there_is(name: str) -> bool:
     return True
 
 
-def _result(future: Any) -> Any:
-    came = threading.Event()
-    future.add_done_callback(lambda _: came.set())
-    if not came.wait(SECONDS):
-        raise TimeoutError
-    return future.result()
-
-
-def main() -> None:
-    rclpy.init()
-    peer = TypedPeer(sys.argv[1])
-    executor = MultiThreadedExecutor(4)
-    executor.add_node(peer)
-    threading.Thread(target=executor.spin, daemon=True).start()
-    questions = "knows fields meant hear say counts heard hear_large say_large said_to heard_large answer asked"
-    questions += " meant_by ask act send_goal hashes"
-    serve({question: getattr(peer, question) for question in questions.split()})
-    rclpy.shutdown()
-
-
 if __name__ == "__main__":
-    main()
+    serve_node(
+        TypedPeer,
+        "knows fields meant hear say counts heard hear_large say_large said_to heard_large answer asked "
+        "meant_by ask act send_goal hashes",
+        threads=4,
+    )
