@@ -13,6 +13,7 @@ import time
 from typing import Any
 
 import rclpy
+from rclpy.duration import Duration
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.node import Node
 from rclpy.parameter import Parameter
@@ -27,7 +28,7 @@ from tests.wire.node_program import result_of
 from tests.wire.programs import serve
 
 LASTING = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-KINDS = {"": (String, 10), "lasting_": (String, LASTING), "states_": (JointState, 10), "images_": (Image, 50)}
+KINDS = {"": (String, 10), "lasting_": (String, LASTING), "states_": (JointState, 200), "images_": (Image, 50)}
 
 
 class RealPeer:
@@ -36,6 +37,7 @@ class RealPeer:
         self.node = Node(name)
         self.heard: dict[str, list[Any]] = {}
         self.publishers: dict[str, Any] = {}
+        self.sent = 0
         self.mismatched: list[str] = []
         self.others: list[Node] = []
         publisher_events = PublisherEventCallbacks(incompatible_qos=lambda _: self.mismatched.append("publisher"))
@@ -85,10 +87,26 @@ class RealPeer:
             for number in range(count):
                 image.header.frame_id = str(number)
                 self.publishers["images_"].publish(image)
+                self.sent += 1
                 due += 1 / rate
                 time.sleep(max(0.0, due - time.monotonic()))
 
         threading.Thread(target=work, daemon=True).start()
+
+    def sent_images(self) -> int:
+        return self.sent
+
+    def listeners(self, kind: str) -> int:
+        """How many hear what is published of a kind."""
+        return int(self.publishers[kind].get_subscription_count())
+
+    def tellers(self, topic: str) -> int:
+        """How many publish on a topic."""
+        return int(self.node.count_publishers(topic))
+
+    def wait_for_all(self, kind: str) -> bool:
+        """Until all who hear a kind have all of it."""
+        return bool(self.publishers[kind].wait_for_all_acked(Duration(seconds=30)))
 
     def echoes(self, service: str, texts: list[str]) -> list[str]:
         """What a service answers that says again what it is told, asked with one text after another at once."""
@@ -147,8 +165,9 @@ def echo(request: Any, response: Any) -> Any:
 
 def main() -> None:
     peer = RealPeer(sys.argv[1])
-    questions = "make_nodes nodes published_by hashes publish publish_state publish_images received received_states"
-    questions += " received_images mismatches echoes echoes_are_right parameters_of set_parameter_of"
+    questions = "make_nodes nodes published_by hashes publish publish_state publish_images received"
+    questions += " received_states sent_images listeners tellers wait_for_all received_images mismatches echoes"
+    questions += " echoes_are_right parameters_of set_parameter_of"
     serve({question: getattr(peer, question) for question in questions.split()})
     rclpy.shutdown()
 

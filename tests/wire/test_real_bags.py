@@ -1,0 +1,58 @@
+"""Recording what nodes of real ROS 2 publish, and playing to them; see `test_real_ros`."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+
+import pytest
+
+from tests.wire.programs import linkwright
+
+PYTHON = os.environ.get("LINKWRIGHT_ROS_PYTHON", "")
+IMAGES = 30
+STATES = 100
+
+pytestmark = pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ROS_PYTHON names no interpreter with rclpy")
+
+
+@pytest.fixture
+def real_node(programs):
+    return lambda: programs("real_peer", "real_node", python=PYTHON, RMW_IMPLEMENTATION="rmw_fastrtps_cpp")
+
+
+@pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
+def test_what_they_publish_is_recorded_and_played_to_them(real_node, tmp_path, storage):
+    """Images, joint states and what was said before, each once and in order."""
+    bag = tmp_path / "bag"
+    real = real_node()
+    topics = ["/states_from_ros", "/images_from_ros", "/lasting_from_ros"]
+    command = [sys.executable, "-m", "linkwright", "bag", "record", "-o", str(bag), "-s", storage, *topics]
+    with subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL) as recording:
+        for kind in ("states_", "images_", "lasting_"):
+            real.ask_until(lambda count: count == 1, "listeners", kind)
+        for number in range(STATES):
+            real.ask("publish_state", ["a", "b"], [float(number), 0.5])
+        real.ask("publish_images", IMAGES, 10.0)
+        real.ask_until(lambda sent: sent == IMAGES, "sent_images")
+        real.ask("wait_for_all", "images_")
+        real.ask("wait_for_all", "states_")
+        recording.send_signal(signal.SIGINT)
+        assert recording.wait(60) == 0
+    assert f"Count: {STATES} |" in counted(bag, "/states_from_ros")
+    assert f"Count: {IMAGES} |" in counted(bag, "/images_from_ros")
+    assert "Count: 1 |" in counted(bag, "/lasting_from_ros")
+    remapped = [f"{topic}:={topic.replace('from', 'to')}" for topic in topics]
+    command = [sys.executable, "-m", "linkwright", "bag", "play", str(bag), "--delay", "3", "--remap", *remapped]
+    assert subprocess.run(command, stdin=subprocess.DEVNULL, timeout=120, check=False).returncode == 0
+    states = real.ask_until(lambda heard: len(heard) == STATES, "received_states")
+    assert states == [[["a", "b"], [float(number), 0.5]] for number in range(STATES)]
+    assert real.ask_until(lambda heard: len(heard) == IMAGES, "received_images") == list(range(IMAGES))
+    assert real.ask_until(bool, "received", "lasting_to_ros") == ["said before"]
+
+
+def counted(bag, topic):
+    """The line of ``bag info`` about a topic."""
+    return next(line for line in linkwright("bag", "info", str(bag))[0].splitlines() if f"{topic} " in line)
