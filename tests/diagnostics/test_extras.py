@@ -88,6 +88,21 @@ def test_an_image_display_asks_for_what_unpacks_files(without):
         file_pixels(np.frombuffer(b"\x89PNG\r\n\x1a\n", np.uint8))
 
 
+@pytest.mark.parametrize(
+    ("version", "module", "hint"),
+    [
+        ((3, 14), "rosbags", "run pip install 'linkwright[bag]'"),
+        ((3, 15), "rosbags", "there is no wheel of rosbags for Python 3.15: use an older Python, or"),
+        ((3, 15), "cv2", "run pip install 'linkwright[vision]'"),
+        ((3, 15), "trimesh", "run pip install 'linkwright[mesh]'"),
+    ],
+)
+def test_what_an_extra_leaves_out_for_new_pythons_is_told(monkeypatch, version, module, hint):
+    monkeypatch.setattr("linkwright.diagnostics.extras._VERSION", version)
+    error = missing_extra("BAG107", ModuleNotFoundError(module, name=module))
+    assert str(error.diagnostics[0].hint).startswith(hint)
+
+
 def test_modules_of_no_extra_are_not_asked_for():
     with pytest.raises(ModuleNotFoundError, match="another"):
         missing_extra("BAG107", ModuleNotFoundError("another", name="another.module"))

@@ -8,7 +8,7 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from rosbags.typesys import Stores, get_typestore
+import pytest
 
 from linkwright.messages import get_message
 from linkwright.messages.definition import Container, FieldType, Primitive
@@ -53,8 +53,9 @@ def _primitive(kind: FieldType, primitive: Primitive, draw: random.Random) -> An
 
 @cache
 def rosbags_store() -> Any:
-    """The messages of Humble as rosbags knows them."""
-    return get_typestore(Stores.ROS2_HUMBLE)
+    """The messages of Humble as rosbags knows them; whoever asks for them is skipped where there is no rosbags."""
+    typesys = pytest.importorskip("rosbags.typesys")
+    return typesys.get_typestore(typesys.Stores.ROS2_HUMBLE)
 
 
 def rosbags_object(message: Any) -> Any:

@@ -74,6 +74,7 @@ def windows() -> None:
     for name in MODULES:
         sys.modules.pop(name, None)
     remove(os, FUNCTIONS.split())
+    subprocess._CAN_USE_PIDFD_OPEN = False  # Python 3.15 has asked the system
     others = [name for name in dir(signal) if name.startswith("SIG") and name[3] != "_" and name not in SIGNALS]
     remove(signal, [*others, *SIGNAL_FUNCTIONS, "SIG_BLOCK", "SIG_SETMASK", "SIG_UNBLOCK"])
     remove(socket, SOCKETS)
@@ -96,11 +97,13 @@ def macos() -> None:
     import select
     import selectors
     import socket
+    import subprocess
     import sysconfig
     import urllib.request  # noqa: F401 - the same
 
     sysconfig.get_config_vars()
     platform.uname()
+    subprocess._CAN_USE_PIDFD_OPEN = False  # Python 3.15 has asked the system
     remove(os, ["eventfd", "memfd_create", "pidfd_open", "sched_getaffinity", "sched_setaffinity", "timerfd_create"])
     remove(socket, ["AF_NETLINK", "AF_PACKET", "SO_PEERCRED", "SO_BINDTODEVICE"])
     remove(select, ["epoll"])

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+import sys
+
 from linkwright.diagnostics.diagnostic import Diagnostic, LinkwrightError
 from linkwright.diagnostics.phrase import Phrase, phrase
 
@@ -29,9 +32,40 @@ APART = frozenset({"parquet", "ray", "train"})
 _BY_MODULE = {**{module: extra for extra, module in EXTRAS.items()}, "cv2": "vision"}
 
 
-def install_hint(extra: str) -> Phrase:
-    """How to install an extra of `EXTRAS`."""
+_VERSION = sys.version_info[:2]
+_BEFORE = re.compile(r"python_version < '(\d+)\.(\d+)'")
+
+
+def install_hint(extra: str, package: str = "") -> Phrase:
+    """How to install an extra of `EXTRAS`.
+
+    Args:
+        extra: the extra.
+        package: what is missing of it, by its module; that of the table when left out.
+    """
+    package = package or EXTRAS[extra]
+    newest = _newest_python(package)
+    if newest and newest <= _VERSION:
+        return phrase(
+            "there is no wheel of {package} for Python {version}: use an older Python, or run pip install {package},"
+            " which needs a compiler",
+            package=package,
+            version=".".join(map(str, _VERSION)),
+        )
     return phrase("run pip install 'linkwright[{extra}]'", extra=extra)
+
+
+def _newest_python(package: str) -> tuple[int, ...]:
+    """The first Python from which on no extra asks for a package, as it has no wheel; empty where there is none."""
+    from importlib.metadata import PackageNotFoundError, requires  # takes 10 ms, and is needed for errors alone
+
+    try:
+        asked = requires("linkwright") or []
+    except PackageNotFoundError:  # it runs out of a folder
+        return ()
+    found = [line for line in asked if re.match(rf"{re.escape(package)}\b", line)]
+    ends = [tuple(map(int, end.groups())) for line in found if (end := _BEFORE.search(line.replace('"', "'")))]
+    return max(ends, default=()) if len(ends) == len(found) else ()
 
 
 def missing_extra(code: str, error: ModuleNotFoundError) -> LinkwrightError:
@@ -48,4 +82,4 @@ def missing_extra(code: str, error: ModuleNotFoundError) -> LinkwrightError:
     if package not in _BY_MODULE:
         raise error
     message = phrase("the package '{package}' is not installed", package=package)
-    return LinkwrightError(Diagnostic(code, message, hint=install_hint(_BY_MODULE[package])))
+    return LinkwrightError(Diagnostic(code, message, hint=install_hint(_BY_MODULE[package], package)))

@@ -101,7 +101,10 @@ def check_codec(value: Any, encoding: str) -> None:
 
     Raises:
         RefusalError: it is too long.
+        LookupError: there is no such codec; none has a name beyond ASCII, at which Python 3.15 complains.
     """
+    if isinstance(encoding, str) and not encoding.isascii():
+        raise LookupError(f"unknown encoding: {encoding}")
     name = codecs.lookup(encoding).name
     if name in _QUICK_CODECS or not isinstance(value, (str, bytes)):
         return
