@@ -1,6 +1,7 @@
 import { describe, expect, it } from "vitest";
-import type { FrameTable, JointControl, JointScene, LinkScene, RobotScene } from "../src/protocol";
+import type { Display, FrameTable, JointControl, JointScene, LinkScene, Property, RobotScene, Tree } from "../src/protocol";
 import { jointPose, MovingRobot } from "../src/export/moving-robot";
+import { RecordedConnection } from "../src/export/recorded-connection";
 import { RecordedFiles } from "../src/export/recorded-files";
 import { timeText } from "../src/scene/video";
 
@@ -103,6 +104,27 @@ describe("the files of an exported page", () => {
     }
     expect((await files.fetch("/mesh/arm-1/meshes/b.stl")).status).toBe(404);
     expect(files.address("blob:something")).toBe("blob:something");
+  });
+});
+
+describe("the grid of an exported page", () => {
+  /** What is said of properties once a page has measured a robot, where the grid was at a height. */
+  function told(height: number, ground: number): [string, unknown][] {
+    const row: Omit<Property, "id" | "value" | "options" | "children"> = { name: "Z", kind: "float", description: "", minimum: null, maximum: null, read_only: false, expanded: false, details: null, topics: null };
+    const offset: Property = { ...row, id: "g/Offset", name: "Offset", kind: "group", value: "", options: [], children: [{ ...row, id: "g/Offset/Z", value: height, options: [], children: [] }] };
+    const grid: Display = { id: "g", cls: "rviz_default_plugins/Grid", drawing: "rviz_default_plugins/Grid", name: "Grid", group: null, enabled: true, supported: true, level: "ok", status: [], properties: [offset] };
+    const tree: Tree = { type: "tree", global_options: [], global_status: [], global_level: "ok", displays: [grid] };
+    const connection = new RecordedConnection({ program: "", display: "d", messages: [tree], frames: [], files: {} });
+    const values: [string, unknown][] = [];
+    connection.on("property_changed", ({ id, value }) => values.push([id, value]));
+    connection.send({ type: "robot_measured", diagonal: 2, ground });
+    return values;
+  }
+
+  it("lies where the robot stands, once that is drawn, unless somebody had moved the grid", () => {
+    expect(told(0, -0.25)).toEqual([["g/Offset/Z", -0.25]]);
+    expect(told(0, 0)).toEqual([]);
+    expect(told(0.5, -0.25)).toEqual([]);
   });
 });
 

@@ -145,6 +145,28 @@ def test_boxes_views_and_words(open_file, tmp_path):
     assert chinese.get_by_label("碰撞").count() == 1
 
 
+WHEELED = """\
+<robot name="cart">
+  <link name="body"><visual><geometry><box size="0.6 0.4 0.2"/></geometry></visual></link>
+  <link name="wheel"><visual><origin rpy="1.5708 0 0"/>
+    <geometry><cylinder radius="0.25" length="0.05"/></geometry></visual></link>
+  <joint name="turn" type="continuous"><parent link="body"/><child link="wheel"/><axis xyz="0 1 0"/></joint>
+</robot>
+"""
+
+
+def test_the_grid_lies_where_the_robot_stands(open_file, tmp_path):
+    (tmp_path / "cart.urdf").write_text(WHEELED)
+    export(tmp_path / "cart.html", tmp_path / "cart.urdf")
+    page = open_file(tmp_path / "cart.html")
+
+    def height() -> float:
+        grid = next(each for each in state(page, "displays") if each["class"].endswith("/Grid"))
+        return float(grid["drawn"]["offset"][2])
+
+    becomes(height, pytest.approx(-0.25, abs=0.005))
+
+
 def shown_gripper(live, open_page):
     viewer = live(ROBOT)
     viewer.place("arm", 0.0, 0.0, 0.25, 0.0, 0.0, 0.70710678, 0.70710678)

@@ -4,6 +4,8 @@ import { unpackTransforms } from "../connection/transforms";
 import { MovingRobot } from "./moving-robot";
 import { bytesOf, type Recording } from "./recording";
 
+const GRID = "rviz_default_plugins/Grid";
+
 /** Takes the server's place in an exported page: tells what was recorded, and moves the robot's joints. */
 export class RecordedConnection extends Connection {
   private controls: readonly JointControl[] = [];
@@ -36,12 +38,21 @@ export class RecordedConnection extends Connection {
     else if (message.type === "set_joints") this.move(message.positions);
     else if (message.type === "center_joints") this.move(Object.fromEntries(controls.map(({ name, zero }) => [name, zero])));
     else if (message.type === "randomize_joints") this.move(Object.fromEntries(controls.map((each) => [each.name, anywhere(each)])));
+    else if (message.type === "robot_measured") this.lowerGrid(message.ground);
   }
 
   /** Puts the joints where they were when the robot was exported. */
   reset(): void {
     this.positions = { ...this.start };
     this.moved();
+  }
+
+  /** Puts the grid on the ground that the robot stands on, as the server of `view` does where nobody has moved it. */
+  private lowerGrid(ground: number): void {
+    const tree = this.recording.messages.find((message) => message.type === "tree");
+    const grid = tree?.displays.find(({ drawing }) => drawing === GRID);
+    const height = grid?.properties.find(({ name }) => name === "Offset")?.children.find(({ name }) => name === "Z");
+    if (height?.value === 0 && ground !== 0) this.message.emit({ type: "property_changed", id: height.id, value: ground, options: null });
   }
 
   private prepare(table: FrameTable): void {

@@ -50,6 +50,10 @@ export class GridDrawing implements Drawing {
     this.frame = rows.text(FIXED_FRAME, "Reference Frame");
   }
 
+  inspect(): object {
+    return { offset: this.lines.position.toArray() };
+  }
+
   update(): void {
     const { frames, displays } = this.context.session;
     if (this.frame === FIXED_FRAME || this.frame === displays.fixedFrame) {
