@@ -6,6 +6,7 @@ import json
 import os
 import shutil
 import subprocess
+from hashlib import sha256
 from pathlib import Path
 
 import pytest
@@ -108,6 +109,11 @@ def test_meshes_of_one_address_are_compared_by_their_bytes(package, tmp_path, mo
     (mesh,) = (each for each in json.loads(capsys.readouterr().out)["differences"] if each["subject"] == "link")
     assert mesh["property"] == "visual mesh package://arm/meshes/body.stl"
     assert (mesh["old"], mesh["new"], mesh["unit"]) == ("5", "10", "bytes")
+    edit(package / "meshes/body.stl", "solid body", "dilos")
+    main(words)
+    (mesh,) = (each for each in json.loads(capsys.readouterr().out)["differences"] if each["subject"] == "link")
+    first, second = (sha256(each).hexdigest()[:8] for each in (b"solid", b"dilos"))
+    assert (mesh["old"], mesh["new"], mesh["unit"]) == (first, second, "(SHA-256), both of 5 bytes")
 
 
 @needs_git
@@ -154,6 +160,33 @@ def test_a_commit_that_cannot_be_read_is_told_by_its_name(committed, capsys):
     git(committed, "checkout", "HEAD~1", "--", ".")
     assert main(["diff", "urdf/arm.urdf.xacro", "--against", "HEAD"]) == 2
     assert "--> HEAD:urdf/body.xacro:5:" in capsys.readouterr().err
+
+
+@needs_git
+@pytest.mark.parametrize("staged", [False, True])
+def test_a_file_that_was_renamed_is_found_by_its_old_name(committed, capsys, staged):
+    before = (committed / ".git/index").read_bytes()
+    if staged:
+        git(committed, "mv", "urdf/arm.urdf.xacro", "urdf/hand.urdf.xacro")
+    else:
+        (committed / "urdf/arm.urdf.xacro").rename(committed / "urdf/hand.urdf.xacro")
+    edit(committed / "urdf/body.xacro", 'mass value="${mass}"', 'mass value="${2 * mass}"')
+    assert main(["diff", "urdf/hand.urdf.xacro", "--against", "HEAD", "--format", "json"]) == 1
+    told = json.loads(capsys.readouterr().out)
+    assert (told["old"], told["new"]) == ("HEAD:urdf/arm.urdf.xacro", "urdf/hand.urdf.xacro")
+    assert [each["property"] for each in told["differences"]] == ["inertial mass"]
+    assert staged or (committed / ".git/index").read_bytes() == before
+
+
+@needs_git
+def test_a_file_that_no_commit_has_is_told_from_one_that_came_later(committed, capsys):
+    (committed / "urdf/new.urdf").write_text("<robot name='r'><link name='a'/></robot>")
+    assert main(["diff", "urdf/new.urdf", "--against", "HEAD"]) == 2
+    assert "no commit has it yet" in capsys.readouterr().err
+    git(committed, "add", "--all")
+    git(committed, "commit", "--all", "--message", "new")
+    assert main(["diff", "urdf/new.urdf", "--against", "HEAD~1"]) == 2
+    assert "`git log -- urdf/new.urdf` tells which commits have it" in capsys.readouterr().err
 
 
 @needs_git

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import os
+import shutil
 import subprocess
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from functools import cached_property
 from pathlib import Path
 
@@ -21,7 +23,8 @@ _OF_HOOKS = ("GIT_DIR", "GIT_WORK_TREE", "GIT_INDEX_FILE", "GIT_PREFIX")
 class Revision:
     """All files of a commit, in a temporary folder: what a description includes and its meshes come from there, too.
 
-    Neither the repository nor its working tree is changed. Packages that are not in the commit are looked for where
+    Neither the repository nor its working tree is changed. A file that was renamed since is found by its old name, as
+    git recognises it. Packages that are not in the commit are looked for where
     those of the working tree are.
 
     Args:
@@ -49,9 +52,7 @@ class Revision:
         commit = _commit(self._top, name)
         inside = real.relative_to(self._top)
         if _git(self._top, "cat-file", "-e", f"{commit}:{inside.as_posix()}").returncode != 0:
-            message = phrase("commit '{name}' has no file '{inside}'", name=name, inside=inside.as_posix())
-            hint = phrase("`git log -- {inside}` tells which commits have it", inside=inside.as_posix())
-            raise LinkwrightError(Diagnostic("CLI344", message, hint=hint))
+            inside = _before_renaming(self._top, commit, inside, name)
         self._folder = tempfile.TemporaryDirectory(prefix="linkwright-")
         self._root = Path(self._folder.name).resolve() / "files"
         try:
@@ -128,6 +129,32 @@ def _commit(top: Path, name: str) -> str:
         hint = phrase("HEAD is the last one; `git log --oneline` lists others, and `git fetch` gets those of a server")
         raise LinkwrightError(Diagnostic("CLI343", message, hint=hint))
     return done.stdout.strip()
+
+
+def _before_renaming(top: Path, commit: str, inside: Path, name: str) -> Path:
+    """The name that a file of the working tree had in a commit that does not have its name; staged or not.
+
+    Raises:
+        LinkwrightError: CLI344, git recognises it in none of the files that are gone since.
+    """
+    new = inside.as_posix()
+    with tempfile.TemporaryDirectory(prefix="linkwright-") as folder:
+        index = Path(folder) / "index"
+        with suppress(OSError):
+            shutil.copyfile(top / _git(top, "rev-parse", "--git-path", "index").stdout.rstrip("\r\n"), index)
+        own = {"GIT_INDEX_FILE": str(index)}
+        _git(top, "add", "--intent-to-add", "--", new, environment=own)
+        words = ("diff", "--no-ext-diff", "--find-renames", "--diff-filter=R", "--name-status", "-z", commit)
+        told = _git(top, *words, environment=own).stdout.split("\0")  # of each: R087, the old name, the new one
+    for old, renamed in zip(told[1::3], told[2::3], strict=False):
+        if renamed == new:
+            return Path(old)
+    message = phrase("commit '{name}' has no file '{inside}'", name=name, inside=new)
+    if _git(top, "log", "--max-count=1", "--format=%h", "--", new).stdout:
+        hint = phrase("`git log -- {inside}` tells which commits have it", inside=new)
+    else:
+        hint = phrase("no commit has it yet; compare it with another file: `linkwright diff OLD NEW`")
+    raise LinkwrightError(Diagnostic("CLI344", message, hint=hint))
 
 
 def _git(folder: Path, *words: str, environment: Mapping[str, str] | None = None) -> subprocess.CompletedProcess[str]:

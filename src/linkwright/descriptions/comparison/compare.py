@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import filecmp
+import hashlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -197,9 +198,9 @@ class _Comparer:
             for name in (name for name in wanted if name in known):
                 old_file, new_file = self.old.mesh(name), self.new.mesh(name)
                 if old_file and new_file and not _same_bytes(old_file, new_file):
-                    sizes = str(old_file.stat().st_size), str(new_file.stat().st_size)
+                    values = _told_of_bytes(old_file, new_file)
                     places = _place(known[name]), _place(wanted[name])
-                    yield Difference("link", new.name, "changed", f"{tag} mesh {name}", *sizes, "bytes", *places)
+                    yield Difference("link", new.name, "changed", f"{tag} mesh {name}", *values, *places)
 
     # --- blocks of facts ------------------------------------------------------------------------------------------
 
@@ -348,6 +349,15 @@ def _meshes_of(shapes: Sequence[Visual | Collision]) -> dict[str, Element | None
         for each in shapes
         if isinstance(each.geometry, Mesh)
     }
+
+
+def _told_of_bytes(old: Path, new: Path) -> tuple[str, str, str]:
+    """What tells two files apart: their sizes, else the beginnings of their hashes; and the unit."""
+    sizes = [path.stat().st_size for path in (old, new)]
+    if sizes[0] != sizes[1]:
+        return str(sizes[0]), str(sizes[1]), "bytes"
+    first, second = (hashlib.sha256(path.read_bytes()).hexdigest()[:8] for path in (old, new))
+    return first, second, f"(SHA-256), both of {sizes[0]} bytes"
 
 
 def _same_bytes(old: Path, new: Path) -> bool:
