@@ -120,9 +120,9 @@ function start(app: HTMLElement): void {
   keepCurrent(dock, session);
   new FilePanels(connection, dock);
 
-  session.description.placeAsked.on(({ file, line, display }) => {
+  session.description.placeAsked.on(({ file, line, display, name }) => {
     dock.open("source");
-    source.reveal(file, line, { display });
+    source.reveal(file, line, { display, name });
   });
 
   session.editing.wanted.on(() => dock.open("editing"));

@@ -154,6 +154,7 @@ def test_a_difference_selects_what_shows_it_and_leads_to_both_places(start, open
     assert "0 0 0.6" in group(page, "turn", "Joint").inner_text()
     for side, number in (("old.urdf:6", 6), ("new.urdf:6", 6)):
         group(page, "turn", "Joint").get_by_role("button", name=side, exact=False).click()
+        until(page, "lw.panels.source.expanded.lines > 0")
         becomes(lambda name=side[:8]: state(page, "panels.source.origin.file").endswith(name), True)
         becomes(lambda: [each["from"] for each in state(page, "panels.source.origin.marks")][-1:], [number])
 
@@ -190,6 +191,7 @@ def test_a_commit_is_the_old_one(start, open_page, files):
     group(page, "camera").get_by_role("button", name="HEAD:new.urdf:5", exact=False).click()
     becomes(lambda: state(page, "panels.source.origin.file").endswith("files/new.urdf"), True)
     page.locator(".source-panel").get_by_text('"camera"').first.wait_for()
+    assert page.locator(".source-file").evaluate("(e) => e.selectedOptions[0].textContent") == "HEAD:new.urdf"
 
 
 def test_the_list_is_in_front_in_a_small_window(start, open_page, files):

@@ -175,7 +175,8 @@ export class ComparisonPanel implements Panel {
     const words = [h("span", { class: "difference-side" }, strings.comparison[side]), shortPlace(text)] as const;
     const display = this.session.comparison.compared?.[side].display ?? "";
     if (file === "" || display === "") return h("span", { class: "place", title: text }, ...words);
-    return button(text, () => this.session.description.placeAsked.emit({ file, line, display }), "place", ...words);
+    const name = text.replace(/(:\d+)+$/, "");
+    return button(text, () => this.session.description.placeAsked.emit({ file, line, display, name }), "place", ...words);
   }
 }
 

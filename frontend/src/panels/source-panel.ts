@@ -7,7 +7,7 @@ import type { Session } from "../state/session";
 import { strings } from "../strings";
 import { currentModel } from "./current-model";
 import type { Panel } from "./panel";
-import { placeText, shortPath } from "./place";
+import { placeText, shortPath, shortPlace } from "./place";
 import { SourceView, type Highlight } from "./source-view";
 import { holdWhileVisible } from "./visibility";
 
@@ -18,6 +18,8 @@ interface Spot {
   readonly look: Highlight["look"];
   /** The display whose description the file belongs to, where that is another one than the panels are about. */
   readonly display: string | undefined;
+  /** What readers know the file by, where that is not its path, such as one of a commit. */
+  readonly name: string | undefined;
 }
 
 /** The files that the description is written in, and beside them what they expand to; the selected link or joint is marked in both. */
@@ -72,9 +74,9 @@ export class SourcePanel implements Panel {
           release();
         };
       },
-      () => this.focused(),
+      () => this.renewed(),
     );
-    description.arrived.on(coalesced(() => this.focused()));
+    description.arrived.on(coalesced(() => this.renewed()));
     description.textArrived.on(update);
     description.textsOutdated.on(update);
     focus.changed.on(coalesced(() => this.focused()));
@@ -82,8 +84,8 @@ export class SourcePanel implements Panel {
   }
 
   /** Shows a line of a file, such as a diagnostic's. */
-  reveal(file: string, line: number, { look = "problem", display }: Partial<Pick<Spot, "look" | "display">> = {}): void {
-    this.spot = { file, line, look: display === undefined ? look : "focus", display };
+  reveal(file: string, line: number, { look = "problem", display, name }: Partial<Pick<Spot, "look" | "display" | "name">> = {}): void {
+    this.spot = { file, line, look: display === undefined ? look : "focus", display, name };
     this.file = file;
     this.wanted.origin = line;
     this.update();
@@ -109,6 +111,12 @@ export class SourcePanel implements Panel {
       this.wanted.origin = origin.line;
     }
     this.update();
+  }
+
+  /** The panel is seen again, or the description is another; a place that was asked for stays until another element is the one. */
+  private renewed(): void {
+    if (this.spot === null || this.spot.file !== this.file) this.focused();
+    else this.update();
   }
 
   private update(): void {
@@ -164,7 +172,8 @@ export class SourcePanel implements Panel {
 
   private listFiles(files: readonly string[]): void {
     const options = files.map((file) => {
-      const option = h("option", { title: file }, shortPath(file));
+      const name = this.spot?.file === file ? this.spot.name : undefined;
+      const option = h("option", { title: name ?? file }, name === undefined ? shortPath(file) : shortPlace(name));
       option.value = file;
       return option;
     });

@@ -23,8 +23,8 @@ export class DescriptionState {
   readonly edited = new Signal<Change>();
   /** A text has come. */
   readonly textArrived = new Signal();
-  /** The user wants to see a place: a diagnostic's, a link's. */
-  readonly placeAsked = new Signal<{ file: string; line: number; display?: string }>();
+  /** The user wants to see a place: a diagnostic's, a link's; `name`: what readers know the file by. */
+  readonly placeAsked = new Signal<{ file: string; line: number; display?: string; name?: string }>();
   /** Texts that were read may be others now. */
   readonly textsOutdated = new Signal();
   private readonly revisions = new Map<string, number>();
