@@ -9,11 +9,11 @@ import pytest
 from linkwright.graph import EndpointInfo, NodeIdentity, QoSProfile
 from linkwright.graph.faults import ExternalShutdownException
 from linkwright.messages import String
-from linkwright.wire.background import ends_by_error
 from linkwright.wire.dds import departures
 from linkwright.wire.dds.departures import FAREWELL_WITHIN, GRACE, Departures
 from linkwright.wire.dds.discovery_info import NodeEntities, ParticipantEntities
 from linkwright.wire.dds.remote import RemoteEndpoint, RemoteGraph, RemoteParticipant
+from linkwright.wire.engine import ends_by_error
 
 PARTICIPANT, WRITER, OTHER = b"p" * 16, b"w" * 16, b"o" * 16
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import atexit
 import os
-import sys
 import threading
 import time
 import weakref
@@ -16,9 +15,9 @@ from typing import TYPE_CHECKING, Any, Protocol, TypedDict, TypeVar
 
 from linkwright.diagnostics import LinkwrightError, Phrase, render
 from linkwright.graph.endpoints.info import EndpointInfo
-from linkwright.graph.faults import ExternalShutdownException
 from linkwright.graph.log.logger import Logger, run_logged
 from linkwright.graph.names.identity import NodeIdentity
+from linkwright.wire.engine import Engine, Work
 from linkwright.wire.switch import is_switched_off
 
 if TYPE_CHECKING:
@@ -35,53 +34,6 @@ _JOINED_WITHIN = 10.0
 _LOOK_AGAIN = 0.01
 _CLOSED_WITHIN = 0.05
 """Seconds after which who waits sees that the domain was left."""
-
-
-class Engine(Protocol):
-    """Makes, feeds and deletes what mirrors the endpoints of this process, in threads of its own."""
-
-    def start(self) -> None:
-        """Begin."""
-
-    def wake(self) -> None:
-        """Look at the work soon; from any thread."""
-
-    def close(self) -> None:
-        """End, once what was sent reliably is on its way or a second has passed."""
-
-    def abandon(self) -> None:
-        """Send nothing more, and end without what needs the network: this process was forked off."""
-
-    def add_node(self, node: NodeIdentity) -> None:
-        """Announce a node."""
-
-    def remove_node(self, node: NodeIdentity) -> None:
-        """Withdraw a node."""
-
-    def open_publisher(self, publisher: Any) -> None:
-        """Mirror a publisher."""
-
-    def close_publisher(self, publisher: Any) -> None:
-        """Stop mirroring a publisher."""
-
-    def open_subscription(self, subscription: Any) -> None:
-        """Mirror a subscription."""
-
-    def open_service(self, service: Any) -> None:
-        """Mirror a service."""
-
-    def open_client(self, client: Any) -> None:
-        """Mirror a client."""
-
-    def open_presence(self, presence: Any) -> None:
-        """Show an endpoint that takes no part."""
-
-    def close_endpoint(self, endpoint: Any) -> None:
-        """Stop mirroring a subscription, a service, a client or a presence."""
-
-
-Work = deque[Callable[[Engine], None]]
-"""What there is to do, called with the engine in the order of asking."""
 
 
 class Outside(Protocol):
@@ -382,13 +334,6 @@ def log_join_failure(logger: Logger, error: LinkwrightError) -> None:
     """Log why a domain is not joined."""
     findings = "\n".join(render(each) for each in error.diagnostics)
     logger.error(f"{findings}\nThis process goes on by itself: nobody outside sees its nodes.")
-
-
-def ends_by_error() -> bool:
-    """Whether this program has ended with an exception that nobody caught; Ctrl-C is none of these."""
-    error = getattr(sys, "last_value", None)
-    is_interactive = hasattr(sys, "ps1")
-    return isinstance(error, Exception) and not isinstance(error, ExternalShutdownException) and not is_interactive
 
 
 def say_alone(logger: Logger, reason: Phrase) -> None:

@@ -7,13 +7,10 @@ the tables of what is outside; the other takes samples and hands them on.
 from __future__ import annotations
 
 import time
-import traceback
-from collections.abc import Callable
 from typing import Any
 
 from linkwright.graph.log.logger import Logger
 from linkwright.graph.names.identity import NodeIdentity
-from linkwright.wire.background import Work, ends_by_error
 from linkwright.wire.dds.cyclone import CycloneError
 from linkwright.wire.dds.departures import Departures
 from linkwright.wire.dds.discovery import Discovery
@@ -27,14 +24,13 @@ from linkwright.wire.dds.services import IncomingService, OutsideServer
 from linkwright.wire.dds.settings import Range, Settings
 from linkwright.wire.dds.topics import IncomingTopic, OutgoingTopic
 from linkwright.wire.dds.waiting import WaitingThread
+from linkwright.wire.engine import Engine as AnyEngine
+from linkwright.wire.engine import Work, ends_by_error
 
 CLOSING_TIME = 1.0
 """Seconds that leaving may take until what was sent reliably is acknowledged."""
 
 _LOOK_AGAIN = 0.01
-_WORK_SPAN = 0.02
-"""Seconds after which work on the own endpoints makes room for news from outside."""
-
 _NAMED_WITHIN = 1.0
 """Seconds within which a participant will have said which node an endpoint belongs to."""
 
@@ -45,19 +41,21 @@ _FIRST_TELL_SPAN = 1.0
 """The same for the first announcement, from which others conclude that they know all of a process."""
 
 
-class Engine:
+class Engine(AnyEngine):
     """One participant with its readers and writers.
 
     Args:
         settings: the domain and how to join it.
         remote: the tables to fill.
         departures: judges how publishers outside went.
-        work: what there is to do, called with the engine; others append to it and `wake`.
+        work: what there is to do; others append to it and `wake`.
         logger: for what there is to tell.
 
     Raises:
         LinkwrightError: the domain cannot be joined.
     """
+
+    refusal = CycloneError
 
     def __init__(
         self,
@@ -67,13 +65,12 @@ class Engine:
         work: Work,
         logger: Logger,
     ) -> None:
+        super().__init__(work, logger)
         self._remote = remote
         self._departures = departures
         self._settings = settings
         self._fast: RtpsParticipant | None = None
         self._is_fast_possible = settings.range is not Range.OFF
-        self._work = work
-        self._logger = logger
         self._participant = Participant(settings)
         types = self._participant.types
         self._domain = Domain(self._participant, remote, types)
@@ -110,8 +107,7 @@ class Engine:
         """
         self._control.stop(CLOSING_TIME)
         self._reception.stop(CLOSING_TIME)
-        while self._work:
-            self._do(self._work.popleft())
+        self._do_all_work()
         self.abandon()
         if not ends_by_error():
             self._discovery.publish([])
@@ -214,7 +210,7 @@ class Engine:
 
     def _idle(self) -> float | None:
         """Work off what was asked for, and handle what discovery found; seconds after which to look again, or None."""
-        self._work_for(_WORK_SPAN)
+        self._do_some_work()
         self._look_outside()
         self._end_leaving()
         late = self._review_replies()
@@ -226,22 +222,6 @@ class Engine:
         if self._leaving or self._mismatched or late:
             return _LOOK_AGAIN
         return min((each for each in (asking, departing) if each is not None), default=None)
-
-    def _work_for(self, seconds: float) -> None:
-        until = time.monotonic() + seconds
-        while self._work and time.monotonic() < until:
-            self._do(self._work.popleft())
-
-    def _do(self, work: Callable[[Engine], None]) -> None:
-        try:
-            work(self)
-        except Exception as error:  # noqa: BLE001 - the rest of the graph is to be made all the same
-            self._report(error)
-
-    def _report(self, error: Exception) -> None:
-        """Log that something is not mirrored: why Cyclone refuses it, or the traceback of an error of ours."""
-        lines = [str(error)] if isinstance(error, CycloneError) else traceback.format_exception(error)
-        self._logger.error("A part of the graph is not seen outside of this process: " + "".join(lines).rstrip())
 
     def _look_outside(self) -> None:
         matches_changed, self._matches_changed = self._matches_changed, False

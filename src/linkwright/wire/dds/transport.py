@@ -5,11 +5,12 @@ from __future__ import annotations
 import os
 
 from linkwright.graph.log.logger import Logger
-from linkwright.wire.background import BackgroundTransport, Engine
+from linkwright.wire.background import BackgroundTransport
 from linkwright.wire.dds.departures import Departures
 from linkwright.wire.dds.local_sockets import other_processes
 from linkwright.wire.dds.remote import RemoteGraph
 from linkwright.wire.dds.settings import Range, Settings
+from linkwright.wire.engine import Engine
 
 SETTLED_AFTER = 0.3
 """Seconds without news after which discovery counts as complete."""

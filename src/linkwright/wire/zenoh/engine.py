@@ -8,8 +8,6 @@ from __future__ import annotations
 
 import itertools
 import threading
-import time
-import traceback
 from collections import deque
 from collections.abc import Callable
 from typing import Any
@@ -20,8 +18,8 @@ from linkwright.graph.endpoints.info import EndpointKind
 from linkwright.graph.log.logger import Logger
 from linkwright.graph.names.identity import NodeIdentity
 from linkwright.messages import InterfaceNotFoundError, type_hash
-from linkwright.wire.background import Engine as AnyEngine
-from linkwright.wire.background import Work, ends_by_error
+from linkwright.wire.engine import Engine as AnyEngine
+from linkwright.wire.engine import Work, ends_by_error
 from linkwright.wire.type_names import dds_type
 from linkwright.wire.zenoh import qos_text, tokens
 from linkwright.wire.zenoh.departures import Departures
@@ -36,24 +34,23 @@ from linkwright.wire.zenoh.tokens import Token
 _CLOSING_TIME = 1.0
 """Seconds that the thread's last work may take."""
 
-_WORK_SPAN = 0.02
-"""Seconds after which work on the own endpoints makes room for news from outside."""
 
-
-class Engine:
+class Engine(AnyEngine):
     """One session with its publishers, subscriptions, services and clients.
 
     Args:
         settings: the domain and how to join it.
         remote: the tables to fill.
         departures: judges how publishers outside went.
-        work: what there is to do, called with the engine; others append to it and `wake`.
+        work: what there is to do; others append to it and `wake`.
         logger: for what there is to tell.
         patience: opens the session.
 
     Raises:
         LinkwrightError: the session cannot be opened.
     """
+
+    refusal = zenoh.ZError
 
     def __init__(
         self,
@@ -64,11 +61,10 @@ class Engine:
         logger: Logger,
         patience: Patience,
     ) -> None:
+        super().__init__(work, logger)
         self._settings = settings
         self._remote = remote
         self._departures = departures
-        self._work = work
-        self._logger = logger
         self._is_client = is_client(settings)
         self._session = patience.open(configuration(settings))
         self._session_id = str(self._session.zid())
@@ -109,8 +105,7 @@ class Engine:
         self._wake.set()
         if self._thread.ident is not None and self._thread is not threading.current_thread():
             self._thread.join(_CLOSING_TIME)
-        while self._work:
-            self._do(self._work.popleft())
+        self._do_all_work()
         for mirrored in self._mirrored.values():
             if hasattr(mirrored, "abandon"):
                 mirrored.abandon()
@@ -290,26 +285,10 @@ class Engine:
         self._look_for_router()
         while not self._ended.is_set():
             self._wake.clear()
-            self._work_for(_WORK_SPAN)
+            self._do_some_work()
             self._take_news()
             again = 0.0 if self._work else self._departures.review()
             self._wake.wait(again)
-
-    def _work_for(self, seconds: float) -> None:
-        until = time.monotonic() + seconds
-        while self._work and time.monotonic() < until:
-            self._do(self._work.popleft())
-
-    def _do(self, work: Callable[[AnyEngine], None]) -> None:
-        try:
-            work(self)
-        except Exception as error:  # noqa: BLE001 - the rest of the graph is to be made all the same
-            self._report(error)
-
-    def _report(self, error: Exception) -> None:
-        """Log that something is not mirrored: why Zenoh refuses it, or the traceback of an error of ours."""
-        lines = [str(error)] if isinstance(error, zenoh.ZError) else traceback.format_exception(error)
-        self._logger.error("A part of the graph is not seen outside of this process: " + "".join(lines).rstrip())
 
     def _take_news(self) -> None:
         self.note_news()

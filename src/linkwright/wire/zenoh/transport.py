@@ -7,7 +7,8 @@ from threading import Event, Lock
 from typing import TYPE_CHECKING, cast
 
 from linkwright.graph.log.logger import Logger
-from linkwright.wire.background import BackgroundTransport, Engine
+from linkwright.wire.background import BackgroundTransport
+from linkwright.wire.engine import Engine
 from linkwright.wire.zenoh.departures import Departures
 from linkwright.wire.zenoh.remote import RemoteGraph
 from linkwright.wire.zenoh.settings import Settings
