@@ -155,7 +155,7 @@ def test_why_a_display_shows_nothing_is_told_where_one_looks(live, open_page):
     assert why in card.inner_text()
     assert page.get_by_text("No problems found.").is_hidden()
     assert page.locator("[data-key='display-1'] .row-title").get_attribute("title").splitlines() == ["Clicks", why]
-    page.evaluate("window.shownFirst = document.querySelector('.diagnostic .to-display')")
+    page.evaluate("window.shownFirst = document.querySelector('.diagnostic .text-link')")
     viewer.run(lambda: viewer.node.create_publisher(PointStamped, "/clicked_point", 1))
     card.get_by_text("nothing came yet").wait_for()
     assert page.evaluate("window.shownFirst.isConnected"), "what is about to be clicked is not replaced"

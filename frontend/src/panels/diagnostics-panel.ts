@@ -62,7 +62,7 @@ export class DiagnosticsPanel implements Panel {
 
   private rowButton(display: DisplayState): HTMLElement {
     const { displays } = this.session;
-    return button(strings.diagnostics.showDisplay, () => displays.rowAsked.emit(display), "to-display", display.name);
+    return button(strings.diagnostics.showDisplay, () => displays.rowAsked.emit(display), "text-link", display.name);
   }
 }
 

@@ -41,7 +41,7 @@ export class TopicLine {
       rate: h("td", { class: "numeric" }),
       bandwidth: h("td", { class: "numeric" }),
     };
-    const label = button(words.show, () => events.shown(name), "topic-link", name);
+    const label = button(words.show, () => events.shown(name), "text-link", name);
     const title = h("span", { class: "topic-title" }, this.box, this.expander, label);
     this.head = h("tr", { data: { topic: name } }, h("td", { title: name }, title), ...Object.values(this.cells));
     const inside = h("td", {}, this.received, this.tree.element);
