@@ -86,6 +86,40 @@ def test_qr_codes_are_named_by_their_texts():
     assert len(detector("qr").detect(picture, Limits(classes=frozenset({"bath"})))) == 0
 
 
+@pytest.mark.parametrize("turned", [0.0, 0.3], ids=["from the front", "from the side"])
+def test_a_qr_code_is_read_that_is_small_in_the_picture(turned):
+    code = cv2.copyMakeBorder(cv2.QRCodeEncoder.create().encode("kitchen"), *(4,) * 4, cv2.BORDER_CONSTANT, value=255)
+    side = code.shape[0]
+    corners = np.array([(0, 0), (side, 0), (side, side), (0, side)], np.float32)
+    high = 100.0
+    seen = np.array(
+        [(100, 80), (100 + high, 80 + turned * 20), (100 + high, 80 + high - turned * 20), (100, 80 + high)], np.float32
+    )
+    larger = cv2.getPerspectiveTransform(corners, 4 * seen)
+    picture = cv2.warpPerspective(code, larger, (4 * 320, 4 * 240), flags=cv2.INTER_NEAREST, borderValue=120)
+    picture = cv2.resize(picture, (320, 240), interpolation=cv2.INTER_AREA)
+    found = detector("qr").detect(np.repeat(picture[..., np.newaxis], 3, axis=2), LIMITS)
+    assert names(found) == ["kitchen"]
+    # Its quiet zone of six modules is not in the box.
+    assert found.boxes[0] == pytest.approx([118, 98, 182, 162], abs=4)
+
+
+def test_pictures_in_which_a_code_is_only_half_there_are_no_error():
+    code = cv2.resize(cv2.QRCodeEncoder.create().encode("kitchen"), None, fx=6, fy=6, interpolation=cv2.INTER_NEAREST)
+    numbers = np.random.default_rng(4)
+    look = detector("qr")
+    for _ in range(40):
+        picture = numbers.integers(0, 255, (240, 320), dtype=np.uint8)
+        top, left = (int(each) for each in numbers.integers(0, 120, 2))
+        part = code[: 240 - top, : 320 - left]
+        picture[top : top + part.shape[0], left : left + part.shape[1]] = part
+        for _ in range(int(numbers.integers(0, 4))):
+            y, x = (int(each) for each in numbers.integers(0, 200, 2))
+            picture[y : y + 30, x : x + 30] = 255
+        found = look.detect(np.repeat(picture[..., np.newaxis], 3, axis=2), LIMITS)
+        assert set(names(found)) <= {"kitchen"}
+
+
 def test_a_line_on_the_floor():
     picture = blank()
     cv2.line(picture, (200, 239), (200, 100), (20, 20, 20), 21)

@@ -76,12 +76,14 @@ class AprilTagDetector(MarkerDetector):
 class QrDetector(Detector):
     """QR codes; the class of a code is its text, its score 1. One that cannot be read is not told of.
 
+    OpenCV finds codes long before it can read them: those are cut out, straightened and enlarged, and read once more.
+
     Raises:
         LinkwrightError: VISION101 OpenCV is missing, VISION109 it is given what only networks have.
     """
 
     def __init__(self, options: DetectorOptions) -> None:
-        self._detector = load_opencv().QRCodeDetector()
+        self._detector = load_opencv().QRCodeDetectorAruco()
         self._notes = without_network(options)
 
     @property
@@ -98,14 +100,28 @@ class QrDetector(Detector):
         """Find codes."""
         if min(picture.shape[:2]) < _SMALLEST_SIDE:
             return Detections.none(())
-        found, texts, corners, _ = self._detector.detectAndDecodeMulti(_grey(picture))
-        read = [index for index, text in enumerate(texts) if text] if found else []
-        names = tuple(dict.fromkeys(texts[index] for index in read))
-        places = [np.asarray(corners[index], np.float32).reshape(4, 2) + 0.5 for index in read]
-        classes = [names.index(texts[index]) for index in read]
+        grey = _grey(picture)
+        found, texts, corners, _ = self._detector.detectAndDecodeMulti(grey)
+        codes = [np.asarray(each, np.float32).reshape(4, 2) for each in corners] if found else []
+        told = [text or self._read(grey, code) for text, code in zip(texts, codes, strict=False)]
+        read = [index for index, text in enumerate(told) if text]
+        names = tuple(dict.fromkeys(told[index] for index in read))
+        places = [codes[index] + 0.5 for index in read]
+        classes = [names.index(told[index]) for index in read]
         return most_certain([_box(each) for each in places], [1.0] * len(read), classes, names, limits, places)
 
+    def _read(self, grey: NDArray[np.uint8], corners: NDArray[np.float32]) -> str:
+        """The text of a code with these corners, seen from the front and near; empty if it cannot be read."""
+        cv2 = load_opencv()
+        near, far = _QUIET_ZONE, _QUIET_ZONE + _ENLARGED
+        square = np.array([(near, near), (far, near), (far, far), (near, far)], np.float32)
+        size = (near + far, near + far)
+        seen = cv2.warpPerspective(grey, cv2.getPerspectiveTransform(corners, square), size, flags=cv2.INTER_CUBIC)
+        return str(self._detector.detectAndDecode(seen)[0])
 
+
+_ENLARGED, _QUIET_ZONE = 340, 40
+"""Pixels along a side of a code that is read once more, and around it."""
 _SMALLEST_SIDE = 8
 """In smaller pictures OpenCV fails instead of finding nothing."""
 
