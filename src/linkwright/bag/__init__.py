@@ -9,6 +9,7 @@ if TYPE_CHECKING:
     from linkwright.bag.history import History
     from linkwright.bag.playback import FASTEST, SLOWEST, Output, Playback, Recording
     from linkwright.bag.player import Player, PlayOptions
+    from linkwright.bag.player_services import PlayerServices
     from linkwright.bag.publishing import PublishedRecording
     from linkwright.bag.reading import BagReader, BagTopic
     from linkwright.bag.recorder import Recorder
@@ -28,6 +29,7 @@ __all__ = [
     "PlayOptions",
     "Playback",
     "Player",
+    "PlayerServices",
     "PublishedRecording",
     "Recorder",
     "Recording",
@@ -42,6 +44,7 @@ __getattr__ = deferred(
         "history": ("History",),
         "playback": ("FASTEST", "SLOWEST", "Output", "Playback", "Recording"),
         "player": ("PlayOptions", "Player"),
+        "player_services": ("PlayerServices",),
         "publishing": ("PublishedRecording",),
         "reading": ("BagReader", "BagTopic"),
         "recorder": ("Recorder",),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from math import inf
 from typing import Any
 
 from linkwright.bag.publishing import make_publishers
@@ -112,6 +113,16 @@ class Player:
         """Begin to play."""
         self._begin()
 
+    def pause(self) -> None:
+        """Pause, unless it is paused."""
+        if not self._paused:
+            self.toggle_paused()
+
+    def resume(self) -> None:
+        """Go on, if it is paused."""
+        if self._paused:
+            self.toggle_paused()
+
     def toggle_paused(self) -> None:
         """Pause, or go on."""
         self._anchor()
@@ -123,21 +134,37 @@ class Player:
         """Play faster or slower from now on.
 
         Raises:
-            ValueError: the rate is not positive.
+            ValueError: the rate is not positive, or not finite.
         """
-        if rate <= 0:
+        if not 0 < rate < inf:
             raise ValueError(f"a rate must be positive, not {rate}")
         self._anchor()
         self._rate = rate
         self._logger.info(f"Set rate to {rate:.2f}")
         self._schedule()
 
-    def play_next(self) -> None:
-        """Publish one more message while paused."""
-        if self._paused and self._next is not None:
+    def play_next(self) -> bool:
+        """Publish one more message while paused; whether there was one."""
+        return self.burst(1) == 1
+
+    def burst(self, count: int) -> int:
+        """Publish so many messages at once while paused, or with 0 all of this round; how many there were."""
+        published = 0
+        while (
+            self._paused and self._next is not None and not self._is_beyond_end() and (published < count or not count)
+        ):
             self._position_ns = max(self._position_ns, self._next[1])
             self._publish_next()
+            published += 1
+        if published:
             self._end_or_schedule()
+        return published
+
+    def seek(self, time_ns: int) -> None:
+        """Go on from another time in the recording, nanoseconds since the epoch."""
+        self._anchor()
+        self._read_from(max(time_ns, self._bag.start_ns))
+        self._end_or_schedule()
 
     def close(self) -> None:
         """Stop playing."""
@@ -155,12 +182,15 @@ class Player:
     # --- the round ------------------------------------------------------------------------------------------------
 
     def _begin(self) -> None:
-        topics = list(self._publishers)
-        self._stream = self._bag.messages(topics, self._begin_ns) if topics else iter(())
-        self._next = next(self._stream, None)
-        self._position_ns = self._begin_ns
+        self._read_from(self._begin_ns)
         self._since_ns = self._steady_ns() + round(self._options.delay * _NANOSECONDS_PER_SECOND)
         self._end_or_schedule()
+
+    def _read_from(self, time_ns: int) -> None:
+        topics = list(self._publishers)
+        self._stream = self._bag.messages(topics, time_ns) if topics else iter(())
+        self._next = next(self._stream, None)
+        self._position_ns = time_ns
 
     def _run(self) -> None:
         self._alarm = None

@@ -108,11 +108,12 @@ def run_play(arguments: argparse.Namespace) -> int:
         print_diagnostics(bag.findings, sys.stderr)
 
         async def job(session: Session) -> int:
-            from linkwright.bag import Player
+            from linkwright.bag import Player, PlayerServices
             from linkwright.cli.bag.keys import DOWN, RIGHT, SPACE, UP, listening
             from linkwright.graph import Duration
 
             player = Player(session.node, bag, options)
+            PlayerServices(session.node, player)
             keys = {
                 SPACE: player.toggle_paused,
                 RIGHT: player.play_next,

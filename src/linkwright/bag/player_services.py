@@ -1,0 +1,97 @@
+"""The services with which other programs control a player, those of rosbag2's: ``/rosbag2_player/pause`` and so on."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from linkwright.bag.player import Player
+from linkwright.graph import Node
+
+_SERVICES = (
+    ("pause", "Pause"),
+    ("resume", "Resume"),
+    ("toggle_paused", "TogglePaused"),
+    ("is_paused", "IsPaused"),
+    ("get_rate", "GetRate"),
+    ("set_rate", "SetRate"),
+    ("play", "Play"),
+    ("play_next", "PlayNext"),
+    ("burst", "Burst"),
+    ("seek", "Seek"),
+    ("stop", "Stop"),
+)
+
+
+class PlayerServices:
+    """Puts a player's services below the name of its node.
+
+    Names, types and what is refused are those of ``rosbag2_transport::Player``.
+
+    Args:
+        node: the node.
+        player: what is controlled.
+    """
+
+    def __init__(self, node: Node, player: Player) -> None:
+        self._player = player
+        self._logger = node.get_logger()
+        for name, kind in _SERVICES:
+            node.create_service(f"rosbag2_interfaces/srv/{kind}", f"~/{name}", getattr(self, f"_{name}"))
+
+    def _pause(self, _: Any, response: Any) -> Any:
+        self._player.pause()
+        return response
+
+    def _resume(self, _: Any, response: Any) -> Any:
+        self._player.resume()
+        return response
+
+    def _toggle_paused(self, _: Any, response: Any) -> Any:
+        self._player.toggle_paused()
+        return response
+
+    def _is_paused(self, _: Any, response: Any) -> Any:
+        response.paused = self._player.paused
+        return response
+
+    def _get_rate(self, _: Any, response: Any) -> Any:
+        response.rate = self._player.rate
+        return response
+
+    def _set_rate(self, request: Any, response: Any) -> Any:
+        try:
+            self._player.set_rate(request.rate)
+        except ValueError as error:
+            self._logger.warning(f"Failed to set the rate: {error}")
+        else:
+            response.success = True
+        return response
+
+    def _play(self, _: Any, response: Any) -> Any:
+        """Refused, as by rosbag2 while it plays: when it does not, the program has ended."""
+        self._logger.warning("Asked to play while playing; nothing is done")
+        response.success = False
+        return response
+
+    def _play_next(self, _: Any, response: Any) -> Any:
+        response.success = self._is_paused_for("play the next message") and self._player.play_next()
+        return response
+
+    def _burst(self, request: Any, response: Any) -> Any:
+        if self._is_paused_for("play a burst"):
+            response.actually_burst = self._player.burst(request.num_messages)
+        return response
+
+    def _seek(self, request: Any, response: Any) -> Any:
+        self._player.seek(request.time.sec * 1_000_000_000 + request.time.nanosec)
+        response.success = True
+        return response
+
+    def _stop(self, _: Any, response: Any) -> Any:
+        self._player.close()
+        return response
+
+    def _is_paused_for(self, what: str) -> bool:
+        if not self._player.paused:
+            self._logger.warning(f"Asked to {what} while not paused; nothing is done")
+        return self._player.paused

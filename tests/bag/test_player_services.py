@@ -1,0 +1,130 @@
+"""The services of a player, called by another node on a clock that the test moves."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from linkwright.bag import BagReader, BagWriter, Player, PlayerServices, PlayOptions
+from linkwright.graph import DEFAULT_QOS, Graph, JumpClock
+from linkwright.messages import String, get_message, serialize
+
+SECOND = 1_000_000_000
+START = 1_700_000_000 * SECOND
+
+Time = get_message("builtin_interfaces/msg/Time")
+
+
+class Scene:
+    """A recording of a message each second, a player of it, who hears it, and who calls its services."""
+
+    def __init__(self, graph: Graph, bag: BagReader, options: PlayOptions) -> None:
+        self.graph = graph
+        self.heard: list[str] = []
+        self._node = graph.create_node("other")
+        self._node.create_subscription(String, "chatter", lambda message: self.heard.append(message.data), DEFAULT_QOS)
+        node = graph.create_node("rosbag2_player")
+        self.player = Player(node, bag, options)
+        PlayerServices(node, self.player)
+        self.player.start()
+
+    async def call(self, name: str, **request):
+        kind = "".join(word.title() for word in name.split("_"))
+        client = self._node.create_client(f"rosbag2_interfaces/srv/{kind}", f"/rosbag2_player/{name}")
+        answer = client.call_async(client.srv_type.Request(**request))
+        await self.graph.settle()
+        return answer.result()
+
+
+@pytest.fixture
+def clock():
+    return JumpClock(START)
+
+
+@pytest.fixture
+async def scene(clock, tmp_path: Path):
+    with BagWriter(tmp_path / "bag") as writer:
+        writer.add_topic("/chatter", "std_msgs/msg/String", [DEFAULT_QOS])
+        for number in range(5):
+            writer.write("/chatter", START + number * SECOND, serialize(String(data=str(number))))
+    graph = Graph(clock=clock)
+    with BagReader(tmp_path / "bag") as bag:
+        yield lambda **options: Scene(graph, bag, PlayOptions(**options))
+        await graph.close()
+
+
+async def test_it_pauses_and_goes_on(scene, clock):
+    scene = scene(paused=True)
+    await clock.advance(5)
+    assert scene.heard == []
+    assert (await scene.call("is_paused")).paused
+    for _ in range(2):
+        await scene.call("resume")
+    await clock.advance(1.5)
+    for _ in range(2):
+        await scene.call("pause")
+    await clock.advance(5)
+    assert scene.heard == ["0", "1"]
+    await scene.call("toggle_paused")
+    assert not (await scene.call("is_paused")).paused
+    await clock.advance(5)
+    assert scene.heard == ["0", "1", "2", "3", "4"]
+    assert scene.player.finished
+
+
+async def test_its_rate_is_told_and_set(scene, clock):
+    scene = scene()
+    await clock.advance(0.5)
+    assert (await scene.call("set_rate", rate=10.0)).success
+    for wrong in (0.0, -1.0, float("nan"), float("inf")):
+        assert not (await scene.call("set_rate", rate=wrong)).success
+    assert (await scene.call("get_rate")).rate == 10.0
+    await clock.advance(0.3)
+    assert scene.heard == ["0", "1", "2", "3"]
+
+
+async def test_messages_one_by_one_and_some_at_once_while_paused(scene, clock):
+    scene = scene()
+    await clock.advance(0.5)
+    assert not (await scene.call("play_next")).success
+    assert (await scene.call("burst", num_messages=2)).actually_burst == 0
+    await scene.call("pause")
+    assert (await scene.call("play_next")).success
+    assert (await scene.call("burst", num_messages=2)).actually_burst == 2
+    assert scene.heard == ["0", "1", "2", "3"]
+    assert (await scene.call("burst", num_messages=2)).actually_burst == 1
+    assert scene.player.finished
+
+
+async def test_a_burst_of_all_ends_with_the_round(scene):
+    scene = scene(paused=True, loop=True)
+    assert (await scene.call("burst", num_messages=0)).actually_burst == 5
+    assert (await scene.call("burst", num_messages=7)).actually_burst == 5
+    assert scene.heard == 2 * ["0", "1", "2", "3", "4"]
+    assert not scene.player.finished
+
+
+@pytest.mark.parametrize("paused", [True, False])
+async def test_it_goes_on_from_another_time(scene, clock, paused):
+    scene = scene(paused=paused)
+    await clock.advance(0.5)
+    there = START // SECOND + 3
+    assert (await scene.call("seek", time=Time(sec=there))).success
+    if paused:
+        await scene.call("resume")
+    await clock.advance(0.9)
+    assert scene.heard == (["3"] if paused else ["0", "3"])
+    assert (await scene.call("seek", time=Time(sec=1))).success  # before its start
+    await clock.advance(1.1)
+    assert scene.heard[-2:] == ["0", "1"]
+
+
+async def test_it_is_stopped_and_does_not_begin_anew(scene, clock):
+    scene = scene()
+    await clock.advance(0.5)
+    assert not (await scene.call("play")).success
+    await scene.call("stop")
+    await clock.advance(5)
+    assert scene.player.finished
+    assert scene.heard == ["0"]
