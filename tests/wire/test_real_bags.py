@@ -45,8 +45,13 @@ def test_what_they_publish_is_recorded_and_played_to_them(real_node, tmp_path, s
     assert f"Count: {IMAGES} |" in counted(bag, "/images_from_ros")
     assert "Count: 1 |" in counted(bag, "/lasting_from_ros")
     remapped = [f"{topic}:={topic.replace('from', 'to')}" for topic in topics]
-    command = [sys.executable, "-m", "linkwright", "bag", "play", str(bag), "--delay", "3", "--remap", *remapped]
-    assert subprocess.run(command, stdin=subprocess.DEVNULL, timeout=120, check=False).returncode == 0
+    command = [sys.executable, "-m", "linkwright", "bag", "play", str(bag), "--start-paused", "--remap", *remapped]
+    with subprocess.Popen(command, stdin=subprocess.DEVNULL) as playing:
+        for topic in topics:
+            real.ask_until(lambda count: count == 1, "tellers", topic.replace("from", "to"))
+        resumed = linkwright("service", "call", "/rosbag2_player/resume", "rosbag2_interfaces/srv/Resume")
+        assert resumed[2] == 0, resumed
+        assert playing.wait(60) == 0
     states = real.ask_until(lambda heard: len(heard) == STATES, "received_states")
     assert states == [[["a", "b"], [float(number), 0.5]] for number in range(STATES)]
     assert real.ask_until(lambda heard: len(heard) == IMAGES, "received_images") == list(range(IMAGES))
