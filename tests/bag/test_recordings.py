@@ -283,6 +283,20 @@ def test_playing_offers_what_was_recorded_where_publishers_agreed() -> None:
     assert profile_for_playing([DESCRIPTION_QOS, SENSOR_DATA_QOS]) == QoSProfile(depth=10)
 
 
+def test_playing_keeps_the_most_that_any_publisher_kept() -> None:
+    """What is kept, and for how long, is no matter of agreement (as in rosbag2)."""
+    kept = [QoSProfile(depth=20), QoSProfile(depth=50, lifespan=Duration(seconds=1.0)), QoSProfile(depth=1)]
+    assert profile_for_playing(kept) == kept[1]
+    everything = QoSProfile(history=HistoryPolicy.KEEP_ALL)
+    assert profile_for_playing([*kept, everything]) == everything
+
+
+def test_playing_keeps_as_much_as_rosbag2_where_publishers_did_not_tell() -> None:
+    """Those of Fast DDS do not."""
+    untold = QoSProfile(history=HistoryPolicy.UNKNOWN, depth=0)
+    assert profile_for_playing([from_bag(to_bag(untold))]) == QoSProfile(depth=10)
+
+
 def test_overrides() -> None:
     document = {"/a": {"reliability": "best_effort", "depth": 3, "deadline": {"sec": 1, "nsec": 5}}}
     (qos,) = overrides_of(document, "file").values()

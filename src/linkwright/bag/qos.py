@@ -25,6 +25,9 @@ _NANOSECONDS_PER_SECOND = 1_000_000_000
 _RECORDING_DEPTH = 1000
 """How many messages may wait to be written. rosbag2 has 10, and a queue of its own behind it in C++."""
 
+_PLAYING_DEPTH = 10
+"""How many messages a publisher keeps of whose recorded ones nobody knows it: as many as rosbag2's players do."""
+
 _POLICIES: Mapping[str, Any] = {
     "history": HistoryPolicy,
     "reliability": ReliabilityPolicy,
@@ -63,10 +66,11 @@ def from_bag(qos: Qos) -> QoSProfile:
     def duration(value: Any) -> Duration:
         return Duration(nanoseconds=value.sec * _NANOSECONDS_PER_SECOND + value.nsec)
 
+    # Fast DDS does not tell others how much a publisher keeps.
     history = policy(HistoryPolicy, qos.history)
     return QoSProfile(
         history=HistoryPolicy.KEEP_LAST if history is HistoryPolicy.UNKNOWN else history,
-        depth=max(qos.depth, 1),
+        depth=qos.depth or _PLAYING_DEPTH,
         reliability=policy(ReliabilityPolicy, qos.reliability),
         durability=policy(DurabilityPolicy, qos.durability),
         deadline=duration(qos.deadline),
@@ -95,10 +99,20 @@ def profile_for_recording(offered: Sequence[QoSProfile]) -> QoSProfile:
 
 
 def profile_for_playing(recorded: Sequence[QoSProfile]) -> QoSProfile:
-    """The profile to publish with: the recorded one where all publishers had the same, else the default."""
-    if recorded and all(qos == recorded[0] for qos in recorded):
-        return recorded[0]
-    return QoSProfile(depth=10)
+    """The profile to publish with: the recorded one where all publishers offered the same, else the default.
+
+    How much each of them kept, and how long that was worth something, may differ; then the longest history counts, as
+    one publisher now speaks for all. rosbag2 keeps 10 messages, whatever was recorded.
+    """
+    if recorded and len({_offered(qos) for qos in recorded}) == 1:
+        return max(recorded, key=lambda qos: (qos.history is HistoryPolicy.KEEP_ALL, qos.depth))
+    return QoSProfile(depth=_PLAYING_DEPTH)
+
+
+def _offered(qos: QoSProfile) -> tuple[object, ...]:
+    """What of a profile tells with which subscriptions it is compatible."""
+    times = (qos.deadline.nanoseconds, qos.liveliness_lease_duration.nanoseconds)
+    return (qos.reliability, qos.durability, qos.liveliness, *times)
 
 
 def overrides_of(document: object, source: str) -> dict[str, QoSProfile]:
@@ -152,7 +166,7 @@ def _profile(policies: Mapping[str, Any], topic: str, source: str) -> QoSProfile
                 did_you_mean(str(name), known),
             )
     if "depth" not in values and values.get("history") is not HistoryPolicy.KEEP_ALL:
-        values["depth"] = 10
+        values["depth"] = _PLAYING_DEPTH
     return QoSProfile(**values)
 
 
