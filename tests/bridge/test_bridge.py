@@ -5,10 +5,12 @@ import threading
 import pytest
 
 from linkwright.bridge.outlet import Outlet
+from linkwright.bridge.side import Side
+from linkwright.graph import Graph
 from linkwright.graph.actions.client import ActionClient
 from linkwright.graph.actions.server import ActionServer
 from linkwright.graph.endpoints.client import Client
-from linkwright.graph.endpoints.info import EndpointKind
+from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
 from linkwright.graph.endpoints.publisher import Publisher
 from linkwright.graph.endpoints.service import Service
 from linkwright.graph.names.identity import NodeIdentity
@@ -277,6 +279,30 @@ def test_what_cannot_be_published_is_told_and_the_next_is_published():
     wait_until(lambda: not outlet.has_more())
     assert (published, failures) == ([b"0", b"2"], ["the session has ended"])
     outlet.close()
+
+
+def test_a_bridge_looks_again_when_a_process_was_killed():
+    """Long before the lease of its participant is over."""
+    told = []
+
+    class Transport:
+        def watch(self, changed):
+            self.changed = changed
+
+        def watch_lost(self, lost):
+            self.lost = lost
+
+        def look_around(self):
+            pass
+
+    transport, graph = Transport(), Graph(threads=True)
+    Side("DDS", graph, transport, "b0", needs_hashes=False).watch(lambda: told.append("look"))
+    node = NodeIdentity("killed", "/")
+    transport.lost(
+        EndpointInfo(EndpointKind.PUBLISHER, node, "/rosout", "rcl_interfaces/msg/Log", QoSProfile(1), bytes(16))
+    )
+    assert told == ["look"]
+    graph.close_now()
 
 
 def test_a_service_that_both_networks_have_is_left_alone(networks):

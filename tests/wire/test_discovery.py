@@ -4,9 +4,11 @@ import threading
 from typing import Any
 
 from linkwright.graph.names.identity import NodeIdentity
+from linkwright.graph.qos.profile import QoSProfile
 from linkwright.messages import String
 from linkwright.wire.dds import engine, join
 from linkwright.wire.dds.discovery_info import ParticipantEntities
+from linkwright.wire.dds.remote import RemoteEndpoint
 from tests.waiting import SECONDS, wait_until
 
 
@@ -111,3 +113,20 @@ def test_fifty_nodes_with_their_services_are_found(processes, programs):
     other = programs("our_program", "other")
     found = other.ask_until(lambda found: len(found) == 52, "nodes", seconds=20)
     assert "node_49" in found
+
+
+def test_what_fast_dds_tells_of_a_request_is_no_hash_of_the_service():
+    """Its two halves tell each its own hash, where Cyclone's tell that of the service."""
+    hashes = {
+        guid[:2]: [
+            RemoteEndpoint(guid, 1, guid, False, topic, type_name, QoSProfile(1), {"typehash": "RIHS01_1"})
+            .described(None)
+            .type_hash
+            for topic, type_name in (
+                ("rq/flipRequest", "std_srvs::srv::dds_::SetBool_Request_"),
+                ("rt/chatter", "std_msgs::msg::dds_::String_"),
+            )
+        ]
+        for guid in (b"\x01\x0f" + bytes(14), b"\x01\x10" + bytes(14))
+    }
+    assert hashes == {b"\x01\x0f": ["", "RIHS01_1"], b"\x01\x10": ["RIHS01_1", "RIHS01_1"]}

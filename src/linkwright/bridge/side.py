@@ -86,8 +86,9 @@ class Side:
         return self.graph.open_node(NodeIdentity(node.name, node.namespace, self._enclave), Remappings(()))
 
     def watch(self, changed: Callable[[], None]) -> None:
-        """Have something called, from any thread, when something comes or goes."""
+        """Have something called, from any thread, when something comes or goes, or its process was killed."""
         self._transport.watch(changed)
+        self._transport.watch_lost(lambda _publisher: changed())
         self._transport.look_around()
 
     def look(self) -> None:

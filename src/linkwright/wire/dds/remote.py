@@ -138,7 +138,9 @@ class RemoteEndpoint:
             return None
         if type_name is None:
             return None
-        type_hash = self.facts.get("typehash", "")
+        # rmw_fastrtps tells that of the request or the response, the others that of the service.
+        tells_hash = name.role is Role.TOPIC or not self.is_fast
+        type_hash = self.facts.get("typehash", "") if tells_hash else ""
         return EndpointInfo(kind, node, name.name, type_name, self.qos, self.guid, type_hash, host=host)
 
 
