@@ -6,12 +6,13 @@ import asyncio
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from linkwright.bag import BagReader, BagWriter, Playback
 from linkwright.descriptions import DescriptionLibrary
 from linkwright.graph import DEFAULT_QOS, DESCRIPTION_QOS, STATIC_TF_PUBLISHER_QOS, TF_QOS, Graph
-from linkwright.messages import JointState, String, TFMessage, serialize
+from linkwright.messages import JointState, String, TFMessage, TransformBatch, serialize
 from linkwright.viewer.recorded_robot import PlacedRobot, published, robot_to_place
 
 START = 1_700_000_000
@@ -111,4 +112,22 @@ async def test_recorded_transforms_are_those_that_count(tmp_path: Path, transfor
         shown = Shown(bag)
         assert isinstance(shown.output, PlacedRobot) is not transforms
         assert bool(await shown.at(0)) is not transforms
+        await shown.close()
+
+
+async def test_transforms_in_a_namespace_stand_for_those_of_the_recording(tmp_path: Path) -> None:
+    """At any time: those of a second before it, and static ones."""
+    names = ("one", "two", "laser")
+    with BagWriter(tmp_path / "bag") as writer:
+        for name in ("/robot1/tf", "/robot1/tf_static"):
+            writer.add_topic(name, "tf2_msgs/msg/TFMessage", [DEFAULT_QOS])
+        for second, name in enumerate(names):
+            topic = "/robot1/tf_static" if name == "laser" else "/robot1/tf"
+            pose = np.array([[second, 0, 0, 0, 0, 0, 1.0]])
+            batch = TransformBatch(("base",), (name,), (START + second) * SECOND, pose)
+            writer.write(topic, (START + second) * SECOND, serialize(TFMessage(batch=batch)))
+    with BagReader(tmp_path / "bag") as bag:
+        shown = Shown(bag)
+        assert await shown.at(2) == {"one": [0, 0, 0], "two": [1, 0, 0], "laser": [2, 0, 0]}
+        assert await shown.at(0) == {"one": [0, 0, 0]}
         await shown.close()

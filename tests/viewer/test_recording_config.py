@@ -66,3 +66,29 @@ def test_transforms_that_begin_late_tell_the_fixed_frame(tmp_path: Path, storage
                 writer.write("/tf", START + tenth * second // 10, transform("map", "odom"))
     with BagReader(tmp_path / "bag") as bag:
         assert recording_config(bag).options.text("Fixed Frame") == "map"
+
+
+def test_of_robots_in_namespaces_the_first_with_a_description_is_shown(tmp_path: Path) -> None:
+    """Their frames have the same names, so what the others saw is there, but off."""
+    with BagWriter(tmp_path / "bag") as writer:
+        for number in range(3):
+            writer.add_topic(f"/robot{number}/tf", "tf2_msgs/msg/TFMessage", [DEFAULT_QOS])
+            writer.add_topic(f"/robot{number}/scan", "sensor_msgs/msg/LaserScan", [SENSOR_DATA_QOS])
+            writer.write(f"/robot{number}/tf", START, transform("odom", "base_link"))
+            writer.write(f"/robot{number}/scan", START, serialize(LaserScan()))
+            if number:
+                writer.add_topic(f"/robot{number}/robot_description", "std_msgs/msg/String", [DESCRIPTION_QOS])
+                writer.write(f"/robot{number}/robot_description", START, serialize(String(data="<robot name='r'/>")))
+    with BagReader(tmp_path / "bag") as bag:
+        config = recording_config(bag)
+    assert config.options.text("Fixed Frame") == "odom"
+    assert {each.name: each.checked for each in config.displays} == {
+        "Grid": True,
+        "RobotModel": True,
+        "TF": False,
+        "robot0/scan": False,
+        "robot1/scan": True,
+        "robot2/scan": False,
+    }
+    (robot,) = [each for each in config.displays if each.name == "RobotModel"]
+    assert robot.section.text("Description Topic", "Value") == "/robot1/robot_description"

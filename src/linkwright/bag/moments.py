@@ -42,6 +42,8 @@ class Moments:
     def state_at(self, topics: Collection[str], at_ns: int) -> list[Recorded]:
         """The last message of each topic up to a time, of ``/tf`` those of two seconds, of ``/tf_static`` all.
 
+        Topics of these names in a namespace are such, too.
+
         Args:
             topics: which.
             at_ns: the time, nanoseconds since the epoch.
@@ -50,12 +52,16 @@ class Moments:
             The messages in the order of their times, static transforms first.
         """
         found: list[Recorded] = []
-        if STATIC_TRANSFORMS in topics:
-            found += self._between(STATIC_TRANSFORMS, 0, at_ns)
         moving: list[Recorded] = []
-        if TRANSFORMS in topics:
-            moving += self._between(TRANSFORMS, at_ns - TRANSFORMS_NS, at_ns)
-        moving += self._latest([each for each in topics if each not in (TRANSFORMS, STATIC_TRANSFORMS)], at_ns)
+        others = []
+        for topic in topics:
+            if topic.endswith(STATIC_TRANSFORMS):
+                found += self._between(topic, 0, at_ns)
+            elif topic.endswith(TRANSFORMS):
+                moving += self._between(topic, at_ns - TRANSFORMS_NS, at_ns)
+            else:
+                others.append(topic)
+        moving += self._latest(others, at_ns)
         return found + sorted(moving, key=lambda each: each[1])
 
     def time_before(self, topics: Collection[str], at_ns: int) -> int | None:

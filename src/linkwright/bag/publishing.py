@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from linkwright.bag.moments import STATIC_TRANSFORMS
+from linkwright.bag.moments import STATIC_TRANSFORMS, TRANSFORMS
 from linkwright.bag.qos import profile_for_playing
 from linkwright.bag.reading import BagReader, BagTopic
 from linkwright.diagnostics import LinkwrightError
-from linkwright.graph import DurabilityPolicy, Node, Publisher, QoSProfile
+from linkwright.graph import TF_QOS, DurabilityPolicy, Node, Publisher, QoSProfile
 from linkwright.graph.simulated_time import CLOCK_TOPIC
-from linkwright.messages import Time, get_message
+from linkwright.messages import TFMessage, Time, get_message
 
 _CLOCK_TYPE = "rosgraph_msgs/msg/Clock"
 _LATCHED = frozenset({STATIC_TRANSFORMS, "/robot_description"})
@@ -47,11 +47,18 @@ class PublishedRecording:
     Args:
         node: that publishes.
         bag: the recording. Its own ``/clock`` is left out: time is that at which messages were received.
+        namespace: of a robot whose transforms are published as ``/tf`` and ``/tf_static``, too; nothing for none.
     """
 
-    def __init__(self, node: Node, bag: BagReader) -> None:
+    def __init__(self, node: Node, bag: BagReader, namespace: str = "") -> None:
         topics = [each for each in bag.topics if each.name != CLOCK_TOPIC]
         self._publishers = make_publishers(node, topics, dict.fromkeys(_LATCHED, _LATCHED_QOS))
+        doubled = {namespace + name: name for name in (TRANSFORMS, STATIC_TRANSFORMS)} if namespace else {}
+        self._doubles = {
+            topic: node.create_publisher(TFMessage, name, _LATCHED_QOS if name in _LATCHED else TF_QOS)
+            for topic, name in doubled.items()
+            if topic in self._publishers
+        }
         self._clock: Publisher[Any] = node.create_publisher(_CLOCK_TYPE, CLOCK_TOPIC, 10)
 
     @property
@@ -61,7 +68,8 @@ class PublishedRecording:
 
     def wanted(self) -> frozenset[str]:
         """The topics that have subscriptions."""
-        return frozenset(name for name, each in self._publishers.items() if each.get_subscription_count())
+        publishers = [*self._publishers.items(), *self._doubles.items()]
+        return frozenset(name for name, each in publishers if each.get_subscription_count())
 
     def tell_time(self, stamp_ns: int) -> None:
         """Publish on ``/clock``."""
@@ -70,3 +78,5 @@ class PublishedRecording:
     def publish(self, topic: str, stamp_ns: int, data: bytes) -> None:
         """Publish a message."""
         self._publishers[topic].publish(data)
+        if topic in self._doubles:
+            self._doubles[topic].publish(data)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from linkwright.bag import BagReader, PublishedRecording
-from linkwright.bag.moments import TRANSFORMS
+from linkwright.bag.moments import STATIC_TRANSFORMS, TRANSFORMS
 from linkwright.descriptions import DescriptionLibrary
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import STATIC_TF_PUBLISHER_QOS, TF_QOS, Node
@@ -16,21 +16,39 @@ from linkwright.urdf import Robot
 _JOINT_STATES = "sensor_msgs/msg/JointState"
 
 
+_DESCRIPTION = "/robot_description"
+
+
 def description_topic(bag: BagReader) -> str | None:
     """The topic with the description of the recording's robot; None where there is none."""
-    names = (each.name for each in bag.topics if each.count)
-    return next((name for name in names if name.rpartition("/")[2] == "robot_description"), None)
+    names = [each.name for each in bag.topics if each.count and each.name.endswith(_DESCRIPTION)]
+    own = namespace_of_transforms(bag) + _DESCRIPTION
+    return own if own in names else next(iter(names), None)
+
+
+def namespace_of_transforms(bag: BagReader) -> str:
+    """The namespace of the robot that is shown where all transforms are in namespaces, such as ``/robot1``; or nothing.
+
+    Of several robots it is the first that has a description.
+    """
+    names = [each.name for each in bag.topics if each.count]
+    if TRANSFORMS in names or STATIC_TRANSFORMS in names:
+        return ""
+    found = [name.removesuffix(TRANSFORMS) for name in names if name.endswith(TRANSFORMS)]
+    described = [namespace for namespace in found if namespace + _DESCRIPTION in names]
+    return next(iter(described or found), "")
 
 
 def robot_to_place(bag: BagReader, library: DescriptionLibrary) -> Robot | None:
-    """The robot of a recording that has no ``/tf``; None where it has, or has no robot that can be read.
+    """The robot of a recording that has no transforms of its joints; None where it has, or no robot that can be read.
 
     Args:
         bag: the recording.
         library: reads its description.
     """
     topic = description_topic(bag)
-    if topic is None or any(each.name == TRANSFORMS and each.count for each in bag.topics):
+    moving = namespace_of_transforms(bag) + TRANSFORMS
+    if topic is None or any(each.name == moving and each.count for each in bag.topics):
         return None
     try:
         first = next(iter(bag.messages([topic])), None)
@@ -60,7 +78,7 @@ class PlacedRobot:
         self._positions = dict(self._zeros)
         self._shown_ns = 0
         self._moving = node.create_publisher(TFMessage, TRANSFORMS, TF_QOS)
-        self._fixed = node.create_publisher(TFMessage, "/tf_static", STATIC_TF_PUBLISHER_QOS)
+        self._fixed = node.create_publisher(TFMessage, STATIC_TRANSFORMS, STATIC_TF_PUBLISHER_QOS)
         node.get_logger().info("The recording has no /tf: where the robot's links are follows from its joint states")
 
     def wanted(self) -> frozenset[str]:
@@ -103,7 +121,10 @@ def published(bag: BagReader, node: Node, robot: Robot | None) -> PublishedRecor
         node: publishes.
         robot: of `robot_to_place`.
     """
-    recording = PublishedRecording(node, bag)
+    namespace = namespace_of_transforms(bag)
+    recording = PublishedRecording(node, bag, namespace)
+    if namespace:
+        node.get_logger().info(f"The recording has no /tf: {namespace}{TRANSFORMS} stands for it")
     return recording if robot is None else PlacedRobot(recording, node, bag, robot)
 
 

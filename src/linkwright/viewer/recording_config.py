@@ -10,7 +10,7 @@ from linkwright.graph import DurabilityPolicy, ReliabilityPolicy
 from linkwright.messages import TFMessage, deserialize, get_message
 from linkwright.urdf import Robot
 from linkwright.viewer.config.rviz_config import RvizConfig
-from linkwright.viewer.recorded_robot import description_topic
+from linkwright.viewer.recorded_robot import description_topic, namespace_of_transforms
 
 _TRANSFORMS = (TRANSFORMS, STATIC_TRANSFORMS)
 _FIRST_NS = 2_000_000_000
@@ -42,8 +42,9 @@ def recording_config(bag: BagReader, robot: Robot | None = None) -> RvizConfig:
         bag: the recording.
         robot: its robot, where the recording has no transforms of it.
     """
-    described = description_topic(bag)
-    fixed_frame = _root(bag) or (robot.root if robot is not None else _frame_of_messages(bag))
+    described, namespace = description_topic(bag), namespace_of_transforms(bag)
+    root = _root(bag, namespace)
+    fixed_frame = root or (robot.root if robot is not None else _frame_of_messages(bag))
     config = RvizConfig.for_model(fixed_frame, frames=described is None, name=str(bag.path))
     for display in list(config.displays):
         kind = display.cls.rpartition("/")[2]
@@ -51,13 +52,14 @@ def recording_config(bag: BagReader, robot: Robot | None = None) -> RvizConfig:
             config.remove(display)
         elif kind == "RobotModel" and described is not None:
             display.section.put(("Description Topic", "Value"), described, string=True)
-        elif kind == "TF" and not {each.name for each in bag.topics}.intersection(_TRANSFORMS):
+        elif kind == "TF" and root is None and robot is None:
             config.remove(display)
     shown: Counter[str] = Counter()
     for message, kind, most in _DISPLAYS:
         for topic in (each for each in bag.topics if each.type_name == message and each.count):
-            _add(config, kind, topic, checked=shown[kind] < most)
-            shown[kind] += 1
+            own = not namespace or topic.name.startswith(f"{namespace}/")  # frames of other robots have the same names
+            _add(config, kind, topic, checked=own and shown[kind] < most)
+            shown[kind] += own
     return config
 
 
@@ -73,14 +75,15 @@ def _add(config: RvizConfig, kind: str, topic: BagTopic, *, checked: bool) -> No
     display.checked = checked
 
 
-def _root(bag: BagReader) -> str | None:
+def _root(bag: BagReader, namespace: str) -> str | None:
     """The frame that all others hang on, by the transforms of two moments; None where there are none.
 
     These are the beginning of the transforms and the middle of the recording: who finds out where the robot is on a map
     may have begun later.
     """
-    names = [each.name for each in bag.topics if each.name in _TRANSFORMS and each.count]
-    moving = [name for name in names if name == TRANSFORMS]
+    both = namespace + TRANSFORMS, namespace + STATIC_TRANSFORMS
+    names = [each.name for each in bag.topics if each.name in both and each.count]
+    moving = [name for name in names if name == both[0]]
     first = next(iter(bag.messages(moving or names)), None) if names else None
     if first is None:
         return None
