@@ -1,6 +1,6 @@
 import { beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
-import { agoText, clockText, densities, keptText, passedText } from "../src/panels/timeline-text";
+import { agoText, clockText, densities, keptText, momentText, passedText } from "../src/panels/timeline-text";
 import type { PageMessage, Playhead } from "../src/protocol";
 import { TimelineState } from "../src/state/timeline";
 
@@ -61,6 +61,8 @@ describe("the timeline", () => {
     connection.message.emit(playhead({ position: 119 }));
     expect([timeline.playing, timeline.live, timeline.position]).toEqual([false, false, 119]);
     expect(agoText(1)).toBe("−0:01.00");
+    expect(momentText(52.304)).toBe("0:52.30");
+    expect(momentText(new Date(2026, 1, 3, 14, 3, 7, 256).getTime() / 1000)).toBe("14:03:07.26");
     expect(keptText({ type: "kept", start: 105, end: 120, size: 5e6, most: 1e7 })).toBe("0:15 · 5.0 MB");
     timeline.goLive();
     expect(sent).toEqual([{ type: "play", playing: false }, { type: "go_live" }]);

@@ -84,6 +84,13 @@ def test_pictures_do_not_come_before_the_displays_where_all_panels_share_a_place
     page.locator(".dv-tab[aria-selected=true]", has_text="Front").wait_for()
 
 
+def test_the_filter_of_displays_does_not_lie_over_the_tabs(sized):
+    page = sized(800, 600)
+    tabs, filter_ = box(page, ".dv-tab", text="Displays", part=".panel-tab"), box(page, ".displays-panel .search-box")
+    assert filter_["y"] >= tabs["y"] + tabs["height"]
+    assert filter_["y"] < box(page, ".displays-panel .toolbar")["y"] + 30, "it stands beside the buttons"
+
+
 def test_a_phone_has_all_of_the_title_bar(sized):
     page = sized(390, 844)
     edges = page.locator(".title-bar button:visible").evaluate_all(

@@ -106,14 +106,17 @@ export class AddDialog {
     this.choices = [];
     const entries = this.tab === "type" ? this.types(wanted) : this.byTopic(wanted);
     this.list.replaceChildren(...entries);
-    if (entries.length === 0 && !this.waits) {
-      const none = this.tab === "topic" && this.offered.topics.length === 0;
-      this.list.append(h("p", { class: "empty" }, none ? strings.displays.noTopics : strings.displays.notFound));
-    }
+    if (entries.length === 0) this.list.append(h("p", { class: "empty" }, this.emptyText()));
     const again = this.choices.find((each) => each.cls === before?.cls && each.topic === before.topic);
     this.choose(again ?? (wanted === "" ? null : (this.choices[0] ?? null)));
     const first = this.choices[0];
     if (first && !again) first.element.tabIndex = 0;
+  }
+
+  private emptyText(): string {
+    const words = strings.displays;
+    if (this.waits) return words.asking;
+    return this.tab === "topic" && this.offered.topics.length === 0 ? words.noTopics : words.notFound;
   }
 
   private get offered(): { classes: DisplayClass[]; topics: TopicChoice[] } {

@@ -47,6 +47,7 @@ export class Dock {
       theme: { name: "linkwright", className: "dockview-theme-linkwright" },
       disableFloatingGroups: true,
       noPanelsOverlay: "emptyGroup",
+      messages: { panelOpened: strings.shell.panelOpened, panelClosed: strings.shell.panelClosed },
     });
     this.widths = new ColumnWidths(this.api);
     this.strip = new TimeStrip(this.api);

@@ -110,8 +110,7 @@ export class PlotPicker {
       row.addEventListener("click", () => this.choose(offer));
       return row;
     });
-    const waits = this.asked !== null && this.fields === null;
-    const nothing = this.fields?.error ?? (waits ? words.waiting : this.asked === null ? words.noTopics : words.noFields);
+    const nothing = this.asked === null ? (this.topics.known ? words.noTopics : words.asking) : this.fields ? (this.fields.error ?? words.noFields) : words.waiting;
     this.list.replaceChildren(...(rows.length > 0 ? rows : [h("li", { class: "note", role: "option", aria: { disabled: "true" } }, nothing)]));
     this.input.setAttribute("aria-activedescendant", rows.length > 0 ? `picker-${this.active}` : "");
     rows[this.active]?.scrollIntoView({ block: "nearest" });

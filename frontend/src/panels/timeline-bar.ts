@@ -6,7 +6,7 @@ import type { RecordingControl } from "../state/recording";
 import { SPEEDS, type TimelineState } from "../state/timeline";
 import { strings } from "../strings";
 import { RecordButton } from "./record-button";
-import { agoText, clockText, densities, keptText, passedText } from "./timeline-text";
+import { agoText, clockText, densities, keptText, momentText, passedText } from "./timeline-text";
 
 /** Parts of the whole that Page Up and Page Down go. */
 const PAGE = 0.1;
@@ -116,9 +116,10 @@ export class TimelineBar {
     const { start, end } = timeline;
     const part = end > start ? Math.min(1, Math.max(0, (position - start) / (end - start))) : 1;
     this.head.style.left = `${(part * 100).toFixed(3)}%`;
-    const passed = kept ? (live ? keptText(kept) : agoText(end - position)) : passedText(position - start, end - start);
+    // How long ago it was goes on while time stands still: that is no name for what is shown.
+    const passed = kept ? (live ? keptText(kept) : momentText(position)) : passedText(position - start, end - start);
     this.time.textContent = passed;
-    this.time.title = kept ? `${clockText(position)}\n${strings.timeline.kept(keptText(kept), (kept.most / 1e6).toFixed(0))}` : clockText(position);
+    this.time.title = kept ? `${clockText(position)}${live ? "" : ` ${agoText(end - position)}`}\n${strings.timeline.kept(keptText(kept), (kept.most / 1e6).toFixed(0))}` : clockText(position);
     this.showMark(start, end);
     this.track.setAttribute("aria-valuemin", "0");
     this.track.setAttribute("aria-valuemax", String(end - start));

@@ -4,6 +4,9 @@ import type { Kept, TimelineTopic } from "../protocol";
 const MOST_ROWS = 12;
 const FAINTEST = 0.12;
 
+/** Before this, s since the epoch, times are those of a simulation: of 1973. */
+const EARLIEST_DATE = 1e8;
+
 /** `0:07.250 / 1:30`: how much has passed, of how much. */
 export function passedText(passed: number, whole: number): string {
   return `${minutes(passed, 2)} / ${minutes(whole, whole < 10 ? 2 : 0)}`;
@@ -44,6 +47,15 @@ export function agoText(ago: number): string {
 export function clockText(seconds: number): string {
   const date = new Date(seconds * 1000);
   return `${date.toLocaleString()}.${String(date.getMilliseconds()).padStart(3, "0")} (${seconds.toFixed(3)})`;
+}
+
+/** `14:03:07.25`: the time of day where this page is; `0:52.30` for simulated time, which begins at nothing. */
+export function momentText(seconds: number): string {
+  if (seconds < EARLIEST_DATE) return minutes(seconds, 2);
+  const date = new Date(Math.round(seconds * 100) * 10);
+  const parts = [date.getHours(), date.getMinutes(), date.getSeconds(), Math.floor(date.getMilliseconds() / 10)];
+  const [hour, minute, second, hundredth] = parts.map((part) => String(part).padStart(2, "0"));
+  return `${hour}:${minute}:${second}.${hundredth}`;
 }
 
 /** How dense messages are in the parts of a recording, 0 to 1 in relation to each topic's densest part; those with most first. */

@@ -8,6 +8,8 @@ export class TopicsState {
   readonly figuresChanged = new Signal();
   readonly messageCame = new Signal<TopicMessage>();
   topics: readonly TopicRow[] = [];
+  /** Whether the topics were told since the page was connected. */
+  known = false;
   readonly traffic = new Map<string, TopicTraffic>();
   readonly messages = new Map<string, TopicMessage>();
   private readonly readers = new Set<object>();
@@ -16,10 +18,12 @@ export class TopicsState {
 
   constructor(private readonly connection: Connection) {
     connection.on("hello", () => {
+      this.known = false;
       if (this.readers.size > 0 || this.measured.length > 0) this.announce();
     });
     connection.on("topic_list", ({ topics }) => {
       this.topics = topics;
+      this.known = true;
       this.listChanged.emit();
     });
     connection.on("topic_figures", ({ traffic }) => {

@@ -79,5 +79,6 @@ export const displays = {
   noTopics: "Nothing publishes on any topic yet.",
   otherDescription: "The description of another node is shown now",
   notFound: "Nothing found.",
+  asking: "Asking what there is…",
   topics: "Known topics",
 };

@@ -36,6 +36,7 @@ export const monitor = {
     highest: "Highest value",
     choose: "Topic and field, such as /odom.twist.twist.linear.x",
     noTopics: "No such topic.",
+    asking: "Asking which topics there are…",
     noFields: "No number of that name.",
     waiting: "Waiting for values",
     empty: "Add a series to plot a number of any topic.",

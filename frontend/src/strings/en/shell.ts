@@ -20,6 +20,8 @@ export const shell = {
   file: "File",
   panels: "Panels",
   resetLayout: "Reset layout",
+  panelOpened: (title: string): string => `${title} opened`,
+  panelClosed: (title: string): string => `${title} closed`,
   newFile: "New",
   open: "Open…",
   openLocal: "Open from this computer…",

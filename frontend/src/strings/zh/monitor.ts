@@ -38,6 +38,7 @@ export const monitor: Strings["monitor"] = {
     highest: "最大值",
     choose: "话题与字段，例如 /odom.twist.twist.linear.x",
     noTopics: "没有这样的话题。",
+    asking: "正在查询有哪些话题……",
     noFields: "没有这样的数值字段。",
     waiting: "等待数值",
     empty: "添加曲线即可绘制任意话题中的数值。",

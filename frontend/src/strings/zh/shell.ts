@@ -7,6 +7,8 @@ export const shell: typeof english = {
   file: "文件",
   panels: "面板",
   resetLayout: "恢复默认布局",
+  panelOpened: (title: string): string => `已打开${title}`,
+  panelClosed: (title: string): string => `已关闭${title}`,
   newFile: "新建",
   open: "打开…",
   openLocal: "打开本机上的文件…",
