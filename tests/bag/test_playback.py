@@ -145,7 +145,9 @@ def test_any_moment_is_found_as_if_all_were_read(tmp_path: Path, storage: str) -
         whole = list(bag.messages())
         for at in sorted({START + stamp + step for stamp in stamps for step in (-1, 0, 1)}):
             before = [each for each in whole if each[1] <= at]
-            moving = [each for each in before if each[0] == "/tf" and each[1] >= at - 2 * SECOND]
+            transforms = [each for each in before if each[0] == "/tf"]
+            since = min(at, transforms[-1][1] if transforms and transforms[-1][1] < at - 2 * SECOND else at)
+            moving = [each for each in transforms if each[1] >= since - 2 * SECOND]
             last = [[each for each in before if each[0] == topic][-1:] for topic in ("/a", "/b")]
             static = [each for each in before if each[0] == "/tf_static"]
             assert sorted(bag.state_at(topics, at)) == sorted([*static, *moving, *last[0], *last[1]])
@@ -245,7 +247,36 @@ async def test_steps_go_from_message_to_message_of_what_somebody_listens_to(show
     shown.playback.seek(START)
     await shown.taken()
     shown.playback.step(forward=False)
-    assert await shown.taken() == ["anew", "b 0"]
+    assert await shown.taken() == []
+
+
+async def test_a_step_back_stays_where_nobody_listens(shown: Shown) -> None:
+    shown.playback.seek(START + 8 * SECOND)
+    await shown.settle()
+    shown.playback.step(forward=False)
+    await shown.settle()
+    assert shown.playback.position_ns == START + 8 * SECOND
+
+
+@pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
+def test_after_a_pause_of_the_transforms_those_before_it_hold(tmp_path: Path, storage: str) -> None:
+    """One a minute: whoever goes to a time between two sees where the robot was."""
+    with BagWriter(tmp_path / "bag", storage) as writer:
+        writer.add_topic("/tf", TF, [DEFAULT_QOS])
+        for stamp in (0, 59, 60, 180):
+            writer.write("/tf", START + stamp * SECOND, transform(f"{stamp}"))
+    with BagReader(tmp_path / "bag") as bag:
+        for at, stamps in ((0, [0]), (40, [0]), (60, [59, 60]), (100, [59, 60]), (179, [59, 60]), (181, [180])):
+            assert [each[1] for each in bag.state_at(["/tf"], START + at * SECOND)] == [
+                START + stamp * SECOND for stamp in stamps
+            ]
+
+
+def test_a_recording_without_messages_says_so(tmp_path: Path) -> None:
+    with BagWriter(tmp_path / "bag") as writer:
+        writer.add_topic("/tf", TF, [DEFAULT_QOS])
+    with BagReader(tmp_path / "bag") as bag:
+        assert [each.code for each in bag.findings] == ["BAG113"]
 
 
 async def test_at_the_end_it_stays_or_begins_anew(shown: Shown) -> None:

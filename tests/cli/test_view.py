@@ -40,6 +40,14 @@ def test_what_cannot_be_shown_together_is_said(words: list[str], said: str, caps
     assert said in capsys.readouterr().err
 
 
+def test_a_recording_of_ros_1_is_told_as_one(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "old.bag").write_bytes(b"#ROSBAG V2.0\n\0\1")
+    assert main(["view", "old.bag"]) == 1
+    said = capsys.readouterr().err
+    assert "'old.bag' cannot be read as a recording: it is of ROS 1" in said
+    assert "rosbags-convert" in said
+
+
 @pytest.mark.parametrize("text", [None, "nothing: [of the kind"])
 def test_an_rviz_file_that_cannot_be_read_is_said_before_anything_starts(
     folder: Path, text: str | None, capsys: pytest.CaptureFixture[str]

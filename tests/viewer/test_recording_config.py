@@ -7,8 +7,10 @@ from pathlib import Path
 import pytest
 
 from linkwright.bag import STORAGES, BagReader, BagWriter
+from linkwright.descriptions import DescriptionLibrary
 from linkwright.graph import DEFAULT_QOS, DESCRIPTION_QOS, SENSOR_DATA_QOS
 from linkwright.messages import String, TFMessage, get_message, serialize
+from linkwright.viewer.recorded_robot import robot_of
 from linkwright.viewer.recording_config import recording_config
 
 START = 1_700_000_000_000_000_000
@@ -92,3 +94,22 @@ def test_of_robots_in_namespaces_the_first_with_a_description_is_shown(tmp_path:
     }
     (robot,) = [each for each in config.displays if each.name == "RobotModel"]
     assert robot.section.text("Description Topic", "Value") == "/robot1/robot_description"
+
+
+@pytest.mark.parametrize("place", ["odom", "world"])
+def test_a_robot_that_drives_about_is_followed_and_one_that_stands_is_seen_whole(tmp_path: Path, place: str) -> None:
+    text = (
+        "<robot name='r'><link name='base'><visual><geometry><sphere radius='0.1'/></geometry></visual></link></robot>"
+    )
+    with BagWriter(tmp_path / "bag") as writer:
+        writer.add_topic("/tf", "tf2_msgs/msg/TFMessage", [DEFAULT_QOS])
+        writer.write("/tf", START, transform(place, "base"))
+        writer.add_topic("/robot_description", "std_msgs/msg/String", [DESCRIPTION_QOS])
+        writer.write("/robot_description", START, serialize(String(data=text)))
+    with BagReader(tmp_path / "bag") as bag:
+        config = recording_config(bag, robot_of(bag, DescriptionLibrary()))
+    drives = place == "odom"
+    view = config.views.current.values
+    assert (view["Target Frame"], view["Distance"]) == (("base", 5.0) if drives else ("<Fixed Frame>", 3.0))
+    assert config.shows_whole_robot is not drives
+    assert bool(config.sizes_for(0.2)) is not drives

@@ -42,7 +42,8 @@ class Moments:
     def state_at(self, topics: Collection[str], at_ns: int) -> list[Recorded]:
         """The last message of each topic up to a time, of ``/tf`` those of two seconds, of ``/tf_static`` all.
 
-        Topics of these names in a namespace are such, too.
+        Where ``/tf`` paused for longer, they are those of the two seconds before it did. Topics of these names in a
+        namespace are such, too.
 
         Args:
             topics: which.
@@ -58,7 +59,7 @@ class Moments:
             if topic.endswith(STATIC_TRANSFORMS):
                 found += self._between(topic, 0, at_ns)
             elif topic.endswith(TRANSFORMS):
-                moving += self._between(topic, at_ns - TRANSFORMS_NS, at_ns)
+                moving += self._transforms_before(topic, at_ns)
             else:
                 others.append(topic)
         moving += self._latest(others, at_ns)
@@ -113,6 +114,13 @@ class Moments:
             if best is not None:
                 found.append((topic, *best))
         return found
+
+    def _transforms_before(self, topic: str, at_ns: int) -> list[Recorded]:
+        near = self._between(topic, at_ns - TRANSFORMS_NS, at_ns)
+        if near:
+            return near
+        last = next((stamp for _, stamp, _ in self._latest([topic], at_ns)), None)
+        return [] if last is None else self._between(topic, last - TRANSFORMS_NS, last)
 
     def _between(self, topic: str, start_ns: int, end_ns: int) -> list[Recorded]:
         if not self._lookups:

@@ -153,7 +153,8 @@ class Playback:
         try:
             if not forward:
                 before = self._recording.time_before(self._wanted, self._aim())
-                self.seek(self.start_ns if before is None else before)
+                if before is not None:
+                    self.seek(before)
             elif self._target_ns is None:
                 self._next = next(self._stream, None) if self._next is None else self._next
                 if self._next is not None:

@@ -140,8 +140,16 @@ class BagReader:
 
     @property
     def findings(self) -> list[Diagnostic]:
-        """That it has no end (BAG109), as it was killed or cut off in a copy; topics that are not ROS 2's (BAG112)."""
+        """What is to be told of it.
+
+        That it has no end (BAG109), as it was killed or cut off in a copy; topics that are not ROS 2's (BAG112); that
+        it holds no messages (BAG113).
+        """
         found = []
+        if not self._is_cut_off and not any(each.count for each in self.topics):
+            message = phrase("recording '{path}' holds no messages", path=display_path(self.path))
+            hint = phrase("`linkwright topic list` and `linkwright topic hz TOPIC` tell what is published")
+            found.append(Diagnostic("BAG113", message, severity=Severity.WARNING, hint=hint))
         if self._is_cut_off:
             message = phrase(
                 "recording '{path}' has no end: it was killed, or cut off in a copy", path=display_path(self.path)

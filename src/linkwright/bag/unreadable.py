@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import yaml
 
-from linkwright.bag.names import PACKED
+from linkwright.bag.names import PACKED, ROS1
 from linkwright.diagnostics import Phrase, foreign, phrase
 
 _MCAP, _SQLITE, _ZSTD = b"\x89MCAP0\r\n", b"SQLite format 3\0", b"\x28\xb5\x2f\xfd"
@@ -30,7 +30,7 @@ def verdict_on(path: Path, error: Exception) -> Verdict:
         path: of its file or folder.
         error: what the library says, which is told where the file itself tells nothing.
     """
-    if path.suffix == ".bag":
+    if path.suffix == ROS1:
         return _ros1()
     if missing := _missing_files(path):
         names = ", ".join(missing)

@@ -75,9 +75,9 @@ class BagView(ModelView):
 
     @cached_property
     def _robot(self) -> Robot | None:
-        from linkwright.viewer.recorded_robot import robot_to_place
+        from linkwright.viewer.recorded_robot import robot_of
 
-        return robot_to_place(self._bag, self.descriptions.library)
+        return robot_of(self._bag, self.descriptions.library)
 
     @cached_property
     def _player(self) -> Node:

@@ -61,7 +61,7 @@ class GuestRecordings:
             LinkwrightError: BAG101, BAG102, BAG107, see `BagReader`; BAG111, as many are shown as may be.
         """
         from linkwright.bag import BagReader, Playback  # few viewers are ever given a recording
-        from linkwright.viewer.recorded_robot import published, robot_to_place
+        from linkwright.viewer.recorded_robot import published, robot_of
         from linkwright.viewer.recording_config import recording_config
 
         if len(self._guests) >= _MOST:
@@ -76,7 +76,7 @@ class GuestRecordings:
         bag = await asyncio.to_thread(BagReader, path)
         host = self._host.context
         try:
-            robot = robot_to_place(bag, host.library)
+            robot = robot_of(bag, host.library)
             config = recording_config(bag, robot)
             graph = Graph()
             node = graph.create_node("rosbag2_player", start_parameter_services=False)

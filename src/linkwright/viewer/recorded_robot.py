@@ -39,16 +39,21 @@ def namespace_of_transforms(bag: BagReader) -> str:
     return next(iter(described or found), "")
 
 
-def robot_to_place(bag: BagReader, library: DescriptionLibrary) -> Robot | None:
-    """The robot of a recording that has no transforms of its joints; None where it has, or no robot that can be read.
+def lacks_transforms(bag: BagReader) -> bool:
+    """Whether a recording does not tell how joints stand but by joint states."""
+    moving = namespace_of_transforms(bag) + TRANSFORMS
+    return not any(each.name == moving and each.count for each in bag.topics)
+
+
+def robot_of(bag: BagReader, library: DescriptionLibrary) -> Robot | None:
+    """The robot of a recording; None where there is none that can be read.
 
     Args:
         bag: the recording.
         library: reads its description.
     """
     topic = description_topic(bag)
-    moving = namespace_of_transforms(bag) + TRANSFORMS
-    if topic is None or any(each.name == moving and each.count for each in bag.topics):
+    if topic is None:
         return None
     try:
         first = next(iter(bag.messages([topic])), None)
@@ -119,13 +124,13 @@ def published(bag: BagReader, node: Node, robot: Robot | None) -> PublishedRecor
     Args:
         bag: the recording.
         node: publishes.
-        robot: of `robot_to_place`.
+        robot: of `robot_of`.
     """
     namespace = namespace_of_transforms(bag)
     recording = PublishedRecording(node, bag, namespace)
     if namespace:
         node.get_logger().info(f"The recording has no /tf: {namespace}{TRANSFORMS} stands for it")
-    return recording if robot is None else PlacedRobot(recording, node, bag, robot)
+    return PlacedRobot(recording, node, bag, robot) if robot is not None and lacks_transforms(bag) else recording
 
 
 def _zeros(robot: Robot) -> dict[str, float]:

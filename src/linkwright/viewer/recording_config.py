@@ -11,6 +11,7 @@ from linkwright.messages import TFMessage, deserialize, get_message
 from linkwright.urdf import Robot
 from linkwright.viewer.config.rviz_config import RvizConfig
 from linkwright.viewer.recorded_robot import description_topic, namespace_of_transforms
+from linkwright.viewer.size import size_of
 
 _TRANSFORMS = (TRANSFORMS, STATIC_TRANSFORMS)
 _FIRST_NS = 2_000_000_000
@@ -18,6 +19,12 @@ _FIRST_NS = 2_000_000_000
 
 _USUAL_ROOTS = ("map", "odom", "world", "base_link", "base_footprint")
 """Frames to be looked from, the best first, where several are not in any other one (REP 105)."""
+
+_PLACES = ("map", "odom")
+"""Frames in which a robot drives about (REP 105)."""
+
+_LEAST_DISTANCE, _AWAY = 5.0, 1.5
+"""How far the camera is from a robot that drives about: metres at least, and times as far as to see all of it."""
 
 _DISPLAYS = (
     ("nav_msgs/msg/OccupancyGrid", "Map", 1),
@@ -40,12 +47,16 @@ def recording_config(bag: BagReader, robot: Robot | None = None) -> RvizConfig:
 
     Args:
         bag: the recording.
-        robot: its robot, where the recording has no transforms of it.
+        robot: its robot, if that can be read.
     """
     described, namespace = description_topic(bag), namespace_of_transforms(bag)
-    root = _root(bag, namespace)
+    root, children = _tree(bag, namespace)
     fixed_frame = root or (robot.root if robot is not None else _frame_of_messages(bag))
     config = RvizConfig.for_model(fixed_frame, frames=described is None, name=str(bag.path))
+    base = next((name for name in _bases(robot) if name in children), None)
+    if base is not None and root in _PLACES:
+        size = None if robot is None else size_of(robot)
+        config.follow(base, _LEAST_DISTANCE if size is None else max(_LEAST_DISTANCE, _AWAY * size.distance))
     for display in list(config.displays):
         kind = display.cls.rpartition("/")[2]
         if kind == "RobotModel" and described is None:
@@ -75,8 +86,13 @@ def _add(config: RvizConfig, kind: str, topic: BagTopic, *, checked: bool) -> No
     display.checked = checked
 
 
-def _root(bag: BagReader, namespace: str) -> str | None:
-    """The frame that all others hang on, by the transforms of two moments; None where there are none.
+def _bases(robot: Robot | None) -> list[str]:
+    """What the frame of a robot as a whole may be, the best first (REP 105, REP 120)."""
+    return ["base_footprint", "base_link"] if robot is None else [robot.root, *robot.links]
+
+
+def _tree(bag: BagReader, namespace: str) -> tuple[str | None, set[str]]:
+    """The frame that all others hang on, None where there are none, and the others, by the transforms of two moments.
 
     These are the beginning of the transforms and the middle of the recording: who finds out where the robot is on a map
     may have begun later.
@@ -86,12 +102,12 @@ def _root(bag: BagReader, namespace: str) -> str | None:
     moving = [name for name in names if name == both[0]]
     first = next(iter(bag.messages(moving or names)), None) if names else None
     if first is None:
-        return None
+        return None, set()
     moments = first[1] + _FIRST_NS, (bag.start_ns + bag.end_ns) // 2
     batches = [deserialize(data, TFMessage).batch for moment in moments for _, _, data in bag.state_at(names, moment)]
     children = {name for batch in batches for name in batch.children}
     roots = dict.fromkeys(name for batch in batches for name in batch.parents if name not in children)
-    return next((name for name in _USUAL_ROOTS if name in roots), next(iter(roots), None))
+    return next((name for name in _USUAL_ROOTS if name in roots), next(iter(roots), None)), children
 
 
 def _frame_of_messages(bag: BagReader) -> str:

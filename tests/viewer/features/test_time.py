@@ -223,7 +223,8 @@ async def test_simulated_time_is_followed_and_going_back_begins_anew():
             message.clock.sec = seconds
             clocks.publish(message)
             await made.settle()
-            await client.until("clock", ros=float(seconds), running=False)
+            clock = await client.until("clock", ros=float(seconds), running=False)
+            assert clock["ros_start"] == 50  # not the zero from before anybody told the time
         message.clock.sec = 10
         await client.drain()
         clocks.publish(message)

@@ -340,6 +340,18 @@ class RvizConfig:
         self.views.current = view
         self._unchosen_view = self.views.current
 
+    def follow(self, frame: str, distance: float) -> None:
+        """Have the view follow a frame, and grid and axes be as large as RViz has them: for a robot that drives about.
+
+        Args:
+            frame: of the robot.
+            distance: of the camera, m.
+        """
+        view = self.views.current
+        view.values |= {"Target Frame": frame, "Distance": distance}
+        self.views.current = view
+        self._proposed = None
+
     @property
     def shows_whole_robot(self) -> bool:
         """Whether nobody has said yet where the camera is: pages put it where they see all of the robot."""

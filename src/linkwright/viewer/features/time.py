@@ -88,9 +88,11 @@ class TimeFeature(PageFeature):
     # -----------------------------------------------------------------------------------------------------------
 
     def _begin(self, manager: VisualizationManager) -> _Since:
-        if manager not in self._since:
-            self._since[manager] = _Since(manager.time.now_ns(), time.time_ns())
-        return self._since[manager]
+        known = self._since.get(manager)
+        if known is None or known.ros == 0:  # simulated time is zero until somebody tells it, and elapses from then on
+            now = manager.time.now_ns()
+            known = self._since[manager] = _Since(now, time.time_ns() if known is None else known.wall)
+        return known
 
     def _reset(self, manager: VisualizationManager) -> None:
         manager.reset_time()
