@@ -6,6 +6,8 @@ Both sides run one program, `qos_peer`: one with the real rclpy, one with ours.
 from __future__ import annotations
 
 import os
+from functools import partial
+from itertools import product
 
 import pytest
 
@@ -18,6 +20,27 @@ SIDES = [("theirs", "ours"), ("ours", "theirs")]
 SENSOR_DATA = {"preset": "sensor_data"}
 LATCHED = {"durability": "transient_local", "depth": 1}
 LIVELY = {"lease": 1.0}
+PROFILES = {
+    "reliable": {},
+    "best effort": SENSOR_DATA,
+    "lasting": {"durability": "transient_local"},
+    "lasting, best effort": {"durability": "transient_local", "reliability": "best_effort"},
+    "often": {"deadline": 60.0},
+    "seldom": {"deadline": 300.0},
+    "by hand": {"liveliness": "manual_by_topic", "lease": 300.0},
+    "lively": {"lease": 600.0},
+}
+SERVED_BY = {
+    "reliable": PROFILES.keys() - {"best effort", "lasting, best effort"},
+    "best effort": PROFILES.keys(),
+    "lasting": {"lasting"},
+    "lasting, best effort": {"lasting", "lasting, best effort"},
+    "often": {"often"},
+    "seldom": {"often", "seldom"},
+    "by hand": {"by hand"},
+    "lively": {"by hand", "lively"},
+}
+"""What may be offered to who requests a profile."""
 
 pytestmark = pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ROS_PYTHON names no interpreter with rclpy")
 
@@ -53,6 +76,33 @@ def test_what_does_not_fit_is_told_on_both_sides(peers, says, hears, offered, re
     subscribes.ask("subscription", "/topic", requested)
     for each in (publishes, subscribes):
         assert each.ask_until(bool, "told", "/topic") == [["incompatible", int(policy)]]
+
+
+@pytest.mark.parametrize(("says", "hears"), SIDES)
+def test_those_and_only_those_that_fit_hear_each_other(peers, says, hears):
+    publishes, subscribes = peers(says), peers(hears)
+    fits = {}
+    for number, (offered, requested) in enumerate(product(PROFILES, PROFILES)):
+        topic = f"/topic_{number}"
+        fits[topic] = offered in SERVED_BY[requested]
+        publishes.ask("publisher", topic, PROFILES[offered])
+        subscribes.ask("subscription", topic, PROFILES[requested])
+    publishes.ask_until(lambda counts: counts == {topic: int(fit) for topic, fit in fits.items()}, "listeners")
+    for topic in fits:
+        publishes.ask("keep_saying", topic, 1.0)
+    for topic, fit in fits.items():
+        for each in (publishes, subscribes):
+            told = each.ask_until(partial(told_that, "matched" if fit else "incompatible"), "told", topic)
+            assert not told_that("incompatible" if fit else "matched", told)
+    for topic, fit in fits.items():
+        if fit:
+            subscribes.ask_until(bool, "heard", topic)
+    assert [topic for topic, fit in fits.items() if not fit and subscribes.ask("heard", topic)] == []
+
+
+def told_that(kind, events):
+    """Whether an event of a kind is among those that an endpoint was told of."""
+    return kind in [each for each, *_ in events]
 
 
 @pytest.mark.parametrize(("says", "hears"), SIDES)
