@@ -21,6 +21,9 @@ export class MeasureTool implements SceneTool {
 
   constructor(private readonly context: ToolContext) {
     context.stage.viewport.scene.add(this.line.root, this.label.root);
+    // Points on two sides of a body are measured too: the line is drawn over what it goes through, as its label is.
+    this.line.root.material.depthTest = false;
+    this.line.root.renderOrder = 1;
     this.forget = context.session.view.changed.on(() => this.placeLabel());
     this.settingsChanged();
   }
