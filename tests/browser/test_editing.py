@@ -154,3 +154,31 @@ def test_what_an_edit_comes_to_has_room_beside_its_numbers(start, browser, file:
     assert text["x"] >= numbers["x"] + numbers["width"]
     assert text["height"] > 100
     page.close()
+
+
+def test_a_low_panel_shows_parts_numbers_and_what_differs_without_scrolling(start, browser, file: Path) -> None:
+    file.write_text(
+        ROBOT.replace('name="mast_joint" type="revolute">\n    <origin', 'name="mast_joint" type="revolute"><origin')
+    )
+    page = browser.new_page(viewport={"width": 800, "height": 600}, locale="zh-CN")
+    page.goto(start("view", str(file)).url)
+    page.wait_for_function("window.linkwright?.ready === true")
+    page.get_by_role("tab", name="连杆").click()
+    page.get_by_text("mast", exact=True).first.click()
+    page.get_by_role("button", name="移动和转动此连杆").click()
+    page.locator(".editing-part").first.wait_for()
+    type_in(page, "xyz0", "0.1")
+    page.locator(".edit-diff mark").first.wait_for()
+    assert page.locator(".edit-diff mark").all_inner_texts() == ["0", "0.1"]
+    seen = ".editing-part, .editing-number .field, .editing-tools select, .edit-diff mark, .edit-bar .primary"
+    panel = page.locator(".editing-panel").bounding_box()
+    text = page.locator(".edit-text").bounding_box()
+    assert panel is not None
+    assert text is not None
+    for each in page.locator(seen).all():
+        box = each.bounding_box()
+        assert box is not None
+        around = text if each.evaluate("(e) => e.tagName") == "MARK" else panel
+        assert around["y"] <= box["y"] + 1, each.inner_text()
+        assert box["y"] + box["height"] <= around["y"] + around["height"] + 1, each.inner_text()
+    page.close()

@@ -4,6 +4,10 @@ import type { DiagnosticItem, EditedFile } from "../../protocol";
 import type { EditingState } from "../../state/editing/editing";
 import { strings } from "../../strings";
 import { shortPath } from "../place";
+import { diffLines } from "./diff-lines";
+
+/** How many characters before and after what differs a low panel shows. */
+const [NEAR_BEFORE, NEAR_AFTER] = [16, 10];
 
 /** What an edit comes to in the files, or why it cannot be; writing it, and taking that back. */
 export class EditOutcome {
@@ -54,8 +58,19 @@ function also(names: readonly string[]): HTMLElement[] {
 
 function diff({ file, diff: lines }: EditedFile): HTMLElement {
   const kinds: Readonly<Record<string, string>> = { "+": "added", "-": "removed", "@": "at" };
-  const rows = lines.map((line) => h("span", { class: kinds[line[0] ?? ""] ?? "around" }, `${line}\n`));
+  const rows = diffLines(lines).map(({ sign, before, changed, after }) => {
+    const kind = kinds[sign] ?? "around";
+    if (kind === "at" || kind === "around") return h("span", { class: kind }, `${sign}${before}\n`);
+    const [from, to] = [Math.max(0, before.length - NEAR_BEFORE), Math.min(after.length, NEAR_AFTER)];
+    const parts = [far(before.slice(0, from)), before.slice(from), h("mark", {}, changed), after.slice(0, to), far(after.slice(to))];
+    return h("span", { class: kind }, sign, ...parts, "\n");
+  });
   return h("figure", { class: "edit-diff" }, h("figcaption", { title: file }, shortPath(file)), h("pre", {}, ...rows));
+}
+
+/** What there is only room for in a panel that is high enough. */
+function far(text: string): HTMLElement | null {
+  return text === "" ? null : h("span", { class: "far" }, text);
 }
 
 function told({ message, file, line, notes, hints }: DiagnosticItem): HTMLElement {

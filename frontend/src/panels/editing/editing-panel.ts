@@ -45,7 +45,7 @@ export class EditingPanel implements Panel {
     const { editing, focus, angles } = session;
     const numbers = h("div", { class: "editing-numbers" }, this.place, this.fields, this.tools());
     this.work.append(numbers, new EditOutcome(editing).element);
-    this.element = h("div", { class: "panel editing-panel" }, this.hint, this.list, this.work);
+    this.element = h("div", { class: "panel editing-panel" }, h("div", { class: "editing-body" }, this.hint, this.list, this.work));
     const update = coalesced(() => this.update());
     const follow = (): void => {
       const { current } = focus;

@@ -47,7 +47,7 @@ class Workspace:
         if any((parent / "share" / "ament_index").is_dir() for parent in file.parents):
             return forbidden_file(path, phrase("it is installed, and the next build would undo the change"))
         if not file.is_relative_to(self.folder):
-            why = phrase("it lies outside the workspace '{folder}'", folder=display_path(str(self.folder)))
+            why = phrase("it lies outside the workspace '{folder}'", folder=str(self.folder))
             return forbidden_file(path, why)
         if not os.access(path, os.W_OK):
             return forbidden_file(path, phrase("it may only be read"))
