@@ -141,6 +141,36 @@ async def test_liveliness(graph, node, clock):
     assert [(event.alive_count, event.not_alive_count) for event in changed] == [(1, 0), (0, 1), (1, 0)]
 
 
+async def test_who_is_not_alive_goes_as_one_that_is_not(graph, node, clock):
+    changed = []
+    qos = QoSProfile(
+        depth=1, liveliness=LivelinessPolicy.MANUAL_BY_TOPIC, liveliness_lease_duration=Duration(seconds=1.0)
+    )
+    publisher = node.create_publisher(String, "topic", qos, event_callbacks=PublisherEventCallbacks())
+    await clock.advance(2.0)
+    node.create_subscription(
+        String, "topic", nothing, qos, event_callbacks=SubscriptionEventCallbacks(liveliness=changed.append)
+    )
+    publisher.assert_liveliness()
+    await clock.advance(2.0)
+    node.destroy_publisher(publisher)
+    await graph.settle()
+    assert [(event.alive_count, event.not_alive_count) for event in changed] == [(0, 1), (1, 0), (0, 1), (0, 0)]
+
+
+async def test_the_liveliness_of_publishers_of_other_processes(graph, node):
+    changed = []
+    subscription = node.create_subscription(
+        String, "topic", nothing, 1, event_callbacks=SubscriptionEventCallbacks(liveliness=changed.append)
+    )
+    for alive, not_alive in [(2, 0), (2, 0), (1, 1), (0, 1), (0, 0)]:
+        subscription.set_outside_count(alive + not_alive)
+        subscription.set_outside_liveliness(alive, not_alive)
+    await graph.settle()
+    told = [(each.alive_count, each.not_alive_count, each.alive_count_change) for each in changed]
+    assert told == [(2, 0, 2), (1, 1, -1), (0, 1, -1), (0, 0, 0)]
+
+
 async def test_lost_messages(graph, node):
     lost = []
     subscription = node.create_subscription(

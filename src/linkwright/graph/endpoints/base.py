@@ -160,9 +160,11 @@ class TopicEndpoint(Endpoint, Generic[M]):
     Attributes:
         callback_group: the group that decides which callbacks may run at the same time as its own.
         events: its QoS events; None where there are no callbacks for them.
+        is_alive: of a publisher, whether it has not lost its liveliness.
     """
 
     callback_group: CallbackGroup
+    is_alive = True
     events: MatchListener | None
     _check_interface = staticmethod(check_is_valid_msg_type)
     _outside_count = 0

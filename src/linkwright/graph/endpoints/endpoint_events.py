@@ -169,6 +169,7 @@ class SubscriptionEvents(EndpointEvents):
         self._message_lost = callbacks.message_lost
         self._alive = 0
         self._not_alive = 0
+        self._outside = (0, 0)
 
     def received(self) -> None:
         """A message came, from this process or another."""
@@ -179,13 +180,15 @@ class SubscriptionEvents(EndpointEvents):
         """Messages were lost."""
         self._tell(self._message_lost, QoSMessageLostInfo(self._count("lost", count), count))
 
-    def matched(self, change: int) -> None:
-        """The number of publishers that match changed; they count as alive until their liveliness is lost."""
-        super().matched(change)
-        self.liveliness(change, 0)
+    def outside(self, alive: int, not_alive: int) -> None:
+        """How many publishers of other processes are alive, and how many have lost their liveliness."""
+        (alive_before, not_alive_before), self._outside = self._outside, (alive, not_alive)
+        self.liveliness(alive - alive_before, not_alive - not_alive_before)
 
     def liveliness(self, alive_change: int, not_alive_change: int) -> None:
-        """Publishers became alive, or lost their liveliness."""
+        """Publishers came or went, became alive, or lost their liveliness."""
+        if not alive_change and not not_alive_change:
+            return
         self._alive += alive_change
         self._not_alive += not_alive_change
         info = QoSLivelinessChangedInfo(self._alive, self._not_alive, alive_change, not_alive_change)

@@ -228,6 +228,7 @@ class Publisher(TopicEndpoint[M]):
                 self.outside(message)
 
     def _liveliness_changed(self, change: int) -> None:
+        self.is_alive = change > 0
         for subscription in self.matched():
             if subscription.events is not None:
                 subscription.events.liveliness(change, -change)

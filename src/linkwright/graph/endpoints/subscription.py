@@ -172,6 +172,11 @@ class Subscription(TopicEndpoint[M], Entity):
         """
         self._together = True
 
+    def set_outside_liveliness(self, alive: int, not_alive: int) -> None:
+        """Set by the transport: how many matching publishers in other processes are alive, and how many are not."""
+        if self.events is not None:
+            self.events.outside(alive, not_alive)
+
     def lost_outside(self, count: int) -> None:
         """Called by the transport: messages from other processes were lost."""
         if self.events is not None:
@@ -228,11 +233,13 @@ class Subscription(TopicEndpoint[M], Entity):
         self._publishers[publisher] = None
         if self.events is not None:
             self.events.matched(1)
+            self.events.liveliness(int(publisher.is_alive), int(not publisher.is_alive))
 
     def disconnected(self, publisher: TopicEndpoint[Any]) -> None:
         """Called by a publisher of this process that was disconnected."""
         if self._publishers.pop(publisher, self) is None and self.events is not None:
             self.events.matched(-1)
+            self.events.liveliness(-int(publisher.is_alive), -int(not publisher.is_alive))
 
     def has_work(self) -> bool:
         """Whether messages wait."""

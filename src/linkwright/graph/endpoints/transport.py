@@ -25,7 +25,8 @@ class Transport(Protocol):
     comes in is given to ``Subscription.receive(message, info)`` and ``Service.receive(request, reply, request_id)``,
     from any thread. What goes out is asked for with ``Publisher.set_outside`` and ``Client.set_outside`` while somebody
     outside matches, and no longer when nobody does; a transient local publisher's is set from the start, so that who
-    comes late is served. How many match is told with ``set_outside_count``.
+    comes late is served. How many match is told with ``set_outside_count``, and how many publishers among them are
+    alive with ``Subscription.set_outside_liveliness``.
     """
 
     def open_node(self, node: NodeIdentity) -> None:

@@ -263,9 +263,7 @@ class IncomingTopic(MirroredTopic):
         if changed & LIVELINESS_CHANGED:
             lives = LivelinessChangedStatus()
             self._dds.dds_get_liveliness_changed_status(self.entity, c.byref(lives))
-            # Publishers that come and go alive are counted as matches already.
-            if lives.not_alive_count_change and self._subscription.events is not None:
-                self._subscription.events.liveliness(lives.alive_count_change, lives.not_alive_count_change)
+            self._subscription.set_outside_liveliness(lives.alive_count, lives.not_alive_count)
         if changed & REQUESTED_INCOMPATIBLE_QOS:
             self._mismatch(self)
 

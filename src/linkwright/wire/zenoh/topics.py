@@ -148,6 +148,7 @@ class IncomingTopic:
     def review(self, count: int) -> None:
         """Take note of how many publishers outside are known."""
         self._subscription.set_outside_count(count)
+        self._subscription.set_outside_liveliness(count, 0)  # nothing tells of one that is there but not alive
 
     def close(self) -> None:
         """Withdraw it."""
