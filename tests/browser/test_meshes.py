@@ -9,7 +9,7 @@ import struct
 import pytest
 import trimesh
 
-from tests.browser.conftest import becomes, state
+from tests.browser.conftest import becomes, state, until
 from tests.places import PACKAGE
 
 pytestmark = pytest.mark.browser
@@ -101,3 +101,22 @@ def test_a_mesh_that_comes_slowly_is_told_until_it_is_there(start, open_page, ro
     notice.wait_for(state="hidden")
     page.wait_for_function("window.linkwright?.ready === true")
     assert state(page, "robot.visuals") == len(KINDS)
+
+
+def test_a_robot_none_of_whose_meshes_is_there_is_told_of_and_shown_by_its_frames(start, open_page, tmp_path):
+    gone = '<visual><geometry><mesh filename="package://elsewhere/arm.stl"/></geometry></visual>'
+    joint = '<joint name="j" type="fixed"><origin xyz="0 0 1"/><parent link="base"/><child link="arm"/></joint>'
+    text = f'<robot name="r"><link name="base">{gone}</link><link name="arm">{gone}</link>{joint}</robot>'
+    file = tmp_path / "robot.urdf"
+    file.write_text(text)
+    page = open_page(start("view", str(file)))
+    banner = page.locator(".banner.warning")
+    banner.get_by_text("nothing of robot 'r' is seen: none of its meshes can be read").wait_for()
+    until(page, "lw.displays.some((each) => each.class.endsWith('/TF') && each.enabled)")
+    banner.get_by_role("button", name="Show").click()
+    page.locator(".diagnostics").get_by_text("package 'elsewhere' not found").first.wait_for()
+    banner.get_by_role("button", name="Close").click()
+    assert banner.is_hidden()
+    assert page.get_by_role("tab", name="Diagnostics (1)").count() == 1
+    file.write_text(text.replace(gone, '<visual><geometry><box size="1 1 1"/></geometry></visual>', 1))
+    page.get_by_role("tab", name="Diagnostics", exact=True).wait_for()

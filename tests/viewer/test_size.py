@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import pytest
 
+from linkwright.packages import PackageFinder
 from linkwright.urdf import read
 from linkwright.viewer import has_visuals, size_of
 from linkwright.xmltree import parse
@@ -41,11 +42,17 @@ def test_a_single_point_has_no_size():
     assert measured('<link name="a"/><link name="b"/>' + joint("a", "b", "0 0 0")) is None
 
 
-def test_a_robot_is_seen_without_its_frames_when_a_link_has_a_visual():
+def test_a_robot_is_seen_without_its_frames_when_a_visual_can_be_drawn(tmp_path):
+    (tmp_path / "a.stl").write_text("solid")
+    shapes = {
+        "visual": '<visual><geometry><sphere radius="1"/></geometry></visual>',
+        "collision": '<collision><geometry><sphere radius="1"/></geometry></collision>',
+        "mesh": f'<visual><geometry><mesh filename="file://{tmp_path}/a.stl"/></geometry></visual>',
+        "mesh that is gone": f'<visual><geometry><mesh filename="file://{tmp_path}/b.stl"/></geometry></visual>',
+    }
     seen = {}
-    for part in ("visual", "collision"):
-        shape = f'<{part}><geometry><sphere radius="1"/></geometry></{part}>'
+    for name, shape in shapes.items():
         robot = read(parse(f'<robot name="r"><link name="a">{shape}</link></robot>', "<text>")).robot
         assert robot is not None
-        seen[part] = has_visuals(robot)
-    assert seen == {"visual": True, "collision": False}
+        seen[name] = has_visuals(robot, PackageFinder(start=[tmp_path]))
+    assert seen == {"visual": True, "collision": False, "mesh": True, "mesh that is gone": False}

@@ -7,8 +7,8 @@ import { placeText, shortPath } from "./place";
 
 /** Codes of findings about files of the viewer: the robot is shown in spite of them. */
 const NOT_OF_DESCRIPTIONS = /^(RVIZ|VIEW)/;
-/** Codes of warnings without which nobody understands the scene: the robot has fallen out of the world. */
-const TELLING = new Set(["SIM143"]);
+/** Codes of warnings without which nobody understands the scene: the robot has fallen out of the world, or none of its meshes is there. */
+const TELLING = new Set(["SIM143", "VIEW207"]);
 
 /**
  * Over the scene while the description has an error: its cause, its hint, and whether the robot seen is the last good one.

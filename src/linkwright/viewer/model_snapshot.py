@@ -18,7 +18,8 @@ from linkwright.urdf import Robot
 from linkwright.viewer.config.rviz_config import RvizConfig
 from linkwright.viewer.features.comparison.feature import show_old
 from linkwright.viewer.features.export.snapshot import Snapshot, snapshot_of
-from linkwright.viewer.size import has_visuals, size_of
+from linkwright.viewer.robot import has_visuals
+from linkwright.viewer.size import size_of
 from linkwright.viewer.viewer import Viewer
 
 if TYPE_CHECKING:
@@ -57,7 +58,7 @@ async def _take(
     text: str, robot: Robot, library: DescriptionLibrary, finder: PackageFinder, old: OldDescription | None
 ) -> Snapshot:
     graph = Graph(on_log=lambda _: None)
-    config = RvizConfig.for_model(robot.root, size=size_of(robot), frames=not has_visuals(robot))
+    config = RvizConfig.for_model(robot.root, size=size_of(robot), frames=not has_visuals(robot, finder))
     if old is not None:
         show_old(config, old.pair.old.title)
     viewer = Viewer(graph, library=library, finder=finder, config=config, title=robot.name)

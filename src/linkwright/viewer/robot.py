@@ -22,6 +22,7 @@ from linkwright.graph import DurabilityPolicy, MessageInfo
 from linkwright.graph.endpoints.info import EndpointInfo
 from linkwright.graph.introspection.answers import UNKNOWN_NODE
 from linkwright.messages import String
+from linkwright.packages import PackageFinder
 from linkwright.urdf import Box, Capsule, Collision, Cylinder, Inertial, Link, Material, Mesh, Robot, Sphere, Visual
 from linkwright.viewer.config.property_store import PropertyStore, qos_of
 from linkwright.viewer.config.schema import PropertySpec, topic_spec
@@ -203,6 +204,16 @@ def folder_of(element: Element | None) -> Path | None:
 def frame_of(link: str, prefix: str) -> str:
     """The tf frame of a link for a display's TF Prefix; RViz joins them with a slash."""
     return f"{prefix}/{link}" if prefix else link
+
+
+def has_visuals(robot: Robot, finder: PackageFinder) -> bool:
+    """Whether some visual of a robot can be drawn, so that it is seen without its frames.
+
+    Args:
+        robot: its description.
+        finder: finds the files of its meshes.
+    """
+    return any(link.visuals for link in SceneBuilder(MeshIndex(finder)).links(robot, ""))
 
 
 class SceneBuilder:

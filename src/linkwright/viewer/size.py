@@ -39,11 +39,6 @@ def size_of(robot: Robot) -> ModelSize | None:
     return ModelSize(whole.diagonal, median(apart) if apart else whole.diagonal)
 
 
-def has_visuals(robot: Robot) -> bool:
-    """Whether some link of a robot has a visual, so that it is seen without its frames."""
-    return any(link.visuals for link in robot.links.values())
-
-
 def _simple_shapes(robot: Robot, link: str) -> Iterator[Bounds]:
     """The boxes around the simple shapes of a link, in the link's frame."""
     parts: tuple[Visual | Collision, ...] = (*robot.links[link].visuals, *robot.links[link].collisions)

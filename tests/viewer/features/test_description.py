@@ -197,6 +197,19 @@ async def test_the_text_that_is_wrong_is_told_and_not_the_one_of_the_robot_that_
         assert told["text"] == WHEELED
 
 
+async def test_a_robot_none_of_whose_meshes_is_there_is_told_of(files):
+    box = '<visual><geometry><box size="1 1 1"/></geometry></visual>'
+    mesh = f'<visual><geometry><mesh filename="file://{files}/gone.stl"/></geometry></visual>'
+    async with world() as scene, page(scene.viewer) as client:
+        assert (await client.until("diagnostics"))["items"] == []
+        for shapes, codes in ((mesh, ["VIEW207"]), (box + mesh, []), (mesh, ["VIEW207"])):
+            scene.describe(f'<robot name="r"><link name="base">{shapes}</link></robot>')
+            told = await client.until("diagnostics")
+            assert [each["code"] for each in told["items"]] == codes
+        (note,) = told["items"][0]["notes"]
+        assert "gone.stl" in note["message"]
+
+
 async def test_what_is_not_there_is_not_answered_or_refused():
     async with world(RvizConfig.for_model("base")) as scene, page(scene.viewer) as client:
         told = await ask(client, "ask_description_text", "description_text", display="display-99", file="/etc/passwd")

@@ -8,7 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, TypeVar
 
-from linkwright.diagnostics import Diagnostic
+from linkwright.diagnostics import Diagnostic, Note, Severity, phrase
 from linkwright.packages import PackageFinder
 from linkwright.urdf import Robot
 from linkwright.viewer.displays.robot_model import RobotModelDisplay
@@ -217,6 +217,7 @@ class DiagnosticsFeature(PageFeature):
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
+        self._found: Sequence[Diagnostic] = ()
         self._shown = Diagnostics([])
 
     def opening(self) -> list[ServerMessage]:
@@ -225,8 +226,34 @@ class DiagnosticsFeature(PageFeature):
 
     def diagnostics_changed(self, diagnostics: Sequence[Diagnostic]) -> None:
         """Show other findings; none clears the list."""
-        self._shown = Diagnostics([item_of(each) for each in diagnostics])
+        self._found = diagnostics
+        self._shown = self._all()
         self.context.pages.publish(self._shown)
+
+    def robot_changed(self) -> None:
+        """Say whether a robot is there of which nothing is seen."""
+        shown = self._all()
+        if shown != self._shown:
+            self._shown = shown
+            self.context.pages.publish(shown)
+
+    def _all(self) -> Diagnostics:
+        models = [model for manager in self.managers.all() for model in manager.robot_models()]
+        unseen = {model.text: found for model in models if (found := _unseen(model)) is not None}
+        return Diagnostics([item_of(each) for each in (*self._found, *unseen.values())])
+
+
+def _unseen(model: RobotModelDisplay) -> Diagnostic | None:
+    """That none of the visuals of a robot can be drawn (VIEW207)."""
+    robot, problems = model.robot, model.file_problems
+    if robot is None or not problems or not model.enabled or any(link.visuals for link in model.scene.links):
+        return None
+    named = [text for link in robot.links.values() if link.visuals for text in problems.get(link.name, ())]
+    if not named:
+        return None
+    message = phrase("nothing of robot '{name}' is seen: none of its meshes can be read", name=robot.name)
+    hint = phrase("are they in another repository, fetched by the build, or in a package that is not installed?")
+    return Diagnostic("VIEW207", message, severity=Severity.WARNING, notes=(Note(named[0]),), hint=hint)
 
 
 def item_of(diagnostic: Diagnostic) -> DiagnosticItem:
