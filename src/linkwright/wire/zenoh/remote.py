@@ -58,7 +58,10 @@ class RemoteGraph:
         with self._lock:
             token = self._tokens.pop(key, None)
             if token is not None and token.kind is not None:
-                self._counts[token.kind, token.data_key] -= 1
+                counted = (token.kind, token.data_key)
+                self._counts[counted] -= 1
+                if not self._counts[counted]:
+                    del self._counts[counted]
         return token
 
     def forget_endpoints(self, kind: EndpointKind, data_key: str) -> None:

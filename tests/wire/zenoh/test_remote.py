@@ -1,0 +1,31 @@
+"""What is known of other sessions, and that nothing stays of those that are gone."""
+
+from __future__ import annotations
+
+from linkwright.graph.endpoints.info import EndpointKind
+from linkwright.graph.names.identity import NodeIdentity
+from linkwright.wire.zenoh.remote import RemoteGraph
+from linkwright.wire.zenoh.tokens import Token
+
+TOKENS = [
+    Token(
+        7, f"session{number}", "0", "1", NodeIdentity("robot", f"/r{number}"), kind, f"/r{number}/tf", "tf", "hash", ""
+    )
+    for number in range(100)
+    for kind in (EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION)
+]
+
+
+def test_robots_that_come_and_go_leave_nothing(monkeypatch):
+    now = 100.0
+    monkeypatch.setattr("linkwright.wire.zenoh.remote.time.monotonic", lambda: now)
+    remote = RemoteGraph()
+    empty = {name: len(value) for name, value in vars(remote).items() if hasattr(value, "__len__")}
+    for token in TOKENS:
+        assert remote.came(token.key, token)
+        assert remote.count(token.kind, token.data_key) == 1
+        now += 1.0
+        assert remote.went(token.key) is token
+        assert remote.count(token.kind, token.data_key) == 0
+    left = {name: len(value) for name, value in vars(remote).items() if hasattr(value, "__len__")}
+    assert left == {**empty, "_gone": 1}  # when the last one went
