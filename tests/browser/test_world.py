@@ -32,6 +32,7 @@ SERVICES = {
     "/delete_entity": "gazebo_msgs/srv/DeleteEntity",
     "/get_entity_state": "gazebo_msgs/srv/GetEntityState",
     "/set_entity_state": "gazebo_msgs/srv/SetEntityState",
+    "/apply_link_wrench": "gazebo_msgs/srv/ApplyLinkWrench",
 }
 
 
@@ -107,6 +108,19 @@ def test_the_bar_is_there_with_the_simulation_and_the_mouse_handles_models(live,
     wait_until(lambda: [each for each in requests("/set_entity_state") if abs(each.state.pose.position.y) > 0.1])
     assert {each.state.name for each in requests("/set_entity_state")} == {"crate"}
     assert all(each.state.pose.position.z == 0 for each in requests("/set_entity_state"))
+
+    page.mouse.move(x, y)
+    for key in ("Control", "Shift"):
+        page.keyboard.down(key)
+    page.mouse.down()
+    page.mouse.move(x + 60, y, steps=4)
+    wait_until(lambda: len(requests("/apply_link_wrench")) > 5)  # the mouse stands still, and pulls on
+    page.mouse.up()
+    for key in ("Control", "Shift"):
+        page.keyboard.up(key)
+    pulls = requests("/apply_link_wrench")
+    assert {each.link_name for each in pulls} == {"crate::link"}
+    assert pulls[-1].wrench.force.y > 1
 
     page.mouse.click(x, y, button="right")
     page.get_by_role("menuitem", name="Remove crate").click()

@@ -4,14 +4,18 @@ import { strings } from "../strings";
 import { WorldDrawing } from "./displays/world";
 import { modelOf } from "./displays/world-models";
 import type { Stage } from "./stage";
+import { ThinLines } from "./objects/thin-lines";
 import type { ToolEvent } from "./tools/tool";
 
 /** The tools that leave the mouse to what is done to models. */
 export const HANDLING_TOOLS = ["rviz_default_plugins/Interact", "rviz_default_plugins/MoveCamera"];
 /** Of one page, at most so often. */
 const PERIOD_MS = 50;
-/** Newtons for each metre that a link is pulled by. */
+/** Newtons for each metre between the point of a link that is pulled and the mouse. */
 const STIFFNESS = 50;
+const PULL_COLOR = "#ff2f6d";
+/** Drawn after all else, to be seen through it. */
+const LAST = 1000;
 
 /** What is held: a point of a link in the link's frame, where it was in the fixed frame, and the plane it is dragged in. */
 interface Hold {
@@ -23,6 +27,10 @@ interface Hold {
   readonly pushes: boolean;
   lastMs: number;
   offset: Vector3;
+  /** Where the mouse is, in the fixed frame, of a pull. */
+  readonly target: Vector3;
+  /** Repeats the force while the mouse stands still; 0 for none. */
+  timer: number;
 }
 
 /**
@@ -31,11 +39,19 @@ interface Hold {
  */
 export class WorldHandling {
   private hold: Hold | null = null;
+  /** From the point that is pulled to the mouse. */
+  private readonly line = new ThinLines();
 
   constructor(
     private readonly stage: Stage,
     private readonly session: Session,
-  ) {}
+  ) {
+    this.line.setStyle(PULL_COLOR, 1);
+    this.line.root.material.depthTest = false;
+    this.line.root.renderOrder = LAST;
+    stage.viewport.scene.add(this.line.root);
+  }
+
 
   /** False for an event that the tool in hand should have. */
   pointer(event: ToolEvent): boolean {
@@ -59,7 +75,8 @@ export class WorldHandling {
     const normal = event.shift ? camera.getWorldDirection(new Vector3()) : new Vector3(0, 0, 1);
     const plane = new Plane().setFromNormalAndCoplanarPoint(normal, at);
     const point = at.clone().applyMatrix4(matrix.clone().invert());
-    this.hold = { drawing, link, point, start: at.clone(), plane, pushes: event.shift, lastMs: -Infinity, offset: new Vector3() };
+    this.hold = { drawing, link, point, start: at.clone(), plane, pushes: event.shift, lastMs: -Infinity, offset: new Vector3(), target: at.clone(), timer: 0 };
+    if (event.shift) this.hold.timer = window.setInterval(() => this.pullOn(), PERIOD_MS);
     this.stage.viewport.canvas.style.cursor = "grabbing";
     if (!event.shift) this.session.simulation.drag(modelOf(link), [0, 0, 0], true);
     return true;
@@ -68,7 +85,11 @@ export class WorldHandling {
   private move(hold: Hold, event: ToolEvent): void {
     const to = this.stage.picker.rayAt(event.x, event.y).ray.intersectPlane(hold.plane, new Vector3());
     if (!to) return;
-    if (!hold.pushes) to.z = hold.start.z; // the height stays exactly, which the intersection does not
+    if (hold.pushes) {
+      hold.target.copy(to);
+      return;
+    }
+    to.z = hold.start.z; // the height stays exactly, which the intersection does not
     hold.offset = to.sub(hold.start);
     const now = performance.now();
     if (now - hold.lastMs < PERIOD_MS) return;
@@ -76,8 +97,23 @@ export class WorldHandling {
     this.send(hold);
   }
 
+  /** Pulls the point that is held towards the mouse, wherever both are by now. */
+  private pullOn(): void {
+    const { hold } = this;
+    const matrix = hold?.drawing.poseOf(hold.link);
+    if (!hold || !matrix) return;
+    const from = hold.point.clone().applyMatrix4(matrix);
+    hold.offset = hold.target.clone().sub(from);
+    this.line.setSegments(new Float32Array([...from.toArray(), ...hold.target.toArray()]));
+    this.stage.loop.invalidate();
+    this.send(hold);
+  }
+
   private letGo(hold: Hold): void {
     if (!hold.pushes) this.send(hold);
+    clearInterval(hold.timer);
+    this.line.setSegments(new Float32Array(0));
+    this.stage.loop.invalidate();
     this.hold = null;
     this.stage.viewport.canvas.style.cursor = "default";
   }

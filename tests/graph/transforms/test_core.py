@@ -276,7 +276,7 @@ def test_old_data_is_refused_and_the_rest_put_in_order(buffer, said):
     assert x_of(buffer, "a", "b", at(99)) == pytest.approx(2.0)
     fill(buffer, stamped("a", "b", 98, x=3.0))
     assert said == []
-    fill(buffer, stamped("a", "b", 89, x=4.0))
+    fill(buffer, *(stamped("a", "b", 89, x=4.0) for _ in range(9)))
     assert said == [
         (
             "WARN",

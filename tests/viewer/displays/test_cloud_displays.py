@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 
@@ -203,6 +205,42 @@ async def test_a_scan_is_shown():
         await w.settle()
         np.testing.assert_allclose(shown(w.display("LaserScan"))[0], [[1, 0, 0], [0, 2, 0]], atol=1e-6)
         assert w.display("LaserScan").properties.text("Color Transformer") == "Intensity"
+
+
+@pytest.mark.parametrize(
+    ("ranges", "said"),
+    [
+        ([math.nan, math.nan], "All 2 ranges are NaN: the sensor could not measure"),
+        ([0.05, 12.5], "The ranges are 0.05 to 12.50 m, and the message's range_min and range_max 0.10 and 10.00 m"),
+        ([math.inf, math.inf], None),
+        ([math.nan, math.inf], None),
+        ([], None),
+        ([math.nan, 2.0], None),
+    ],
+)
+async def test_a_scan_of_which_no_ray_counts_says_why_but_for_a_wide_open_space(ranges, said):
+    async with world(config("LaserScan")) as w:
+        publisher = w.graph.create_node("laser").create_publisher(LaserScan, "/points", 5)
+        message = scan(ranges)
+        message.header.frame_id = "base"
+        publisher.publish(message)
+        await w.settle()
+        level, text = w.status("LaserScan").get("Values", (None, ""))
+        assert (level, text.partition(":")[0]) == (("warn", said.partition(":")[0]) if said else (None, ""))
+        message.ranges = [1.0, 2.0]
+        publisher.publish(message)
+        await w.settle()
+        assert "Values" not in w.status("LaserScan")
+
+
+async def test_a_cloud_of_nothing_but_nan_says_so():
+    async with world(config()) as w:
+        publisher = w.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
+        message = coloured_cloud()
+        message.data = b"\xff" * len(message.data)
+        publisher.publish(message)
+        await w.settle()
+        assert w.status("PointCloud2")["Values"] == ("warn", "All 2 points are NaN or infinite")
 
 
 async def test_a_scanner_that_moves_draws_no_skewed_picture():

@@ -19,6 +19,7 @@ SERVICES = {
     "/reset_simulation": "std_srvs/srv/Empty",
     "/step_simulation": "simulation_interfaces/srv/StepSimulation",
     "/spawn_entity": "gazebo_msgs/srv/SpawnEntity",
+    "/get_model_list": "gazebo_msgs/srv/GetModelList",
     "/delete_entity": "gazebo_msgs/srv/DeleteEntity",
     "/get_entity_state": "gazebo_msgs/srv/GetEntityState",
     "/set_entity_state": "gazebo_msgs/srv/SetEntityState",
@@ -49,6 +50,8 @@ class Simulation:
                 response.status_message = "there is no model 'nobody'"
         if name == "/set_entity_state":
             response.success = request.state.name != "ground"  # its answer has no text
+        if name == "/get_model_list":
+            response.model_names = ["ground", "ground_2"]
         if name == "/get_entity_state":
             response.state.name = request.name
             response.state.pose.position.x = 1.0
@@ -147,6 +150,16 @@ async def test_models_are_put_into_the_world_by_a_path(tmp_path):
         assert "<static>true</static>" in request.xml
         await client.send("spawn_model", address=str(tmp_path / "none.urdf"), position=[0, 0, 0])
         assert "none.urdf" in (await client.until("simulation_notice"))["text"]
+
+
+async def test_a_second_model_of_a_name_is_given_another_which_is_told(tmp_path):
+    robot = tmp_path / "robot.urdf"
+    robot.write_text("<robot name='ground'><link name='base'/></robot>")
+    async with simulated() as (simulation, client):
+        await client.send("spawn_model", address=str(robot), position=[1, 2, 3])
+        request = await simulation.request("/spawn_entity")
+        assert (request.name, request.robot_namespace) == ("ground_3", "/ground_3")
+        assert "this one is 'ground_3'" in (await client.until("simulation_notice"))["text"]
 
 
 async def test_what_the_simulation_refuses_is_told():

@@ -35,6 +35,8 @@ from linkwright.graph.transforms.walk import Walker
 DEFAULT_CACHE_TIME = Duration(seconds=10)
 _QUATERNION_TOLERANCE = 10e-3
 _NANOSECONDS_PER_SECOND = 1_000_000_000
+_OLD_DATA_PERIOD_S = 2.0
+"""Between two complaints about transforms from the past: two publishers whose times differ give rise to all of them."""
 _PLANS_KEPT = 64
 """Publishers send the same frames again and again; more different lists than this means that they do not."""
 
@@ -307,7 +309,8 @@ class BufferCore:
                 return
         self._logger.warning(
             f"TF_OLD_DATA ignoring data from the past for frame {child} at time {shown_time(stamp_ns)} according to "
-            f"authority {authority}\nPossible reasons are listed at http://wiki.ros.org/tf/Errors%20explained"
+            f"authority {authority}\nPossible reasons are listed at http://wiki.ros.org/tf/Errors%20explained",
+            throttle_duration_sec=_OLD_DATA_PERIOD_S,
         )
 
     def _plan(self, parents: tuple[str, ...], children: tuple[str, ...], authority: str, static: bool) -> _Plan:

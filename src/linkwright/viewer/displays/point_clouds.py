@@ -13,7 +13,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from linkwright.diagnostics import foreign, phrase
+from linkwright.diagnostics import Phrase, foreign, phrase
 from linkwright.graph import TransformException
 from linkwright.viewer.clouds import (
     BadCloudError,
@@ -257,6 +257,10 @@ class PointsDisplay(CloudDisplay):
             BadCloudError: there are none to be had.
         """
 
+    def lack_of_points(self, message: Any) -> Phrase | None:
+        """Why a message without points has none, where that is nothing usual."""
+        return None
+
     def placed(self, points: Points, message: Any, pose: Pose) -> tuple[Points, Pose]:
         """The points of a message and the pose of the frame that they are in; a scanner may move while it scans."""
         return points, pose
@@ -270,6 +274,8 @@ class PointsDisplay(CloudDisplay):
             self.say("Message", "error", foreign(error))
             return
         self.unsay("Message")
+        lack = self.lack_of_points(message) if len(points) == 0 else None
+        self.unsay("Values") if lack is None else self.say("Values", "warn", lack)
         self.show(*self.placed(points, message, pose), self.frame_of(message)[1])
 
 
@@ -295,6 +301,23 @@ class LaserScanDisplay(PointsDisplay):
     def points_of(self, message: Any) -> Points:
         """Where the rays hit something."""
         return self._projector.points(message)
+
+    def lack_of_points(self, message: Any) -> Phrase | None:
+        """Rays that the sensor could not measure, or that its own limits rule out; infinity is but far (REP 117)."""
+        ranges = np.frombuffer(message.ranges, np.float32)
+        finite = ranges[np.isfinite(ranges)]
+        if len(finite):
+            return phrase(
+                "The ranges are {low:.2f} to {high:.2f} m, and the message's range_min and range_max {least:.2f} and "
+                "{most:.2f} m: none counts",
+                low=float(finite.min()),
+                high=float(finite.max()),
+                least=message.range_min,
+                most=message.range_max,
+            )
+        if len(ranges) and np.isnan(ranges).all():
+            return phrase("All {count} ranges are NaN: the sensor could not measure", count=len(ranges))
+        return None
 
     def placed(self, points: Points, message: Any, pose: Pose) -> tuple[Points, Pose]:
         """The points in the Fixed Frame if the scanner moved, else in its own frame."""
@@ -343,6 +366,11 @@ class PointCloud2Display(PointsDisplay):
     def points_of(self, message: Any) -> Points:
         """The points with finite coordinates."""
         return points_of_cloud(message)
+
+    def lack_of_points(self, message: Any) -> Phrase | None:
+        """Points of which none has finite coordinates."""
+        count = message.width * message.height
+        return phrase("All {count} points are NaN or infinite", count=count) if count else None
 
 
 class ScalarDisplay(PointsDisplay):

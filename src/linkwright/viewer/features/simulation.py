@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
+from itertools import count
 from math import isfinite
 from pathlib import Path
 from typing import Any
@@ -29,6 +30,7 @@ from linkwright.viewer.protocol.simulation import (
     DeleteModel,
     DragModel,
     PushLink,
+    SimulationNotice,
     SimulationStatus,
     SpawnModel,
 )
@@ -170,21 +172,32 @@ class SimulationFeature(PageFeature):
 
     async def _spawn(self, page: Page, address: str, position: list[float]) -> None:
         try:
-            text = await asyncio.to_thread(self._text_of, address.strip())
+            found = await asyncio.to_thread(self._model_at, address.strip())
         except LinkwrightError as error:
-            found = error.diagnostics[0]
-            refuse(page, found.placed_message)
+            refuse(page, error.diagnostics[0].placed_message)
             return
-        if text is None:
+        if found is None:
             refuse(page, phrase("there is no model in '{address}'", address=address))
             return
+        name, text = found
         fields: dict[str, Any] = {"xml": text}
         if _is_vector(position):
             fields["initial_pose"] = _pose(position)
-        self._services.ask(page, "gazebo_msgs/srv/SpawnEntity", "/spawn_entity", fields)
 
-    def _text_of(self, address: str) -> str | None:
-        """The description at an address; None for a world without a model.
+        def listed(response: Any) -> None:
+            taken = () if response is None else response.model_names
+            if name in taken:
+                free = next(each for number in count(2) if (each := f"{name}_{number}") not in taken)
+                fields.update(name=free, robot_namespace=f"/{free}")
+                spawn(partial(_tell_other_name, page, name, free))
+            else:
+                spawn()
+
+        spawn = partial(self._services.ask, page, "gazebo_msgs/srv/SpawnEntity", "/spawn_entity", fields)
+        self._services.ask(page, "gazebo_msgs/srv/GetModelList", "/get_model_list", {}, listed)
+
+    def _model_at(self, address: str) -> tuple[str, str] | None:
+        """Name and description of the model at an address; None for a world without one.
 
         Raises:
             LinkwrightError: it cannot be found or read.
@@ -196,9 +209,11 @@ class SimulationFeature(PageFeature):
         found = ResourceFinder(finder).model(address, Path.cwd())
         path = found if isinstance(found, Path) else finder.resolve(address)
         if not is_world(path.name):
-            return self.context.library.remember(examine(path, packages=finder, xacro=True))
+            description = examine(path, packages=finder, xacro=True)
+            name = "" if description.robot is None else description.robot.name
+            return name, self.context.library.remember(description)
         sdf = examine_world(path, packages=finder).sdf
-        return save(sdf.models[0]) if sdf is not None and sdf.models else None
+        return (sdf.models[0].name, save(sdf.models[0])) if sdf is not None and sdf.models else None
 
     def _drag(self, page: Page, message: DragModel) -> None:
         if message.begins:
@@ -244,6 +259,18 @@ class SimulationFeature(PageFeature):
         fields = {"link_name": message.link, "reference_frame": "world", "reference_point": point, "wrench": wrench}
         fields["duration"] = get_message("builtin_interfaces/msg/Duration")(0, _PUSH_NS)
         self._services.ask(page, "gazebo_msgs/srv/ApplyLinkWrench", "/apply_link_wrench", fields)
+
+
+def _tell_other_name(page: Page, name: str, free: str, response: Any) -> None:
+    """Tell that a model was given another name, as the one that it has is taken."""
+    if response is not None and response.success:
+        told = phrase(
+            "There is a '{name}' already: this one is '{free}', and the topics of its plugins begin with /{free}. "
+            "Frames of both have the same names.",
+            name=name,
+            free=free,
+        )
+        page.send(SimulationNotice(told))
 
 
 def _is_vector(numbers: Sequence[float]) -> bool:
