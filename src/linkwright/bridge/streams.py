@@ -27,7 +27,7 @@ class Stream(NamedTuple):
     Attributes:
         name: the topic.
         type_name: its type.
-        type_hash: of the type; empty where it is not told.
+        type_hash: of the type; empty where it tells no topics apart: who listens hears of all hashes then.
         reliability: what its publishers offer.
         durability: what its publishers offer.
         history: what its publishers offer.
@@ -78,8 +78,10 @@ def awaited_streams(subscription: EndpointInfo, *, keyed: bool) -> set[Stream]:
 
 def hash_of(endpoint: EndpointInfo) -> str:
     """The hash of an endpoint's type, as it tells it or as the package here has it; empty where neither is so."""
-    if endpoint.type_hash:
-        return endpoint.type_hash
+    return endpoint.type_hash or _known_hash(endpoint)
+
+
+def _known_hash(endpoint: EndpointInfo) -> str:
     try:
         return type_hash(endpoint.type_name)
     except InterfaceNotFoundError:
@@ -93,7 +95,8 @@ def _stream(
     durability: DurabilityPolicy,
     history: HistoryPolicy,
 ) -> Stream:
-    hashed = hash_of(endpoint) if keyed else ""
+    # Whoever listens to a type that is not known here may not tell its hash, and hears its publishers all the same.
+    hashed = hash_of(endpoint) if keyed and _known_hash(endpoint) else ""
     return Stream(endpoint.name, endpoint.type_name, hashed, reliability, durability, history)
 
 

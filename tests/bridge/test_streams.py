@@ -1,0 +1,31 @@
+from __future__ import annotations
+
+import pytest
+
+from linkwright.bridge.streams import awaited_streams, stream_of
+from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
+from linkwright.graph.names.identity import NodeIdentity
+from linkwright.graph.qos.profile import QoSProfile
+from linkwright.messages import type_hash
+
+OTHER_HASH = f"RIHS01_{0:064x}"
+
+
+def endpoint(kind: EndpointKind, type_name: str, hashed: str) -> EndpointInfo:
+    return EndpointInfo(kind, NodeIdentity("node", "/"), "/topic", type_name, QoSProfile(10), bytes(16), hashed)
+
+
+@pytest.mark.parametrize("told", ["", OTHER_HASH], ids=["told no hash", "told its hash"])
+@pytest.mark.parametrize("type_name", ["std_msgs/msg/String", "strange_msgs/msg/Odd"])
+def test_what_is_listened_to_before_its_publisher_comes_is_what_the_publisher_says(type_name, told):
+    """Else what it says first would be lost, while the bridge listens to another stream instead."""
+    hashed = type_hash(type_name) if type_name.startswith("std_msgs") else OTHER_HASH
+    publisher = endpoint(EndpointKind.PUBLISHER, type_name, hashed)
+    subscription = endpoint(EndpointKind.SUBSCRIPTION, type_name, told and hashed)
+    assert stream_of(publisher, keyed=True) in awaited_streams(subscription, keyed=True)
+
+
+def test_types_of_one_name_with_other_hashes_are_other_streams_where_the_type_is_known():
+    ours, theirs = (endpoint(EndpointKind.PUBLISHER, "std_msgs/msg/String", each) for each in ("", OTHER_HASH))
+    assert stream_of(ours, keyed=True) != stream_of(theirs, keyed=True)
+    assert stream_of(ours, keyed=False) == stream_of(theirs, keyed=False)
