@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import shutil
 import sys
 from pathlib import Path
@@ -13,6 +14,7 @@ import pytest
 from linkwright.diagnostics import LinkwrightError
 from linkwright.speech.engine import EngineOptions, engine_names
 from linkwright.speech.engines.pocketsphinx_engine import PocketsphinxEngine
+from tests.speech.voices import WORDS, say
 
 pocketsphinx = pytest.importorskip("pocketsphinx", reason="there is no wheel of it here")
 
@@ -49,6 +51,7 @@ class Decoder:
     """Hears as many words of a sentence as there are frames of speech."""
 
     says = ("go", "to", "<sil>", "the", "kitchen")
+    fit = -7.0  # logarithm of the probability of each frame
     made = ()
 
     def __init__(self, **settings):
@@ -78,7 +81,19 @@ class Decoder:
 
     def hyp(self):
         heard = " ".join(self.says[: self.frames])
-        return SimpleNamespace(hypstr=heard, prob=0.5) if heard else None
+        return SimpleNamespace(hypstr=heard, prob=0.06) if heard else None
+
+    def seg(self):
+        scores = {"<sil>": -1.0}
+        return [
+            SimpleNamespace(
+                word=word,
+                start_frame=3 * index,
+                end_frame=3 * index + 2,
+                ascore=math.exp(3 * scores.get(word, self.fit)),
+            )
+            for index, word in enumerate((*self.says[: self.frames], "(NULL)"))
+        ]
 
 
 @pytest.fixture
@@ -104,8 +119,17 @@ def test_an_utterance_in_blocks_of_another_length(told):
     sound = np.concatenate([QUIET, QUIET, *[SPEECH] * 5, QUIET, QUIET])
     heard = [each for at in range(0, len(sound), 700) for each in engine.hear(sound[at : at + 700])]
     assert [(each.text, each.final) for each in heard] == [("go to the kitchen", False), ("go to the kitchen", True)]
-    assert heard[-1].confidence == 0.5
+    assert heard[-1].confidence == pytest.approx(1 / (1 + math.exp(-1)))
     assert (heard[-1].start, heard[-1].end) == pytest.approx((0.06, 0.24))
+
+
+@pytest.mark.parametrize(("fit", "confidence"), [(-4.0, 0.982), (-8.0, 0.5), (-11.0, 0.047), (-900.0, 0.0)])
+def test_words_that_do_not_fit_the_sounds_are_not_certain(told, monkeypatch, fit, confidence):
+    monkeypatch.setattr(Decoder, "fit", fit)
+    engine = PocketsphinxEngine(EngineOptions(("go to",)))
+    (heard,) = [*engine.hear(SPEECH), *engine.finish()]
+    assert (heard.text, heard.final) == ("go to", True)
+    assert heard.confidence == pytest.approx(confidence, abs=1e-3)
 
 
 def test_other_words_are_none_of_the_phrases(told):
@@ -129,6 +153,16 @@ def test_quiet_and_noise_are_no_phrase_for_the_real_library():
     noise = np.random.default_rng(1).normal(0, 30, 16_000).astype(np.int16)
     assert [each for each in engine.hear(np.concatenate([np.zeros(16_000, np.int16), noise])) if each.text] == []
     assert [each for each in engine.finish() if each.text] == []
+
+
+def test_the_button_may_be_let_go_at_the_end_of_a_frame_of_the_real_library():
+    engine = PocketsphinxEngine(EngineOptions(("forward", "stop")))
+    sound = say(WORDS["forward"], silence=0.6)
+    loud = 480 * (int(np.flatnonzero(np.abs(sound.astype(int)) > 500)[-1]) // 480)
+    list(engine.hear(sound[:loud]))
+    (heard,) = engine.finish()
+    assert heard.final
+    assert 0.0 <= heard.confidence <= 1.0
 
 
 def test_words_that_the_real_dictionary_lacks_are_named():
