@@ -21,6 +21,7 @@ from linkwright.viewer import RvizConfig
 from linkwright.viewer.config.locations import RecentFiles
 from tests.full_disk import full_disk, needs_limits
 from tests.places import REPOSITORY
+from tests.recordings import needs_rosbags
 
 ROBOT = """<robot name="r">
   <link name="a"><visual><geometry><box size="1 1 1"/></geometry></visual>
@@ -105,6 +106,7 @@ def test_a_configuration_that_cannot_be_saved_stays_as_it_was(tmp_path: Path) ->
 
 
 @needs_limits
+@needs_rosbags
 @pytest.mark.parametrize(("storage", "single_file"), [*((each, False) for each in STORAGES), ("mcap", True)])
 def test_a_recording_on_a_full_disk_ends_once_and_keeps_what_it_has(
     tmp_path: Path, storage: str, single_file: bool
@@ -133,6 +135,7 @@ def test_a_recording_on_a_full_disk_ends_once_and_keeps_what_it_has(
         assert sum(1 for _ in bag.messages()) >= 10
 
 
+@needs_rosbags
 @needs_limits
 def test_bag_record_says_once_that_the_disk_is_full(
     in_graph: Callable[[Callable[[Graph], object]], None],

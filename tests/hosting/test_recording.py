@@ -17,7 +17,10 @@ from linkwright.hosting.plans import HostOptions
 from linkwright.hosting.simulated import SimulatedView, SimulatedWorld
 from linkwright.packages import PackageFinder
 from linkwright.testing import Recording
+from tests.recordings import needs_rosbags
 from tests.waiting import eventually
+
+pytestmark = needs_rosbags
 
 MBOT = Path(__file__).parents[2] / "robots/my_robot_description/urdf/mbot_gazebo.xacro"
 OPTIONS = HostOptions(port=0, open_browser=False, network=False)

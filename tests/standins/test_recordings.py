@@ -21,6 +21,9 @@ from rosidl_runtime_py.utilities import get_message
 from std_msgs.msg import Int32, String
 
 from linkwright.standins import process
+from tests.recordings import needs_rosbags
+
+pytestmark = needs_rosbags
 
 CDR = ConverterOptions("cdr", "cdr")
 

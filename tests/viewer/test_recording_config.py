@@ -12,6 +12,9 @@ from linkwright.graph import DEFAULT_QOS, DESCRIPTION_QOS, SENSOR_DATA_QOS
 from linkwright.messages import String, TFMessage, get_message, serialize
 from linkwright.viewer.recorded_robot import robot_of
 from linkwright.viewer.recording_config import recording_config
+from tests.recordings import needs_rosbags
+
+pytestmark = needs_rosbags
 
 START = 1_700_000_000_000_000_000
 LaserScan = get_message("sensor_msgs/msg/LaserScan")

@@ -11,7 +11,7 @@ import os
 import sys
 from collections.abc import Iterable, Mapping, Sequence
 from importlib import import_module
-from typing import TYPE_CHECKING, Protocol, cast
+from typing import TYPE_CHECKING, Any, Protocol, cast
 
 from linkwright._version import __version__
 from linkwright.cli.endings import FINE, USAGE, status_of
@@ -141,12 +141,22 @@ def parser_for(name: str, *, program: str = PROGRAM) -> argparse.ArgumentParser:
     """The argument parser of one verb, as the command reference and the verb itself use it."""
     module = verb(name)
     prog = f"{program} {name}".strip()
-    parser = argparse.ArgumentParser(prog=prog, description=VERBS[name], formatter_class=_formatter)
+    parser = _Parser(prog=prog, description=VERBS[name], formatter_class=_formatter)
     module.configure(parser)
     translate_help(parser)
     if parser.usage is not None:
         parser.usage = parser.usage.replace(f"{PROGRAM} {name}", prog, 1)
     return parser
+
+
+class _Parser(argparse.ArgumentParser):
+    """Tells of a help text that cannot be written, which argparse passes over, and Python from 3.15 on with it."""
+
+    def _print_message(self, message: str, file: Any = None) -> None:
+        if file is sys.stdout:
+            file.write(message)
+        else:
+            super()._print_message(message, file)
 
 
 def _formatter(prog: str) -> argparse.HelpFormatter:

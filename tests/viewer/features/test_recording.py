@@ -16,10 +16,13 @@ from linkwright.viewer.features import recording as module
 from linkwright.viewer.features.recording import RecordingFeature
 from linkwright.viewer.web.access import TOKEN_PARAMETER
 from tests.full_disk import full_disk, needs_limits
+from tests.recordings import needs_rosbags
 from tests.skipping import skipping
 from tests.viewer.features.test_live_history import KEPT, filled
 from tests.viewer.features.test_time import config
 from tests.viewer.scene import Client, World, page, world
+
+pytestmark = needs_rosbags
 
 TF, STRING = "/tf", "std_msgs/msg/String"
 

@@ -1,0 +1,12 @@
+"""Where recordings can be written and read."""
+
+from __future__ import annotations
+
+from importlib.util import find_spec
+
+import pytest
+
+needs_rosbags = pytest.mark.skipif(
+    find_spec("rosbags") is None, reason="there is no rosbags here: no wheel for Python 3.15"
+)
+"""Marks tests that write or read recordings."""
