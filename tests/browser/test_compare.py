@@ -200,6 +200,10 @@ def test_the_list_is_in_front_in_a_small_window(start, open_page, files):
     page.set_viewport_size({"width": 800, "height": 600})
     page.locator(".comparison-count:visible").wait_for()
     assert page.get_by_role("tab", name="Compare").get_attribute("aria-selected") == "true"
+    panel, first = page.locator(".comparison").bounding_box(), page.locator(".difference-group").first.bounding_box()
+    assert panel is not None
+    assert first is not None
+    assert first["y"] + first["height"] <= panel["y"] + panel["height"]
 
 
 def test_the_panel_has_no_finding_of_axe_core(start, open_page, files):

@@ -46,7 +46,8 @@ export class ComparisonPanel implements Panel {
       h("div", { class: "comparison-row" }, this.marks),
       this.legend,
     );
-    this.element = h("div", { class: "panel comparison" }, head, this.count, this.list);
+    const body = h("div", { class: "comparison-body" }, h("div", { class: "comparison-top" }, head, this.count), this.list);
+    this.element = h("div", { class: "panel comparison" }, body);
     this.list.addEventListener("pointerleave", () => session.focus.setHovered(null));
     const { comparison, displays } = session;
     const switches = coalesced(() => this.showSwitches());
