@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+from pathlib import Path
+
 import pytest
 from playwright.sync_api import Browser
 
@@ -144,4 +147,22 @@ def test_the_row_of_a_link_that_is_clicked_is_seen_above_its_help(start: Start, 
     }"""
     becomes(lambda: page.evaluate(seen), True)
     assert page.locator(".displays-panel .row.selected").inner_text().startswith("z")
+    page.close()
+
+
+def test_names_of_a_deep_tree_have_room(start, browser, tmp_path: Path) -> None:
+    names = [f"left_front_leg_segment_{number:02}" for number in range(15)]
+    joints = [
+        f'<joint name="{child}_joint" type="fixed"><parent link="{parent}"/><child link="{child}"/></joint>'
+        for parent, child in pairwise(names)
+    ]
+    links = [f'<link name="{name}"/>' for name in names]
+    (tmp_path / "deep.urdf").write_text(f'<robot name="deep">{"".join(links + joints)}</robot>')
+    page = browser.new_page(viewport={"width": 1024, "height": 768}, locale="en-US")
+    page.goto(start("view", str(tmp_path / "deep.urdf")).url)
+    page.get_by_role("tab", name="Links").click()
+    page.locator(".link-name", has_text=names[-1]).wait_for()
+    rows = page.locator(".link-name").all()
+    assert [row.get_attribute("title") for row in rows] == names
+    assert min(row.evaluate("(e) => e.clientWidth") for row in rows) > 80
     page.close()

@@ -11,7 +11,6 @@ import { VirtualRows } from "./virtual-rows";
 import { holdWhileVisible } from "./visibility";
 
 const ROW_PX = 23;
-const INDENT_PX = 14;
 const FLASH_MS = 1600;
 
 /** The kinematic tree: each link with the joint that moves it. */
@@ -67,6 +66,8 @@ export class LinksPanel implements Panel {
     const { links, joints } = model;
     this.count.textContent = strings.description.count(links.size, joints.size);
     this.shown = flattened(model, this.tree, this.search.value);
+    const deepest = this.shown.reduce((most, { depth }) => Math.max(most, depth), 1);
+    this.rows.element.style.setProperty("--deepest", String(deepest));
     this.rows.refresh(this.shown.length);
   }
 
@@ -103,12 +104,12 @@ export class LinksPanel implements Panel {
       { class: "link-row", role: "treeitem", data: { link: link.name } },
       twist,
       icon("cube"),
-      h("span", { class: "link-name" }, link.name),
+      h("span", { class: "link-name", title: link.name }, link.name),
       findings.length > 0 ? badge(findings.map((each) => each.message)) : null,
       h("span", { class: "spacer" }),
       joint ? this.jointName(name("joint", joint.name), joint.kind) : null,
     );
-    element.style.paddingLeft = `${6 + depth * INDENT_PX}px`;
+    element.style.setProperty("--depth", String(depth));
     element.id = `link-row-${index}`;
     element.setAttribute("aria-level", String(depth + 1));
     element.setAttribute("aria-selected", String(same(focus, self)));
