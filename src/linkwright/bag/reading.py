@@ -65,21 +65,23 @@ class BagReader:
     Args:
         path: a folder with a ``metadata.yaml``, or a single ``.mcap`` or ``.db3`` file. Of a recording that was killed,
             which has neither ``metadata.yaml`` nor an index, everything is read that was written.
+        called: what messages call it; its path where that is left out.
 
     Raises:
         LinkwrightError: BAG101 there is nothing there, BAG102 it is not a recording or a damaged one, BAG107 `rosbags`
             is not installed.
     """
 
-    def __init__(self, path: str | Path) -> None:
+    def __init__(self, path: str | Path, called: str | None = None) -> None:
         try:
             from rosbags.rosbag2 import Reader
         except ModuleNotFoundError as error:
             raise missing_extra("BAG107", error) from None
         self.path = Path(path)
+        self._called = display_path(self.path) if called is None else called
         self._open = ExitStack()
         self._is_cut_off = False
-        target = _storage_target(self.path)
+        target = _storage_target(self.path, self._called)
         try:
             self._reader = Reader(self._finished(target))
             self._reader.open()
@@ -90,7 +92,7 @@ class BagReader:
                 unpack_messages(self._reader)
         except Exception as error:  # the library raises whatever a damaged file brings about
             self._open.close()
-            raise _unreadable(self.path, error) from error
+            raise _unreadable(self.path, self._called, error) from error
         self.storage = _storage_of(target)
         self._moments = Moments(self._reader)
         self._make_types_known()
@@ -111,7 +113,7 @@ class BagReader:
         if self._others and not self.topics:
             self.close()
             message = phrase(
-                "'{path}' is not a recording of ROS 2: {topics}", path=display_path(self.path), topics=self._left_out()
+                "'{path}' is not a recording of ROS 2: {topics}", path=self._called, topics=self._left_out()
             )
             raise LinkwrightError(
                 Diagnostic("BAG102", message, hint=phrase("in brackets: how messages of the topic are written"))
@@ -132,7 +134,7 @@ class BagReader:
     def _make_types_known(self) -> None:
         from rosbags.interfaces import MessageDefinitionFormat
 
-        origin = display_path(self.path)
+        origin = self._called
         for each in self._reader.connections:
             form, text = each.msgdef
             if form is not MessageDefinitionFormat.NONE:
@@ -147,19 +149,17 @@ class BagReader:
         """
         found = []
         if not self._is_cut_off and not any(each.count for each in self.topics):
-            message = phrase("recording '{path}' holds no messages", path=display_path(self.path))
+            message = phrase("recording '{path}' holds no messages", path=self._called)
             hint = phrase("`linkwright topic list` and `linkwright topic hz TOPIC` tell what is published")
             found.append(Diagnostic("BAG113", message, severity=Severity.WARNING, hint=hint))
         if self._is_cut_off:
-            message = phrase(
-                "recording '{path}' has no end: it was killed, or cut off in a copy", path=display_path(self.path)
-            )
+            message = phrase("recording '{path}' has no end: it was killed, or cut off in a copy", path=self._called)
             hint = phrase("what is whole in it is read; what came after that is lost")
             found.append(Diagnostic("BAG109", message, severity=Severity.WARNING, hint=hint))
         if self._others:
             message = phrase(
                 "topics of '{path}' are left out, for their messages are none of ROS 2's: {topics}",
-                path=display_path(self.path),
+                path=self._called,
                 topics=self._left_out(),
             )
             found.append(Diagnostic("BAG112", message, severity=Severity.WARNING))
@@ -202,7 +202,7 @@ class BagReader:
                 raise LinkwrightError(
                     Diagnostic(
                         "BAG103",
-                        phrase("there is no topic '{name}' in '{path}'", name=name, path=display_path(self.path)),
+                        phrase("there is no topic '{name}' in '{path}'", name=name, path=self._called),
                         hint=hint,
                     )
                 )
@@ -237,7 +237,7 @@ class BagReader:
         try:
             return what()
         except Exception as error:  # the library raises whatever a damaged file brings about
-            raise _unreadable(self.path, error) from error
+            raise _unreadable(self.path, self._called, error) from error
 
     def _read(self, stream: Iterator[tuple[Any, int, bytes]]) -> Iterator[Recorded]:
         while True:
@@ -246,7 +246,7 @@ class BagReader:
             except StopIteration:
                 return
             except Exception as error:
-                raise _unreadable(self.path, error) from error
+                raise _unreadable(self.path, self._called, error) from error
             yield connection.topic, stamp_ns, data
 
     def close(self) -> None:
@@ -262,14 +262,14 @@ class BagReader:
         self.close()
 
 
-def _storage_target(path: Path) -> Path:
+def _storage_target(path: Path, called: str) -> Path:
     """What the library is to open: the folder, or its only file where the metadata are missing."""
     if not path.exists():
-        raise LinkwrightError(Diagnostic("BAG101", phrase("there is no recording '{path}'", path=display_path(path))))
+        raise LinkwrightError(Diagnostic("BAG101", phrase("there is no recording '{path}'", path=called)))
     if path.is_file() or (path / "metadata.yaml").exists():
         return path
     if not path.is_dir():
-        message = phrase("'{path}' is not a recording: it is neither a file nor a folder", path=display_path(path))
+        message = phrase("'{path}' is not a recording: it is neither a file nor a folder", path=called)
         raise LinkwrightError(Diagnostic("BAG102", message))
     files = _files_in(path)
     if len(files) == 1:
@@ -278,7 +278,7 @@ def _storage_target(path: Path) -> Path:
     raise LinkwrightError(
         Diagnostic(
             "BAG102",
-            phrase("'{path}' is not a recording: it has no metadata.yaml", path=display_path(path)),
+            phrase("'{path}' is not a recording: it has no metadata.yaml", path=called),
             notes=(Note(phrase("files with messages in it: {found}", found=found)),),
             hint=phrase("name one of those files instead") if files else None,
         )
@@ -303,12 +303,12 @@ def _profiles(connection: Any) -> list[Any]:
     return list(getattr(connection.ext, "offered_qos_profiles", ()))
 
 
-def _unreadable(path: Path, error: Exception) -> LinkwrightError:
+def _unreadable(path: Path, called: str, error: Exception) -> LinkwrightError:
     reason, hint, note = verdict_on(path, error)
     return LinkwrightError(
         Diagnostic(
             "BAG102",
-            phrase("'{path}' cannot be read as a recording: {reason}", path=display_path(path), reason=reason),
+            phrase("'{path}' cannot be read as a recording: {reason}", path=called, reason=reason),
             notes=() if note is None else (Note(note),),
             hint=hint,
         )

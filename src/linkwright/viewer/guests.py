@@ -26,6 +26,8 @@ PATIENCE = 60.0
 
 _MOST = 4
 _LOOK = 5.0
+_LEFT = 10.0
+"""Seconds without a page after which a recording makes room for another one."""
 
 
 @dataclass(slots=True)
@@ -64,6 +66,7 @@ class GuestRecordings:
         from linkwright.viewer.recorded_robot import published, robot_of
         from linkwright.viewer.recording_config import recording_config
 
+        await self._make_room()
         if len(self._guests) >= _MOST:
             raise LinkwrightError(
                 Diagnostic(
@@ -73,7 +76,7 @@ class GuestRecordings:
                     ),
                 )
             )
-        bag = await asyncio.to_thread(BagReader, path)
+        bag = await asyncio.to_thread(BagReader, path, path.name)
         host = self._host.context
         try:
             robot = robot_of(bag, host.library)
@@ -111,6 +114,16 @@ class GuestRecordings:
             self._looking.cancel()
         guests, self._guests = self._guests, {}
         await asyncio.gather(*(_end(each) for each in guests.values()), *self._closing)
+
+    async def _make_room(self) -> None:
+        """End the one that was left first where as many are shown as may be, so that one may be tried after another."""
+        if len(self._guests) < _MOST:
+            return
+        until = asyncio.get_running_loop().time() - _LEFT
+        left = {key: each.left for key, each in self._guests.items() if not len(each.viewer.audience)}
+        first = min(left, key=left.__getitem__, default=None)
+        if first is not None and left[first] < until:
+            await _end(self._guests.pop(first))
 
     def _look_later(self) -> None:
         if self._looking is None:

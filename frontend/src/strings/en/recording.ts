@@ -32,7 +32,7 @@ export const recording = {
   sending: (name: string): string => `Opening ${name}`,
   opening: "The program reads it…",
   noRecording: "This is no recording",
-  noRecordingHint: (name: string): string => `There is no .mcap or .db3 file in ${name === "" ? "what was dropped" : `'${name}'`}.`,
+  noRecordingHint: (name: string): string => name.endsWith(".bag") ? `'${name}' is a recording of ROS 1: rosbags-convert --src ${name} --dst NAME makes one of ROS 2 of it.` : `There is no .mcap or .db3 file in ${name === "" ? "what was dropped" : `'${name}'`}.`,
   notOpened: (name: string): string => `${name} was not opened`,
   broken: "The connection to the program was lost.",
   gone: "The recording is not open any longer",

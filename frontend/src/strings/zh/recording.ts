@@ -34,7 +34,7 @@ export const recording: typeof english = {
   sending: (name: string): string => `正在打开 ${name}`,
   opening: "程序正在读取…",
   noRecording: "这不是录制",
-  noRecordingHint: (name: string): string => `${name === "" ? "拖放的内容" : `“${name}”`}中没有 .mcap 或 .db3 文件。`,
+  noRecordingHint: (name: string): string => name.endsWith(".bag") ? `“${name}”是 ROS 1 的录制：rosbags-convert --src ${name} --dst NAME 可以把它转换成 ROS 2 的录制。` : `${name === "" ? "拖放的内容" : `“${name}”`}中没有 .mcap 或 .db3 文件。`,
   notOpened: (name: string): string => `没有打开 ${name}`,
   broken: "与程序的连接断开了。",
   gone: "录制已不再打开",

@@ -209,8 +209,7 @@ class Uploads:
         except LinkwrightError as error:
             found = localized(in_one_line(error.diagnostics), language_asked(request))
             self._remove(request.match_info["key"])
-            # Where it lies for a moment says nothing to whoever has dropped it.
-            return _problem(found.replace(f"{upload.folder}/", ""))
+            return _problem(found)
         self._uploads.pop(request.match_info["key"], None)
         return web.json_response({"recording": shown})
 
