@@ -70,6 +70,7 @@ def test_a_process_with_neither_says_so_and_goes_on(installed):
         graph.close_now()
 
 
+@pytest.mark.skipif(importlib.util.find_spec("cyclonedds") is None, reason="there is no DDS here")
 def test_settings_are_those_of_the_transport_that_is_chosen():
     wrong = {"ZENOH_CONFIG_OVERRIDE": "mode"}
     check_settings(wrong)
@@ -82,8 +83,7 @@ def test_settings_are_those_of_the_transport_that_is_chosen():
 
 @pytest.mark.parametrize(("variables", "kind"), [({}, DdsTransport), (ASKED, ZenohTransport)])
 def test_a_graph_joins_over_what_is_chosen(variables, kind, domain):
-    if not available(variables):
-        pytest.skip("it is not installed here")
+    pytest.importorskip("cyclonedds" if kind is DdsTransport else "zenoh", reason="it is not installed here")
     graph = Graph(threads=True)
     try:
         transport = join(graph, environment={**variables, "ROS_DOMAIN_ID": str(domain)})

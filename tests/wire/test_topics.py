@@ -237,6 +237,7 @@ def test_the_best_available_is_chosen_among_those_outside_too(processes):
 
 def test_every_type_can_be_described():
     """To Cyclone, which makes a description of each when it is used first."""
+    pytest.importorskip("cyclonedds", reason="there is no DDS here")
     from linkwright.messages import shipped_packages
     from linkwright.wire.dds.type_descriptions import WireTypes
 
