@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -88,10 +89,17 @@ def test_the_same_seed_gives_the_same_bytes(source, tmp_path):
     assert files(tmp_path / "a") != files(tmp_path / "c")
 
 
-def test_a_picture_does_not_depend_on_those_before(source):
+@pytest.mark.parametrize("way", ["OpenGL", "Embree", "MuJoCo"])
+def test_a_picture_does_not_depend_on_those_before(source, monkeypatch, way):
+    if way != "OpenGL":  # as on macOS and Windows
+        monkeypatch.setenv("MUJOCO_GL", "disable")
+    if way == "MuJoCo":
+        monkeypatch.setitem(sys.modules, "embreex", None)
     first, second = Studio(source), Studio(source)
     try:
-        for number in (0, 49, 3):
+        if way != "OpenGL":
+            assert f"by {way}," in str(first.way).replace("rays of", "by")
+        for number in (0, 49, 3, 51):
             first.take(number)
         assert first.take(52) == second.take(52)
         assert first.take(1) == second.take(1)

@@ -149,6 +149,8 @@ class EmbreeCaster:
         self._standing: _Triangles | None = None
         self._movable = MovableGeoms(simulation, {})
         self._fixed: dict[int, Mesh] = {}
+        self._places: Any = np.empty((0, 12))
+        self._sizes: Any = np.empty((0, 3))
         self._loose: dict[int, Mesh] = {}
         self._planes: list[int] = []
 
@@ -160,6 +162,8 @@ class EmbreeCaster:
         if self._revision != simulation.revision:
             self._read(simulation.model)
             self._revision = simulation.revision
+        else:
+            self._take_changes()
         count = len(rays)
         hits = Hits(
             np.full(count, np.inf, np.float32),
@@ -189,8 +193,38 @@ class EmbreeCaster:
             elif (mesh := triangles_of(model, geom)) is not None:
                 where = self._fixed if model.body_weldid[model.geom_bodyid[geom]] == 0 else self._loose
                 where[geom] = mesh
-        self._movable = MovableGeoms(self._simulation, self._loose)
+        self._begin_anew()
         self._keep()
+
+    def _begin_anew(self) -> None:
+        self._movable = MovableGeoms(self._simulation, self._loose)
+        self._places, self._sizes = self._fixed_places(), self._simulation.model.geom_size.copy()
+
+    def _take_changes(self) -> None:
+        """Take what stands still in the world for what moves, where it was moved or shaped anew all the same.
+
+        That is how a dataset has another scene for each picture.
+        """
+        model = self._simulation.model
+        still = np.array(list(self._fixed), dtype=np.int64)
+        moved = still[(self._fixed_places() != self._places).any(axis=1)]
+        shaped = np.flatnonzero((model.geom_size != self._sizes).any(axis=1))
+        if not len(moved) and not len(shaped):
+            return
+        before, rested = len(self._fixed), self._movable.resting
+        for geom in (*moved.tolist(), *shaped.tolist()):
+            if geom in self._fixed:
+                self._loose[geom] = self._fixed.pop(geom)
+        for geom in shaped.tolist():
+            if geom in self._loose and (mesh := triangles_of(model, geom)) is not None:
+                self._loose[geom] = mesh
+        self._begin_anew()
+        if rested or len(self._fixed) != before:
+            self._keep()
+
+    def _fixed_places(self) -> Any:
+        data, geoms = self._simulation.data, list(self._fixed)
+        return np.concatenate([data.geom_xpos[geoms], data.geom_xmat[geoms]], axis=1)
 
     def _keep(self) -> None:
         """Make the tree of what stands still."""

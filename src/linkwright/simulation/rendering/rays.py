@@ -34,6 +34,7 @@ class RayRenderer:
         self._simulation = simulation
         self._caster = caster
         self._colours: Any = None
+        self._paints: tuple[Any, ...] = ()
         self._revision = -1
 
     def render(self, optics: Optics, pose: Transform, wanted: Wanted) -> Picture:
@@ -56,8 +57,10 @@ class RayRenderer:
 
     def _shaded(self, hits: Hits, origin: Array, rays: Any, forwards: Array) -> Any:
         simulation = self._simulation
-        if self._revision != simulation.revision:
+        paints = simulation.model.geom_rgba, simulation.model.geom_matid  # a dataset has others for each picture
+        if self._revision != simulation.revision or not all(map(np.array_equal, paints, self._paints)):
             self._colours = geom_colours(simulation.model)
+            self._paints = tuple(each.copy() for each in paints)
             self._revision = simulation.revision
         scene = simulation.world.scene
         turned = np.where(np.einsum("ij,ij->i", hits.normals, rays) > 0, np.float32(-1), np.float32(1))
