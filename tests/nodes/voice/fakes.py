@@ -30,12 +30,14 @@ class ToldEngine(SpeechEngine):
     Attributes:
         made: with which options engines were made.
         says: value of samples -> what is heard.
+        says_at_end: what is heard when the sound ends.
         finished: how often the sound ended.
         trouble: why it hears nothing.
     """
 
     made: ClassVar[list[EngineOptions]] = []
     says: ClassVar[dict[int, list[Heard]]] = {}
+    says_at_end: ClassVar[list[Heard]] = []
     finished: ClassVar[list[int]] = []
     trouble: ClassVar[list[Diagnostic]] = []
 
@@ -51,7 +53,7 @@ class ToldEngine(SpeechEngine):
 
     def finish(self) -> Sequence[Heard]:
         self.finished.append(1)
-        return []
+        return tuple(self.says_at_end)
 
 
 def final(text: str, confidence: float = 1.0, start: float = 0.0) -> Heard:

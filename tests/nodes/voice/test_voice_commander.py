@@ -38,6 +38,7 @@ def engine(monkeypatch):
     monkeypatch.setattr("linkwright.speech.engine.extensions", lambda group: {"told": ENTRY})
     ToldEngine.made.clear()
     ToldEngine.finished.clear()
+    ToldEngine.says_at_end.clear()
     ToldEngine.trouble.clear()
     return ToldEngine
 
@@ -214,6 +215,34 @@ async def test_what_is_uncertain_is_not_done(engine, talk):
     await robot.say(final("", 0.9))
     assert robot.said["command"] == []
     assert robot.velocities == []
+
+
+@pytest.mark.parametrize("asked_for", [0.5, 0.8])
+async def test_who_held_the_button_is_told_what_was_heard_with_too_little_certainty(engine, talk, asked_for):
+    robot = talk(engine="told", confidence=asked_for, language="zh")
+    await robot.hold(True)
+    engine.says_at_end.append(final("前进", 0.6 * asked_for))
+    await robot.hold(False)
+    await eventually(lambda: robot.said["response"])
+    assert robot.said["response"] == ["我不确定听到的是“前进”，请再说一遍"]
+    assert robot.said["text"] == ["前进"]
+    assert robot.said["command"] == []
+
+
+async def test_of_what_is_hardly_a_word_nothing_is_said(engine, talk):
+    robot = talk(engine="told")
+    await robot.hold(True)
+    await robot.say(final("forward", 0.2), final("", 0.4))
+    assert robot.said["response"] == []
+
+
+async def test_who_listens_to_all_does_not_answer_what_is_uncertain_without_the_button(engine, talk):
+    robot = talk(engine="told", open_listening=True)
+    await robot.say(final("forward", 0.4))
+    assert robot.said["response"] == []
+    await robot.hold(True)
+    await robot.say(final("forward", 0.4, start=2.0))
+    assert robot.said["response"] == ["I am not sure that I heard 'forward': say it again"]
 
 
 async def test_what_has_a_gap_is_asked_for_again_and_stop_is_done(engine, talk):

@@ -40,6 +40,8 @@ _LOOK_SECONDS = 0.5
 _STRING = "std_msgs/msg/String"
 _BOOL = "std_msgs/msg/Bool"
 _SAID = ("text", "partial_text", "command", "response")
+_NEARLY = 0.5
+"""Of the confidence that is asked for: from so much on it is worth saying what was heard. Noise has less."""
 
 
 class VoiceCommander(SingleNode):
@@ -209,6 +211,13 @@ class VoiceCommander(SingleNode):
             self._conversation.stop(heard.text)
         elif heard.text and is_certain and not is_whole:
             self._conversation.answer(phrase("I did not hear all of that: say it again"))
+        elif heard.text and not is_certain and self._is_addressed and heard.confidence >= _NEARLY * self._confidence:
+            self._conversation.answer(phrase("I am not sure that I heard '{text}': say it again", text=heard.text))
+
+    @property
+    def _is_addressed(self) -> bool:
+        """Whether what is heard was said to the robot; the end of it comes after the button was let go."""
+        return self._held or not self._open
 
     def _stop_early(self, text: str) -> None:
         """Stop from what was heard so far, unless it is another command in which that word is."""
@@ -250,7 +259,7 @@ class VoiceCommander(SingleNode):
         if understood:
             self._spoken = by_voice
             self._silence.reset()
-        elif text and (self._held or not by_voice):
+        elif text and (self._is_addressed or not by_voice):
             self._conversation.answer(phrase("I did not understand '{text}'", text=text))
         return understood
 
