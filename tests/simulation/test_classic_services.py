@@ -99,7 +99,7 @@ async def test_states_of_all_models_and_links_are_told():
 
 
 async def test_services_of_states_are_in_the_namespace_of_the_plugin():
-    async with served(GROUND, robot(), STATE) as (server, graph, _):
+    async with served(GROUND, robot(), STATE) as (server, graph, log):
         state = get_message("gazebo_msgs/msg/EntityState")(name="mbot")
         state.pose.position.x, state.pose.position.z = 2.0, 0.11
         answer = await ask(graph, server, "gazebo_msgs/srv/SetEntityState", "/world/set_entity_state", state=state)
@@ -108,6 +108,13 @@ async def test_services_of_states_are_in_the_namespace_of_the_plugin():
         assert answer.state.pose.position.x == pytest.approx(2.0, abs=1e-3)
         answer = await ask(graph, server, "gazebo_msgs/srv/GetEntityState", "/world/get_entity_state", name="who")
         assert not answer.success
+        state.name = "ground"
+        answer = await ask(graph, server, "gazebo_msgs/srv/SetEntityState", "/world/set_entity_state", state=state)
+        assert not answer.success
+        assert [each.text for each in log] == [
+            "get_entity_state: there is no model or link 'who'",
+            "set_entity_state: 'ground' is fixed to the world (delete it, and spawn it anew where it should be)",
+        ]
 
 
 async def test_joints_are_put_by_a_service():

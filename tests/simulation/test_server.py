@@ -7,7 +7,7 @@ from contextlib import asynccontextmanager
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.graph import CLOCK_QOS, DurabilityPolicy, Graph, QoSProfile
+from linkwright.graph import CLOCK_QOS, DurabilityPolicy, Graph, LogLevel, QoSProfile
 from linkwright.messages import get_message, get_service
 from linkwright.nodes.options import NodeOptions
 from linkwright.nodes.simulator import Simulator
@@ -27,8 +27,9 @@ URDF = """<robot name="crate"><link name="base"><inertial><mass value="1"/>
 class Simulated:
     """A simulator in this process, and a node that asks it."""
 
-    def __init__(self, graph: Graph, simulator: Simulator) -> None:
+    def __init__(self, graph: Graph, simulator: Simulator, log: list) -> None:
         self.graph = graph
+        self.log = log
         self.simulator = simulator
         self.node = graph.create_node("asker")
 
@@ -50,11 +51,12 @@ async def simulator(tmp_path, *parts: str, **parameters):
     path = tmp_path / "a.world"
     ground = "<include><uri>model://ground_plane</uri></include>"
     path.write_text(f'<sdf version="1.7"><world name="test">{ground}{"".join(parts)}</world></sdf>')
-    graph = Graph(on_log=lambda record: None)
+    log: list = []
+    graph = Graph(on_log=log.append)
     options = {"world": str(path), "pause": True, "real_time_factor": -1.0} | parameters
     running = Simulator(graph, NodeOptions(parameters=options))
     try:
-        yield Simulated(graph, running)
+        yield Simulated(graph, running, log)
     finally:
         running.close()
         await graph.close()
@@ -190,6 +192,25 @@ async def test_a_model_is_put_elsewhere_with_a_velocity(tmp_path):
             )
         ).state
         assert told.pose.position.x == pytest.approx(3.0)
+
+
+async def test_why_a_service_without_a_text_refuses_is_logged(tmp_path):
+    ends = "<parent>one::link</parent><child>two::link</child>"
+    hinge = f'<joint name="hinge" type="revolute">{ends}<axis><xyz>0 0 1</xyz></axis></joint>'
+    async with simulator(tmp_path, box("one", "0 0 9 0 0 0"), box("two", "3 0 9 0 0 0"), hinge) as it:
+        for name in ("ground_plane", "two", "three"):
+            state = get_message("gazebo_msgs/msg/EntityState")(name=name)
+            assert not (await it.ask("gazebo_msgs/srv/SetEntityState", "/set_entity_state", state=state)).success
+        assert not (await it.ask("gazebo_msgs/srv/GetEntityState", "/get_entity_state", name="on")).success
+        await it.ask("gazebo_msgs/srv/LinkRequest", "/clear_link_wrenches", link_name="wheel")
+        assert (await it.ask("gazebo_msgs/srv/GetEntityState", "/get_entity_state", name="one")).success
+        assert [each.text for each in it.log if each.level == LogLevel.ERROR] == [
+            "/set_entity_state: 'ground_plane' is fixed to the world (delete it, and spawn it anew where it should be)",
+            "/set_entity_state: 'two' is connected with 'one' by a joint of the world (move 'one', which it goes with)",
+            "/set_entity_state: there is no model or link 'three'",
+            "/get_entity_state: there is no model or link 'on' (did you mean 'one'?)",
+            "/clear_link_wrenches: there is no model or link 'wheel'",
+        ]
 
 
 async def test_the_world_is_told_to_who_comes_late_with_all_that_came(tmp_path):

@@ -411,10 +411,12 @@ class Simulation:
             return
         if not self.moves_freely(name):
             message = phrase("'{name}' is fixed to the world", name=name)
+            hint = phrase("delete it, and spawn it anew where it should be")
             if scene_model.hangs_on:
                 other = min(scene_model.hangs_on)
                 message = phrase("'{name}' is connected with '{other}' by a joint of the world", name=name, other=other)
-            raise LinkwrightError(Diagnostic("SIM103", message))
+                hint = phrase("move '{other}', which it goes with", other=other)
+            raise LinkwrightError(Diagnostic("SIM103", message, hint=hint))
         root, offset = self._root(name)
         joint = self.data.joint(f"{root}#free")
         x, y, z, qx, qy, qz, qw = compose(pose, offset)

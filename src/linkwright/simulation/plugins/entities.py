@@ -9,7 +9,7 @@ from collections.abc import Callable, Collection, Iterable
 from math import isfinite
 from typing import Any
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, phrase
 from linkwright.geometry.single import IDENTITY, Transform, compose, invert, normalized, rotate
 from linkwright.messages import Quaternion, Vector3, get_message
 from linkwright.sdf.poses import SEPARATOR, WORLD
@@ -115,14 +115,33 @@ def _nothing(name: str, known: Collection[str]) -> LinkwrightError:
 
 
 def answered(response: Any, work: Callable[[], str]) -> Any:
-    """A response with whether something worked and what it says, or why it did not; some have no such text."""
+    """A response with whether something worked and what it says, or why it did not."""
     try:
-        response.success, message = True, work()
+        response.success, response.status_message = True, work()
     except LinkwrightError as error:
-        response.success, message = False, told(error.diagnostics[0])
-    if hasattr(response, "status_message"):
-        response.status_message = message
+        response.success, response.status_message = False, told(error.diagnostics[0])
     return response
+
+
+def answered_without_text(
+    response: Any, work: Callable[[], object], service: str, tell: Callable[[Phrase], object]
+) -> Any:
+    """A response that can only say whether something worked; why it did not is told, as to a log."""
+    try:
+        work()
+        response.success = True
+    except LinkwrightError as error:
+        response.success = False
+        tell(refused(service, error))
+    return response
+
+
+def refused(service: str, error: LinkwrightError) -> Phrase:
+    """Why a service did not do what it was asked for."""
+    finding = error.diagnostics[0]
+    if finding.hint:
+        return phrase("{service}: {problem} ({hint})", service=service, problem=finding.message, hint=finding.hint)
+    return phrase("{service}: {problem}", service=service, problem=finding.message)
 
 
 def told(finding: Diagnostic) -> str:

@@ -7,11 +7,12 @@ Source: gazebo_ros_pkgs for ROS 2 (topics, services, the rate). The simulator it
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from linkwright.messages import Header, get_message
 from linkwright.sdf.poses import SEPARATOR, WORLD
-from linkwright.simulation.plugins.entities import Entities, answered
+from linkwright.simulation.plugins.entities import Entities, answered, answered_without_text
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
@@ -55,18 +56,14 @@ class ClassicState(SimulatedPlugin[StateParameters]):
     def _get(self, request: Any, response: Any) -> Any:
         response.header = Header(self.stamp(), request.reference_frame or WORLD)
 
-        def get() -> str:
+        def get() -> None:
             response.state = self._entities.state(request.name, request.reference_frame)
-            return ""
 
-        return answered(response, get)
+        return answered_without_text(response, get, "get_entity_state", self.node.logger.error)
 
     def _set(self, request: Any, response: Any) -> Any:
-        def put() -> str:
-            self._entities.put(request.state)
-            return ""
-
-        return answered(response, put)
+        put = partial(self._entities.put, request.state)
+        return answered_without_text(response, put, "set_entity_state", self.node.logger.error)
 
     def _set_joints(self, request: Any, response: Any) -> Any:
         if len(request.joint_names) != len(request.joint_positions):

@@ -7,6 +7,7 @@ Source: gazebo_ros_pkgs for ROS 2 (``gazebo_ros_init``, ``gazebo_ros_factory``, 
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any, Protocol
 
 from linkwright.descriptions import DescriptionLibrary
@@ -15,7 +16,15 @@ from linkwright.geometry.single import Transform, compose, rotate
 from linkwright.messages import Header, Time
 from linkwright.sdf.frames import transform_of
 from linkwright.sdf.poses import WORLD
-from linkwright.simulation.plugins.entities import Entities, answered, numbers, told, transform_in
+from linkwright.simulation.plugins.entities import (
+    Entities,
+    answered,
+    answered_without_text,
+    numbers,
+    refused,
+    told,
+    transform_in,
+)
 from linkwright.simulation.plugins.node import PluginNode
 from linkwright.simulation.server.entities import entity_from
 from linkwright.simulation.server.loading import WorldLoader
@@ -170,20 +179,15 @@ class Services:
 
     def _get_state(self, request: Any, response: Any) -> Any:
         response.header = Header(self._stamp(), request.reference_frame or WORLD)
-        try:
+
+        def get() -> None:
             response.state = self._entities.state(request.name, request.reference_frame)
-            response.success = True
-        except LinkwrightError as error:
-            response.success = False
-            self._server.node.get_logger().error(error.diagnostics[0].message)
-        return response
+
+        return answered_without_text(response, get, "/get_entity_state", self._server.node.get_logger().error)
 
     def _set_state(self, request: Any, response: Any) -> Any:
-        def put() -> str:
-            self._entities.put(request.state)
-            return ""
-
-        return answered(response, put)
+        put = partial(self._entities.put, request.state)
+        return answered_without_text(response, put, "/set_entity_state", self._server.node.get_logger().error)
 
     def _push(self, request: Any, response: Any) -> Any:
         def push() -> str:
@@ -200,7 +204,10 @@ class Services:
         return answered(response, push)
 
     def _let_go(self, request: Any, response: Any) -> Any:
-        self._wrenches.clear(self._entities.link(request.link_name))
+        try:
+            self._wrenches.clear(self._entities.link(request.link_name))
+        except LinkwrightError as error:
+            self._server.node.get_logger().error(refused("/clear_link_wrenches", error))
         return response
 
     # --- time ---------------------------------------------------------------------------------------------------------
