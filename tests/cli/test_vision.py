@@ -33,15 +33,37 @@ def test_as_json(picture, capsys):
     assert row["detections"] == [{"class": "blue", "score": 1.0, "box": [100.0, 40.0, 130.0, 80.0]}]
 
 
-def test_markers_have_corners(tmp_path, capsys):
-    dictionary = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_4X4_50)
+def marker(folder, dictionary):
+    """A picture of the marker 4."""
     pixels = np.full((120, 160), 255, np.uint8)
-    pixels[20:80, 30:90] = cv2.aruco.generateImageMarker(dictionary, 4, 60)
-    Image.fromarray(pixels).save(tmp_path / "marker.png")
-    assert main(["vision", "detect", str(tmp_path / "marker.png"), "-m", "aruco", "--format", "json"]) == 0
+    pixels[20:80, 30:90] = cv2.aruco.generateImageMarker(cv2.aruco.getPredefinedDictionary(dictionary), 4, 60)
+    path = folder / "marker.png"
+    Image.fromarray(pixels).save(path)
+    return str(path)
+
+
+def test_markers_have_corners(tmp_path, capsys):
+    path = marker(tmp_path, cv2.aruco.DICT_4X4_50)
+    assert main(["vision", "detect", path, "-m", "aruco", "--format", "json"]) == 0
     ((found,),) = [row["detections"] for row in json.loads(capsys.readouterr().out)]
     assert found["class"] == "4"
     assert len(found["corners"]) == 4
+
+
+@pytest.mark.parametrize("model", ["aruco", "apriltag"])
+def test_markers_of_another_dictionary_are_asked_for(tmp_path, capsys, model):
+    path = marker(tmp_path, cv2.aruco.DICT_6X6_250)
+    assert main(["vision", "detect", path, "-m", model]) == 0
+    assert capsys.readouterr().out == f"{path}: nothing found\n"
+    assert main(["vision", "detect", path, "-m", model, "--dictionary", "6X6_250"]) == 0
+    assert capsys.readouterr().out.startswith(f"{path}: 4 1.00 [")
+
+
+def test_a_dictionary_that_is_none_or_is_not_wanted_is_refused(picture, capsys):
+    assert main(["vision", "detect", str(picture), "-m", "aruco", "--dictionary", "6X6_25"]) == 1
+    assert "did you mean '6X6_250'" in capsys.readouterr().err
+    assert main(["vision", "detect", str(picture), "-m", "colours", "--dictionary", "6X6_250"]) == 1
+    assert "only 'aruco' and 'apriltag' have it: leave it out" in capsys.readouterr().err
 
 
 def test_pictures_with_boxes_are_written_each_under_a_name_of_its_own(picture, tmp_path, capsys):

@@ -32,6 +32,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="an ONNX file, or a detector: things (default), colours, aruco, apriltag, qr, line",
     )
     parser.add_argument("--labels", metavar="FILE", type=Path, help="names of the network's classes, one in each line")
+    parser.add_argument(
+        "--dictionary", metavar="NAME", help="which markers aruco and apriltag look for, such as 6X6_250"
+    )
     parser.add_argument("--threshold", metavar="SCORE", type=share, default=0.5, help="the least score, default 0.5")
     parser.add_argument(
         "--iou", metavar="SHARE", type=share, default=0.5, help="how much boxes of a class may overlap, default 0.5"
@@ -45,11 +48,17 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Print what is found in each picture; those that cannot be read are told of, and the others go on."""
     from linkwright.vision.detector import Limits
+    from linkwright.vision.detectors.markers import MarkerDetector
     from linkwright.vision.detectors.options import DetectorOptions
     from linkwright.vision.detectors.registry import DEFAULT_DETECTOR, make_detector
+    from linkwright.vision.detectors.settings import bad_setting
 
-    options = DetectorOptions(labels=arguments.labels, device=arguments.device)
+    settings = {} if arguments.dictionary is None else {"dictionary": arguments.dictionary}
+    options = DetectorOptions(labels=arguments.labels, device=arguments.device, settings=settings)
     detector = make_detector(arguments.model or DEFAULT_DETECTOR, options)
+    if settings and not isinstance(detector, MarkerDetector):
+        hint = phrase("only 'aruco' and 'apriltag' have it: leave it out")
+        raise bad_setting("dictionary", arguments.dictionary, hint)
     for note in detector.notes:
         print(note, file=sys.stderr)
     classes = _known_classes(detector, arguments.classes) if arguments.classes else None
