@@ -138,6 +138,23 @@ describe("talking", () => {
     expect([...new Uint32Array(frames[0]!, 0, 4)]).toEqual([5, 2, 0, 0]);
   });
 
+  it("what the browser lost is told with the block after it, and with no other", async () => {
+    const voice = new VoiceState(connection, storage, new Microphone(openFake));
+    voice.press();
+    await soon();
+    deliver(Int16Array.of(1), 0.1);
+    deliver(Int16Array.of(2));
+    deliver(new Int16Array(0), 0.2);
+    deliver(Int16Array.of(3));
+    voice.release();
+    await soon();
+    deliver(Int16Array.of(4), 0.3);
+    voice.press();
+    await soon();
+    deliver(Int16Array.of(5));
+    expect(frames.map((frame) => new Uint32Array(frame, 0, 4)[2])).toEqual([1600, 0, 3200, 0, 0]);
+  });
+
   it("the microphone is given back a while after it was used, and at once when the page is left", async () => {
     const voice = new VoiceState(connection, storage, new Microphone(openFake));
     voice.press();

@@ -56,6 +56,23 @@ def test_a_stream_that_begins_anew_has_no_gap_before_it():
     assert gaps.missing(15 * SECOND, BLOCK) == 0.0
 
 
+def test_what_the_source_itself_lost_is_told_however_much_it_is():
+    stamps, gaps, found = SampleStamps(), SoundGaps(), []
+    for each in range(100):
+        lost = 0.4 if each >= 10 and each % 10 == 0 else 0.0
+        found.append(gaps.missing(stamps.stamp(BLOCK, round((10.0 + 0.1 * each) * SECOND), lost), BLOCK))
+    assert [number for number, each in enumerate(found) if each] == list(range(10, 100, 10))
+    assert np.allclose([each for each in found if each], 0.4, atol=0.005)
+
+
+def test_after_the_next_press_of_a_button_gaps_are_told_at_once():
+    gaps = SoundGaps()
+    assert not any(gaps.missing(round((10.0 + 0.1 * each) * SECOND), BLOCK) for each in range(5))
+    gaps.restart()
+    assert gaps.missing(20 * SECOND, BLOCK) == 0.0
+    assert gaps.missing(20 * SECOND + 3 * LENGTH, BLOCK) == 0.2
+
+
 def test_of_who_stamps_what_comes_when_it_comes_nothing_is_told():
     late = np.random.default_rng(2).uniform(0, 0.2, 200)
     assert not any(missing([round((10.0 + 0.1 * each + late[each]) * SECOND) for each in range(200)]))

@@ -263,6 +263,16 @@ async def test_what_has_a_gap_is_asked_for_again_and_stop_is_done(engine, talk):
     assert robot.speed == (0.0, 0.0, 0.0)
 
 
+async def test_with_a_small_gap_it_is_done_if_it_is_certain_and_asked_for_again_if_nothing_was_understood(engine, talk):
+    robot = talk(engine="told")
+    await robot.hold(True)
+    for each in range(5):
+        await robot.say(stamp=10.0 + 0.1 * each)
+    await robot.say(final("forward"), final(""), stamp=10.6)  # a tenth of a second is missing
+    assert robot.said["command"] == ["forward"]
+    assert robot.said["response"][-1] == "I did not hear all of that: say it again"
+
+
 async def test_the_next_press_of_the_button_has_no_gap_before_it(engine, talk):
     robot = talk(engine="told")
     await robot.hold(True)

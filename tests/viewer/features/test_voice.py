@@ -20,8 +20,9 @@ LATCHED = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 AUDIO = ("/audio/audio", "/audio/audio_stamped", "/audio/audio_info")
 
 
-def frame(samples: np.ndarray, *, kind: int = 5, count: int | None = None) -> bytes:
-    return struct.pack("<IIII", kind, samples.size if count is None else count, 0, 0) + samples.astype("<i2").tobytes()
+def frame(samples: np.ndarray, *, kind: int = 5, count: int | None = None, lost: int = 0) -> bytes:
+    header = struct.pack("<IIII", kind, samples.size if count is None else count, lost, 0)
+    return header + samples.astype("<i2").tobytes()
 
 
 class Ears:
@@ -31,6 +32,7 @@ class Ears:
         self.made = made
         self.node = made.graph.create_node("ears")
         self.blocks: list[list[int]] = []
+        self.stamps: list[float] = []
         self.held: list[bool] = []
         self.commands: list[str] = []
         self.node.create_subscription("audio_common_msgs/msg/AudioDataStamped", "/audio/audio_stamped", self._hear, 100)
@@ -41,6 +43,7 @@ class Ears:
 
     def _hear(self, message) -> None:
         assert message.header.stamp.sec > 0
+        self.stamps.append(message.header.stamp.sec + message.header.stamp.nanosec * 1e-9)
         self.blocks.append(np.frombuffer(bytes(message.audio.data), "<i2").tolist())
 
     def say(self, topic: str, text: str) -> None:
@@ -71,6 +74,15 @@ async def test_sound_is_published_while_the_button_is_held():
         await eventually(lambda: ears.held == [True, False])
         await made.settle()
         assert ears.blocks == [BLOCK.tolist(), BLOCK[:30].tolist()]
+
+
+async def test_stamps_jump_over_what_the_browser_lost():
+    async with heard() as (_, client, ears):
+        await client.send("talk", mode="held")
+        for lost in (0, 0, 4000, 0):
+            await client.socket.send_bytes(frame(BLOCK, lost=lost))
+        await eventually(lambda: len(ears.stamps) == 4)
+        assert np.diff(ears.stamps) == pytest.approx([0.1, 0.35, 0.1], abs=0.002)
 
 
 async def test_the_topics_of_sound_are_there_while_a_microphone_is_open():

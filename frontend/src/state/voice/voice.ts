@@ -1,5 +1,5 @@
 import type { Connection } from "../../connection/connection";
-import { SOUND_KIND, type SaidPart, type TalkMode, type VoiceState as Told } from "../../protocol";
+import { SOUND_KIND, SOUND_RATE, type SaidPart, type TalkMode, type VoiceState as Told } from "../../protocol";
 import { Signal } from "../signal";
 import type { TextStorage } from "../storage";
 import { Microphone } from "./microphone";
@@ -18,12 +18,13 @@ export interface Said {
   text: string;
 }
 
-/** A binary frame with a block of sound; `viewer/protocol/voice.py` has its form. */
-export function soundFrame(samples: Int16Array): ArrayBuffer {
+/** A binary frame with a block of sound, and the seconds lost in it; `viewer/protocol/voice.py` has its form. */
+export function soundFrame(samples: Int16Array, lostSeconds = 0): ArrayBuffer {
   const frame = new ArrayBuffer(HEADER_BYTES + 2 * samples.length);
   const view = new DataView(frame);
   view.setUint32(0, SOUND_KIND, true);
   view.setUint32(4, samples.length, true);
+  view.setUint32(8, Math.round(lostSeconds * SOUND_RATE), true);
   samples.forEach((sample, i) => view.setInt16(HEADER_BYTES + 2 * i, sample, true));
   return frame;
 }
@@ -50,6 +51,8 @@ export class VoiceState {
   private timer = 0;
   /** Seconds that the microphone had lost before what is being said. */
   private lostBefore = 0;
+  /** Seconds that it had lost until the last block. */
+  private lostUntil = 0;
 
   constructor(
     private readonly connection: Connection,
@@ -231,10 +234,12 @@ export class VoiceState {
 
   private send(samples: Int16Array): void {
     this.changed.emit();
+    const lost = this.microphone.lostSeconds - this.lostUntil;
+    this.lostUntil = this.microphone.lostSeconds;
     if (this.mode !== "held" && this.mode !== "open" && !this.taking) return;
     // What the page itself says is no command.
     if (this.mode === "open" && this.speaker.speaking) return;
-    this.connection.sendBytes(soundFrame(samples));
+    this.connection.sendBytes(soundFrame(samples, lost));
   }
 
   private take(part: SaidPart, text: string): void {

@@ -42,11 +42,16 @@ class AudioTopics:
         """What is published next does not follow what was published before."""
         self._stamps.restart()
 
-    def publish(self, samples: Samples) -> None:
-        """Publish the next block of the stream, whose last sample was heard now or some time ago."""
+    def publish(self, samples: Samples, lost: float = 0.0) -> None:
+        """Publish the next block of the stream, whose last sample was heard now or some time ago.
+
+        Args:
+            samples: the block.
+            lost: seconds that are missing in it or before it.
+        """
         data = samples.astype("<i2").tobytes()
         now = self._node.get_clock().now()
-        began = Time(nanoseconds=self._stamps.stamp(samples.size, now.nanoseconds), clock_type=now.clock_type)
+        began = Time(nanoseconds=self._stamps.stamp(samples.size, now.nanoseconds, lost), clock_type=now.clock_type)
         self._stamped.publish(audio_stamped(data, began.to_msg()))
         self._plain.publish(audio_data(data))
 

@@ -40,7 +40,7 @@ class Listener:
     ) -> None:
         self._make, self._heard, self._warn, self._failed = make, heard, warn, failed
         self._handed = 0
-        self._gaps: deque[float] = deque(maxlen=_MOST_GAPS)
+        self._gaps: deque[tuple[float, float]] = deque(maxlen=_MOST_GAPS)  # where, and how long
         self._sound: SimpleQueue[Samples | bool | None] = SimpleQueue()
         self._found: deque[Heard | Diagnostic | LinkwrightError] = deque()
         self._ready = node.create_guard_condition(self._tell)
@@ -50,19 +50,19 @@ class Listener:
     def hear(self, samples: Samples) -> bool:
         """Take a block of sound; whether the engine keeps up, else it is dropped."""
         if self._sound.qsize() >= _MOST_WAITING:
-            self.note_gap()
+            self.note_gap(samples.size / RATE)
             return False
         self._handed += samples.size
         self._sound.put(samples)
         return True
 
-    def note_gap(self) -> None:
-        """Some of the sound before what comes next is missing."""
-        self._gaps.append(self._handed / RATE)
+    def note_gap(self, seconds: float) -> None:
+        """So much of the sound before what comes next is missing."""
+        self._gaps.append((self._handed / RATE, seconds))
 
-    def is_whole(self, heard: Heard) -> bool:
-        """Whether no sound was missing in what was heard, nor just before or after it."""
-        return not any(heard.start - _NEAR <= gap <= heard.end + _NEAR for gap in self._gaps)
+    def lost_in(self, heard: Heard) -> float:
+        """The seconds of sound that were missing in what was heard, or just before or after it."""
+        return sum(seconds for at, seconds in self._gaps if heard.start - _NEAR <= at <= heard.end + _NEAR)
 
     def finish(self) -> None:
         """The utterance has ended."""

@@ -30,18 +30,19 @@ class SampleStamps:
         """What comes next does not follow what came before."""
         self._next = None
 
-    def stamp(self, samples: int, now: int) -> int:
+    def stamp(self, samples: int, now: int, lost: float = 0.0) -> int:
         """When the first sample of a block was heard.
 
         Args:
             samples: how many it has.
             now: the time, when its last sample was heard or some time later.
+            lost: seconds that are missing in it or before it: the stamp jumps over them.
         """
         length = samples * _SECOND // RATE
         began = max(0, now - length)
         if self._next is not None and -_MOST_AHEAD < (behind := began - self._next) < _MOST_BEHIND:
             most = round(_DRIFT * length)
-            began = self._next + min(max(behind, -most), most)
+            began = self._next + min(max(behind, -most), most) + round(lost * _SECOND)
         self._next = began + length
         return began
 
@@ -50,12 +51,12 @@ class SoundGaps:
     """Finds out from stamps whether sound is missing before a block, where who publishes counts samples."""
 
     def __init__(self) -> None:
-        self.restart()
-
-    def restart(self) -> None:
-        """What comes next need not follow what came before."""
         self._next: int | None = None
         self._steady = 0
+
+    def restart(self) -> None:
+        """What comes next need not follow what came before; who publishes is taken to stamp it in the same way."""
+        self._next = None
 
     def missing(self, stamp: int, samples: int) -> float:
         """The seconds of sound that are missing before a block.

@@ -40,6 +40,10 @@ _LOOK_SECONDS = 0.5
 _STRING = "std_msgs/msg/String"
 _BOOL = "std_msgs/msg/Bool"
 _SAID = ("text", "partial_text", "command", "response")
+_MOST_LOST = 0.15
+"""Seconds of sound that may be missing in what is done. Of synthetic enrolled words with such holes and smaller ones
+none was taken for another one (0 of 480); of those from which 0.25 s were cut 5 of 60 were.
+"""
 _NEARLY = 0.5
 """Of the confidence that is asked for: from so much on it is worth saying what was heard. Noise has less."""
 
@@ -175,7 +179,7 @@ class VoiceCommander(SingleNode):
         stamp = message.header.stamp
         missing = self._gaps.missing(stamp.sec * 10**9 + stamp.nanosec, samples.size)
         if missing:
-            self._listener.note_gap()
+            self._listener.note_gap(missing)
             self._node.get_logger().warning(
                 phrase("{seconds} s of sound were lost on the way", seconds=f"{missing:.1f}"),
                 throttle_duration_sec=5.0,
@@ -203,13 +207,13 @@ class VoiceCommander(SingleNode):
         # After a stop nothing else of the utterance is done, but a command in which the word is: "go to the stop sign".
         if stopped and not (self._commands.is_stop(heard.text) and self._commands.is_other(heard.text)):
             return
-        is_whole = self._listener is None or self._listener.is_whole(heard)
+        lost = 0.0 if self._listener is None else self._listener.lost_in(heard)
         is_certain = heard.confidence >= self._confidence
-        if is_certain and is_whole and self._take(heard.text, by_voice=True):
+        if is_certain and lost <= _MOST_LOST and self._take(heard.text, by_voice=True):
             return
         if self._commands.is_stop(heard.text) and (self._held or self._conversation.is_busy):
             self._conversation.stop(heard.text)
-        elif heard.text and is_certain and not is_whole:
+        elif lost and (self._is_addressed or (heard.text and is_certain)):
             self._conversation.answer(phrase("I did not hear all of that: say it again"))
         elif heard.text and not is_certain and self._is_addressed and heard.confidence >= _NEARLY * self._confidence:
             self._conversation.answer(phrase("I am not sure that I heard '{text}': say it again", text=heard.text))

@@ -1,7 +1,8 @@
 """The Voice panel: sound of pages' microphones, what was heard and answered, commands as text.
 
-Sound comes in binary frames, little endian: four uint32 (kind 5, number of samples N, 0, 0), and int16 N, mono at
-16 kHz. A frame has a tenth of a second, or less where the sound ends.
+Sound comes in binary frames, little endian: four uint32 (kind 5, number of samples N, number of samples that the
+browser lost in them or before them, 0), and int16 N, mono at 16 kHz. A frame has a tenth of a second, or less where the
+sound ends.
 """
 
 from __future__ import annotations
@@ -27,19 +28,25 @@ _HEADER = struct.Struct("<IIII")
 
 @dataclass(frozen=True, slots=True)
 class SoundBlock:
-    """Sound of a page's microphone: mono PCM of 16 bits at 16 kHz, shape (n,)."""
+    """Sound of a page's microphone.
+
+    Attributes:
+        samples: mono PCM of 16 bits at 16 kHz, shape (n,).
+        lost: seconds that are missing in them or before them: the browser's machine was too busy.
+    """
 
     samples: NDArray[np.int16]
+    lost: float = 0.0
 
 
 def unpack_sound(frame: bytes) -> SoundBlock | None:
     """The sound in a binary frame of a page; None for anything else."""
     if len(frame) < _HEADER.size:
         return None
-    kind, count, *_ = _HEADER.unpack_from(frame)
+    kind, count, lost, _ = _HEADER.unpack_from(frame)
     if kind != SOUND_KIND or not 0 < count <= MOST_SAMPLES or len(frame) != _HEADER.size + 2 * count:
         return None
-    return SoundBlock(np.frombuffer(frame, "<i2", count, _HEADER.size).astype(np.int16))
+    return SoundBlock(np.frombuffer(frame, "<i2", count, _HEADER.size).astype(np.int16), lost / SOUND_RATE)
 
 
 class WatchVoice(PageMessage):

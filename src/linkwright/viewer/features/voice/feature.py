@@ -149,7 +149,7 @@ class VoiceFeature(PageFeature):
             if self._audio is not None:
                 self._audio.restart()
         elif page is self._floor.talker and self._audio is not None:
-            self._audio.publish(block.samples)
+            self._audio.publish(block.samples, block.lost)
 
     # --- what pages are told -----------------------------------------------------------------------------------
 
