@@ -1,6 +1,7 @@
 import { describe, expect, it } from "vitest";
 import type { StatusRow } from "../src/protocol";
-import { troublesOf } from "../src/state/displays";
+import { DisplaysState, troublesOf } from "../src/state/displays";
+import { display, tree } from "./messages";
 
 const ROWS: StatusRow[] = [
   { name: "Topic", level: "warn", text: "No messages received" },
@@ -12,5 +13,17 @@ describe("What is wrong with a display", () => {
   it("is what of its status is no ok, errors first", () => {
     expect(troublesOf(ROWS).map((row) => row.name)).toEqual(["Transform", "Topic"]);
     expect(troublesOf([])).toEqual([]);
+  });
+
+  it("is counted where it is an error, and the display is on", () => {
+    const displays = new DisplaysState();
+    const warned = ROWS.slice(0, 2);
+    displays.setTree(tree(display({ id: "a", enabled: true, status: ROWS }), display({ id: "b", enabled: true, status: warned }), display({ id: "c", enabled: false, status: ROWS })));
+    expect(displays.failing).toBe(1);
+    displays.setStatus("global", "error", ROWS);
+    displays.setStatus("b", "error", ROWS);
+    expect(displays.failing).toBe(3);
+    displays.setStatus("a", "ok", []);
+    expect(displays.failing).toBe(2);
   });
 });

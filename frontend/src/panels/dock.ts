@@ -97,7 +97,10 @@ export class Dock {
 
   /** A number behind a panel's title; 0 takes it away. */
   setCount(id: PanelId, count: number): void {
-    this.api.getPanel(id)?.api.setTitle(count > 0 ? `${title(id)} (${count})` : title(id));
+    const panel = this.api.getPanel(id);
+    const text = count > 0 ? `${title(id)} (${count})` : title(id);
+    if (!panel || panel.title === text) return;
+    panel.api.setTitle(text);
     this.frontTabs.follow();
   }
 

@@ -155,6 +155,12 @@ export class DisplaysState {
     return this.displays.filter((display) => display.group === group);
   }
 
+  /** How many displays that are on have an error; the global status counts as one. */
+  get failing(): number {
+    const all = [troublesOf(this.globalStatus), ...this.displays.map((each) => each.troubles)];
+    return all.filter(([worst]) => worst?.level === "error").length;
+  }
+
   find(id: string): DisplayState | undefined {
     return this.displays.find((display) => display.id === id);
   }
