@@ -60,9 +60,9 @@ describe("the timeline", () => {
     timeline.play(false);
     connection.message.emit(playhead({ position: 119 }));
     expect([timeline.playing, timeline.live, timeline.position]).toEqual([false, false, 119]);
-    expect(agoText(1)).toBe("−0:01.00");
-    expect(momentText(52.304)).toBe("0:52.30");
-    expect(momentText(new Date(2026, 1, 3, 14, 3, 7, 256).getTime() / 1000)).toBe("14:03:07.26");
+    expect(agoText(1)).toBe("−0:01.000");
+    expect(momentText(52.304)).toBe("0:52.304");
+    expect(momentText(new Date(2026, 1, 3, 14, 3, 7, 256).getTime() / 1000)).toBe("14:03:07.256");
     expect(keptText({ type: "kept", start: 105, end: 120, size: 5e6, most: 1e7 })).toBe("0:15 · 5.0 MB");
     timeline.goLive();
     expect(sent).toEqual([{ type: "play", playing: false }, { type: "go_live" }]);
@@ -76,9 +76,9 @@ describe("the timeline", () => {
 
 describe("what the timeline says", () => {
   it("times as minutes and seconds", () => {
-    expect(passedText(7.256, 90)).toBe("0:07.26 / 1:30");
-    expect(passedText(59.999, 3725)).toBe("1:00.00 / 1:02:05");
-    expect(passedText(1, 2.5)).toBe("0:01.00 / 0:02.50");
+    expect(passedText(7.256, 90)).toBe("0:07.256 / 1:30");
+    expect(passedText(59.9999, 3725)).toBe("1:00.000 / 1:02:05");
+    expect(passedText(1, 2.5)).toBe("0:01.000 / 0:02.500");
     expect(clockText(1_700_000_000.25)).toContain(".250 (1700000000.250)");
   });
 

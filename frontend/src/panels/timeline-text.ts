@@ -9,7 +9,7 @@ const EARLIEST_DATE = 1e8;
 
 /** `0:07.250 / 1:30`: how much has passed, of how much. */
 export function passedText(passed: number, whole: number): string {
-  return `${minutes(passed, 2)} / ${minutes(whole, whole < 10 ? 2 : 0)}`;
+  return `${minutes(passed, 3)} / ${minutes(whole, whole < 10 ? 3 : 0)}`;
 }
 
 /** `1:30 · 45 MB`: how long a time is kept, and what it takes. */
@@ -40,7 +40,7 @@ export function sizeText(bytes: number): string {
 
 /** `−0:07.250`: how long ago what is shown was. */
 export function agoText(ago: number): string {
-  return `−${minutes(ago, 2)}`;
+  return `−${minutes(ago, 3)}`;
 }
 
 /** Date and time of day where this page is, with milliseconds, and the seconds since the epoch. */
@@ -49,13 +49,13 @@ export function clockText(seconds: number): string {
   return `${date.toLocaleString()}.${String(date.getMilliseconds()).padStart(3, "0")} (${seconds.toFixed(3)})`;
 }
 
-/** `14:03:07.25`: the time of day where this page is; `0:52.30` for simulated time, which begins at nothing. */
+/** `14:03:07.250`: the time of day where this page is; `0:52.304` for simulated time, which begins at nothing. */
 export function momentText(seconds: number): string {
-  if (seconds < EARLIEST_DATE) return minutes(seconds, 2);
-  const date = new Date(Math.round(seconds * 100) * 10);
-  const parts = [date.getHours(), date.getMinutes(), date.getSeconds(), Math.floor(date.getMilliseconds() / 10)];
-  const [hour, minute, second, hundredth] = parts.map((part) => String(part).padStart(2, "0"));
-  return `${hour}:${minute}:${second}.${hundredth}`;
+  if (seconds < EARLIEST_DATE) return minutes(seconds, 3);
+  const date = new Date(Math.round(seconds * 1000));
+  const parts = [date.getHours(), date.getMinutes(), date.getSeconds()];
+  const clock = parts.map((part) => String(part).padStart(2, "0")).join(":");
+  return `${clock}.${String(date.getMilliseconds()).padStart(3, "0")}`;
 }
 
 /** How dense messages are in the parts of a recording, 0 to 1 in relation to each topic's densest part; those with most first. */
