@@ -8,7 +8,7 @@ from typing import Any
 from linkwright.bag.moments import STATIC_TRANSFORMS, TRANSFORMS
 from linkwright.bag.qos import profile_for_playing
 from linkwright.bag.reading import BagReader, BagTopic
-from linkwright.diagnostics import LinkwrightError
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, phrase
 from linkwright.graph import TF_QOS, DurabilityPolicy, Node, Publisher, QoSProfile
 from linkwright.graph.simulated_time import CLOCK_TOPIC
 from linkwright.messages import TFMessage, Time, get_message
@@ -39,6 +39,27 @@ def make_publishers(
         qos = (overrides or {}).get(topic.name) or profile_for_playing(topic.offered_qos)
         made[topic.name] = node.create_publisher(message_class, topic.name, qos)
     return made
+
+
+def untyped(bag: BagReader) -> list[Diagnostic]:
+    """What is to be told of topics that cannot be played, as no definition of their type can be read (BAG114)."""
+    names = [f"{topic.name} ({topic.type_name})" for topic in bag.topics if not _is_known(topic.type_name)]
+    if not names:
+        return []
+    message = phrase(
+        "topics of '{path}' are left out, for the definitions of their types are missing or broken: {topics}",
+        path=bag.path.name,
+        topics=", ".join(sorted(names)),
+    )
+    return [Diagnostic("BAG114", message, severity=Severity.WARNING)]
+
+
+def _is_known(type_name: str) -> bool:
+    try:
+        get_message(type_name)
+    except LinkwrightError:
+        return False
+    return True
 
 
 class PublishedRecording:

@@ -73,14 +73,16 @@ class TimelineFeature(PageFeature):
 
     def attach(self, playback: Playback, bag: BagReader) -> None:
         """Have pages see a recording; `failed` is to be called when it cannot be read."""
+        from linkwright.bag.publishing import untyped
+
         counts = bag.counts(_PARTS)
         topics = [TimelineTopic(at.name, at.type_name, at.count, counts.get(at.name, [])) for at in bag.topics]
         if self._live is not None:
             self._live.close()
             self._live = None
         self._timeline = Timeline(bag.path.name, bag.start_ns / _SECOND, bag.end_ns / _SECOND, topics, live=False)
-        if bag.findings:
-            self._problem = in_one_line(bag.findings)
+        if findings := [*bag.findings, *untyped(bag)]:
+            self._problem = in_one_line(findings)
         self._recorded = playback
         playback.begin_anew = self._begin_anew
         playback.changed.append(self._changed)
