@@ -1,5 +1,6 @@
-import { Box3, BoxGeometry } from "three";
+import { Box3, BoxGeometry, Matrix4, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
+import { freePlace } from "../src/scene/displays/free-place";
 import type { MeshPart } from "../src/scene/meshes/mesh-template";
 import { extrusion, ground, submesh } from "../src/scene/objects/world-geometries";
 
@@ -62,5 +63,27 @@ describe("ground", () => {
     const points = geometry.getAttribute("position");
     expect([points.getY(0), points.getZ(0)]).toEqual([12, 3.5]);
     expect(geometry.getAttribute("uv").getX(1)).toBe(2);
+  });
+});
+
+describe("the place that is proposed for a model", () => {
+  const box = (x: number, y: number, side: number): Box3 => new Box3().setFromCenterAndSize(new Vector3(x, y, 0.2), new Vector3(side, side, 0.4));
+  const origin = new Matrix4();
+
+  it("is the origin, or the nearest metre beside it that is free", () => {
+    expect(freePlace([], origin)).toEqual([0, 0, 0]);
+    expect(freePlace([box(5, 0, 1)], origin)).toEqual([0, 0, 0]);
+    expect(freePlace([box(0, 0, 0.4)], origin)).toEqual([1, 0, 0]);
+    expect(freePlace([box(0, 0, 0.4), box(1, 0, 0.2)], origin)).toEqual([0, 1, 0]);
+    expect(freePlace([box(0, 0, 3.2)], origin)).toEqual([3, 0, 0]);
+  });
+
+  it("is one of the world, wherever the fixed frame is", () => {
+    expect(freePlace([box(10, 0, 0.4)], new Matrix4().makeTranslation(10, 0, 0))).toEqual([1, 0, 0]);
+    expect(freePlace([box(0, 0, 0.4)], new Matrix4().makeTranslation(10, 0, 0))).toEqual([0, 0, 0]);
+  });
+
+  it("is beside everything where nothing near is free", () => {
+    expect(freePlace([box(0, 0, 60)], origin)).toEqual([31, 0, 0]);
   });
 });

@@ -96,6 +96,14 @@ def test_the_bar_is_there_with_the_simulation_and_the_mouse_handles_models(live,
     page.get_by_role("button", name="Let the simulation go on").wait_for()
     assert page.get_by_role("button", name="Make one step").is_enabled()
     viewer.settle(page)
+    page.get_by_role("button", name="Add a model", exact=True).click()
+    places = page.get_by_role("dialog").locator(".spawn-places input")
+    assert [each.input_value() for each in places.all()] == [
+        "3",
+        "0",
+        "0",
+    ]  # beside the crate, which reaches from -2 to 2
+    page.get_by_role("dialog").get_by_role("button", name="Cancel").click()
 
     box = page.locator(".canvas-box canvas").bounding_box()
     x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2

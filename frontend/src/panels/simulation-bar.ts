@@ -30,7 +30,7 @@ export class SimulationBar {
     this.play = button(words.pause, () => simulation.control(simulation.paused ? "play" : "pause"), "scene-tool small", icon("pause"));
     this.step = button(words.step, () => simulation.control("step"), "scene-tool small", icon("step"));
     const reset = button(words.reset, () => simulation.control("reset"), "scene-tool small", icon("reset"));
-    const add = button(words.spawn, () => this.askSpawn([0, 0, 0]), "scene-tool small", icon("plus"));
+    const add = button(words.spawn, () => this.askSpawn(simulation.freePlace()), "scene-tool small", icon("plus"));
     this.model = button(strings.modelling.begin, () => modelling.setActive(!modelling.active), "scene-tool small", icon("build"));
     const bar = h("div", { class: "simulation-tools", role: "toolbar", aria: { label: words.label } }, this.play, this.step, reset, add, this.model, this.factor, this.time);
     this.element = h("div", { class: "simulation-bar" }, bar, new ModellingBar(modelling, commands).element, this.notice);

@@ -50,8 +50,8 @@ export class WorldHandling {
     this.line.root.material.depthTest = false;
     this.line.root.renderOrder = LAST;
     stage.viewport.scene.add(this.line.root);
+    session.simulation.freePlace = () => stage.world?.drawing.freePlace() ?? [0, 0, 0];
   }
-
 
   /** False for an event that the tool in hand should have. */
   pointer(event: ToolEvent): boolean {

@@ -9,6 +9,8 @@ export class SimulationState {
   readonly refused = new Signal<string>();
   /** The user wants to put a model at a place of the world, m. */
   readonly spawnAsked = new Signal<readonly number[]>();
+  /** Where in the world there is room for a model, m; a world that is drawn knows better. */
+  freePlace: () => readonly number[] = () => [0, 0, 0];
   private status: SimulationStatus | null = null;
 
   constructor(private readonly connection: Connection) {

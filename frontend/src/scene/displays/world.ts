@@ -8,6 +8,7 @@ import { RobotDrawing } from "../robot/robot-drawing";
 import type { OwnLight } from "../surroundings";
 import { WorldLights } from "../world-lights";
 import type { Drawing, DrawingContext } from "./drawing";
+import { freePlace } from "./free-place";
 import { Displacement, modelOf } from "./world-models";
 import { WorldSensors } from "./world-sensors";
 
@@ -135,6 +136,12 @@ export class WorldDrawing implements Drawing {
       all.union(box);
     }
     return { robots, world: world.isEmpty() ? all : world };
+  }
+
+  /** Where a model can be put, in the frame of the world, m. */
+  freePlace(): number[] {
+    const boxes = [...(this.shown?.boundsOfLinks() ?? [])].filter(([link, box]) => !box.isEmpty() && !this.isFlat(link) && !isLikeGround(box));
+    return freePlace(boxes.map(([, box]) => box), this.world());
   }
 
   /** Where its file puts the camera, looking along x, in the fixed frame; null where it does not say. */
