@@ -35,6 +35,27 @@ def test_units_limits_and_followers(page):
     assert follower.locator("input[type=range]").is_disabled()
 
 
+def test_long_names_keep_their_ends_which_tell_them_apart(start, open_page, tmp_path):
+    name = "hand_at_the_end_of_the_left_arm_of_the_upper_body_finger_{}_joint"
+    parts = ['<link name="base"/>']
+    for number in (1, 2):
+        ends = f'<parent link="base"/><child link="finger_{number}"/>'
+        parts.append(
+            f'<link name="finger_{number}"/><joint name="{name.format(number)}" type="continuous">{ends}</joint>'
+        )
+    (tmp_path / "hand.urdf").write_text(f'<robot name="hand">{"".join(parts)}</robot>')
+    page = open_page(start("view", str(tmp_path / "hand.urdf")))
+    names = page.locator(".joint-name")
+    names.nth(1).wait_for()
+    for number, shown in enumerate(names.all(), start=1):
+        assert shown.get_attribute("title") == shown.text_content() == name.format(number)
+        beginning, end = (shown.locator("span").nth(which) for which in (0, 1))
+        assert end.text_content() == f"finger_{number}_joint"
+        assert beginning.evaluate("(each) => each.scrollWidth > each.clientWidth")
+        assert end.evaluate("(each) => each.scrollWidth <= each.clientWidth + 1")
+        assert page.get_by_role("slider", name=name.format(number), exact=True).is_visible()
+
+
 def test_poses_are_saved_recalled_and_outlive_a_reload(page):
     move(page, "upper_joint", "0.5")
     until(page, "lw.joints.upper_joint === 0.5")

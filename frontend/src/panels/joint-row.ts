@@ -9,6 +9,9 @@ import { clamp, formatFixed, parseNumber } from "../tree/numbers";
 /** After the user's last touch, how long the server's positions wait before they move the slider, ms. */
 const HANDS_OFF_MS = 250;
 
+/** So much of the end of a name stays in a narrow panel: names of joints that belong together begin alike, and often end in `_joint`. */
+const END = 14;
+
 /** A joint of the Joints panel: name, number, slider, limits. */
 export class JointRow {
   readonly element: HTMLElement;
@@ -27,7 +30,10 @@ export class JointRow {
     private readonly moved: (position: number) => void,
   ) {
     const follower = joint.mimic !== null;
-    const name = h("span", { class: "joint-name", title: joint.name }, joint.name);
+    const cut = joint.name.length - Math.min(END, Math.floor(joint.name.length / 2));
+    const halves = [joint.name.slice(0, cut), joint.name.slice(cut)].map((part) => h("span", {}, part));
+    // Screen readers have the whole name from slider and field.
+    const name = h("span", { class: "joint-name", title: joint.name, aria: { hidden: "true" } }, ...halves);
     const mimic = follower
       ? h("div", { class: "mimic", title: strings.joints.follows(joint.mimic ?? "") }, icon("link"), this.relation)
       : null;
