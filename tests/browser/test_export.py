@@ -155,16 +155,24 @@ WHEELED = """\
 """
 
 
+def grid(page) -> dict:
+    return next(each for each in state(page, "displays") if each["class"].endswith("/Grid"))["drawn"]
+
+
 def test_the_grid_lies_where_the_robot_stands(open_file, tmp_path):
     (tmp_path / "cart.urdf").write_text(WHEELED)
     export(tmp_path / "cart.html", tmp_path / "cart.urdf")
     page = open_file(tmp_path / "cart.html")
+    becomes(lambda: grid(page)["offset"][2], pytest.approx(-0.25, abs=0.005))
 
-    def height() -> float:
-        grid = next(each for each in state(page, "displays") if each["class"].endswith("/Grid"))
-        return float(grid["drawn"]["offset"][2])
 
-    becomes(height, pytest.approx(-0.25, abs=0.005))
+def test_a_small_robot_of_one_mesh_has_a_grid_of_its_size(open_file, tmp_path):
+    (tmp_path / "small.stl").write_bytes(stl_binary())
+    visual = '<visual><geometry><mesh filename="small.stl" scale="0.1 0.1 0.1"/></geometry></visual>'
+    (tmp_path / "small.urdf").write_text(f'<robot name="small"><link name="base">{visual}</link></robot>')
+    export(tmp_path / "small.html", tmp_path / "small.urdf")
+    page = open_file(tmp_path / "small.html")
+    becomes(lambda: grid(page)["cell"], pytest.approx(0.01))
 
 
 def shown_gripper(live, open_page):

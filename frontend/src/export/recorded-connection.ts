@@ -1,5 +1,5 @@
 import { Connection } from "../connection/connection";
-import type { FrameTable, JointControl, PageMessage } from "../protocol";
+import type { FrameTable, JointControl, PageMessage, Property, RobotMeasured } from "../protocol";
 import { unpackTransforms } from "../connection/transforms";
 import { MovingRobot } from "./moving-robot";
 import { bytesOf, type Recording } from "./recording";
@@ -38,7 +38,7 @@ export class RecordedConnection extends Connection {
     else if (message.type === "set_joints") this.move(message.positions);
     else if (message.type === "center_joints") this.move(Object.fromEntries(controls.map(({ name, zero }) => [name, zero])));
     else if (message.type === "randomize_joints") this.move(Object.fromEntries(controls.map((each) => [each.name, anywhere(each)])));
-    else if (message.type === "robot_measured") this.lowerGrid(message.ground);
+    else if (message.type === "robot_measured") this.fitGrid(message);
   }
 
   /** Puts the joints where they were when the robot was exported. */
@@ -47,12 +47,16 @@ export class RecordedConnection extends Connection {
     this.moved();
   }
 
-  /** Puts the grid on the ground that the robot stands on, as the server of `view` does where nobody has moved it. */
-  private lowerGrid(ground: number): void {
+  /** Puts the grid on the ground that the robot stands on, in cells of its size, as the server of `view` does where nobody chose. */
+  private fitGrid({ diagonal, ground }: RobotMeasured): void {
     const tree = this.recording.messages.find((message) => message.type === "tree");
     const grid = tree?.displays.find(({ drawing }) => drawing === GRID);
-    const height = grid?.properties.find(({ name }) => name === "Offset")?.children.find(({ name }) => name === "Z");
-    if (height?.value === 0 && ground !== 0) this.message.emit({ type: "property_changed", id: height.id, value: ground, options: null });
+    const row = (name: string): Property | undefined => grid?.properties.find((each) => each.name === name);
+    const put = ({ id }: Property, value: number): void => this.message.emit({ type: "property_changed", id, value, options: null });
+    const height = row("Offset")?.children.find(({ name }) => name === "Z");
+    if (height?.value === 0 && ground !== 0) put(height, ground);
+    const cell = row("Cell Size");
+    if (cell && this.recording.awaits_size && diagonal > 0) put(cell, cellFor(diagonal));
   }
 
   private prepare(table: FrameTable): void {
@@ -81,6 +85,11 @@ export class RecordedConnection extends Connection {
     this.transforms.emit(robot.transforms(positions));
     this.message.emit({ type: "joint_positions", positions: { ...positions } });
   }
+}
+
+/** The side of a cell for a robot of so large a box, m: `ModelSize.cell` of `viewer/config/model_size.py`. */
+function cellFor(diagonal: number): number {
+  return 10 ** Math.floor(Math.log10(diagonal * 1.5));
 }
 
 function anywhere({ lower, upper }: JointControl): number {

@@ -6,6 +6,8 @@ export interface Recording {
   program: string;
   /** The RobotModel display whose joints can be moved. */
   display: string;
+  /** Whether the grid is to have the size of the robot: nobody chose one, and nobody has drawn the robot. */
+  awaits_size: boolean;
   messages: ServerMessage[];
   /** Binary frames, base64. */
   frames: string[];

@@ -51,7 +51,7 @@ export class GridDrawing implements Drawing {
   }
 
   inspect(): object {
-    return { offset: this.lines.position.toArray() };
+    return { offset: this.lines.position.toArray(), cell: this.context.display.rows.number(1, "Cell Size") };
   }
 
   update(): void {

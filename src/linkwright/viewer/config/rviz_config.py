@@ -357,6 +357,11 @@ class RvizConfig:
         """Whether nobody has said yet where the camera is: pages put it where they see all of the robot."""
         return self._unchosen_view == self.views.current
 
+    @property
+    def awaits_size(self) -> bool:
+        """Whether `sizes_for` still has something to say: no page has drawn the robot that grid and axes are for."""
+        return self._proposed is not None
+
     def sizes_for(self, diagonal: float, ground: float = 0.0) -> list[tuple[DisplayConfig, PropertyPath, float]]:
         """What grid and axes should have that were made for a robot of unknown meshes: display, property, value.
 

@@ -54,6 +54,7 @@ def test_the_page_has_everything_a_server_would_tell():
     positions = next(message for message in told["messages"] if message["type"] == "joint_positions")["positions"]
     assert positions == pytest.approx({"turn": 0.0, "open": 0.25, "open_too": -0.45}, abs=1e-6)
     assert next(message for message in told["messages"] if message["type"] == "view_state")["whole_robot"] is True
+    assert told["awaits_size"] is True
 
 
 def test_only_the_one_script_may_run_and_nothing_may_be_fetched():
@@ -129,7 +130,9 @@ async def test_what_else_is_shown_goes_along():
         topic = w.display("Marker").properties.text("Topic")
         w.graph.create_node("marks").create_publisher(type(marker), topic, 10).publish(marker)
         await w.settle()
+        w.viewer.manager.measured(2.0, 0.0)
         taken = snapshot_of(w.viewer, w.viewer.manager)
     told = recorded(export_snapshot(taken, "html").decode())
+    assert told["awaits_size"] is False  # a page had measured the robot
     frames = [base64.b64decode(frame) for frame in told["frames"]]
     assert any(b"markers_changed" in frame for frame in frames)

@@ -193,6 +193,7 @@ class Snapshot:
         problems: what of the robot cannot be drawn.
         marker_meshes: addresses of the meshes that markers show.
         outside: the files in no package, nor below the folder of the description, whose contents are part of it.
+        awaits_size: whether the grid is to have the size of the robot, which a page that draws it knows.
     """
 
     name: str
@@ -205,6 +206,7 @@ class Snapshot:
     problems: Sequence[Diagnostic] = ()
     marker_meshes: Sequence[str] = ()
     outside: Sequence[Path] = ()
+    awaits_size: bool = False
 
 
 def snapshot_of(viewer: FeatureHost, manager: VisualizationManager, view: View | None = None) -> Snapshot:
@@ -231,6 +233,7 @@ def snapshot_of(viewer: FeatureHost, manager: VisualizationManager, view: View |
         snapshot,
         outside=list(dict.fromkeys(outside)),
         problems=[problem for each in models for problem in _problems(each)],
+        awaits_size=manager.config.awaits_size,
     )
 
 
