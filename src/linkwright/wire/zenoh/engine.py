@@ -20,6 +20,7 @@ from linkwright.graph.names.identity import NodeIdentity
 from linkwright.messages import InterfaceNotFoundError, type_hash
 from linkwright.wire.engine import Engine as AnyEngine
 from linkwright.wire.engine import Work, ends_by_error
+from linkwright.wire.living_threads import guarded
 from linkwright.wire.type_names import dds_type
 from linkwright.wire.zenoh import qos_text, tokens
 from linkwright.wire.zenoh.departures import Departures
@@ -286,8 +287,8 @@ class Engine(AnyEngine):
         while not self._ended.is_set():
             self._wake.clear()
             self._do_some_work()
-            self._take_news()
-            again = 0.0 if self._work else self._departures.review()
+            guarded(self._take_news, self._report)
+            again = 0.0 if self._work else guarded(self._departures.review, self._report)
             self._wake.wait(again)
 
     def _take_news(self) -> None:
