@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 import textwrap
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -145,7 +146,8 @@ class TestManners:
                     pass
             print([name for name in sys.modules if "linkwright" in name or name in ("numpy", "importlib.util")])
             """
-        assert said("-c", textwrap.dedent(code)) == "[]"
+        others = find_spec("sitecustomize") is not None  # the machine's own, as Ubuntu has it, which ours runs
+        assert said("-c", textwrap.dedent(code)) == ("['importlib.util']" if others else "[]")
 
     def test_a_module_that_is_missing_is_missing(self):
         ended = run("-c", "import rclpy_of_another_kind")
