@@ -8,12 +8,13 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, Page
+from playwright.sync_api import Browser, Locator, Page
 
+from linkwright.graph.log.logger import Logger
 from linkwright.messages import get_message
 from tests.browser.arm import write_arm
 from tests.browser.axe import violations
-from tests.browser.conftest import SECONDS, state, until
+from tests.browser.conftest import SECONDS, becomes, state, until
 from tests.browser.live import LiveViewer, configuration
 from tests.browser.test_modelling import modelled
 
@@ -98,18 +99,30 @@ def test_displays_their_menu_and_their_dialogs(live: Callable[..., LiveViewer], 
     assert found_in_menu(page) == []
 
 
+def heard(say: Callable[[], None], answer: Locator) -> None:
+    """Say something until the page shows it: it may listen a moment later than it is asked to."""
+
+    def is_shown() -> bool:
+        say()
+        return answer.count() > 0
+
+    becomes(is_shown, True)
+
+
 def test_the_live_panels(live: Callable[..., LiveViewer], open_page):
     viewer = live(configuration(DISPLAYS))
 
-    def join() -> None:
+    def join() -> Logger:
         arm = viewer.node.graph.create_node("arm")
         arm.declare_parameter("speed", 1.5)
         arm.declare_parameter("names", ["left", "right"])
         arm.create_subscription(TWIST, "/cmd_vel", lambda _: None, 10)
-        arm.get_logger().warning("the arm is warm")
-        arm.get_logger().error("the arm is hot")
+        return arm.get_logger()
 
-    viewer.run(join)
+    def say_joints() -> None:
+        viewer.publish("/joint_states", JOINTS(name=["shoulder"], position=[0.25]))
+
+    logger = viewer.run(join)
     page = open_page(viewer, wait=False)
     opened(page, "Plots")
     page.get_by_role("button", name="Add a series").first.click()
@@ -117,14 +130,13 @@ def test_the_live_panels(live: Callable[..., LiveViewer], open_page):
     for text in ("/joint_states.position[0]", "/joint_states.wrong"):
         page.get_by_role("combobox", name="Topic and field").fill(text)
         page.keyboard.press("Enter")
-        viewer.publish("/joint_states", JOINTS(name=["shoulder"], position=[0.25]))
+        say_joints()
         page.get_by_role("button", name="Add a series").first.click()
-    page.get_by_text("has no field").wait_for()
+    heard(say_joints, page.get_by_text("has no field"))
     assert found_in_panels(page, "Plots") == []
     opened(page, "Topics")
     page.get_by_role("button", name="Last message of /joint_states").click()
-    viewer.publish("/joint_states", JOINTS(name=["shoulder"], position=[0.25]))
-    page.locator(".topic-message:visible").get_by_text("position").wait_for()
+    heard(say_joints, page.locator(".topic-message:visible").get_by_text("position"))
     assert found_in_panels(page, "Topics") == []
     opened(page, "Node graph")
     page.locator(".vertex[data-id='node:/arm']").click()
@@ -134,13 +146,14 @@ def test_the_live_panels(live: Callable[..., LiveViewer], open_page):
     page.get_by_role("textbox", name="speed").fill("fast")
     page.keyboard.press("Enter")
     assert found_in_panels(page, "Parameters") == []
+    viewer.run(lambda: logger.error("the arm is hot"))  # what is older than 10 s is told to nobody who asks then
     opened(page, "Log")
     page.locator(".virtual-list").get_by_text("the arm is hot").click()
     assert found_in_panels(page, "Log") == []
     opened(page, "Voice")
     page.locator(".word-box summary").click()
-    viewer.publish("/voice/response", get_message("std_msgs/msg/String")(data="Turning left."))
-    page.locator(".voice-said.response").wait_for()
+    answer = get_message("std_msgs/msg/String")(data="Turning left.")
+    heard(lambda: viewer.publish("/voice/response", answer), page.locator(".voice-said.response"))
     assert found_in_panels(page, "Voice", "Teleop") == []
 
 
