@@ -127,33 +127,21 @@ def test_who_has_the_name_of_a_node_of_ours_is_told_of(processes):
     ours.spin_until(lambda: any("exact name '/robot'" in text for text in ours.warnings()))
 
 
-def test_a_publisher_that_was_killed_is_lost_and_one_that_left_is_not(processes, programs):
+@pytest.mark.parametrize("its_process_goes_on", [False, True])
+def test_a_publisher_that_was_killed_is_lost_and_one_that_left_is_not(processes, programs, its_process_goes_on):
     ours = processes("ours")
     lost: list[str] = []
     subscription = ours.node.create_subscription(Int32, "flood", print, 10)
     subscription.watch_lost(lambda publisher: lost.append(publisher.node.name))
-    left = processes("left")
-    left.node.create_publisher(Int32, "flood", 10)
+    other = processes("other")
+    left = other.graph.create_node("left")
+    left.create_publisher(Int32, "flood", 10)
     victim = programs("our_program", "victim")
     ours.spin_until(lambda: subscription.get_publisher_count() == 2)
-    left.close()
-    ours.spin_until(lambda: subscription.get_publisher_count() == 1)
-    victim.kill()
-    ours.spin_until(lambda: lost)
-    assert lost == ["victim"]
-
-
-def test_the_publishers_of_a_node_that_is_taken_down_are_not_lost(processes, programs):
-    ours = processes("ours")
-    lost: list[str] = []
-    subscription = ours.node.create_subscription(Int32, "flood", print, 10)
-    subscription.watch_lost(lambda publisher: lost.append(publisher.node.name))
-    lives_on = processes("lives_on")
-    unloaded = lives_on.graph.create_node("unloaded")
-    unloaded.create_publisher(Int32, "flood", 10)
-    victim = programs("our_program", "victim")
-    ours.spin_until(lambda: subscription.get_publisher_count() == 2)
-    unloaded.destroy_node()
+    if its_process_goes_on:
+        left.destroy_node()
+    else:
+        other.close()
     ours.spin_until(lambda: subscription.get_publisher_count() == 1)
     victim.kill()
     ours.spin_until(lambda: lost)
