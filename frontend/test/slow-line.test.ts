@@ -1,8 +1,11 @@
 import { expect, it, vi } from "vitest";
+import { isAboutPage } from "../src/panels/line-notice";
 import type { DisplayData } from "../src/connection/data";
 import type { DisplayDataStore } from "../src/state/display-data";
 import { Signal } from "../src/state/signal";
 import { SlowLine } from "../src/state/slow-line";
+
+vi.mock("../src/strings", () => ({ strings: {} }));
 
 function store() {
   return { received: new Signal<DisplayData>(), forgotten: new Signal<{ display: string; key: string | null }>() };
@@ -47,4 +50,11 @@ it("does not tell of images that nobody sees a difference in", () => {
   expect(line.reduced).toEqual([]);
   data.received.emit({ ...cloud(1), content: image(70) });
   expect(line.reduced).toHaveLength(1);
+});
+
+it("is not blamed for a page that was slow a moment ago", () => {
+  expect(isAboutPage(true, true, 0)).toBe(true);
+  expect(isAboutPage(false, true, 0)).toBe(true);
+  expect(isAboutPage(false, true, 2)).toBe(false);
+  expect(isAboutPage(false, false, 1)).toBe(false);
 });

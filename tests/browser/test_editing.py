@@ -156,6 +156,50 @@ def test_what_an_edit_comes_to_has_room_beside_its_numbers(start, browser, file:
     page.close()
 
 
+def test_a_long_line_shows_what_differs_of_it_old_and_new(start, browser, file: Path) -> None:
+    line = '<joint name="mast_joint" type="revolute"> <!-- {} -->\n    <origin'.format(
+        "how the mast stands on its base, " * 5
+    )
+    file.write_text(ROBOT.replace('<joint name="mast_joint" type="revolute">\n    <origin', line.replace("\n   ", "")))
+    page = browser.new_page(viewport={"width": 1024, "height": 768}, locale="en-US")
+    page.goto(start("view", str(file)).url)
+    page.wait_for_function("window.linkwright?.ready === true")
+    edited(page, "mast")
+    type_in(page, "xyz0", "0.1")
+    page.locator(".edit-diff mark").first.wait_for()
+    text = page.locator(".edit-text").bounding_box()
+    assert page.locator(".edit-diff mark").all_inner_texts() == ["0", "0.1"]
+    for each in page.locator(".edit-diff mark").all():
+        box = each.bounding_box()
+        assert text["y"] <= box["y"]
+        assert box["y"] + box["height"] <= text["y"] + text["height"]
+    page.close()
+
+
+def test_the_card_of_the_link_makes_room_for_the_handles(start, open_page, file: Path) -> None:
+    page = open_page(start("view", str(file)))
+    edited(page, "mast")
+    card = page.locator(".selection-card")
+    card.wait_for(state="hidden")
+    page.get_by_role("tab", name="Edit robot").hover()
+    page.get_by_role("tab", name="Edit robot").locator(".tab-close").click()
+    card.wait_for(state="visible")
+
+
+def test_an_axis_is_turned_and_has_no_place_to_be_moved_to(start, open_page, file: Path) -> None:
+    page = open_page(start("view", str(file)))
+    edited(page, "mast")
+    tools = page.locator(".editing-tools")
+    frames, lengths = tools.get_by_label("Whose axes the handles have"), tools.get_by_label("Grid, m")
+    frames.wait_for()
+    page.locator(".editing-part", has_text="Axis").click()
+    frames.wait_for(state="hidden")
+    lengths.wait_for(state="hidden")
+    assert tools.get_by_role("button", name="Handles that move").count() == 0
+    page.locator(".editing-part", has_text="Visual").click()
+    frames.wait_for()
+
+
 def test_a_low_panel_shows_parts_numbers_and_what_differs_without_scrolling(start, browser, file: Path) -> None:
     file.write_text(
         ROBOT.replace('name="mast_joint" type="revolute">\n    <origin', 'name="mast_joint" type="revolute"><origin')

@@ -29,12 +29,13 @@ export class LineNotice {
     const { slowLine, pace } = this.session;
     const { reduced } = slowLine;
     const words = strings.sharing;
+    const isPage = isAboutPage(pace.isSlow, this.told === "now", reduced.length);
     this.element.hidden = reduced.length === 0 && this.told !== "now";
-    this.element.title = pace.isSlow ? words.slowPageHint : words.slowLineHint;
+    this.element.title = isPage ? words.slowPageHint : words.slowLineHint;
     const lines = reduced.map((each) => h("div", {}, h("b", {}, this.name(each)), ` ${lineText(each)}`));
     if (this.told === "now" && pace.software !== null) lines.push(h("div", {}, words.software(pace.software)));
     if (this.told === "now" && this.isLitAutomatically) lines.push(h("div", {}, words.plainLight));
-    this.element.replaceChildren(h("strong", {}, pace.isSlow ? words.slowPage : words.slowLine), ...lines);
+    this.element.replaceChildren(h("strong", {}, isPage ? words.slowPage : words.slowLine), ...lines);
   }
 
   /** Whether a light was left to the page, which takes the camera's where it is slow. */
@@ -55,6 +56,11 @@ export class LineNotice {
   private name({ display }: Reduced): string {
     return this.session.displays.find(display)?.name ?? display;
   }
+}
+
+/** Whether the page is what is slow; where it no longer is, the notice tells so for a while, unless the line is. */
+export function isAboutPage(isSlow: boolean, isTold: boolean, reduced: number): boolean {
+  return isSlow || (isTold && reduced === 0);
 }
 
 function lineText({ reduction, rate }: Reduced): string {

@@ -23,14 +23,16 @@ export class SelectionCard {
   ) {
     session.selection.changed.on(() => this.update());
     session.provenanceAnswered.on((provenance) => this.show(provenance));
+    session.editing.activeChanged.on(() => this.update());
     this.update();
   }
 
   private update(): void {
     const { selected } = this.session.selection;
     const wasHidden = this.element.hidden;
-    this.element.hidden = !selected;
-    if (!selected) {
+    // Whoever edits the link has it before him, and needs the room for the handles.
+    this.element.hidden = !selected || this.session.editing.active;
+    if (!selected || this.session.editing.active) {
       if (!wasHidden && !this.folded) this.column.changed();
       return;
     }

@@ -209,6 +209,17 @@ def test_what_a_macro_makes_several_times_is_refused_with_what_else_would_change
     assert "'0.05'" in found.notes[0].message
 
 
+def test_what_would_change_is_told_of_the_text_that_would_change_least(tmp_path: Path) -> None:
+    """A length that much is made of is no reason: a sum in the macro reaches only what it makes."""
+    joint = '<origin xyz="${lift} 0 0"/><parent link="base"/><child link="tip"/>'
+    more = f'<link name="tip"/>\n  <joint name="far" type="fixed">{joint}</joint>\n</robot>'
+    text = WHEELS.replace("</robot>", more)
+    found = refused(tmp_path, text, EditRequest("joint", "left_joint", xyz=(0.1, 0.2, 0.3)))
+    assert "joint 'right_joint'" in found.message
+    assert "far" not in found.message
+    assert any("joint 'far'" in note.message for note in found.notes)
+
+
 def test_all_of_them_are_changed_where_that_is_asked_for(tmp_path: Path) -> None:
     path = tmp_path / "robot.urdf.xacro"
     path.write_text(WHEELS)

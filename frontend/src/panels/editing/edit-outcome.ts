@@ -6,8 +6,10 @@ import { strings } from "../../strings";
 import { shortPath } from "../place";
 import { diffLines } from "./diff-lines";
 
-/** How many characters before and after what differs a low panel shows. */
+/** How many characters before and after what differs are shown of a long line, and in a low panel. */
 const [NEAR_BEFORE, NEAR_AFTER] = [16, 10];
+/** Characters of a line that is shown whole where there is room. */
+const LONGEST_WHOLE = 90;
 
 /** What an edit comes to in the files, or why it cannot be; writing it, and taking that back. */
 export class EditOutcome {
@@ -65,10 +67,11 @@ function diff({ file, diff: lines }: EditedFile): HTMLElement {
     const parts = [far(before.slice(0, from)), before.slice(from), h("mark", {}, changed), after.slice(0, to), far(after.slice(to))];
     return h("span", { class: kind }, sign, ...parts, "\n");
   });
-  return h("figure", { class: "edit-diff" }, h("figcaption", { title: file }, shortPath(file)), h("pre", {}, ...rows));
+  const isLong = lines.some((line) => line.length > LONGEST_WHOLE);
+  return h("figure", { class: isLong ? "edit-diff long" : "edit-diff" }, h("figcaption", { title: file }, shortPath(file)), h("pre", {}, ...rows));
 }
 
-/** What there is only room for in a panel that is high enough. */
+/** What there is only room for in a panel that is high enough, and where lines are short. */
 function far(text: string): HTMLElement | null {
   return text === "" ? null : h("span", { class: "far" }, text);
 }

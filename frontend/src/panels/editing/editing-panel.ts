@@ -40,6 +40,8 @@ export class EditingPanel implements Panel {
   /** What the fields are of. */
   private built = "";
   private inputs: NumberInput[] = [];
+  /** What an axis has no use for, which is turned in its joint's frame. */
+  private ofPoses: readonly HTMLElement[] = [];
 
   constructor(private readonly session: Session) {
     const { editing, focus, angles } = session;
@@ -77,6 +79,7 @@ export class EditingPanel implements Panel {
       input.disabled = whyNot !== "";
       if (!isTyped) input.value = formatNumber(value());
     }
+    for (const each of this.ofPoses) each.hidden = chosen?.part === "axis";
     this.showModes();
   }
 
@@ -203,6 +206,7 @@ export class EditingPanel implements Panel {
     };
     snapping.changed.on(show);
     show();
+    this.ofPoses = [this.modes, frame, length];
     return h("div", { class: "editing-tools" }, this.modes, frame, snap, length, angle, h("span", { class: "spacer" }), new UnitSwitch(angles).element);
   }
 
@@ -212,7 +216,6 @@ export class EditingPanel implements Panel {
     const make = (mode: "translate" | "rotate"): HTMLElement => {
       const made = button(words.modeHints[mode], () => (editing.mode = mode), editing.mode === mode ? "on" : "", words.modes[mode]);
       made.setAttribute("aria-pressed", String(editing.mode === mode));
-      made.disabled = editing.chosen?.part === "axis" && mode === "translate";
       return made;
     };
     this.modes.replaceChildren(make("translate"), make("rotate"));

@@ -25,6 +25,8 @@ export class EditingState {
   readonly changed = new Signal();
   /** Where the chosen part shall be. */
   readonly draftChanged = new Signal();
+  /** Whether somebody edits. */
+  readonly activeChanged = new Signal();
   /** The user wants to edit a link. */
   readonly wanted = new Signal();
   readonly snapping: Snapping;
@@ -139,6 +141,7 @@ export class EditingState {
   /** Edits until the returned function is called. */
   hold(): () => void {
     this.holders += 1;
+    this.activeChanged.emit();
     this.ask();
     this.draftChanged.emit();
     let done = false;
@@ -146,6 +149,7 @@ export class EditingState {
       if (!done) this.holders -= 1;
       done = true;
       if (!this.active) this.reset();
+      this.activeChanged.emit();
     };
   }
 

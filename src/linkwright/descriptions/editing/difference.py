@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import islice, zip_longest
 
+from linkwright.diagnostics import phrase, term
 from linkwright.xmltree import Element
 
 
@@ -80,12 +81,13 @@ def described(trail: tuple[Element, ...]) -> str:
     """What a trail leads to, in the words of a description, such as ``joint 'wheel_joint'``."""
     named = [element for element in trail if element.attributes.get("name") or element.attributes.get("reference")]
     if not trail:
-        return "robot"
+        return term("robot")
     top = trail[0]
     name = top.attributes.get("name") or top.attributes.get("reference") or ""
     inner = next((each.tag for each in trail[1:2] if top.tag == "link"), None)
-    what = f"{top.tag} '{name}'" if named and name else top.tag
-    return what if inner is None else f"{what} ({inner})"
+    kind = term(top.tag)
+    what = phrase("{kind} '{name}'", kind=kind, name=name) if named and name else kind
+    return what if inner is None else phrase("{what} ({part})", what=what, part=term(inner))
 
 
 def _place(old: Element, child: Element, index: int, is_owner: bool) -> int:

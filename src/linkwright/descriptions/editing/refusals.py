@@ -42,7 +42,7 @@ def refusal(place: Place, index: int | None, attempts: Sequence[Attempt], tag: s
     written = " ".join(place.text.split())
     told = {each.place.span: each for each in attempts if each.place != place and (each.also or each.choice)}
     notes = tuple(map(_note, told.values()))[:_MOST_NAMED]
-    also = next((each for each in attempts if each.also), None)
+    also = min((each for each in attempts if each.also), key=lambda each: len(each.also), default=None)
     forbidden = next((each.forbidden for each in attempts if each.forbidden is not None), None)
     if also is not None:
         what = _named(also.also)
