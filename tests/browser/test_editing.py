@@ -186,6 +186,24 @@ def test_the_card_of_the_link_makes_room_for_the_handles(start, open_page, file:
     card.wait_for(state="visible")
 
 
+def test_handles_that_are_out_of_sight_are_looked_at(start, open_page, file: Path) -> None:
+    joint = '<origin xyz="0 0 4"/><parent link="base"/><child link="far"/>'
+    far = f'<link name="far"/><joint name="far_joint" type="fixed">{joint}</joint>\n</robot>'
+    file.write_text(ROBOT.replace("</robot>", far))
+    page = open_page(start("view", str(file)))
+    yaw = state(page, "view.yaw")
+    edited(page, "mast")
+    until(page, "lw.panels.editing.handles !== undefined")
+    assert state(page, "view.yaw") == yaw, "what is in sight needs no other view"
+    page.get_by_role("tab", name="Links").click()
+    page.get_by_text("far", exact=True).first.click()
+    size = page.locator(".canvas-box canvas").bounding_box()
+    inside = (
+        f"((h) => h.x > 0 && h.x < {size['width']} && h.y > 0 && h.y < {size['height']})(lw.panels.editing.handles.x)"
+    )
+    until(page, f"lw.panels.editing.handles !== undefined && {inside}")
+
+
 def test_an_axis_is_turned_and_has_no_place_to_be_moved_to(start, open_page, file: Path) -> None:
     page = open_page(start("view", str(file)))
     edited(page, "mast")

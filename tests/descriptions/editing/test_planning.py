@@ -220,6 +220,30 @@ def test_what_would_change_is_told_of_the_text_that_would_change_least(tmp_path:
     assert any("joint 'far'" in note.message for note in found.notes)
 
 
+SIDES = f"""<robot name="r" {XACRO}>
+  <xacro:macro name="arm" params="side reflect">
+    <link name="${{side}}"/>
+    <joint name="${{side}}_joint" type="continuous">
+      <origin xyz="0 ${{reflect * 0.2}} 0"/><parent link="base"/><child link="${{side}}"/>
+      <axis xyz="0 ${{reflect}} 0"/>
+    </joint>
+  </xacro:macro>
+  <link name="base"/>
+  <xacro:arm side="left" reflect="1"/>
+  <xacro:arm side="right" reflect="-1"/>
+</robot>
+"""
+
+
+def test_of_two_texts_that_change_as_much_it_is_not_the_one_that_says_a_side(tmp_path: Path) -> None:
+    request = EditRequest("axis", "left_joint", xyz=(0, 0.8, 0))
+    assert "joint 'right_joint'" in refused(tmp_path, SIDES, request).message
+    (tmp_path / "robot.urdf.xacro").write_text(SIDES)
+    plan = plan_edit(examine(tmp_path / "robot.urdf.xacro"), replace(request, together=True))
+    assert plan.also == ("joint 'right_joint'",)
+    assert changed_lines(SIDES, *plan.texts.values()) == ['<axis xyz="0 ${reflect - 0.2} 0"/>']
+
+
 def test_all_of_them_are_changed_where_that_is_asked_for(tmp_path: Path) -> None:
     path = tmp_path / "robot.urdf.xacro"
     path.write_text(WHEELS)

@@ -14,6 +14,8 @@ import type { ToolEvent } from "../tools/tool";
 const FINEST_LENGTH = 1e-4;
 const FINEST_ANGLE = Math.PI / 18000;
 const FINEST_AXIS = 1e-4;
+/** Between the middle of the handles and an edge of the canvas, pixels. */
+const LEAST_ROOM = 40;
 const AXIS_COLOR = 0xff9d3c;
 const ONE = new Vector3(1, 1, 1);
 
@@ -25,6 +27,8 @@ export class PartHandles {
   /** While a handle is held: where the handles were, and the part. */
   private start: { handles: Matrix4; draft: Draft } | null = null;
   private previewed: string | null = null;
+  /** The part that was looked for: whoever turns the camera away from it then wants to. */
+  private sought = "";
 
   constructor(
     private readonly stage: Stage,
@@ -80,6 +84,7 @@ export class PartHandles {
     this.preview(shown);
     if (gizmo.held) return;
     const base = shown && this.base(shown);
+    if (!shown) this.sought = "";
     if (!shown || !now || !base) {
       gizmo.show(null, "translate");
       this.axis.visible = false;
@@ -92,6 +97,18 @@ export class PartHandles {
     }
     gizmo.show(pose, editing.mode, "local");
     this.showAxis(shown, now, base);
+    this.seek(shown);
+  }
+
+  /** Turns the camera to the handles of a part that was chosen, where they are not in sight. */
+  private seek({ part, name, index }: EditablePart): void {
+    const chosen = [part, name, index].join(" ");
+    if (chosen === this.sought) return;
+    this.sought = chosen;
+    const { x, y } = this.gizmo.seenAt(new Vector3());
+    const { width, height } = this.stage.viewport.size;
+    const margin = Math.min(LEAST_ROOM, width / 4, height / 4);
+    if (x < margin || y < margin || x > width - margin || y > height - margin) this.session.view.lookAt(new Vector3().setFromMatrixPosition(this.gizmo.pose).toArray());
   }
 
   /** What the numbers of a part are relative to, in the fixed frame; null where nothing tells where it is. */

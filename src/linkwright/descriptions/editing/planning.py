@@ -154,12 +154,17 @@ class _Planner:
             place, index, frame, self._now.definitions, present=present, is_angle=target.attribute == "rpy"
         )
         best: _Found | None = None
+        least = (0, False)
         for candidate in islice(offered, _MOST_TRIALS):
             found = self._tried(candidate, target, index, wanted, attempts)
-            if found is not None and (best is None or len(found.also) < len(best.also)):
+            if found is None:
+                continue
+            if not found.also:
                 best = found
-                if not found.also:
-                    break
+                break
+            reach = len(found.also), candidate.is_choice
+            if best is None or reach < least:
+                best, least = found, reach
         if best is not None:
             self._now = best.snapshot
             self._also_changed.update(dict.fromkeys(best.also))
@@ -192,7 +197,7 @@ class _Planner:
                 return None
             also = self._also(trial, target, index, values)
             if also and not self._request.together:
-                attempts.append(Attempt(candidate.place, also=also))
+                attempts.append(Attempt(candidate.place, also=also, doubtful=candidate.is_choice))
                 return None
             if same(values[index], wanted):
                 return _Found(trial, also)

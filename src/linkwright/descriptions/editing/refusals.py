@@ -20,6 +20,7 @@ class Attempt:
         also: what else it would change.
         forbidden: why its file may not be written.
         choice: whether it is a factor that says which side is meant.
+        doubtful: whether it may be such a factor.
         error: whether the description could not be expanded with it.
     """
 
@@ -27,6 +28,7 @@ class Attempt:
     also: tuple[str, ...] = ()
     forbidden: Diagnostic | None = None
     choice: bool = False
+    doubtful: bool = False
     error: bool = False
 
 
@@ -42,7 +44,11 @@ def refusal(place: Place, index: int | None, attempts: Sequence[Attempt], tag: s
     written = " ".join(place.text.split())
     told = {each.place.span: each for each in attempts if each.place != place and (each.also or each.choice)}
     notes = tuple(map(_note, told.values()))[:_MOST_NAMED]
-    also = min((each for each in attempts if each.also), key=lambda each: len(each.also), default=None)
+    also = min(
+        (each for each in attempts if each.also),
+        key=lambda each: (len(each.also), each.doubtful),
+        default=None,
+    )
     forbidden = next((each.forbidden for each in attempts if each.forbidden is not None), None)
     if also is not None:
         what = _named(also.also)
