@@ -4,6 +4,7 @@ from linkwright.graph.actions.client import ActionClient
 from linkwright.graph.actions.server import ActionServer
 from linkwright.graph.parameters.client import AsyncParameterClient
 from linkwright.messages import get_action, get_service
+from linkwright.wire.dds.services import IncomingService
 from tests.waiting import SECONDS
 
 SetBool = get_service("std_srvs/srv/SetBool")
@@ -56,6 +57,18 @@ def test_answers_go_to_who_asked(processes):
 
     server.spin_until(all_spin)
     assert [future.result().success for future in futures] == [False, True]
+
+
+def test_a_server_is_woken_by_requests_and_not_again_and_again_by_who_has_matched(processes, monkeypatch):
+    on_data, woken = IncomingService.on_data, []
+    monkeypatch.setattr(IncomingService, "on_data", lambda self: woken.append(self.pair.name) or on_data(self))
+    a, b = processes("a"), processes("b")
+    b.node.create_service(SetBool, "flip", flip)
+    client = a.node.create_client(SetBool, "flip")
+    for _ in range(20):
+        future = client.call_async(SetBool.Request(data=True))
+        a.spin_until(lambda future=future: b.executor.spin_once(timeout_sec=0.01) or future.done())
+    assert 20 <= woken.count("/flip") <= 40
 
 
 def test_messages_without_members_travel(processes):

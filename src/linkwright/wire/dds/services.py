@@ -81,8 +81,9 @@ class Pair:
         self.reader_guid = self._dds.guid(self.reader)
         self.writer_guid = self._dds.guid(self.writer)
         endpoint.gid = self.reader_guid if is_server else self.writer_guid
-        self._dds.dds_set_status_mask(self.reader, DATA_AVAILABLE | SUBSCRIPTION_MATCHED)
-        self._dds.dds_set_status_mask(self.writer, PUBLICATION_MATCHED)
+        # Cyclone wakes a thread until a status is taken. A server takes none: who has matched it asks when it replies.
+        self._dds.dds_set_status_mask(self.reader, DATA_AVAILABLE | (0 if is_server else SUBSCRIPTION_MATCHED))
+        self._dds.dds_set_status_mask(self.writer, 0 if is_server else PUBLICATION_MATCHED)
 
     def has_matched(self, entity: int) -> bool:
         """Whether something came to the reader or writer, or left it, since this was asked last."""
