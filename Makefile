@@ -47,7 +47,7 @@ LOCKED := .build/constraints.txt
 RELEASE_TOOLS := .build/release-tools$(if $(VERSION),-$(VERSION))
 PAGE_SOURCES := $(shell find frontend -path frontend/node_modules -prune -o -type f -print)
 
-.PHONY: demo test test-quick coverage test-browser test-ros test-zenoh-sdk test-train check bench soak fuzz reference release docs page lock format clean
+.PHONY: demo test test-quick test-python coverage test-browser test-ros test-zenoh-sdk test-train check bench soak fuzz reference release docs page lock format clean
 
 # Ctrl-C is how the demo ends (status 130), which is no error; the shell has to outlive it to say so.
 demo: $(VENV)/.ready
@@ -57,9 +57,12 @@ test: $(VENV)/.dev page
 	$(BIN)/python tools/build_page.py test
 	LINKWRIGHT_CHROMIUM=$$($(BIN)/python tools/chromium.py) $(PYTEST) $(WORKERS) $(ARGS)
 
-# All of them; with CASES=5, at most five cases of each parametrised test (docs/decisions/0077).
 test-quick: $(VENV)/.dev
-	$(PYTEST) $(WORKERS) -m "not browser and not slow" $(if $(CASES),--cases $(CASES)) $(ARGS)
+	$(PYTEST) $(WORKERS) -m "not browser and not slow" $(ARGS)
+
+# Those of the quick ones that may end otherwise with another Python.
+test-python: $(VENV)/.dev
+	$(PYTEST) $(WORKERS) -m "not browser and not slow" $$(grep '^tests/' tests/each_python.txt) $(ARGS)
 
 # The quick tests once more, with a look at which lines they reach; fails below the share named in pyproject.toml.
 coverage: $(VENV)/.dev

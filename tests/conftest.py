@@ -12,46 +12,14 @@ from hypothesis import HealthCheck, settings
 
 from tests.domains import own_domain
 from tests.repository_tools import load_tool
-from tests.spread import spread
 
 # How long an example takes says how busy the machine is. With CI set, hypothesis draws the same examples each time.
 settings.register_profile("unhurried", settings(), deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("unhurried")
-EXAMPLES_OF_FEW_CASES = 20
 
 # Shells start what runs in the background without SIGINT, and programs inherit that: tests of Ctrl-C would never end.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
-
-
-def pytest_addoption(parser: pytest.Parser) -> None:
-    """`--cases`, for a further Python: docs/decisions/0077-few-cases-with-the-oldest-python.md."""
-    parser.addoption(
-        "--cases",
-        type=int,
-        metavar="N",
-        help="run at most N cases of each parametrised test, evenly spread among them, and properties with "
-        f"{EXAMPLES_OF_FEW_CASES} examples where the test does not say how many",
-    )
-
-
-def pytest_configure(config: pytest.Config) -> None:
-    """Draw fewer examples where fewer cases are asked for."""
-    if config.getoption("cases") is not None:
-        settings.register_profile("few", settings.get_profile("unhurried"), max_examples=EXAMPLES_OF_FEW_CASES)
-        settings.load_profile("few")
-
-
-@pytest.hookimpl(trylast=True)
-def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Leave out cases beyond those that are asked for; every worker chooses the same."""
-    most = config.getoption("cases")
-    if most is None:
-        return
-    chosen = set(spread((item.nodeid for item in items), most))
-    chosen |= {item.nodeid for item in items if item.get_closest_marker("each_python")}
-    config.hook.pytest_deselected(items=[item for item in items if item.nodeid not in chosen])
-    items[:] = [item for item in items if item.nodeid in chosen]
 
 
 @pytest.hookimpl(wrapper=True)

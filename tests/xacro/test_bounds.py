@@ -17,8 +17,6 @@ from tests.work import ends
 from .cases import ROOT
 from .evaluating import evaluate
 
-pytestmark = pytest.mark.each_python  # Python's own parser and limits are what is fenced in
-
 
 def codes(text: str, limits: Limits | None = None) -> list[str]:
     """The codes of the mistakes in a text, none of which takes long to find."""

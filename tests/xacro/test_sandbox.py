@@ -10,8 +10,6 @@ from linkwright.xacro.faults import Fault
 
 from .evaluating import evaluate
 
-pytestmark = pytest.mark.each_python  # Python's own parser and limits are what is fenced in
-
 ESCAPES = [
     "''.__class__",
     "''.__class__.__mro__[1].__subclasses__()",
