@@ -1,11 +1,14 @@
 from __future__ import annotations
 
 import threading
+from types import SimpleNamespace
 
 import pytest
 
+from linkwright.bridge.mirrors import MirroredPublisher
 from linkwright.bridge.outlet import Outlet
 from linkwright.bridge.side import Side
+from linkwright.bridge.streams import stream_of
 from linkwright.graph import Graph
 from linkwright.graph.actions.client import ActionClient
 from linkwright.graph.actions.server import ActionServer
@@ -385,6 +388,27 @@ def test_messages_of_types_that_are_not_known_here_go_over_as_they_are(networks)
         announced.undeclare()
     assert got == [b"\0\1\0\0abc1", b"\0\1\0\0abc2"]
     spin_all(lambda: not here.node.count_publishers("/odd"), here)
+
+
+@pytest.mark.parametrize(("expects", "seconds"), [(False, 1.0), (True, 10.0)])
+def test_what_a_new_publisher_says_waits_for_who_is_known_to_be_able_to_hear_it(monkeypatch, expects, seconds):
+    """A machine that is very busy matches late, and closes nothing meanwhile that somebody is about to hear."""
+    now = [1000.0]
+    monkeypatch.setattr("linkwright.bridge.mirrors.time", SimpleNamespace(monotonic=lambda: now[0]))
+    graph = Graph()
+    info = EndpointInfo(
+        EndpointKind.PUBLISHER, NodeIdentity("there", "/"), "/odd", "strange_msgs/msg/Odd", QoSProfile(10), bytes(16)
+    )
+    node = graph.create_node("there").handle
+    publisher = MirroredPublisher(node, info, stream_of(info, keyed=False))
+    publisher.expects_listeners = expects
+    now[0] += seconds - 0.1
+    publisher.say(b"first")
+    assert publisher.waits
+    now[0] += 0.1
+    assert publisher.settle()
+    assert not publisher.waits
+    graph.close_now()
 
 
 @pytest.mark.parametrize(("server", "client"), WAYS)

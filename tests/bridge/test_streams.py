@@ -2,17 +2,20 @@ from __future__ import annotations
 
 import pytest
 
-from linkwright.bridge.streams import awaited_streams, stream_of
+from linkwright.bridge.streams import awaited_streams, can_hear, stream_of
 from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
 from linkwright.graph.names.identity import NodeIdentity
-from linkwright.graph.qos.profile import QoSProfile
+from linkwright.graph.qos.profile import QoSProfile, ReliabilityPolicy
 from linkwright.messages import type_hash
 
 OTHER_HASH = f"RIHS01_{0:064x}"
 
 
-def endpoint(kind: EndpointKind, type_name: str, hashed: str) -> EndpointInfo:
-    return EndpointInfo(kind, NodeIdentity("node", "/"), "/topic", type_name, QoSProfile(10), bytes(16), hashed)
+BEST_EFFORT = QoSProfile(10, reliability=ReliabilityPolicy.BEST_EFFORT)
+
+
+def endpoint(kind: EndpointKind, type_name: str, hashed: str, qos: QoSProfile | None = None) -> EndpointInfo:
+    return EndpointInfo(kind, NodeIdentity("node", "/"), "/topic", type_name, qos or QoSProfile(10), bytes(16), hashed)
 
 
 @pytest.mark.parametrize("told", ["", OTHER_HASH], ids=["told no hash", "told its hash"])
@@ -29,3 +32,20 @@ def test_types_of_one_name_with_other_hashes_are_other_streams_where_the_type_is
     ours, theirs = (endpoint(EndpointKind.PUBLISHER, "std_msgs/msg/String", each) for each in ("", OTHER_HASH))
     assert stream_of(ours, keyed=True) != stream_of(theirs, keyed=True)
     assert stream_of(ours, keyed=False) == stream_of(theirs, keyed=False)
+
+
+@pytest.mark.parametrize(
+    ("type_name", "hashed", "qos", "over_dds", "over_zenoh"),
+    [
+        ("std_msgs/msg/String", "", None, True, True),
+        ("std_msgs/msg/Bool", "", None, False, False),
+        ("std_msgs/msg/String", OTHER_HASH, None, True, False),
+        ("std_msgs/msg/String", "", BEST_EFFORT, False, True),
+    ],
+    ids=["alike", "another type", "another hash", "less reliable"],
+)
+def test_who_can_hear_a_publisher(type_name, hashed, qos, over_dds, over_zenoh):
+    subscription = endpoint(EndpointKind.SUBSCRIPTION, "std_msgs/msg/String", "")
+    publisher = endpoint(EndpointKind.PUBLISHER, type_name, hashed, qos)
+    assert can_hear(subscription, publisher, keyed=False) == over_dds
+    assert can_hear(subscription, publisher, keyed=True) == over_zenoh

@@ -7,9 +7,9 @@ from collections import deque
 from typing import NamedTuple
 
 from linkwright.bridge.filters import NameFilter
-from linkwright.bridge.mirrors import MirroredPublisher, MirroredService, Tap
+from linkwright.bridge.mirrors import MATCHED_WITHIN, MirroredPublisher, MirroredService, Tap
 from linkwright.bridge.side import Side, provision_of
-from linkwright.bridge.streams import Stream, awaited_streams, hash_of, stream_of
+from linkwright.bridge.streams import Stream, awaited_streams, can_hear, hash_of, stream_of
 from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind, MessageInfo
 from linkwright.graph.endpoints.presence import Presence
 from linkwright.graph.log.logger import Logger
@@ -22,7 +22,7 @@ _KNOWN_WITHIN = 2.0
 _MOST_EARLY = 1000
 
 _SHOWN_WITHIN = 1.0
-"""Seconds within which a subscription is shown, though its topic is not listened to yet."""
+"""Seconds within which a subscription is shown that hears no publisher there is."""
 
 _QUIET = 3
 """How many times in a row nothing waits of what publishers said that have left, before their mirrors leave."""
@@ -105,6 +105,8 @@ class Direction:
             if gid not in self._publishers:
                 stream = stream_of(info, keyed=self._source.needs_hashes)
                 self._publishers[gid] = MirroredPublisher(self._node_of(info), info, stream)
+            if self._publishers[gid].waits:
+                self._publishers[gid].expects_listeners = self._is_expected(info)
         for key, info in self._wanted_services.items():
             if key not in self._services:
                 self._services[key] = MirroredService(self._node_of(info), self._source.own, info)
@@ -122,7 +124,7 @@ class Direction:
             del self._unseen[gid]
         for gid in self._wanted_presences.keys() - self._presences.keys():
             info = self._wanted_presences[gid]
-            until = self._unseen.setdefault(gid, now + _SHOWN_WITHIN)
+            until = self._unseen.setdefault(gid, now + (MATCHED_WITHIN if back.reaches(info) else _SHOWN_WITHIN))
             if info.kind is EndpointKind.CLIENT or now >= until or back.hears(info.name):
                 node = self._node_of(info)
                 self._presences[gid] = node.add(Presence(node, info))
@@ -132,6 +134,14 @@ class Direction:
     def hears(self, name: str) -> bool:
         """Whether a topic is listened to at the source."""
         return any(stream.name == name for stream in self._taps)
+
+    def reaches(self, subscription: EndpointInfo) -> bool:
+        """Whether a subscription at the target can hear a publisher that is carried."""
+        return any(
+            publisher.info.name == subscription.name
+            and can_hear(subscription, publisher.info, keyed=self._target.needs_hashes)
+            for publisher in self._publishers.values()
+        )
 
     def settle(self) -> bool:
         """Do what had to wait; whether nothing waits any more."""
@@ -205,6 +215,11 @@ class Direction:
             for stream in awaited_streams(info, keyed=self._source.needs_hashes)
         }
 
+    def _is_expected(self, publisher: EndpointInfo) -> bool:
+        """Whether somebody at the target can hear a publisher."""
+        demanding = self._target.seen.demanded.get(publisher.name, ())
+        return any(can_hear(each, publisher, keyed=self._target.needs_hashes) for each in demanding)
+
     def _can_carry(self, info: EndpointInfo) -> bool:
         """Whether a topic or service of this type can be had at the target; it is said once that it cannot."""
         if not self._target.needs_hashes or hash_of(info):
@@ -236,7 +251,8 @@ class Direction:
         wanted |= {stream for stream in self._awaited if stream.name not in met}
         for stream in self._taps.keys() - wanted:
             self._taps.pop(stream).close()
-        for stream in wanted - self._taps.keys():
+        # Who sees one of several may say something at once: that by which most publishers are heard is made first.
+        for stream in sorted(wanted - self._taps.keys(), key=lambda each: (each.history, each.reliability)):
             self._taps[stream] = Tap(self._source.own, stream, self._take)
 
     def _take(self, tap: Tap, data: bytes, info: MessageInfo) -> None:

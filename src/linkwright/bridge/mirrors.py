@@ -19,8 +19,11 @@ from linkwright.graph.log.logger import log_failure
 from linkwright.graph.loop.node_handle import NodeHandle
 from linkwright.graph.qos.profile import HistoryPolicy, QoSProfile
 
-_MATCHED_WITHIN = 1.0
-"""Seconds for which what a new publisher says waits for those who listen to it."""
+MATCHED_WITHIN = 10.0
+"""Seconds within which publishers and subscriptions that know of each other match, on a machine that is very busy."""
+
+_KNOWN_WITHIN = 1.0
+"""Seconds for which what a new publisher says waits though nobody is known who can hear it."""
 
 _QUEUE = 100
 """Messages that wait for their turn on a topic without history; requests of a service, ten times as many."""
@@ -64,12 +67,15 @@ class Tap:
 class MirroredPublisher:
     """Says in one network what a publisher says in the other one.
 
-    What it is given before somebody listens to it waits a moment: who is there has not met it yet.
+    What it is given before somebody listens to it waits: who is there has not met it yet.
 
     Args:
         node: the bridge's node that has the name of the publisher's.
         info: the publisher.
         stream: what it is part of at home.
+
+    Attributes:
+        expects_listeners: whether somebody is known who can hear it.
     """
 
     def __init__(self, node: NodeHandle, info: EndpointInfo, stream: Stream) -> None:
@@ -79,7 +85,8 @@ class MirroredPublisher:
         publisher.type_hash = info.type_hash
         publisher.raw = True
         self._waiting: deque[bytes] | None = deque(maxlen=KEPT)
-        self._patience = time.monotonic() + _MATCHED_WITHIN
+        self._made = time.monotonic()
+        self.expects_listeners = False
         self._publisher = node.add(publisher)
         failed = partial(log_failure, node.logger, f"publisher of topic '{info.name}'")
         self._outlet = Outlet(publisher.publish, failed) if stream.history is HistoryPolicy.KEEP_ALL else None
@@ -108,7 +115,7 @@ class MirroredPublisher:
 
     def settle(self) -> bool:
         """Publish what waits, if it is time; whether nothing waits any more."""
-        if self._waiting is not None and (self.stream.lasts or self.listeners() or time.monotonic() >= self._patience):
+        if self._waiting is not None and (self.stream.lasts or self.listeners() or self._has_waited()):
             waiting, self._waiting = self._waiting, None
             for data in waiting:
                 self._publish(data)
@@ -123,6 +130,10 @@ class MirroredPublisher:
     def has_more(self) -> bool:
         """Whether what it was given waits to be published."""
         return self._outlet is not None and self._outlet.has_more()
+
+    def _has_waited(self) -> bool:
+        patience = MATCHED_WITHIN if self.expects_listeners else _KNOWN_WITHIN
+        return time.monotonic() >= self._made + patience
 
     def _publish(self, data: bytes) -> None:
         if self._outlet is None:

@@ -28,7 +28,7 @@ class Seen:
     Attributes:
         nodes: the nodes.
         endpoints: the endpoints whose node is known.
-        demanded: names of topics that somebody subscribes to.
+        demanded: the subscriptions, by their topic.
         served: names of services that somebody serves.
         carried: what bridges that go before this one carry to here, which this one leaves to them.
         carried_nodes: full names of the nodes that they have here for those of the other side.
@@ -37,7 +37,7 @@ class Seen:
 
     nodes: list[NodeIdentity] = field(default_factory=list)
     endpoints: list[EndpointInfo] = field(default_factory=list)
-    demanded: set[str] = field(default_factory=set)
+    demanded: dict[str, list[EndpointInfo]] = field(default_factory=dict)
     served: set[str] = field(default_factory=set)
     carried: set[Provision] = field(default_factory=set)
     carried_nodes: set[str] = field(default_factory=set)
@@ -111,7 +111,7 @@ class Side:
                 continue
             seen.endpoints.append(endpoint)
             if endpoint.kind is EndpointKind.SUBSCRIPTION:
-                seen.demanded.add(endpoint.name)
+                seen.demanded.setdefault(endpoint.name, []).append(endpoint)
             elif endpoint.kind is EndpointKind.SERVICE:
                 seen.served.add(endpoint.name)
         self.seen = seen

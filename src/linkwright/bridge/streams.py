@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from linkwright.graph.endpoints.info import EndpointInfo
+from linkwright.graph.qos.compatibility import incompatible_policies
 from linkwright.graph.qos.profile import (
     DurabilityPolicy,
     HistoryPolicy,
@@ -74,6 +75,21 @@ def awaited_streams(subscription: EndpointInfo, *, keyed: bool) -> set[Stream]:
     if not keyed and subscription.qos.reliability is not reliable:
         found.add(_stream(subscription, keyed, ReliabilityPolicy.BEST_EFFORT, volatile, last))
     return found
+
+
+def can_hear(subscription: EndpointInfo, publisher: EndpointInfo, *, keyed: bool) -> bool:
+    """Whether a subscription will hear what is offered for a publisher of its topic.
+
+    Args:
+        subscription: the subscription, in the network that is carried to.
+        publisher: the publisher.
+        keyed: see `stream_of`, of the network that is carried to.
+    """
+    if subscription.type_name != publisher.type_name:
+        return False
+    if keyed:
+        return len({hash_of(subscription), hash_of(publisher)} - {""}) <= 1
+    return not incompatible_policies(offered(publisher.qos), subscription.qos)
 
 
 def hash_of(endpoint: EndpointInfo) -> str:
