@@ -183,12 +183,12 @@ def live() -> Iterator[Callable[..., LiveViewer]]:
 
 @pytest.fixture
 def open_page(browser: Browser) -> Iterator[Callable[..., Page]]:
-    """A function that opens a program's page at 1280x800 and waits until the robot is drawn."""
+    """A function that opens a program's page, at 1280x800 unless told otherwise, and waits for the robot."""
     contexts = []
     complaints: list[str] = []
 
-    def open_url(program: Program | LiveViewer, *, wait: bool = True) -> Page:
-        context = browser.new_context(viewport={"width": 1280, "height": 800}, locale="en-US")
+    def open_url(program: Program | LiveViewer, *, wait: bool = True, size: tuple[int, int] = (1280, 800)) -> Page:
+        context = browser.new_context(viewport={"width": size[0], "height": size[1]}, locale="en-US")
         context.set_default_timeout(1000 * SECONDS)
         contexts.append(context)
         page = context.new_page()

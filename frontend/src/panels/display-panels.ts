@@ -1,4 +1,4 @@
-import type { AddPanelOptions, DockviewApi, IContentRenderer } from "dockview";
+import type { AddPanelOptions, Direction, DockviewApi, IContentRenderer } from "dockview";
 import { h } from "../dom";
 import type { DisplayPanel, PanelHost } from "../scene/displays/display-panel";
 import { isNarrow } from "./default-layout";
@@ -10,8 +10,19 @@ const HEIGHT = 220;
 const SHARE = 0.3;
 /** So many panels are put below the Displays panel; the next ones become tabs of these. */
 const MOST_BESIDE = 2;
+/** In a narrow window of this width, in pixels, the first of them stands beside the scene and has this part of the width. */
+const LEAST_SPLIT = 600;
+const SPLIT = 0.42;
 /** In a window lower than this, in pixels, only one of them. */
 const LOW = 700;
+
+interface Home {
+  beside: string | undefined;
+  direction: Direction;
+  width?: number;
+  height?: number;
+  inactive?: boolean;
+}
 
 /** The panels of displays within the dock. A restored arrangement keeps their places until their displays come. */
 export class DisplayPanels implements PanelHost {
@@ -72,20 +83,35 @@ export class DisplayPanels implements PanelHost {
     const { key, title, element } = panel;
     this.host(key).replaceChildren(element);
     const others = this.api().panels.filter(({ id }) => id.startsWith(PREFIX));
-    const height = Math.min(HEIGHT, Math.round(this.api().height * SHARE));
-    const options: AddPanelOptions = { id: key, component: key, tabComponent: key, title, initialHeight: height };
-    const last = others.at(-1);
-    const crowded = last !== undefined && others.length >= (this.api().height < LOW ? 1 : MOST_BESIDE);
-    const beside = crowded ? last.id : ["displays", "scene"].find((id) => this.api().getPanel(id) !== undefined);
-    const direction = crowded || isNarrow(this.api()) ? "within" : "below";
-    const position = beside === undefined ? undefined : { referencePanel: beside, direction } as const;
-    // Where one group has everything, a picture that comes does not hide what the user works with.
-    if (isNarrow(this.api()) && beside !== undefined) options.inactive = true;
+    const home = this.home(panel, others.at(-1)?.id, others.length);
+    const { width, height, inactive } = home;
+    const options: AddPanelOptions = { id: key, component: key, tabComponent: key, title };
+    if (width !== undefined) options.initialWidth = width;
+    if (height !== undefined) options.initialHeight = height;
+    if (inactive !== undefined) options.inactive = inactive;
+    const position = home.beside === undefined ? undefined : { referencePanel: home.beside, direction: home.direction };
     const before = others.map(({ group }) => ({ group, height: group.height }));
     const { group } = this.api().addPanel(position ? { ...options, floating: false, position } : options);
-    if (direction === "within") return;
+    if (height === undefined) return;
     // The dock takes the room from the others.
     for (const each of [...before, { group, height }]) each.group.api.setSize({ height: each.height });
+  }
+
+  /** Where a panel goes, of which there are some before it. */
+  private home({ instead }: DisplayPanel, last: string | undefined, count: number): Home {
+    const api = this.api();
+    const narrow = isNarrow(api);
+    // Where one group has everything, a picture that comes does not hide what the user works with.
+    const shares = narrow && api.width < LEAST_SPLIT;
+    const most = narrow || api.height < LOW ? 1 : MOST_BESIDE;
+    if (last !== undefined && instead && count < MOST_BESIDE) return { beside: last, direction: "right" };
+    if (last !== undefined && count >= most) return { beside: last, direction: "within", inactive: shares && !instead };
+    const scene = api.getPanel("scene") && "scene";
+    if (instead && scene) return { beside: scene, direction: "within" };
+    if (narrow && !shares && scene) return { beside: scene, direction: "right", width: Math.round(api.width * SPLIT) };
+    const beside = api.getPanel("displays") ? "displays" : scene;
+    if (shares) return { beside, direction: "within", inactive: beside !== undefined };
+    return { beside, direction: "below", height: Math.min(HEIGHT, Math.round(api.height * SHARE)) };
   }
 
   private remove(key: string): void {

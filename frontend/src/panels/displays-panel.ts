@@ -180,9 +180,12 @@ export class DisplaysPanel implements Panel {
     const key = JSON.stringify([name, description, troubles]);
     if (key === this.explained) return; // said once, not again with each message that comes
     this.explained = key;
-    this.help.hidden = description === "" && troubles.length === 0;
-    const said = troubles.map((row) => h("p", { class: `trouble ${row.level}` }, icon(LEVEL_ICONS[row.level], `level-${row.level}`), troubleText(row)));
-    this.help.replaceChildren(h("strong", {}, name), ...said, h("p", {}, description));
+    this.tree.whenReleased(() => {
+      if (key !== this.explained) return;
+      this.help.hidden = description === "" && troubles.length === 0;
+      const said = troubles.map((row) => h("p", { class: `trouble ${row.level}` }, icon(LEVEL_ICONS[row.level], `level-${row.level}`), troubleText(row)));
+      this.help.replaceChildren(h("strong", {}, name), ...said, h("p", {}, description));
+    });
   }
 
   /** What a display is, and before that what is wrong with it. */

@@ -207,6 +207,12 @@ export class TreeView {
     this.rows.get(key)?.element.focus();
   }
 
+  /** Does what takes room from the rows: after the release and its click, where one of them is pressed. */
+  whenReleased(act: () => void): void {
+    if (!this.isPressed) act();
+    else document.addEventListener("mouseup", () => setTimeout(act), { once: true });
+  }
+
   /** Adding to what is selected, and the menu of several, must not move the focus: that selects one row alone. */
   private pressed(event: MouseEvent): void {
     this.isPressed = true;

@@ -1,7 +1,7 @@
 """Pixels of image messages, of every encoding and transport that is read here."""
 
 from linkwright.images.decoding import BadImageError, Picture, Range, RangeFinder, has_range, picture_of
-from linkwright.images.image_files import encoding_of
+from linkwright.images.image_files import encoding_of, is_cut_off
 from linkwright.images.transports import COMPRESSED, RAW, TRANSPORTS, ImageSource, Unpacker
 
 __all__ = [
@@ -16,5 +16,6 @@ __all__ = [
     "Unpacker",
     "encoding_of",
     "has_range",
+    "is_cut_off",
     "picture_of",
 ]

@@ -17,6 +17,9 @@ MOST_PIXELS = 1 << 24
 """No image with more pixels is unpacked here: a small file can claim any size."""
 
 _PNG, _JPEG = b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff"
+_PNG_END, _JPEG_END = b"IEND", b"\xff\xd9"
+_TAIL = 256
+"""Bytes that are looked at first for the end of a file."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +50,13 @@ class RawImage:
         height, width = values.shape[:2]
         data = np.ascontiguousarray(values, values.dtype.newbyteorder("<")).view(np.uint8).ravel()
         return cls(header, width, height, encoding, data, data.size // max(1, height))
+
+
+def is_cut_off(data: NDArray[np.uint8]) -> bool:
+    """Whether the end of a JPEG or PNG file is missing; some cameras have bytes of no meaning behind it."""
+    start = data[: len(_PNG)].tobytes()
+    end = _JPEG_END if start.startswith(_JPEG) else _PNG_END if start == _PNG else b""
+    return end not in data[-_TAIL:].tobytes() and end not in data.tobytes()
 
 
 def file_pixels(data: NDArray[np.uint8]) -> NDArray[Any]:

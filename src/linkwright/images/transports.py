@@ -6,6 +6,7 @@ the transport from the end of a topic where there is no property for it.
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from typing import Any
 
@@ -24,10 +25,12 @@ class ImageSource:
     Attributes:
         base: the topic of the raw images.
         transport: the name of the transport.
+        is_renamed: its messages come on `base` itself, as drivers have it that use no image_transport.
     """
 
     base: str
     transport: str = RAW
+    is_renamed: bool = False
 
     @classmethod
     def of(cls, topic: str, hint: str = RAW) -> ImageSource:
@@ -38,10 +41,22 @@ class ImageSource:
             return cls(base, last)
         return cls(topic, hint if topic and hint else RAW)
 
+    def carrying(self, types: Collection[str]) -> ImageSource:
+        """The same, for a topic that carries messages of these types and is not named as those of transports are."""
+        if self.transport == RAW and _COMPRESSED_IMAGE in types and _IMAGE not in types:
+            return ImageSource(self.base, COMPRESSED, is_renamed=True)
+        return self
+
     @property
     def topic(self) -> str:
         """The topic that the messages come on; empty when there is none."""
-        return self.base if self.transport == RAW else f"{self.base}/{self.transport}"
+        return self.base if self.transport == RAW or self.is_renamed else f"{self.base}/{self.transport}"
+
+    def transport_of(self, message: Any) -> str:
+        """The transport of a message: `format` says it of a CompressedImage on a topic whose name does not."""
+        if self.is_renamed and COMPRESSED_DEPTH in message.format:
+            return COMPRESSED_DEPTH
+        return self.transport
 
     @property
     def message_type(self) -> str:

@@ -260,10 +260,14 @@ class Viewer:
         """Messages for a page that begins to see a configuration, the frame table last; and binary frames."""
         messages: list[ServerMessage] = [Hello(PROTOCOL_VERSION, __version__, self._title)]
         shown, table, frames = manager.opening()
+        messages += self._openings(before_displays=True)
         messages += shown
-        for feature in self._features:
-            messages += feature.opening()
+        messages += self._openings(before_displays=False)
         return [*messages, *self.configured(manager), table], frames
+
+    def _openings(self, *, before_displays: bool) -> list[ServerMessage]:
+        features = [each for each in self._features if each.BEFORE_DISPLAYS is before_displays]
+        return [message for feature in features for message in feature.opening()]
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
         """The messages of all features about a configuration."""

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import math
+from io import BytesIO
 
 import numpy as np
+import PIL.Image
+import pytest
 
 from linkwright.messages import get_message
 from linkwright.viewer import RvizConfig
@@ -106,6 +109,7 @@ async def test_while_no_panel_is_seen_nobody_listens_after_one_image():
         assert publisher.get_subscription_count() == 0
         display.receive(PictureSize(display.id, 3, 1))
         assert publisher.get_subscription_count() == 1
+        assert w.status("Image")["Topic"] == ("ok", "1 messages received"), "what came before is still shown"
         publisher.publish(picture(4, 5, 6))
         await w.settle()
         (content,) = contents(display)
@@ -181,10 +185,40 @@ async def test_a_compressed_image_goes_to_the_page_as_it_is():
         (content,) = contents(w.display("Image"))
         assert content.fields["encoding"] == "file"
         assert content.fields["data"].tobytes() == data
+        assert w.status("Image")["Image"] == ("error", "The file of the image is cut off: its end is missing")
+        publisher.publish(CompressedImage(format="jpeg", data=data + b"\xff\xd9"))
+        await w.settle()
+        assert "Image" not in w.status("Image")
         publisher.publish(CompressedImage(format="h264", data=b"0000"))
         await w.settle()
         text = "The image is in no format that browsers read: 'h264'"
         assert w.status("Image")["Image"] == ("error", text)
+
+
+@pytest.mark.parametrize("comes_first", ["publisher", "display"])
+async def test_compressed_images_may_be_on_a_topic_of_any_name(comes_first):
+    data = b"\xff\xd8\xff\xe0\xff\xd9"
+    async with world(config("Image", "" if comes_first == "publisher" else "/front/jpeg")) as w:
+        publisher = w.graph.create_node("camera").create_publisher(CompressedImage, "/front/jpeg", 5)
+        display = w.display("Image")
+        if comes_first == "publisher":
+            display.set_property(("Topic",), "/front/jpeg")
+        await eventually(lambda: publisher.get_subscription_count() == 1)
+        publisher.publish(CompressedImage(format="jpeg", data=data))
+        await w.settle()
+        assert contents(display)[0].fields["data"].tobytes() == data
+        assert w.status("Image")["Topic"] == ("ok", "1 messages received")
+
+
+async def test_depths_may_be_on_a_topic_of_any_name():
+    async with world(config("Image", "/front/depths")) as w:
+        publisher = w.graph.create_node("camera").create_publisher(CompressedImage, "/front/depths", 5)
+        await eventually(lambda: publisher.get_subscription_count() == 1)
+        file = BytesIO()
+        PIL.Image.fromarray(np.array([[0, 1000]], np.uint16)).save(file, "png")
+        publisher.publish(CompressedImage(format="16UC1; compressedDepth png", data=bytes(12) + file.getvalue()))
+        await w.settle()
+        assert contents(w.display("Image"))[0].fields["data"].tolist() == [0, 255]
 
 
 def info(width: int = 4, height: int = 2, **fields):

@@ -19,15 +19,17 @@ export class ImageDrawing implements Drawing {
     this.tellSize();
     this.painted();
   });
-  private readonly stopListening: () => void;
+  private readonly stopListening: (() => void)[];
+  private state: "none" | "shown" | "unreadable" = "none";
 
   constructor(protected readonly context: DrawingContext) {
     this.picture = new PictureCanvas(context.beside);
     this.panel = new OwnPanel(context, "image", this.picture.canvas);
-    this.panel.say(strings.pictures.none);
+    this.explain();
     this.panel.match();
     this.resizing.observe(this.panel.element);
-    this.stopListening = context.session.connection.on("tree", () => this.tellSize());
+    const { connection, displays } = context.session;
+    this.stopListening = [connection.on("tree", () => this.tellSize()), displays.statusChanged.on(() => this.explain())];
   }
 
   propertiesChanged(): void {
@@ -38,7 +40,8 @@ export class ImageDrawing implements Drawing {
     if (content.kind !== "image_frame") return;
     this.frame = content;
     this.picture.take(content, (shown) => {
-      this.panel.say(shown ? "" : strings.pictures.unreadable);
+      this.state = shown ? "shown" : "unreadable";
+      this.explain();
       if (!shown) return;
       this.imageStamp = stamp;
       this.painted();
@@ -49,7 +52,8 @@ export class ImageDrawing implements Drawing {
     if (key) return; // the image has none
     this.frame = null;
     this.picture.clear();
-    this.panel.say(strings.pictures.none);
+    this.state = "none";
+    this.explain();
   }
 
   update(): void {
@@ -80,8 +84,16 @@ export class ImageDrawing implements Drawing {
 
   dispose(): void {
     this.resizing.disconnect();
-    this.stopListening();
+    for (const stop of this.stopListening) stop();
     this.panel.close();
+  }
+
+  /** Says in place of a picture why there is none: as a rule the display's status tells. */
+  private explain(): void {
+    const { none, unreadable } = strings.pictures;
+    const cause = this.context.display.troubles[0]?.text;
+    if (this.state === "shown") this.panel.say("");
+    else this.panel.say(this.state === "unreadable" ? unreadable : none, cause);
   }
 
   /** More pixels than the panel has need not come. */

@@ -1,6 +1,11 @@
 import { h } from "../../dom";
 import type { IconName } from "../../icons";
+import type { DisplayState } from "../../state/displays";
+import type { Session } from "../../state/session";
 import type { DrawingContext } from "../displays/drawing";
+
+/** Displays that show nothing in the scene of what there is. */
+const NOTHING_TO_SEE = new Set(["rviz_default_plugins/Grid", "rviz_default_plugins/Image"]);
 
 /** The panel of an Image or Camera display: there as long as the display is enabled, as in RViz. */
 export class OwnPanel {
@@ -20,9 +25,9 @@ export class OwnPanel {
     this.element = h("div", { class: "picture-panel" }, canvas, this.notice);
   }
 
-  /** Text over the picture, or in its place; empty for none. */
-  say(text: string): void {
-    this.notice.textContent = text;
+  /** Text over the picture, or in its place, and what it comes from, where that is known; empty for none. */
+  say(text: string, cause = ""): void {
+    this.notice.replaceChildren(text, ...(cause === "" ? [] : [h("small", {}, cause)]));
     this.notice.hidden = text === "";
   }
 
@@ -41,7 +46,7 @@ export class OwnPanel {
       this.offered = true;
       this.title = display.name;
       const closed = (): void => session.setProperty(display.enabledId, false);
-      panels.offer({ key: this.key, title: this.title, icon: this.icon, element: this.element, closed });
+      panels.offer({ key: this.key, title: this.title, icon: this.icon, element: this.element, instead: showsPicturesAlone(session), closed });
     } else if (this.title !== display.name) {
       this.title = display.name;
       panels.retitle(this.key, this.title);
@@ -52,4 +57,10 @@ export class OwnPanel {
     if (this.offered) this.context.panels.withdraw(this.key);
     this.offered = false;
   }
+}
+
+/** Whether a recording is shown of which nothing but pictures is switched on. */
+function showsPicturesAlone({ timeline, displays }: Session): boolean {
+  const nothing = (display: DisplayState): boolean => !display.enabled || display.isGroup || NOTHING_TO_SEE.has(display.drawing);
+  return timeline.timeline?.live === false && displays.displays.every(nothing);
 }

@@ -21,6 +21,7 @@ from linkwright.images import (
     Unpacker,
     encoding_of,
     has_range,
+    is_cut_off,
     picture_of,
 )
 from linkwright.viewer.config.property_store import qos_of
@@ -50,6 +51,7 @@ class ImageTopicDisplay(TopicDisplay):
         self.ranges = RangeFinder()
         self._compressor = ImageCompressor()
         self._unpacker = Unpacker()
+        self._source = ImageSource("")
 
     @classmethod
     def messages_shown(cls) -> tuple[str, ...]:
@@ -58,7 +60,7 @@ class ImageTopicDisplay(TopicDisplay):
 
     def subscription(self) -> tuple[str, str, QoSProfile]:
         """As the transport of the topic has it."""
-        source = self._source()
+        source = self._named_source()
         return source.message_type, source.topic, super().subscription()[2]
 
     def take(self, message: Any, pose: Pose | None) -> None:
@@ -91,7 +93,10 @@ class ImageTopicDisplay(TopicDisplay):
         except BadImageError as error:
             self.say("Image", "error", foreign(error))
             return
-        self.unsay("Image")
+        if content.encoding == "file" and is_cut_off(content.data):
+            self.say("Image", "error", phrase("The file of the image is cut off: its end is missing"))
+        else:
+            self.unsay("Image")
         frame, stamp_ns = TopicDisplay.frame_of(self, message)
         shrink = partial(self._compressor.compressed, content)
         self.send(content, frame=frame.removeprefix("/"), pose=pose, stamp_ns=stamp_ns, shrink=shrink)
@@ -100,11 +105,24 @@ class ImageTopicDisplay(TopicDisplay):
         """Of how many pixels along a side pages are sent the mean."""
         return 1
 
-    def _source(self) -> ImageSource:
-        return ImageSource.of(self.properties.text(TOPIC))
+    def _named_source(self) -> ImageSource:
+        """What the topic names, and, as far as the graph knows by now, carries."""
+        source = ImageSource.of(self.properties.text(TOPIC))
+        if not source.topic:
+            return source
+        try:
+            return source.carrying({carried for _, carried in self._publishers(source.topic)})
+        except ValueError:  # it is no name of a topic, which is told where it is subscribed to
+            return source
+
+    def _tell_count(self) -> None:
+        if self._count == 0 and self._named_source() != self._source:
+            self._restart()
+        else:
+            super()._tell_count()
 
     def _subscribe(self) -> None:
-        source = self._source()
+        source = self._source = self._named_source()
         if source.is_read:
             super()._subscribe()
         else:
@@ -120,7 +138,7 @@ class ImageTopicDisplay(TopicDisplay):
             )
 
     def _image_of(self, message: Any) -> Any:
-        transport = self._source().transport
+        transport = self._source.transport_of(message)
         if transport == COMPRESSED and not has_range(encoding_of(message)):
             return message
         return self._unpacker.image(message, transport)
@@ -128,7 +146,7 @@ class ImageTopicDisplay(TopicDisplay):
     def _frame(self, message: Any, camera: CameraModel | None) -> ImageFrame:
         if not hasattr(message, "encoding"):
             data = np.frombuffer(message.data, np.uint8)
-            if not _is_readable(data.tobytes()[:16]):
+            if not _is_readable(data[:16].tobytes()):
                 raise BadImageError(
                     phrase("The image is in no format that browsers read: '{format}'", format=message.format)
                 )
@@ -203,6 +221,9 @@ class ImageDisplay(ImageTopicDisplay):
             return
         if self.enabled and self._subscription is None:
             self._subscribe()
+            if self.last is not None:  # what came before is still shown
+                self._count = 1
+                self._tell_count()
         if before is not None and (message.width > before.width or message.height > before.height):
             self.show_again()
 

@@ -63,6 +63,9 @@ class PageFeature:
     RECEIVES: ClassVar[tuple[type, ...]] = ()
     """The messages of pages that come to `receive`; of features that are made on demand `on_demand` names them."""
 
+    BEFORE_DISPLAYS: ClassVar[bool] = False
+    """Whether a page is told of its `opening` before the displays, whose places may depend on it."""
+
     def __init__(self, viewer: FeatureHost) -> None:
         self.viewer = viewer
         self.context = viewer.context

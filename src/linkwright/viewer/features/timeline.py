@@ -56,6 +56,7 @@ class TimelineFeature(PageFeature):
     """
 
     RECEIVES: ClassVar[tuple[type, ...]] = (Play, SeekTime, StepTime, SetPlayback, GoLive)
+    BEFORE_DISPLAYS = True
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)

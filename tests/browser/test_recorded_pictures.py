@@ -1,0 +1,105 @@
+"""Where the pictures of a recording are seen, in windows of several sizes, and what is said in place of one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from io import BytesIO
+from pathlib import Path
+
+import PIL.Image
+import pytest
+from playwright.sync_api import Page
+
+from linkwright.bag import BagWriter
+from linkwright.graph import DEFAULT_QOS
+from linkwright.messages import get_message, serialize
+from tests.browser.conftest import becomes, until
+from tests.images.test_images import image
+
+pytestmark = pytest.mark.browser
+
+START, SECOND = 1_700_000_000_000_000_000, 1_000_000_000
+CompressedImage = get_message("sensor_msgs/msg/CompressedImage")
+LaserScan = get_message("sensor_msgs/msg/LaserScan")
+
+
+def recorded(path: Path, *, scans: bool) -> Path:
+    """A recording with pictures of 4x4 pixels as they are and as files, one of these cut off, and scans or none."""
+    file = BytesIO()
+    PIL.Image.new("RGB", (64, 64), (200, 30, 60)).save(file, "jpeg")
+    raw = image("rgb8", 4, 4, bytes((200, 30, 60)) * 16)
+    scan = LaserScan(angle_max=1.0, angle_increment=0.5, range_max=5.0, ranges=[1.0, 2.0, 3.0])
+    scan.header.frame_id = raw.header.frame_id = "camera"
+    topics = {
+        "/raw": raw,
+        "/front": CompressedImage(format="jpeg", data=file.getvalue()),
+        "/cut/compressed": CompressedImage(format="jpeg", data=file.getvalue()[:300]),
+        **({"/scan": scan} if scans else {}),
+    }
+    with BagWriter(path) as writer:
+        for name, message in topics.items():
+            writer.add_topic(name, message.TYPE_NAME, [DEFAULT_QOS])
+        for second in range(5):
+            for name, message in topics.items():
+                writer.write(name, START + second * SECOND, serialize(message))
+    return path
+
+
+@pytest.fixture
+def shown(start, open_page, tmp_path: Path) -> Callable[..., Page]:
+    """A function that opens the page of such a recording in a window of some size."""
+
+    def show(width: int, height: int, *, scans: bool) -> Page:
+        program = start("view", str(recorded(tmp_path / "drive", scans=scans)))
+        page = open_page(program, wait=False, size=(width, height))
+        until(page, "lw.timeline && lw.displays.some(({ drawn }) => drawn?.width === 4)")
+        return page
+
+    return show
+
+
+def place(page: Page, selector: str) -> dict[str, float]:
+    box = page.locator(selector).first.bounding_box()
+    assert box is not None
+    return dict(box)
+
+
+def boxes(page: Page) -> list[dict[str, float]]:
+    """The pictures that are seen."""
+    found = (each.bounding_box() for each in page.locator(".picture-panel").all())
+    return [dict(box) for box in found if box is not None]
+
+
+def switch(page: Page, name: str) -> None:
+    """Click on the box of a display."""
+    page.get_by_role("treeitem").filter(has_text=name).get_by_role("checkbox").first.click()
+
+
+@pytest.mark.parametrize("size", [(1280, 800), (800, 600)])
+def test_where_there_are_only_pictures_they_have_the_place_of_the_scene(shown, size):
+    page = shown(*size, scans=False)
+    becomes(lambda: place(page, ".picture-panel")["width"] >= size[0] / 2 and page.locator(".canvas-box").count(), 0)
+    page.locator(".dv-tab", has_text="3D View").dispatch_event("pointerdown")
+    page.locator(".canvas-box").wait_for()
+    page.locator(".dv-tab", has_text="raw").dispatch_event("pointerdown")
+    switch(page, "front")
+    becomes(lambda: len({box["y"] for box in boxes(page)}) == 1 and len(boxes(page)), 2)
+    left, right = sorted(boxes(page), key=lambda box: box["x"])
+    assert left["x"] + left["width"] <= right["x"], "they are beside each other"
+
+
+def test_in_a_small_window_the_picture_stands_beside_the_scene(shown):
+    page = shown(800, 600, scans=True)
+    becomes(lambda: place(page, ".canvas-box")["width"] > 400, True)
+    scene, picture = place(page, ".canvas-box"), place(page, ".picture-panel")
+    assert scene["x"] + scene["width"] <= picture["x"]
+    assert picture["width"] > 300
+    assert picture["height"] > 200
+    assert page.locator(".dv-tab[aria-selected=true]", has_text="Displays").count() == 1
+
+
+def test_in_place_of_a_picture_stands_why_there_is_none(shown):
+    page = shown(1280, 800, scans=False)
+    switch(page, "cut/compressed")
+    notice = page.locator(".picture-notice", has_text="The image cannot be read")
+    notice.get_by_text("The file of the image is cut off: its end is missing").wait_for()
