@@ -1,6 +1,6 @@
 import { Box3, DirectionalLight, Mesh, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
-import { StudioLight } from "../src/scene/studio-light";
+import { castShadows, StudioLight } from "../src/scene/studio-light";
 
 describe("the studio", () => {
   function parts(studio: StudioLight): { lamp: DirectionalLight; ground: Mesh } {
@@ -24,6 +24,12 @@ describe("the studio", () => {
       expect(right).toBeGreaterThan(Math.sqrt(3) * size / 2);
       expect(right).toBeLessThan(2 * size);
     }
+  });
+
+  it("gives a robot's shadow softer edges than that of a world has", () => {
+    const sun = new DirectionalLight();
+    castShadows(sun);
+    expect(parts(new StudioLight()).lamp.shadow.radius).toBeGreaterThan(2 * sun.shadow.radius);
   });
 
   it("has no ground while nothing stands in it", () => {

@@ -22,6 +22,8 @@ const STUDIO_SKY = 0.42;
 const STUDIO_GROUND = 0.16;
 /** Pixels of a shadow map along its side. */
 const SHADOW_PIXELS = 2048;
+/** Pixels of the map that the edge of a shadow is wide; around a robot they are small. */
+const [SHADOW_EDGE, ROBOT_SHADOW_EDGE] = [3, 8];
 /** How dark a shadow on the ground is. */
 const SHADOW = 0.35;
 /** How wide the ground is that shadows fall on, in sizes of what stands on it. */
@@ -41,7 +43,7 @@ export function castShadows(light: DirectionalLight | SpotLight): void {
   light.shadow.mapSize.set(SHADOW_PIXELS, SHADOW_PIXELS);
   light.shadow.bias = -0.0005;
   light.shadow.normalBias = 0.02;
-  light.shadow.radius = 3;
+  light.shadow.radius = SHADOW_EDGE;
 }
 
 /** Puts a sun just outside of a ball, so that the shadows in it are as fine as they can be. */
@@ -71,6 +73,7 @@ export class StudioLight {
 
   constructor() {
     castShadows(this.key);
+    this.key.shadow.radius = ROBOT_SHADOW_EDGE;
     this.ground.receiveShadow = true;
     this.root.add(studioSky(), this.key, this.key.target, this.ground);
     this.root.visible = false;
