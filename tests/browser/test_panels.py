@@ -37,7 +37,9 @@ def settled(page, *names: str) -> None:
 
 
 def close(page, name: str) -> None:
-    page.locator(".panel-tab", has_text=name).locator(".tab-close").click()
+    tab = page.locator(".panel-tab", has_text=name)
+    tab.locator(".tab-title").click()
+    tab.locator(".tab-close").click()
 
 
 def choose(page, name: str) -> None:
@@ -110,3 +112,28 @@ def test_what_the_user_opens_and_closes_is_remembered_and_saved(live, open_page,
     page.get_by_role("button", name="Panels", exact=True).click()
     page.get_by_role("menuitem", name="Reset layout").click()
     settled(page, "Displays", "Selection")
+
+
+BROKEN = (
+    '<robot name="r"><link name="a"><visual><geometry><mesh filename="file:///is/not/there.stl"/></geometry></visual>'
+    "</link></robot>"
+)
+
+
+def test_a_panel_that_is_opened_again_has_its_number(start, open_page, tmp_path: Path):
+    (tmp_path / "broken.urdf").write_text(BROKEN)
+    page = open_page(start("view", str(tmp_path / "broken.urdf")), wait=False)
+    page.get_by_role("tab", name="Diagnostics (").wait_for()
+    told = page.locator(".panel-tab", has_text="Diagnostics").inner_text()
+    close(page, "Diagnostics")
+    page.get_by_role("tab", name="Diagnostics").wait_for(state="detached")
+    choose(page, "Diagnostics")
+    page.get_by_role("tab", name=told.strip(), exact=True).wait_for()
+
+
+def test_the_cross_of_a_tab_lies_beside_its_name(live, open_page):
+    page = open_page(live(configuration(GRID)), wait=False)
+    tab = page.locator(".panel-tab", has_text="Tool Properties")
+    tab.locator(".tab-title").click()
+    cross, name = tab.locator(".tab-close").bounding_box(), tab.locator(".tab-title").bounding_box()
+    assert cross["x"] + cross["width"] <= name["x"]

@@ -33,6 +33,8 @@ export class Dock {
   private readonly frontTabs: FrontTabs;
   private readonly panels: ReadonlyMap<string, Panel>;
   private readonly tabs = new Map<string, PanelTab>();
+  /** The numbers behind titles, of panels that are closed, too. */
+  private readonly counts = new Map<PanelId, number>();
   private narrow: boolean;
 
   constructor(
@@ -97,11 +99,19 @@ export class Dock {
 
   /** A number behind a panel's title; 0 takes it away. */
   setCount(id: PanelId, count: number): void {
-    const panel = this.api.getPanel(id);
-    const text = count > 0 ? `${title(id)} (${count})` : title(id);
-    if (!panel || panel.title === text) return;
-    panel.api.setTitle(text);
-    this.frontTabs.follow();
+    this.counts.set(id, count);
+    this.retitle();
+  }
+
+  private retitle(): void {
+    const wrong = this.api.panels.filter(({ id, title }) => this.panels.has(id) && title !== this.titleOf(id));
+    for (const { id, api } of wrong) api.setTitle(this.titleOf(id));
+    if (wrong.length > 0) this.frontTabs.follow();
+  }
+
+  private titleOf(id: string): string {
+    const count = this.counts.get(id as PanelId) ?? 0;
+    return count > 0 ? `${title(id)} (${count})` : title(id);
   }
 
   /** The arrangement of the first visit. */
@@ -143,12 +153,15 @@ export class Dock {
   }
 
   private add(id: PanelId): void {
-    if (!this.isOpen(id)) addPanels(this.api, [id]);
+    if (this.isOpen(id)) return;
+    addPanels(this.api, [id]);
+    this.retitle();
   }
 
   private build(ids: readonly PanelId[]): void {
     this.api.clear();
     addPanels(this.api, this.narrow ? [...ids.filter((id) => id !== "time"), ...ids.filter((id) => id === "time")] : ids);
+    this.retitle();
     this.followLone();
     this.displayPanels.restore();
     this.widths.take();
@@ -184,7 +197,7 @@ export class Dock {
   private restore({ arrangement }: Layout): boolean {
     try {
       this.api.fromJSON(arrangement);
-      for (const panel of this.api.panels) if (this.panels.has(panel.id)) panel.api.setTitle(title(panel.id));
+      this.retitle();
       return this.isOpen("scene");
     } catch {
       // A layout of another version of the page: start over.
