@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import pytest
-from playwright.sync_api import Browser, Page, sync_playwright
+from playwright.sync_api import Browser, Page, Playwright, sync_playwright
 
 from tests.browser.live import LiveViewer, configuration
 from tests.browser.seen import what_was_seen
@@ -75,24 +75,30 @@ def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, pytest.TestR
 
 
 @contextlib.contextmanager
-def launched(*flags: str) -> Iterator[Browser]:
-    """A browser with more flags than the usual ones."""
+def launched(playwright: Playwright, *flags: str) -> Iterator[Browser]:
+    """A browser that draws in software, with more flags than the usual ones."""
     path = os.environ.get("LINKWRIGHT_CHROMIUM") or shutil.which("chromium")
     if path is None:
         pytest.fail("no Chromium: `make test` fetches one, or set LINKWRIGHT_CHROMIUM")
-    with sync_playwright() as playwright:
-        started = playwright.chromium.launch(executable_path=path, args=[*_FLAGS, *flags])
+    started = playwright.chromium.launch(executable_path=path, args=[*_FLAGS, *flags])
+    yield started
+    started.close()
+
+
+@pytest.fixture(scope="package")
+def playwright() -> Iterator[Playwright]:
+    """What drives browsers, once for all tests of this folder.
+
+    Not for the session: as long as it is there its event loop counts as running, which asyncio tests must not meet.
+    """
+    with sync_playwright() as started:
         yield started
-        started.close()
 
 
 @pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    """One browser for a module, drawing in software.
-
-    Not for the session: as long as it lives Playwright keeps an event loop running, which asyncio tests must not meet.
-    """
-    with launched() as started:
+def browser(playwright: Playwright) -> Iterator[Browser]:
+    """One browser for a module, which starts in a tenth of a second: what one leaves behind no other module meets."""
+    with launched(playwright) as started:
         yield started
 
 

@@ -15,14 +15,17 @@ import os
 import re
 import shutil
 import subprocess
-from collections.abc import Callable, Iterator
+import threading
+from collections.abc import Callable, Coroutine, Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import aiohttp
 from PIL import Image
 
 from tests.waiting import SECONDS, wait_until
+
+Result = TypeVar("Result")
 
 _PREFERENCES = {
     "app.update.enabled": False,
@@ -99,8 +102,11 @@ class Firefox:
     def __init__(self, address: str) -> None:
         self.errors: list[str] = []
         self._number = 0
+        # In a thread of its own: in the test's, the loop of Playwright counts as running.
         self._loop = asyncio.new_event_loop()
-        self._socket = self._loop.run_until_complete(self._connect(address))
+        self._thread = threading.Thread(target=self._loop.run_forever, daemon=True)
+        self._thread.start()
+        self._socket = self._run(self._connect(address))
         self.call("session.new", capabilities={})
         self._tab = self.call("browsingContext.getTree")["contexts"][0]["context"]
         self.call("session.subscribe", events=["log.entryAdded"])
@@ -112,7 +118,10 @@ class Firefox:
 
     def call(self, method: str, **parameters: Any) -> dict[str, Any]:
         """Send a command and give its result; errors of the page that come meanwhile are kept."""
-        return self._loop.run_until_complete(asyncio.wait_for(self._call(method, parameters), SECONDS))
+        return self._run(self._call(method, parameters))
+
+    def _run(self, coroutine: Coroutine[Any, Any, Result]) -> Result:
+        return asyncio.run_coroutine_threadsafe(asyncio.wait_for(coroutine, SECONDS), self._loop).result()
 
     async def _call(self, method: str, parameters: dict[str, Any]) -> dict[str, Any]:
         self._number += 1
@@ -174,6 +183,8 @@ class Firefox:
     def close(self) -> None:
         """Close the browser."""
         self.call("browser.close")
-        self._loop.run_until_complete(self._socket.close())
-        self._loop.run_until_complete(self._session.close())
+        self._run(self._socket.close())
+        self._run(self._session.close())
+        self._loop.call_soon_threadsafe(self._loop.stop)
+        self._thread.join(SECONDS)
         self._loop.close()

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from playwright.sync_api import Browser, Page
+from playwright.sync_api import Browser, Page, Playwright
 
 from linkwright.messages import get_message
 from tests.browser.conftest import launched, until
@@ -24,12 +24,12 @@ STRING = "std_msgs/msg/String"
 
 
 @pytest.fixture(scope="module")
-def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
+def browser(playwright: Playwright, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
     """A browser that says yes to the question for the microphone, which hears a tone."""
     path = tmp_path_factory.mktemp("sound") / "tone.wav"
     _write_tone(path)
     fake = ("--use-fake-ui-for-media-stream", "--use-fake-device-for-media-stream")
-    with launched(*fake, f"--use-file-for-fake-audio-capture={path}") as started:
+    with launched(playwright, *fake, f"--use-file-for-fake-audio-capture={path}") as started:
         yield started
 
 

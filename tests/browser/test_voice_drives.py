@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from playwright.sync_api import Browser, Locator, Page
+from playwright.sync_api import Browser, Locator, Page, Playwright
 
 from linkwright.speech.sound.wav import write_wav
 from tests.browser.conftest import Start, launched, state, until
@@ -61,10 +61,10 @@ def microphone(tmp_path_factory: pytest.TempPathFactory) -> Microphone:
 
 
 @pytest.fixture(scope="module")
-def browser(microphone: Microphone) -> Iterator[Browser]:
+def browser(playwright: Playwright, microphone: Microphone) -> Iterator[Browser]:
     """A browser that says yes to the question for the microphone, and hears its file."""
     fake = ("--use-fake-ui-for-media-stream", "--use-fake-device-for-media-stream")
-    with launched(*fake, f"--use-file-for-fake-audio-capture={microphone._path}") as started:
+    with launched(playwright, *fake, f"--use-file-for-fake-audio-capture={microphone._path}") as started:
         yield started
 
 
