@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from linkwright.cli.lookup import absolute_or_given, is_hidden, unknown
+from linkwright.cli.lookup import absolute_or_given, unknown
 from linkwright.diagnostics import Diagnostic, LinkwrightError, joined, phrase
 
 if TYPE_CHECKING:
@@ -69,7 +69,7 @@ async def call(
 
 def node_names(session: Session, *, hidden: bool = False) -> list[str]:
     """Full names of the nodes, sorted, each as often as there are nodes of it."""
-    from linkwright.graph.names.rules import join
+    from linkwright.graph.names.rules import is_hidden, join
 
     found = (join(namespace, name) for name, namespace in session.node.get_node_names_and_namespaces())
     return sorted(name for name in found if hidden or not is_hidden(name))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import os
 import sys
 import time
 from pathlib import Path
@@ -14,6 +13,7 @@ from linkwright.cli.numbers import positive_int, unsigned_int
 from linkwright.diagnostics import counted, display_path, phrase
 from linkwright.diagnostics.translation import localized
 from linkwright.interruption import INTERRUPTED
+from linkwright.processors import usable_processors
 
 if TYPE_CHECKING:
     from linkwright.vision.datasets.making import Studio
@@ -126,7 +126,7 @@ def run(arguments: argparse.Namespace) -> int:
         path,
         arguments.pictures,
         formats=arguments.format,
-        workers=arguments.workers or _processors(),
+        workers=arguments.workers or usable_processors(),
         force=arguments.force,
         append=arguments.append,
         progress=progress.tell,
@@ -141,13 +141,6 @@ def run(arguments: argparse.Namespace) -> int:
                              done=made.added, count=arguments.pictures)))  # fmt: skip
         return INTERRUPTED
     return FINE
-
-
-def _processors() -> int:
-    """How many processors this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
 
 
 class _Progress:

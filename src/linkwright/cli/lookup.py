@@ -17,13 +17,10 @@ NamesAndTypes = Sequence[tuple[str, Sequence[str]]]
 _POLL = 0.1
 
 
-def is_hidden(name: str) -> bool:
-    """Whether a name has a part that begins with an underscore (ROS hides such topics, services and nodes)."""
-    return any(part.startswith("_") for part in name.split("/"))
-
-
 def visible(found: NamesAndTypes, *, hidden: bool) -> list[tuple[str, list[str]]]:
     """Names with their types, sorted; those hidden only when they are asked for."""
+    from linkwright.graph.names.rules import is_hidden
+
     return [(name, list(types)) for name, types in sorted(found) if hidden or not is_hidden(name)]
 
 

@@ -17,6 +17,7 @@ from linkwright.cli.progress import ProgressLine
 from linkwright.diagnostics import Diagnostic, LinkwrightError, counted, display_path, phrase
 from linkwright.diagnostics.translation import localized
 from linkwright.interruption import INTERRUPTED
+from linkwright.processors import usable_processors
 
 if TYPE_CHECKING:
     from linkwright.sweep.scenario import Scenario
@@ -93,15 +94,8 @@ def _runner(arguments: argparse.Namespace, path: Path) -> Runner:
         return lambda runs, report: run_on_ray(path, runs, arguments.ray, report)
     from linkwright.sweep.workers import run_locally
 
-    workers = arguments.workers or _processors()
+    workers = arguments.workers or usable_processors()
     return lambda runs, report: run_locally(path, runs, workers, report)
-
-
-def _processors() -> int:
-    """How many processors this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
 
 
 def _rerun(scenario: Scenario, row: int) -> int:

@@ -28,7 +28,7 @@ def triangulated(points: Sequence[Point]) -> list[tuple[int, int, int]]:
     at = tried = 0
     while len(ring) >= 3 and tried < len(ring):
         a, b, c = (ring[(at + step) % len(ring)] for step in range(3))
-        side = _turn(points[a], points[b], points[c])
+        side = turn(points[a], points[b], points[c])
         if side > 0 and not any(
             _inside(points[each], points[a], points[b], points[c]) for each in ring if each not in (a, b, c)
         ):
@@ -68,10 +68,10 @@ def _twice_area(points: Sequence[Point], ring: Sequence[int]) -> float:
     )
 
 
-def _turn(a: Point, b: Point, c: Point) -> float:
-    """Twice the area of a triangle, positive counterclockwise."""
+def turn(a: Point, b: Point, c: Point) -> float:
+    """Twice the area of a triangle, positive where its corners go round counterclockwise."""
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
 
 def _inside(point: Point, a: Point, b: Point, c: Point) -> bool:
-    return _turn(a, b, point) >= 0 and _turn(b, c, point) >= 0 and _turn(c, a, point) >= 0
+    return turn(a, b, point) >= 0 and turn(b, c, point) >= 0 and turn(c, a, point) >= 0

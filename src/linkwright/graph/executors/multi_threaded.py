@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import threading
 import time
 import warnings
@@ -19,6 +18,7 @@ from linkwright.graph.faults import (
     ShutdownException,
     TimeoutException,
 )
+from linkwright.processors import usable_processors
 
 _NANOSECONDS_PER_SECOND = 1_000_000_000
 
@@ -38,7 +38,7 @@ class MultiThreadedExecutor(SpinningExecutor):
     def __init__(self, num_threads: int | None = None, *, context: Context | None = None) -> None:
         super().__init__(context=context)
         if num_threads is None:
-            num_threads = _processors()
+            num_threads = usable_processors()
         if num_threads == 1:
             warnings.warn(
                 "MultiThreadedExecutor is used with a single thread.\nUse the SingleThreadedExecutor instead.",
@@ -117,12 +117,6 @@ class MultiThreadedExecutor(SpinningExecutor):
     def _admit(self, item: Any, *, begin: bool = True) -> bool:
         with self._admission:
             return super()._admit(item, begin=begin)
-
-
-def _processors() -> int:
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 2
 
 
 class Workers:

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 from linkwright.diagnostics import Diagnostic, Note, Span, phrase
 from linkwright.geometry.placement import Placement, placement
+from linkwright.geometry.polygon import turn
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
 from linkwright.lint.rules.names_wheels import wheels
@@ -199,16 +200,12 @@ def _hull(points: Sequence[Point]) -> list[Point]:
     def half(sequence: Iterable[Point]) -> list[Point]:
         chain: list[Point] = []
         for point in sequence:
-            while len(chain) > 1 and _turn(chain[-2], chain[-1], point) <= 1e-9:
+            while len(chain) > 1 and turn(chain[-2], chain[-1], point) <= 1e-9:
                 chain.pop()
             chain.append(point)
         return chain[:-1]
 
     return half(ordered) + half(reversed(ordered))
-
-
-def _turn(a: Point, b: Point, c: Point) -> float:
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
 
 def _distance_outside(point: Point, corners: Sequence[Point]) -> float:
@@ -217,7 +214,7 @@ def _distance_outside(point: Point, corners: Sequence[Point]) -> float:
     for start, end in zip(corners, [*corners[1:], corners[0]], strict=True):
         edge = hypot(end[0] - start[0], end[1] - start[1])
         if edge > 0:
-            farthest = max(farthest, -_turn(start, end, point) / edge)
+            farthest = max(farthest, -turn(start, end, point) / edge)
     return farthest
 
 

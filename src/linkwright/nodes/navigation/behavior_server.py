@@ -152,12 +152,7 @@ class BehaviorNode(ManagedNode):
         def begin(goal: ServerGoalHandle) -> None:
             self._start(self._servers[plugin], name, goal.request)
 
-        return GoalServer(self, action, plugin, begin, may_begin=lambda _goal: self._may_begin())
-
-    def _may_begin(self) -> bool:
-        if not self.is_active:
-            self.get_logger().warning("Action server is inactive. Rejecting the goal.")
-        return self.is_active
+        return GoalServer(self, action, plugin, begin)
 
     def _start(self, server: GoalServer, name: str, goal: Any) -> None:
         self.get_logger().info(f"Running {name}")

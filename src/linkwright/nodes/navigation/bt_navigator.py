@@ -101,8 +101,6 @@ class NavigatorNode(StepNode):
         )
 
     def _may_begin(self, which: str, goal: Any) -> bool:
-        if not self.may_begin():
-            return False
         poses = [goal.pose] if which == "pose" else list(goal.poses)
         if not poses:
             self.get_logger().error("there are no poses to go to: the goal is rejected")

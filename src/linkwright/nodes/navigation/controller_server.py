@@ -105,9 +105,7 @@ class ControllerNode(ManagedNode):
         self.keep(self.create_subscription(odometry, self._value("odom_topic"), self._on_odometry, _DEPTH))
         self.keep(self.create_subscription(limit, self._value("speed_limit_topic"), self._on_speed_limit, _DEPTH))
         self._output = VelocityTopic(self, "cmd_vel", self._stamped)
-        self._goals = self.keep(
-            GoalServer(self, "nav2_msgs/action/FollowPath", "follow_path", self._start, may_begin=self._may_begin)
-        )
+        self._goals = self.keep(GoalServer(self, "nav2_msgs/action/FollowPath", "follow_path", self._start))
 
     def activate(self) -> None:
         """Take goals."""
@@ -132,11 +130,6 @@ class ControllerNode(ManagedNode):
             self.costmap.trigger_cleanup()
 
     # --- goals --------------------------------------------------------------------------------------------------------
-
-    def _may_begin(self, _goal: Any) -> bool:
-        if not self.is_active:
-            self.get_logger().warning("Action server is inactive. Rejecting the goal.")
-        return self.is_active
 
     def _start(self, goal: ServerGoalHandle) -> None:
         """Begin with a goal; a robot that drives goes on driving."""

@@ -5,20 +5,21 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from linkwright.graph import ActionServer, Node
+from linkwright.graph import ActionServer
 from linkwright.graph.actions.goal import CancelResponse, GoalEvent, GoalResponse, ServerGoalHandle
 from linkwright.messages import get_action
+from linkwright.nodes.navigation.managed import ManagedNode
 
 
 class GoalServer:
-    """The server of an action.
+    """The server of an action of a managed node, which refuses goals while the node is not active.
 
     Args:
         node: whose it is.
         kind: type of the action.
         name: of the action.
         begin: called with each goal once it is accepted; the one before, if there was one, was aborted.
-        may_begin: asked whether a goal is accepted.
+        may_begin: asked whether a goal is accepted; every goal is when it is left out.
 
     Who works on the goal looks now and then whether it `is_canceled`, and then calls `canceled`.
 
@@ -28,22 +29,24 @@ class GoalServer:
 
     def __init__(
         self,
-        node: Node,
+        node: ManagedNode,
         kind: str,
         name: str,
         begin: Callable[[ServerGoalHandle], None],
         *,
-        may_begin: Callable[[Any], bool],
+        may_begin: Callable[[Any], bool] | None = None,
     ) -> None:
         self.current: ServerGoalHandle | None = None
         self._type = get_action(kind)
         self._begin = begin
+        self._may_begin = may_begin
+        self._node = node
         self._server = ActionServer(
             node,
             self._type,
             name,
             _never,
-            goal_callback=lambda goal: GoalResponse.ACCEPT if may_begin(goal) else GoalResponse.REJECT,
+            goal_callback=self._judge,
             handle_accepted_callback=self._accepted,
             cancel_callback=lambda _goal: CancelResponse.ACCEPT,
         )
@@ -99,6 +102,13 @@ class GoalServer:
     def _leave(self) -> ServerGoalHandle | None:
         goal, self.current = self.current, None
         return goal if goal is not None and goal.is_active else None
+
+    def _judge(self, goal: Any) -> GoalResponse:
+        if not self._node.is_active:
+            self._node.get_logger().warning("Action server is inactive. Rejecting the goal.")
+            return GoalResponse.REJECT
+        accepts = self._may_begin is None or self._may_begin(goal)
+        return GoalResponse.ACCEPT if accepts else GoalResponse.REJECT
 
     def _accepted(self, goal: ServerGoalHandle) -> None:
         self.abort("UNKNOWN", "another goal took its place")

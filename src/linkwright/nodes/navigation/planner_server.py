@@ -150,12 +150,7 @@ class PlannerNode(ManagedNode):
 
             self._work[name] = SlicedWork(self, work(goal.request), lambda: not server.is_canceled, done)
 
-        server = self.keep(GoalServer(self, f"nav2_msgs/action/{kind}", name, begin, may_begin=self._may_begin))
-
-    def _may_begin(self, _goal: Any) -> bool:
-        if not self.is_active:
-            self.get_logger().warning("Action server is inactive. Rejecting the goal.")
-        return self.is_active
+        server = self.keep(GoalServer(self, f"nav2_msgs/action/{kind}", name, begin))
 
     def _finish(self, server: GoalServer, poses: Any, error: Exception | None, began_ns: int) -> None:
         if isinstance(error, _RefusedError):

@@ -56,9 +56,7 @@ class SmootherNode(ManagedNode):
         topic = self.get_parameter("costmap_topic").value
         self.keep(self.create_subscription(raw, topic, self._on_costmap, DESCRIPTION_QOS))
         self._output = self.keep(self.create_publisher(path, "plan_smoothed", 1))
-        self._goals = self.keep(
-            GoalServer(self, "nav2_msgs/action/SmoothPath", "smooth_path", self._smooth, may_begin=self._may_begin)
-        )
+        self._goals = self.keep(GoalServer(self, "nav2_msgs/action/SmoothPath", "smooth_path", self._smooth))
 
     def _make(self, name: str) -> None:
         kind = type_of(self, name, _USUAL)
@@ -70,11 +68,6 @@ class SmootherNode(ManagedNode):
 
     def _on_costmap(self, message: Any) -> None:
         self._costmap = costmap_of(message)
-
-    def _may_begin(self, _goal: Any) -> bool:
-        if not self.is_active:
-            self.get_logger().warning("Action server is inactive. Rejecting the goal.")
-        return self.is_active
 
     def _smooth(self, goal: ServerGoalHandle) -> None:
         request, began_ns = goal.request, self.get_clock().now().nanoseconds

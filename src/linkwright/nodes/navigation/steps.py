@@ -69,12 +69,6 @@ class StepNode(ManagedNode):
         self._stop()
         self._server = None
 
-    def may_begin(self) -> bool:
-        """Whether goals are taken; it is told if they are not."""
-        if not self.is_active:
-            self.get_logger().warning("Action server is inactive. Rejecting the goal.")
-        return self.is_active
-
     def asked(self, client: ActionClient, goal: Any, complaint: str) -> Step:
         """The result of a goal of another server; it is canceled when this is closed.
 

@@ -47,9 +47,7 @@ class WaypointNode(StepNode):
             self.get_logger().warning(f"{task}: there is no {kind} here; nothing is done at waypoints")
         self._navigation = self.keep(ActionClient(self, "nav2_msgs/action/NavigateToPose", "navigate_to_pose"))
         kind = "nav2_msgs/action/FollowWaypoints"
-        self._waypoints = self.keep(
-            GoalServer(self, kind, "follow_waypoints", self._start, may_begin=lambda _goal: self.may_begin())
-        )
+        self._waypoints = self.keep(GoalServer(self, kind, "follow_waypoints", self._start))
 
     def tell_progress(self, server: GoalServer) -> None:
         """Publish the feedback of the goal."""

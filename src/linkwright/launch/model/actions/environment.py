@@ -17,7 +17,7 @@ from linkwright.launch.model.actions.named import (
 from linkwright.launch.model.context import LaunchContext
 from linkwright.launch.model.markup.entity import parse_texts
 from linkwright.launch.model.markup.expose import expose_action
-from linkwright.launch.model.markup.values import normalize_typed_substitution, perform_typed_substitution
+from linkwright.launch.model.markup.values import normalize_typed_substitution, perform_typed_substitution, read_boolean
 from linkwright.launch.model.substitution import (
     SomeSubstitutionsType,
     Substitution,
@@ -67,7 +67,7 @@ class AppendEnvironmentVariable(AssigningAction):
         **kwargs: Any,
     ) -> None:
         super().__init__(name, value, **kwargs)
-        self._prepend = normalize_typed_substitution(_plain_truth(prepend), bool)
+        self._prepend = normalize_typed_substitution(read_boolean(prepend), bool)
         self._separator = normalize_to_list_of_substitutions(separator)
 
     @classmethod
@@ -95,13 +95,6 @@ class AppendEnvironmentVariable(AssigningAction):
         parts = [context.environment[name]] if name in context.environment else []
         parts.insert(0 if perform_typed_substitution(context, self._prepend, bool) else len(parts), value)
         context.environment[name] = perform_substitutions(context, self._separator).join(parts)
-
-
-def _plain_truth(value: Any) -> Any:
-    """A text that says true or false as that; anything else as it is."""
-    from linkwright.launch.model.markup.values import coerce_to_type
-
-    return coerce_to_type(value, bool) if isinstance(value, str) else value
 
 
 @expose_action("rep_env")

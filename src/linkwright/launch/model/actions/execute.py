@@ -17,7 +17,7 @@ from linkwright.launch.model.conditions import InvalidConditionExpressionError, 
 from linkwright.launch.model.context import LaunchContext
 from linkwright.launch.model.entity import LaunchDescriptionEntity, SomeEntitiesType, as_entities
 from linkwright.launch.model.markup.expose import expose_action
-from linkwright.launch.model.markup.values import normalize_typed_substitution, perform_typed_substitution
+from linkwright.launch.model.markup.values import normalize_typed_substitution, perform_typed_substitution, read_boolean
 from linkwright.launch.model.plans import ProcessPlan
 from linkwright.launch.model.substitution import (
     SomeSubstitutionsType,
@@ -97,7 +97,7 @@ class ExecuteLocal(Action):
             self._after_exit = on_exit
         else:
             self._on_exit = as_entities(on_exit)
-        self._respawn = normalize_typed_substitution(_plain(respawn), bool)
+        self._respawn = normalize_typed_substitution(read_boolean(respawn), bool)
         self._respawn_delay = respawn_delay
         self._respawn_max_retries = respawn_max_retries
         self._split_arguments = split_arguments
@@ -420,10 +420,3 @@ def _timeout(given: Any, name: str) -> list[Substitution]:
     if given is None:
         return [LaunchConfiguration(name, default=_DEFAULT_TIMEOUT)]
     return normalize_to_list_of_substitutions(str(given) if isinstance(given, (int, float)) else given)
-
-
-def _plain(value: Any) -> Any:
-    """A text that says true or false as that; anything else as it is."""
-    from linkwright.launch.model.markup.values import coerce_to_type
-
-    return coerce_to_type(value, bool) if isinstance(value, str) else value

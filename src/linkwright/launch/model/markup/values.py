@@ -200,6 +200,15 @@ def is_normalized_substitution(value: Any) -> bool:
     return isinstance(value, list) and bool(value) and all(isinstance(item, Substitution) for item in value)
 
 
+def read_boolean(value: Any) -> Any:
+    """The boolean that a text stands for; what is no text, such as substitutions, as it is.
+
+    Raises:
+        ValueError: the text is no boolean.
+    """
+    return coerce_to_type(value, bool) if isinstance(value, str) else value
+
+
 def normalize_typed_substitution(value: Any, data_type: Any) -> Any:
     """A value, or what will be one, in one form: substitutions as lists of them, lists item by item.
 
