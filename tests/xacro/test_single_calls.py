@@ -14,8 +14,8 @@ import pytest
 from linkwright.diagnostics import LinkwrightError
 from linkwright.xacro import expand, sandbox
 from linkwright.xacro.bounded import keys
-from linkwright.xacro.calling import call
 from linkwright.xacro.faults import Fault
+from linkwright.xacro.function_calls import call
 from linkwright.xacro.limits import Budget, Limits
 from linkwright.xacro.refusal import RefusalError
 from linkwright.xacro.symbols import MATHEMATICS, tokenize

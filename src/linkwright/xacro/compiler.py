@@ -16,8 +16,8 @@ from typing import Any
 from linkwright.diagnostics import Phrase, foreign, phrase
 from linkwright.xacro import sandbox
 from linkwright.xacro.bounded import keys
-from linkwright.xacro.calling import call, cost, made
 from linkwright.xacro.faults import Fault
+from linkwright.xacro.function_calls import call, cost, made
 from linkwright.xacro.functions import Function, bind_parameters
 from linkwright.xacro.refusal import RefusalError
 from linkwright.xacro.scope import Environment

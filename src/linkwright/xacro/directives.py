@@ -7,10 +7,10 @@ from collections.abc import Mapping
 from typing import Any
 
 from linkwright.diagnostics import did_you_mean, phrase, term
-from linkwright.xacro.calls import call_dynamically, define_macro
 from linkwright.xacro.expander import Container, Directive, Expander, Site
 from linkwright.xacro.includes import include
 from linkwright.xacro.literals import truth
+from linkwright.xacro.macro_calls import call_dynamically, define_macro
 from linkwright.xacro.properties import define_property
 from linkwright.xacro.tags import check_attributes
 from linkwright.xmltree import Element

@@ -13,7 +13,7 @@ from types import GeneratorType
 from typing import Any
 
 from linkwright.diagnostics import foreign, phrase
-from linkwright.xacro.compiled import TextCompiler
+from linkwright.xacro.compile_cache import TextCompiler
 from linkwright.xacro.compiler import FAILURES, Closure, Compiler, failure
 from linkwright.xacro.faults import Fault
 from linkwright.xacro.scope import Scope

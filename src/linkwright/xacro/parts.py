@@ -15,13 +15,13 @@ import re
 from collections.abc import Mapping
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError
-from linkwright.xacro.calls import call_macro
 from linkwright.xacro.directives import DIRECTIVES
 from linkwright.xacro.expander import Directive, Expander, Site, is_final
 from linkwright.xacro.expansion import Expansion
 from linkwright.xacro.faults import Fault
 from linkwright.xacro.inputs import Inputs, main_document
 from linkwright.xacro.limits import room_for
+from linkwright.xacro.macro_calls import call_macro
 from linkwright.xacro.macros import MacroTable
 from linkwright.xacro.plan import PREFIX, plan_of
 from linkwright.xacro.scope import Scope

@@ -7,11 +7,11 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from linkwright.diagnostics import LinkwrightError, Span
-from linkwright.xacro.calls import call_macro
 from linkwright.xacro.directives import DIRECTIVES
 from linkwright.xacro.expander import Directive, Expander, Site
 from linkwright.xacro.faults import Fault, attribute_part
 from linkwright.xacro.literals import literal
+from linkwright.xacro.macro_calls import call_macro
 from linkwright.xacro.macros import Parameter, parse_parameters
 from linkwright.xacro.origin import Frame
 from linkwright.xacro.references import Reference, Value, references, shown, written_attribute

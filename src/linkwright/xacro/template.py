@@ -11,7 +11,7 @@ from typing import Any
 
 from linkwright.diagnostics import foreign, phrase
 from linkwright.xacro import sandbox
-from linkwright.xacro.compiled import TextCompiler
+from linkwright.xacro.compile_cache import TextCompiler
 from linkwright.xacro.expression import Expression, compile_expression
 from linkwright.xacro.faults import Fault
 from linkwright.xacro.lexer import Token, TokenKind, tokenize

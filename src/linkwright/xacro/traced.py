@@ -10,10 +10,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from linkwright.xacro.calls import call_macro
 from linkwright.xacro.expander import Directive, Expander
 from linkwright.xacro.inputs import Inputs, main_document
 from linkwright.xacro.limits import room_for
+from linkwright.xacro.macro_calls import call_macro
 from linkwright.xacro.session import Session
 from linkwright.xmltree import Document, Element, Node, Text
 

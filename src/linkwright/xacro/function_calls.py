@@ -1,4 +1,4 @@
-"""Calling what an expression calls, and paying for it.
+"""Functions that expressions call: calling them, and the steps that they cost.
 
 A function costs what it goes through: Python's own run through a long list much faster than an expression could, but
 not for nothing, and an expression may call them as often as it likes.
