@@ -25,7 +25,13 @@ _BARE_ATTRIBUTE = re.compile(r"([^\s=/>\"'<]+)\s*$")
 _UNQUOTED = re.compile(r"([^\s=/>\"'<]+)\s*=\s*$")
 _QUOTE_LEFT_OPEN = re.compile(r"""([^\s=/>"'<]+)\s*=\s*(["'])[^"'<>]*\s[^\s=/>"'<]+\s*=\s*\2$""")
 """A value that ends in what looks like the next attribute: name="a type=" and so on."""
+_LONE_AMPERSAND = re.compile(r"&[^\s;&<>\"']*$")
+_DASHES_IN_COMMENT = re.compile(r"<!--(?:(?!-->).)*--$", re.DOTALL)
 _NAME = re.compile(r"[^\s=/>\"'&;<]+")
+
+_CURVED_QUOTES = tuple("\u201c\u201d\u2018\u2019\u201e")
+_AS_FAR_BACK = 200
+"""Characters before a mistake that are looked at."""
 
 _ADDRESSES = {"xacro": "http://www.ros.org/wiki/xacro", "xi": "http://www.w3.org/2001/XInclude"}
 """Of the prefixes that descriptions use."""
@@ -188,79 +194,131 @@ class _Fault:
         begin = len(self._text) - len(self._text.lstrip())
         return self._diagnostic("XML206", phrase("this is not XML"), at=begin, hint=hint)
 
-    def _unfinished_merge(self, start: int) -> Diagnostic:
+    # --- tokens that are not well-formed: each of the usual mistakes, where it fits -----------------------------------
+
+    def _invalid_token(self) -> Diagnostic:
+        for usual_mistake in (
+            self._unfinished_merge,
+            self._forbidden_character,
+            self._no_markup,
+            self._lone_ampersand,
+            self._dashes_in_comment,
+            self._lone_less_than,
+            self._unquoted_value,
+            self._broken_by_entities,
+            self._less_than_in_tag,
+            self._unclosed_quote,
+            self._missing_blank,
+            self._attribute_without_value,
+        ):
+            found = usual_mistake()
+            if found is not None:
+                return found
+        character = self._character
+        if not character:
+            return self._diagnostic("XML206", phrase("the file ends early"))
+        return self._diagnostic("XML206", phrase("{character} is not expected here", character=repr(character)))
+
+    @property
+    def _character(self) -> str:
+        """The character that expat stopped at; empty at the end."""
+        return self._text[self._offset : self._offset + 1]
+
+    @property
+    def _before(self) -> str:
+        """The text right before it."""
+        return self._text[max(0, self._offset - _AS_FAR_BACK) : self._offset]
+
+    def _unfinished_merge(self) -> Diagnostic | None:
+        line = self._text.rfind("\n", 0, self._offset) + 1
+        if not self._text.startswith(_MERGE_MARK, line):
+            return None
         return self._diagnostic(
             "XML206",
             phrase("a merge of two versions was left unfinished here"),
             len(_MERGE_MARK.rstrip()),
-            at=start,
+            at=line,
             hint=phrase("keep one of the two, and remove the lines with '<<<<<<<', '=======' and '>>>>>>>'"),
         )
 
-    def _invalid_token(self) -> Diagnostic:
-        text, at = self._text, self._offset
-        line = text.rfind("\n", 0, at) + 1
-        if text.startswith(_MERGE_MARK, line):
-            return self._unfinished_merge(line)
-        character = text[at : at + 1]
-        before = text[max(0, at - 200) : at]
-        if character and not character.isprintable() and character not in "\t\r\n":
-            return self._diagnostic(
-                "XML206", phrase("the character U+{ord:04X} is not allowed in XML", ord=ord(character))
-            )
-        if character != "<" and "<" not in text[:at]:
-            return self._no_xml()
-        ampersand = re.search(r"&[^\s;&<>\"']*$", before)
-        if ampersand:
-            start = at - len(ampersand[0])
-            hint = _AND_HINT if text[start : start + 2] == "&&" else _AMPERSAND_HINT
-            return self._diagnostic("XML206", phrase("'&' does not begin an entity"), at=start, hint=hint)
-        if re.search(r"<!--(?:(?!-->).)*--$", before, re.DOTALL):
-            message = phrase("'--' is not allowed inside a comment")
-            return self._diagnostic("XML206", message, 2, at=at - 2, hint=phrase("use other characters, such as '=='"))
-        if before.endswith("<"):
-            return self._diagnostic(
-                "XML206", phrase("'<' does not begin a tag"), at=at - 1, hint=phrase("write '&lt;'")
-            )
-        if unquoted := _UNQUOTED.search(before):
-            name = unquoted[1]
-            value = _NAME.match(text, at)
-            curved = character in "\u201c\u201d\u2018\u2019\u201e"
-            hint = (
-                phrase('write {name}="...", with straight quotes', name=name)
-                if curved
-                else phrase('write {name}="..."', name=name)
-            )
-            message = phrase("the value of '{name}' is not in quotes", name=name)
-            return self._diagnostic("XML206", message, len(value[0]) if value else 1, hint=hint)
-        if character == "<" and "<!ENTITY" in text and before.rstrip().endswith(">"):
-            hint = phrase("look at the entities that the document declares")
-            return self._diagnostic(
-                "XML206", phrase("this is not well-formed once its entities are expanded"), hint=hint
-            )
-        if character == "<":
-            return self._diagnostic("XML206", phrase("'<' is not allowed inside a tag"), hint=_LESS_HINT)
-        if before[-1:] in ('"', "'") and (open_quote := _QUOTE_LEFT_OPEN.search(before)):
-            start = at - len(open_quote[0])
-            message = phrase("the quotes around the value of '{open_quote}' are not closed", open_quote=open_quote[1])
-            return self._diagnostic(
-                "XML206", message, len(open_quote[1]), at=start, hint=phrase("write a quote where it ends")
-            )
-        if before[-1:] in ('"', "'") and _NAME.match(character):
-            hint = phrase("write a blank here, or look for a missing quote before it")
-            return self._diagnostic("XML206", phrase("a blank is missing between two attributes"), hint=hint)
-        if bare := _BARE_ATTRIBUTE.search(before):
-            at -= len(bare[0])
-            message = phrase("the attribute '{bare}' has no value", bare=bare[1])
-            return self._diagnostic(
-                "XML206", message, len(bare[1]), at=at, hint=phrase('write {bare}="..."', bare=bare[1])
-            )
-        return self._diagnostic(
-            "XML206",
-            phrase("{character} is not expected here", character=repr(character))
-            if character
-            else phrase("the file ends early"),
+    def _forbidden_character(self) -> Diagnostic | None:
+        character = self._character
+        if not character or character.isprintable() or character in "\t\r\n":
+            return None
+        return self._diagnostic("XML206", phrase("the character U+{ord:04X} is not allowed in XML", ord=ord(character)))
+
+    def _no_markup(self) -> Diagnostic | None:
+        return None if self._character == "<" or "<" in self._text[: self._offset] else self._no_xml()
+
+    def _lone_ampersand(self) -> Diagnostic | None:
+        found = _LONE_AMPERSAND.search(self._before)
+        if found is None:
+            return None
+        start = self._offset - len(found[0])
+        hint = _AND_HINT if self._text[start : start + 2] == "&&" else _AMPERSAND_HINT
+        return self._diagnostic("XML206", phrase("'&' does not begin an entity"), at=start, hint=hint)
+
+    def _dashes_in_comment(self) -> Diagnostic | None:
+        if not _DASHES_IN_COMMENT.search(self._before):
+            return None
+        message = phrase("'--' is not allowed inside a comment")
+        hint = phrase("use other characters, such as '=='")
+        return self._diagnostic("XML206", message, 2, at=self._offset - 2, hint=hint)
+
+    def _lone_less_than(self) -> Diagnostic | None:
+        if not self._before.endswith("<"):
+            return None
+        message = phrase("'<' does not begin a tag")
+        return self._diagnostic("XML206", message, at=self._offset - 1, hint=phrase("write '&lt;'"))
+
+    def _unquoted_value(self) -> Diagnostic | None:
+        unquoted = _UNQUOTED.search(self._before)
+        if unquoted is None:
+            return None
+        name = unquoted[1]
+        value = _NAME.match(self._text, self._offset)
+        hint = (
+            phrase('write {name}="...", with straight quotes', name=name)
+            if self._character in _CURVED_QUOTES
+            else phrase('write {name}="..."', name=name)
         )
+        message = phrase("the value of '{name}' is not in quotes", name=name)
+        return self._diagnostic("XML206", message, len(value[0]) if value else 1, hint=hint)
+
+    def _broken_by_entities(self) -> Diagnostic | None:
+        if self._character != "<" or "<!ENTITY" not in self._text or not self._before.rstrip().endswith(">"):
+            return None
+        hint = phrase("look at the entities that the document declares")
+        return self._diagnostic("XML206", phrase("this is not well-formed once its entities are expanded"), hint=hint)
+
+    def _less_than_in_tag(self) -> Diagnostic | None:
+        if self._character != "<":
+            return None
+        return self._diagnostic("XML206", phrase("'<' is not allowed inside a tag"), hint=_LESS_HINT)
+
+    def _unclosed_quote(self) -> Diagnostic | None:
+        found = _QUOTE_LEFT_OPEN.search(self._before)
+        if found is None:
+            return None
+        message = phrase("the quotes around the value of '{open_quote}' are not closed", open_quote=found[1])
+        start, hint = self._offset - len(found[0]), phrase("write a quote where it ends")
+        return self._diagnostic("XML206", message, len(found[1]), at=start, hint=hint)
+
+    def _missing_blank(self) -> Diagnostic | None:
+        if not self._before.endswith(('"', "'")) or not _NAME.match(self._character):
+            return None
+        hint = phrase("write a blank here, or look for a missing quote before it")
+        return self._diagnostic("XML206", phrase("a blank is missing between two attributes"), hint=hint)
+
+    def _attribute_without_value(self) -> Diagnostic | None:
+        bare = _BARE_ATTRIBUTE.search(self._before)
+        if bare is None:
+            return None
+        message = phrase("the attribute '{bare}' has no value", bare=bare[1])
+        hint = phrase('write {bare}="..."', bare=bare[1])
+        return self._diagnostic("XML206", message, len(bare[1]), at=self._offset - len(bare[0]), hint=hint)
+
+    # --- entities and attributes --------------------------------------------------------------------------------------
 
     def _undefined_entity(self) -> Diagnostic:
         name = _NAME.match(self._text, self._offset + 1)
