@@ -85,12 +85,11 @@ def normalized(x: float, y: float, z: float, w: float, *, least: float = 0.0) ->
 def axis_and_angle(quaternion: Quaternion) -> tuple[Vector3, float]:
     """The axis, of length 1, and the angle from 0 to 2 pi that a rotation turns by about it; x where it does not."""
     x, y, z, w = quaternion
-    angle = 2.0 * acos(max(-1.0, min(1.0, w)))
-    squared = 1.0 - w * w
-    if squared < 1e-12:
+    norm = sqrt(x * x + y * y + z * z)  # not by 1 - w², which has few digits left for a small angle
+    angle = 2.0 * atan2(norm, w)
+    if norm < 1e-6:
         return (1.0, 0.0, 0.0), angle
-    scale = 1.0 / sqrt(squared)
-    return (x * scale, y * scale, z * scale), angle
+    return (x / norm, y / norm, z / norm), angle
 
 
 def rotation_from_z(axis: Vector3) -> Quaternion:
