@@ -7,7 +7,10 @@ stops at the first error, it goes on.
 from __future__ import annotations
 
 import re
+from collections import defaultdict
+from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import TypeVar
 
 from linkwright.diagnostics import Diagnostic, did_you_mean, joined, phrase
 from linkwright.schema.rules import Version
@@ -26,7 +29,10 @@ _OTHER_FORMATS = {
     "package": phrase("a package.xml"),
     "COLLADA": phrase("a COLLADA mesh"),
 }
+_OWN_TAGS = frozenset({"link", "joint", "material"})
 _FIRST_NAMES = 3
+
+PartT = TypeVar("PartT", Link, Joint)
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,38 +66,19 @@ def _read_robot(root: Element, findings: UrdfReport) -> Robot | None:
         name = ""
     findings.version = _read_version(root, findings)
 
-    link_elements: list[Element] = []
-    joint_elements: list[Element] = []
+    children: defaultdict[str, list[Element]] = defaultdict(list)
     extensions: list[Element] = []
-    materials = MaterialTable(findings)
     for child in root.children:
         if isinstance(child, Element):
-            tag = child.tag
-            if tag == "link":
-                link_elements.append(child)
-            elif tag == "joint":
-                joint_elements.append(child)
-            elif tag == "material":
-                materials.define(child, root)
-            else:
-                extensions.append(child)
+            (children[child.tag] if child.tag in _OWN_TAGS else extensions).append(child)
 
-    links: dict[str, Link] = {}
-    for element in link_elements:
-        link = read_link(element, materials, findings)
-        if link.name in links:
-            findings.duplicate("link", link.name, element, links[link.name].element)
-        else:
-            links[link.name] = link
+    materials = MaterialTable(findings)
+    for element in children["material"]:
+        materials.define(element, root)
+    links = _by_name("link", [read_link(element, materials, findings) for element in children["link"]], findings)
     materials.report_undefined()
-
-    joints: dict[str, Joint] = {}
-    all_joints = [read_joint(element, findings) for element in joint_elements]
-    for joint, element in zip(all_joints, joint_elements, strict=True):
-        if joint.name in joints:
-            findings.duplicate("joint", joint.name, element, joints[joint.name].element)
-        else:
-            joints[joint.name] = joint
+    all_joints = [read_joint(element, findings) for element in children["joint"]]
+    joints = _by_name("joint", all_joints, findings)
 
     if not links:
         _explain_no_links(root, extensions, findings)
@@ -99,16 +86,18 @@ def _read_robot(root: Element, findings: UrdfReport) -> Robot | None:
     _report_leftover_xacro(root, extensions, findings)
     root_name = find_root(links, all_joints, findings)
     _check_mimics(joints, findings)
-    return Robot(
-        name,
-        root_name,
-        links,
-        joints,
-        materials.known,
-        findings.version,
-        tuple(extensions),
-        root,
-    )
+    return Robot(name, root_name, links, joints, materials.known, findings.version, tuple(extensions), root)
+
+
+def _by_name(kind: str, parts: Iterable[PartT], findings: UrdfReport) -> dict[str, PartT]:
+    """Links or joints by their names; of several of one name the first."""
+    found: dict[str, PartT] = {}
+    for part in parts:
+        first = found.setdefault(part.name, part)
+        if first is not part:
+            assert part.element is not None
+            findings.duplicate(kind, part.name, part.element, first.element)
+    return found
 
 
 def _read_version(root: Element, findings: UrdfReport) -> Version:
