@@ -5,6 +5,7 @@ from __future__ import annotations
 import sqlite3
 import subprocess
 import sys
+from collections.abc import Iterable, Sequence
 from contextlib import closing
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,7 @@ from rosbags.highlevel import AnyReader
 from rosbags.typesys import Stores, get_typestore
 
 from linkwright.bag import STORAGES, BagReader, BagWriter, TopicSelection, summary_text
+from linkwright.bag.names import are_of_one_recording
 from linkwright.bag.qos import from_bag, overrides_of, profile_for_playing, profile_for_recording, to_bag
 from linkwright.cli import main
 from linkwright.diagnostics import LinkwrightError
@@ -27,7 +29,7 @@ from linkwright.graph import (
     QoSProfile,
     ReliabilityPolicy,
 )
-from linkwright.messages import JointState, String, serialize
+from linkwright.messages import JointState, String, deserialize, serialize
 
 START = 1_700_000_000_000_000_000
 
@@ -136,6 +138,92 @@ def test_a_recording_that_is_one_file(tmp_path: Path) -> None:
     assert str(error.value.diagnostics[0].hint) == "name another file"
 
 
+def parts(folder: Path, storage: str, names: Sequence[str]) -> list[Path]:
+    """Files without metadata: in each three messages of a topic, that begin a second after those of the one before."""
+    made = []
+    for number, name in enumerate(names):
+        with BagWriter(folder / f"part{number}", storage) as writer:
+            writer.add_topic("/chatter", "std_msgs/msg/String", [DEFAULT_QOS])
+            if number == 1:
+                writer.add_topic("/other", "std_msgs/msg/String", [DEFAULT_QOS])
+                writer.write("/other", START, serialize(String(data="early")))
+            for step in range(3):
+                stamp = (
+                    START + number * 1_000_000_000 + step * 400_000_000
+                )  # the last one is after the next file's first
+                writer.write("/chatter", stamp, serialize(String(data=f"{number}.{step}")))
+        (file,) = (each for each in (folder / f"part{number}").iterdir() if each.name != "metadata.yaml")
+        made.append(folder / "drive" / f"{name}{file.suffix}")
+        made[-1].parent.mkdir(exist_ok=True)
+        file.rename(made[-1])
+    return made
+
+
+def said(messages: Iterable[tuple[str, int, bytes]]) -> list[str]:
+    return [deserialize(data, String).data for _, _, data in messages]
+
+
+@pytest.mark.parametrize("storage", STORAGES)
+def test_numbered_files_without_metadata_are_one_recording(tmp_path: Path, storage: str) -> None:
+    files = parts(tmp_path, storage, ["drive_10", "drive_9", "drive_11"])
+    with BagReader(tmp_path / "drive") as bag:
+        assert {each.name: each.count for each in bag.topics} == {"/chatter": 9, "/other": 1}
+        assert (bag.start_ns, bag.end_ns) == (START, START + 2_800_000_000)
+        whole = list(bag.messages())
+        assert said(whole) == ["0.0", "early", "0.1", "0.2", "1.0", "1.1", "1.2", "2.0", "2.1", "2.2"]
+        assert [stamp for _, stamp, _ in whole] == sorted(stamp for _, stamp, _ in whole)
+        assert said(bag.messages(["/chatter"], START + 1_700_000_000)) == ["1.2", "2.0", "2.1", "2.2"]
+        assert said(bag.state_at(["/chatter", "/other"], START + 1_900_000_000)) == ["early", "1.2"]
+        assert bag.time_before(["/chatter"], START + 1_000_000_000) == START + 800_000_000
+        assert sum(bag.counts(10)["/chatter"]) == 9
+        assert sorted(bag.files) == sorted(files)
+        assert summary_text(bag).count("Type: std_msgs/msg/String | Count: 9") == 1
+
+
+def test_a_part_in_which_nothing_was_written_is_left_out(tmp_path: Path) -> None:
+    parts(tmp_path, "mcap", ["drive_0", "drive_1"])
+    (tmp_path / "drive" / "drive_2.mcap").touch()
+    with BagReader(tmp_path / "drive") as bag:
+        assert [each.code for each in bag.findings] == ["BAG109"]
+        assert len(list(bag.messages())) == 7
+
+
+def test_files_of_other_names_are_one_recording_where_all_are_named(tmp_path: Path) -> None:
+    files = parts(tmp_path, "mcap", ["morning", "noon"])
+    with pytest.raises(
+        LinkwrightError, match=r"not of one recording, by their names: morning.mcap, noon.mcap"
+    ) as caught:
+        BagReader(tmp_path / "drive")
+    (diagnostic,) = caught.value.diagnostics
+    assert "linkwright view FILE FILE" in str(diagnostic.hint)
+    with BagReader(files[0], parts=files) as bag:
+        assert len(list(bag.messages())) == 7
+
+
+def test_a_part_that_is_damaged_is_named(tmp_path: Path) -> None:
+    files = parts(tmp_path, "mcap", ["drive_0", "drive_1"])
+    files[1].write_bytes(b"nothing of the kind")
+    with pytest.raises(LinkwrightError, match=r"'drive_1.mcap' cannot be read") as caught:
+        BagReader(tmp_path / "drive")
+    assert code_of(caught) == "BAG102"
+
+
+@pytest.mark.parametrize(
+    ("names", "are"),
+    [
+        (["a_0.mcap", "a_1.mcap"], True),
+        (["a_3.db3.zstd", "a_4.db3.zstd"], True),
+        (["a_0.mcap", "a_2.mcap"], False),
+        (["a_0.mcap", "b_1.mcap"], False),
+        (["a_0.mcap", "a_1.db3"], False),
+        (["day_12_00_00.mcap", "day_12_00_01.mcap"], False),
+        (["a.mcap", "b.mcap"], False),
+    ],
+)
+def test_which_files_are_of_one_recording(names: list[str], are: bool) -> None:
+    assert are_of_one_recording([Path(name) for name in names]) is are
+
+
 def test_an_empty_recording(tmp_path: Path) -> None:
     BagWriter(tmp_path / "bag").close()
     with BagReader(tmp_path / "bag") as bag:
@@ -166,7 +254,7 @@ def test_nothing_there(tmp_path: Path) -> None:
 
 
 def test_a_folder_that_is_no_recording(tmp_path: Path) -> None:
-    with pytest.raises(LinkwrightError, match=r"no metadata\.yaml"):
+    with pytest.raises(LinkwrightError, match=r"neither a metadata\.yaml nor files"):
         BagReader(tmp_path)
 
 

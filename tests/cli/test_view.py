@@ -31,6 +31,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         (["drive", "r.urdf"], "leave r.urdf out"),
         (["drive", "--against", "HEAD"], "leave --against HEAD out"),
         (["r.urdf", "drive"], "'drive' is a recording, which is shown by itself: linkwright view drive"),
+        (["drive", "drive"], "several files are shown as one recording, and 'drive' is a folder: name its files"),
         (["r.urdf", "r.urdf", "-d", "v.rviz"], "leave -d out"),
     ],
 )
@@ -38,6 +39,14 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_what_cannot_be_shown_together_is_said(words: list[str], said: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["view", *words]) == 2
     assert said in capsys.readouterr().err
+
+
+def test_several_files_are_shown_as_one_recording(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (file,) = (folder / "drive").glob("*.mcap")
+    shown: list[Path] = []
+    monkeypatch.setattr(bag_view, "run_bag_view", lambda files, *_, **__: shown.extend(files) or 0)
+    assert main(["view", str(file), str(file.relative_to(folder))]) == 0
+    assert [each.absolute() for each in shown] == [file, file]
 
 
 def test_a_recording_of_ros_1_is_told_as_one(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Sequence
 from pathlib import Path
 
 SUFFIXES = {".mcap": "mcap", ".db3": "sqlite3"}
@@ -12,6 +14,9 @@ ROS1 = ".bag"
 
 PACKED = ".zstd"
 """Put behind the name of a file that is compressed as a whole."""
+
+_NUMBERED = re.compile(r"(.+)_(0|[1-9][0-9]*)(\.mcap|\.db3)((?:\.zstd)?)")
+"""The names that rosbag2 gives to the files of a recording; those that end with a time of day have a zero there."""
 
 
 def storage_of(path: Path) -> str | None:
@@ -24,3 +29,11 @@ def is_recording(path: Path) -> bool:
     if not path.is_dir():
         return storage_of(path) is not None or path.suffix == ROS1
     return (path / "metadata.yaml").exists() or any(storage_of(each) is not None for each in path.iterdir())
+
+
+def are_of_one_recording(files: Sequence[Path]) -> bool:
+    """Whether several files are the parts of one recording, by their names: numbered one after the other."""
+    found = [_NUMBERED.fullmatch(each.name) for each in files]
+    numbers = sorted(int(each[2]) for each in found if each is not None)
+    alike = {(each[1], each[3], each[4]) for each in found if each is not None}
+    return len(alike) == 1 and len(numbers) == len(files) == numbers[-1] - numbers[0] + 1

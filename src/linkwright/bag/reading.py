@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,7 +10,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from linkwright.bag.moments import Moments, Recorded
-from linkwright.bag.names import PACKED, storage_of
+from linkwright.bag.names import PACKED, are_of_one_recording, storage_of
 from linkwright.bag.qos import from_bag
 from linkwright.bag.scratch import scratch_folder
 from linkwright.bag.unfinished import is_unfinished, made_readable
@@ -28,6 +28,7 @@ from linkwright.diagnostics import (
 from linkwright.messages import add_definitions
 
 if TYPE_CHECKING:
+    from rosbags.rosbag2 import Reader
     from typing_extensions import Self
 
     from linkwright.graph import QoSProfile
@@ -64,36 +65,32 @@ class BagReader:
 
     Args:
         path: a folder with a ``metadata.yaml``, or a single ``.mcap`` or ``.db3`` file. Of a recording that was killed,
-            which has neither ``metadata.yaml`` nor an index, everything is read that was written.
+            which has neither ``metadata.yaml`` nor an index, everything is read that was written. A folder may
+            also have nothing but the files of one recording, which are numbered then.
         called: what messages call it; its path where that is left out.
+        parts: the files of the recording, whatever they are called, where several are to be read as one.
 
     Raises:
         LinkwrightError: BAG101 there is nothing there, BAG102 it is not a recording or a damaged one, BAG107 `rosbags`
             is not installed.
     """
 
-    def __init__(self, path: str | Path, called: str | None = None) -> None:
+    def __init__(self, path: str | Path, called: str | None = None, parts: Sequence[Path] = ()) -> None:
         try:
-            from rosbags.rosbag2 import Reader
+            import rosbags.rosbag2  # noqa: F401  # whether it is there
         except ModuleNotFoundError as error:
             raise missing_extra("BAG107", error) from None
         self.path = Path(path)
         self._called = display_path(self.path) if called is None else called
         self._open = ExitStack()
         self._is_cut_off = False
-        target = _storage_target(self.path, self._called)
+        self._targets = list(parts) or _storage_targets(self.path, self._called)
         try:
-            self._reader = Reader(self._finished(target))
-            self._reader.open()
-            self._open.callback(self._reader.close)
-            if target.is_file():
-                from linkwright.bag.packed import unpack_messages
-
-                unpack_messages(self._reader)
-        except Exception as error:  # the library raises whatever a damaged file brings about
+            self._reader = self._opened(self._targets)
+        except BaseException:
             self._open.close()
-            raise _unreadable(self.path, self._called, error) from error
-        self.storage = _storage_of(target)
+            raise
+        self.storage = _storage_of(self._targets[0])
         self._moments = Moments(self._reader)
         self._make_types_known()
         self._others = {
@@ -119,6 +116,31 @@ class BagReader:
                 Diagnostic("BAG102", message, hint=phrase("in brackets: how messages of the topic are written"))
             )
 
+    def _opened(self, targets: Sequence[Path]) -> Reader:
+        if len(targets) == 1:
+            return self._opened_one(targets[0], self.path, self._called)
+        from linkwright.bag.several import SeveralReader
+
+        # Who was killed at the beginning of a file leaves nothing in it.
+        whole = [each for each in targets if each.stat().st_size] or targets
+        self._is_cut_off = len(whole) < len(targets)
+        return SeveralReader([self._opened_one(each, each, each.name) for each in whole])
+
+    def _opened_one(self, target: Path, path: Path, called: str) -> Reader:
+        from rosbags.rosbag2 import Reader
+
+        try:
+            reader = Reader(self._finished(target))
+            reader.open()
+            self._open.callback(reader.close)
+            if target.is_file():
+                from linkwright.bag.packed import unpack_messages
+
+                unpack_messages(reader)
+        except Exception as error:  # the library raises whatever a damaged file brings about
+            raise _unreadable(path, called, error) from error
+        return reader
+
     def _finished(self, target: Path) -> Any:
         """What is to be opened: the target, or its file with what it lacks, and without what the library refuses."""
         if target.is_file() and target.suffix == PACKED:
@@ -128,7 +150,7 @@ class BagReader:
         files = sorted(target.glob("*.mcap")) if target.is_dir() else [target]
         if len(files) != 1 or files[0].suffix != ".mcap":
             return target
-        self._is_cut_off = is_unfinished(files[0])
+        self._is_cut_off = self._is_cut_off or is_unfinished(files[0])
         return made_readable(files[0]) or target
 
     def _make_types_known(self) -> None:
@@ -171,8 +193,8 @@ class BagReader:
     @property
     def files(self) -> list[Path]:
         """The files with the messages."""
-        if self.path.is_file():
-            return [self.path]
+        if self._targets[0].is_file():
+            return self._targets
         return _files_in(self.path)
 
     @property
@@ -262,27 +284,30 @@ class BagReader:
         self.close()
 
 
-def _storage_target(path: Path, called: str) -> Path:
-    """What the library is to open: the folder, or its only file where the metadata are missing."""
+def _storage_targets(path: Path, called: str) -> list[Path]:
+    """What the library is to open: the folder, or its files where the metadata are missing."""
     if not path.exists():
         raise LinkwrightError(Diagnostic("BAG101", phrase("there is no recording '{path}'", path=called)))
     if path.is_file() or (path / "metadata.yaml").exists():
-        return path
+        return [path]
     if not path.is_dir():
         message = phrase("'{path}' is not a recording: it is neither a file nor a folder", path=called)
         raise LinkwrightError(Diagnostic("BAG102", message))
     files = _files_in(path)
-    if len(files) == 1:
-        return files[0]
-    found = ", ".join(each.name for each in files) or phrase("none")
-    raise LinkwrightError(
-        Diagnostic(
-            "BAG102",
-            phrase("'{path}' is not a recording: it has no metadata.yaml", path=called),
-            notes=(Note(phrase("files with messages in it: {found}", found=found)),),
-            hint=phrase("name one of those files instead") if files else None,
-        )
+    if len(files) == 1 or are_of_one_recording(files):
+        return files
+    if not files:
+        message = phrase("'{path}' is not a recording: it has neither a metadata.yaml nor files of one", path=called)
+        raise LinkwrightError(Diagnostic("BAG102", message))
+    found = ", ".join(each.name for each in files)
+    message = phrase(
+        "the files in '{path}' are not of one recording, by their names: {found}", path=called, found=found
     )
+    hint = phrase(
+        "name one of them; several are one recording where their names end with _0, _1, _2, or where all are named: "
+        "linkwright view FILE FILE ..."
+    )
+    raise LinkwrightError(Diagnostic("BAG102", message, hint=hint))
 
 
 def _storage_of(target: Path) -> str:

@@ -19,7 +19,9 @@ if TYPE_CHECKING:
 def configure(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     parser.add_argument(
-        "file", metavar="FILE", help="the URDF or xacro file, or a recording: its .mcap or .db3 file or its folder"
+        "file",
+        metavar="FILE",
+        help="the URDF or xacro file, or a recording: its .mcap or .db3 file, all of them, or its folder",
     )
     add_second_model(parser)
     parser.add_argument(
@@ -105,12 +107,19 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _run_bag(arguments: argparse.Namespace, options: HostOptions) -> int:
+    from linkwright.bag import is_recording
     from linkwright.hosting.bag_view import run_bag_view
 
-    needless = [*arguments.words, *([f"--against {arguments.against}"] if arguments.against else [])]
+    files = [Path(arguments.file)]
+    files += [Path(word) for word in arguments.words if names_file(word) and is_recording(Path(word))]
+    others = [word for word in arguments.words if Path(word) not in files[1:]]
+    needless = [*others, *([f"--against {arguments.against}"] if arguments.against else [])]
     if needless:
         return _misused(f"'{arguments.file}' is a recording, which is shown by itself: leave {', '.join(needless)} out")
-    return run_bag_view(Path(arguments.file), options, foxglove=arguments.foxglove)
+    folder = next((each for each in files if len(files) > 1 and each.is_dir()), None)
+    if folder is not None:
+        return _misused(f"several files are shown as one recording, and '{folder}' is a folder: name its files")
+    return run_bag_view(files, options, foxglove=arguments.foxglove)
 
 
 def _readable(rviz: Path) -> Path:

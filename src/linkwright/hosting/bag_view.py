@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
@@ -21,11 +22,11 @@ if TYPE_CHECKING:
     from linkwright.viewer import RvizConfig, Viewer
 
 
-def run_bag_view(path: Path, options: HostOptions, *, foxglove: int | None = None) -> int:
+def run_bag_view(files: Sequence[Path], options: HostOptions, *, foxglove: int | None = None) -> int:
     """Show a recording until the user ends it.
 
     Args:
-        path: of its folder or file.
+        files: its folder or its files.
         options: how it is run.
         foxglove: a port for Foxglove and Lichtblick to connect to; None for none.
 
@@ -35,7 +36,7 @@ def run_bag_view(path: Path, options: HostOptions, *, foxglove: int | None = Non
     Raises:
         LinkwrightError: it cannot be read; see `linkwright.bag.BagReader`.
     """
-    path = path.absolute()
+    path, *others = (each.absolute() for each in files)
     finder = PackageFinder(start=[path.parent, Path.cwd()])
     options = replace(options, title=path.name, history=0)
     log = LaunchLog()
@@ -47,7 +48,7 @@ def run_bag_view(path: Path, options: HostOptions, *, foxglove: int | None = Non
 
         return signals.run(show)
 
-    with BagReader(path) as bag:
+    with BagReader(path, parts=[path, *others] if others else ()) as bag:
         return run_to_end(run, finder, log)
 
 

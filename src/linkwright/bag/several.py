@@ -1,0 +1,101 @@
+"""The files of a recording without the ``metadata.yaml`` that lists them, read as one: in the order of their times."""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Collection, Generator, Iterator, Sequence
+from typing import Any
+
+from rosbags.interfaces import Connection
+from rosbags.rosbag2 import Reader
+from rosbags.rosbag2.metadata import ReaderMetadata
+
+_NEVER_NS = 2**63 - 1
+
+_Message = tuple[Connection, int, bytes]
+
+
+class SeveralReader(Reader):
+    """Reads several files as if they were one.
+
+    Args:
+        readers: of each file, open; whoever opened them closes them.
+    """
+
+    def __init__(self, readers: Sequence[Reader]) -> None:  # what the library's own does is for a path
+        self.path = readers[0].path
+        self.storage = _Storages(sorted(readers, key=lambda each: each.start_time))
+        self.is_open = True
+
+
+class _Storages:
+    """What the library calls a storage: the connections of several files, and their messages.
+
+    Attributes:
+        storages: of the single files.
+        connections: one for each topic and type.
+        metadata: of all files together.
+    """
+
+    def __init__(self, readers: Sequence[Reader]) -> None:
+        self.storages: list[Any] = [each.storage for each in readers]
+        self._readers = readers
+        found: dict[tuple[str, str], Connection] = {}
+        for each in (connection for reader in readers for connection in reader.connections):
+            known = found.get(_key(each))
+            count = each.msgcount if known is None else known.msgcount + each.msgcount
+            found[_key(each)] = (known or each)._replace(id=known.id if known else len(found) + 1, msgcount=count)
+        self.connections = list(found.values())
+        count = sum(each.message_count for each in readers)
+        start = min(each.start_time for each in readers)
+        end = max(each.end_time for each in readers)
+        packed = [each.storage.metadata for each in readers if each.compression_mode]
+        self.metadata = ReaderMetadata(
+            duration=end - start if count else 0,
+            start_time=start,
+            end_time=end,
+            message_count=count,
+            compression_format=packed[0].compression_format if packed else None,
+            compression_mode=packed[0].compression_mode if packed else None,
+            ros_distro=readers[0].ros_distro,
+            custom=None,
+        )
+
+    def open(self) -> None:
+        """The files are open."""
+
+    def close(self) -> None:
+        """Whoever opened the files closes them."""
+
+    def messages(
+        self, connections: Collection[Connection], start: int | None = None, stop: int | None = None
+    ) -> Generator[_Message, None, None]:
+        """The messages of all files by their times; a file is begun when its time has come."""
+        wanted = {_key(each): each for each in connections}
+        waiting = [each for each in self._readers if each.message_count and (start is None or each.end_time > start)]
+        waiting.reverse()
+        streams: list[tuple[int, int, _Message, Iterator[_Message]]] = []
+        number = 0
+        while streams or waiting:
+            next_ns = streams[0][0] if streams else _NEVER_NS
+            if waiting and (not streams or waiting[-1].start_time <= next_ns):
+                stream = self._stream(waiting.pop(), wanted, start, stop)
+            else:
+                _, _, message, stream = heapq.heappop(streams)
+                yield message
+            first = next(stream, None)
+            if first is not None:
+                number += 1
+                heapq.heappush(streams, (first[1], number, first, stream))
+
+    @staticmethod
+    def _stream(
+        reader: Reader, wanted: dict[tuple[str, str], Connection], start: int | None, stop: int | None
+    ) -> Iterator[_Message]:
+        own = [each for each in reader.connections if _key(each) in wanted]
+        for connection, stamp_ns, data in reader.messages(own, start, stop) if own else ():
+            yield wanted[_key(connection)], stamp_ns, data
+
+
+def _key(connection: Connection) -> tuple[str, str]:
+    return connection.topic, connection.msgtype
