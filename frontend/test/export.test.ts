@@ -107,15 +107,17 @@ describe("the files of an exported page", () => {
   });
 });
 
-describe("the grid of an exported page", () => {
+describe("grid and axes of an exported page", () => {
   /** What is said of properties once a page has measured a robot, where the grid was at a height. */
-  function told(height: number, ground: number, awaits_size = false, diagonal = 2): [string, unknown][] {
+  function told(height: number, ground: number, awaits_size = false, diagonal = 2, spacing: number | null = null): [string, unknown][] {
     const row: Omit<Property, "id" | "value" | "options" | "children"> = { name: "Z", kind: "float", description: "", minimum: null, maximum: null, read_only: false, expanded: false, details: null, topics: null };
     const offset: Property = { ...row, id: "g/Offset", name: "Offset", kind: "group", value: "", options: [], children: [{ ...row, id: "g/Offset/Z", value: height, options: [], children: [] }] };
     const cell: Property = { ...row, id: "g/Cell Size", name: "Cell Size", value: 1, options: [], children: [] };
     const grid: Display = { id: "g", cls: "rviz_default_plugins/Grid", drawing: "rviz_default_plugins/Grid", name: "Grid", group: null, enabled: true, supported: true, level: "ok", status: [], properties: [cell, offset] };
-    const tree: Tree = { type: "tree", global_options: [], global_status: [], global_level: "ok", displays: [grid] };
-    const connection = new RecordedConnection({ program: "", display: "d", awaits_size, messages: [tree], frames: [], files: {} });
+    const scale: Property = { ...row, id: "t/Marker Scale", name: "Marker Scale", value: 1, options: [], children: [] };
+    const tf: Display = { ...grid, id: "t", cls: "rviz_default_plugins/TF", drawing: "rviz_default_plugins/TF", name: "TF", properties: [scale] };
+    const tree: Tree = { type: "tree", global_options: [], global_status: [], global_level: "ok", displays: [grid, tf] };
+    const connection = new RecordedConnection({ program: "", display: "d", awaits_size, spacing, messages: [tree], frames: [], files: {} });
     const values: [string, unknown][] = [];
     connection.on("property_changed", ({ id, value }) => values.push([id, value]));
     connection.send({ type: "robot_measured", diagonal, ground });
@@ -128,9 +130,14 @@ describe("the grid of an exported page", () => {
     expect(told(0.5, -0.25)).toEqual([]);
   });
 
+  it("has axes that suit the way from link to link", () => {
+    expect(told(0, 0, true, 2, 0.1)[1]).toEqual(["t/Marker Scale", 0.25]);
+    expect(told(0, 0, true, 2, 0.2)[1]).toEqual(["t/Marker Scale", 0.5]);
+  });
+
   it("has cells of the robot's size, unless somebody chose or measured before", () => {
-    expect(told(0, 0, true, 0.05)).toEqual([["g/Cell Size", 0.01]]);
-    expect(told(0, 0, true, 2)).toEqual([["g/Cell Size", 1]]);
+    expect(told(0, 0, true, 0.05)).toEqual([["g/Cell Size", 0.01], ["t/Marker Scale", 0.025]]);
+    expect(told(0, 0, true, 2)).toEqual([["g/Cell Size", 1], ["t/Marker Scale", 1]]);
     expect(told(0, 0, false, 0.05)).toEqual([]);
   });
 });

@@ -5,6 +5,9 @@ import { MovingRobot } from "./moving-robot";
 import { bytesOf, type Recording } from "./recording";
 
 const GRID = "rviz_default_plugins/Grid";
+const TF = "rviz_default_plugins/TF";
+/** Length of an axis of TF at Marker Scale 1, m. */
+const AXIS = 0.2;
 
 /** Takes the server's place in an exported page: tells what was recorded, and moves the robot's joints. */
 export class RecordedConnection extends Connection {
@@ -38,7 +41,7 @@ export class RecordedConnection extends Connection {
     else if (message.type === "set_joints") this.move(message.positions);
     else if (message.type === "center_joints") this.move(Object.fromEntries(controls.map(({ name, zero }) => [name, zero])));
     else if (message.type === "randomize_joints") this.move(Object.fromEntries(controls.map((each) => [each.name, anywhere(each)])));
-    else if (message.type === "robot_measured") this.fitGrid(message);
+    else if (message.type === "robot_measured") this.fitSizes(message);
   }
 
   /** Puts the joints where they were when the robot was exported. */
@@ -47,16 +50,18 @@ export class RecordedConnection extends Connection {
     this.moved();
   }
 
-  /** Puts the grid on the ground that the robot stands on, in cells of its size, as the server of `view` does where nobody chose. */
-  private fitGrid({ diagonal, ground }: RobotMeasured): void {
-    const tree = this.recording.messages.find((message) => message.type === "tree");
-    const grid = tree?.displays.find(({ drawing }) => drawing === GRID);
-    const row = (name: string): Property | undefined => grid?.properties.find((each) => each.name === name);
+  /** Puts the grid on the ground that the robot stands on, in cells of its size, with axes that suit it, as the server of `view` does where nobody chose. */
+  private fitSizes({ diagonal, ground }: RobotMeasured): void {
+    const { messages, awaits_size, spacing } = this.recording;
+    const displays = messages.find((message) => message.type === "tree")?.displays ?? [];
+    const row = (drawn: string, name: string): Property | undefined => displays.find(({ drawing }) => drawing === drawn)?.properties.find((each) => each.name === name);
     const put = ({ id }: Property, value: number): void => this.message.emit({ type: "property_changed", id, value, options: null });
-    const height = row("Offset")?.children.find(({ name }) => name === "Z");
+    const height = row(GRID, "Offset")?.children.find(({ name }) => name === "Z");
     if (height?.value === 0 && ground !== 0) put(height, ground);
-    const cell = row("Cell Size");
-    if (cell && this.recording.awaits_size && diagonal > 0) put(cell, cellFor(diagonal));
+    if (!awaits_size || diagonal <= 0) return;
+    const [cell, scale] = [row(GRID, "Cell Size"), row(TF, "Marker Scale")];
+    if (cell) put(cell, cellFor(diagonal));
+    if (scale) put(scale, markerScaleFor(diagonal, spacing ?? diagonal));
   }
 
   private prepare(table: FrameTable): void {
@@ -90,6 +95,12 @@ export class RecordedConnection extends Connection {
 /** The side of a cell for a robot of so large a box, m: `ModelSize.cell` of `viewer/config/model_size.py`. */
 function cellFor(diagonal: number): number {
   return 10 ** Math.floor(Math.log10(diagonal * 1.5));
+}
+
+/** Of TF, so that axes are seen beside the links and do not cover them: `ModelSize.marker_scale` there. */
+function markerScaleFor(diagonal: number, spacing: number): number {
+  const axis = Math.min(Math.max(spacing / 2, diagonal / 40), diagonal / 10);
+  return Number((axis / AXIS).toPrecision(2));
 }
 
 function anywhere({ lower, upper }: JointControl): number {

@@ -6,8 +6,10 @@ export interface Recording {
   program: string;
   /** The RobotModel display whose joints can be moved. */
   display: string;
-  /** Whether the grid is to have the size of the robot: nobody chose one, and nobody has drawn the robot. */
+  /** Whether grid and axes are to have the size of the robot: nobody chose one, and nobody has drawn the robot. */
   awaits_size: boolean;
+  /** From a link's frame to that of its parent, for most links, m; null where that is not known. */
+  spacing: number | null;
   messages: ServerMessage[];
   /** Binary frames, base64. */
   frames: string[];

@@ -362,6 +362,12 @@ class RvizConfig:
         """Whether `sizes_for` still has something to say: no page has drawn the robot that grid and axes are for."""
         return self._proposed is not None
 
+    @property
+    def spacing(self) -> float | None:
+        """From a link's frame to its parent's, for most links, m, while `awaits_size`; None where that is not known."""
+        size = None if self._proposed is None else self._proposed.size
+        return None if size is None else size.spacing
+
     def sizes_for(self, diagonal: float, ground: float = 0.0) -> list[tuple[DisplayConfig, PropertyPath, float]]:
         """What grid and axes should have that were made for a robot of unknown meshes: display, property, value.
 
@@ -492,20 +498,20 @@ class _Proposed:
 
     def __init__(self, displays: Sequence[DisplayConfig], size: ModelSize | None) -> None:
         self._displays = tuple(displays)
-        self._size = size
+        self.size = size
         found = _sizes(displays, size or _ANY_SIZE, ground=1.0)
         self._texts = {path: display.section.text(*path) for display, path, _ in found}
 
     def mended(self, diagonal: float, ground: float) -> list[tuple[DisplayConfig, PropertyPath, float]]:
         """What of it should be another, and was not changed since."""
-        spacing = diagonal if self._size is None else self._size.spacing
+        spacing = diagonal if self.size is None else self.size.spacing
         found = _sizes(self._displays, ModelSize(diagonal, spacing), ground)
         return [each for each in found if each[0].section.text(*each[1]) == self._texts[each[1]]]
 
     def among(self, copies: Mapping[DisplayConfig, DisplayConfig]) -> _Proposed | None:
         """The same for copies of the displays; None where one has gone."""
         found = [copies[display] for display in self._displays if display in copies]
-        return _Proposed(found, self._size) if len(found) == len(self._displays) else None
+        return _Proposed(found, self.size) if len(found) == len(self._displays) else None
 
 
 _ANY_SIZE = ModelSize(1.0, 1.0)

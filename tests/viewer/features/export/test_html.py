@@ -55,6 +55,7 @@ def test_the_page_has_everything_a_server_would_tell():
     assert positions == pytest.approx({"turn": 0.0, "open": 0.25, "open_too": -0.45}, abs=1e-6)
     assert next(message for message in told["messages"] if message["type"] == "view_state")["whole_robot"] is True
     assert told["awaits_size"] is True
+    assert told["spacing"] == pytest.approx(1.0, abs=0.1)  # from the arm to a finger
 
 
 def test_only_the_one_script_may_run_and_nothing_may_be_fetched():
@@ -134,5 +135,6 @@ async def test_what_else_is_shown_goes_along():
         taken = snapshot_of(w.viewer, w.viewer.manager)
     told = recorded(export_snapshot(taken, "html").decode())
     assert told["awaits_size"] is False  # a page had measured the robot
+    assert told["spacing"] is None
     frames = [base64.b64decode(frame) for frame in told["frames"]]
     assert any(b"markers_changed" in frame for frame in frames)

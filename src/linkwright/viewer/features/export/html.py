@@ -81,6 +81,7 @@ def _recorded(snapshot: Snapshot, program: str) -> str:
         "program": program,
         "display": snapshot.scene.display,
         "awaits_size": snapshot.awaits_size,
+        "spacing": snapshot.spacing,
         "frames": [base64.b64encode(frame).decode() for frame in snapshot.frames],
         "files": {without_secrets(address): base64.b64encode(data).decode() for address, data in files.items()},
     }

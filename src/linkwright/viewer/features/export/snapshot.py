@@ -193,7 +193,8 @@ class Snapshot:
         problems: what of the robot cannot be drawn.
         marker_meshes: addresses of the meshes that markers show.
         outside: the files in no package, nor below the folder of the description, whose contents are part of it.
-        awaits_size: whether the grid is to have the size of the robot, which a page that draws it knows.
+        awaits_size: whether grid and axes are to have the size of the robot, which a page that draws it knows.
+        spacing: from a link's frame to that of its parent, for most links, m; None where that is not known.
     """
 
     name: str
@@ -207,6 +208,7 @@ class Snapshot:
     marker_meshes: Sequence[str] = ()
     outside: Sequence[Path] = ()
     awaits_size: bool = False
+    spacing: float | None = None
 
 
 def snapshot_of(viewer: FeatureHost, manager: VisualizationManager, view: View | None = None) -> Snapshot:
@@ -234,6 +236,7 @@ def snapshot_of(viewer: FeatureHost, manager: VisualizationManager, view: View |
         outside=list(dict.fromkeys(outside)),
         problems=[problem for each in models for problem in _problems(each)],
         awaits_size=manager.config.awaits_size,
+        spacing=manager.config.spacing,
     )
 
 
