@@ -11,7 +11,7 @@ from linkwright.speech.enrolled.engine import EnrolledEngine
 from linkwright.speech.enrolled.enrolment import enrol
 from linkwright.speech.enrolled.words import Words
 from linkwright.speech.sound.samples import BLOCK, RATE
-from tests.speech.voices import WORDS, say
+from tests.speech.voices import WORDS, babble, beside, say
 
 OTHERS = ("mumi", "faso.t", "ri.tamu", "om", "se.pifu", "tatata", "u", "moramifu")
 """What is no command, in the letters of `voices`."""
@@ -65,6 +65,34 @@ def test_a_word_is_recognised_faster_slower_higher_lower_and_softer(engine, name
 def test_a_word_is_recognised_in_noise(engine, name):
     samples = say(WORDS[name], speed=1.05, level=2000, noise=2000 / 10 ** (15 / 20), silence=0.8, seed=10)
     assert finals(engine, samples) == [name]
+
+
+def in_babble(phones, seed):
+    samples = say(phones, speed=1.05, level=2000, silence=0.8, seed=10)
+    return beside(samples, babble(len(samples) / RATE + 0.1, np.random.default_rng(seed)), 15.0, 2000.0)
+
+
+def test_words_are_recognised_while_others_talk(path):
+    right = []
+    for name in ("forward", "turn left", "turn right", "stop"):
+        for seed in range(1, 4):
+            engine = EnrolledEngine(EngineOptions(tuple(WORDS), model=path))
+            found = heard(engine, in_babble(WORDS[name], seed)) + list(engine.finish())
+            told = {one.text for one in found if one.final} - {""}
+            assert told <= {name}
+            right.append(told == {name})
+    assert sum(right) >= 10
+
+
+@pytest.mark.parametrize("phones", OTHERS)
+def test_what_was_not_enrolled_is_no_command_while_others_talk(engine, phones):
+    found = heard(engine, in_babble(phones, 1)) + list(engine.finish())
+    assert {one.text for one in found} <= {""}
+
+
+def test_the_talk_of_others_alone_is_no_command(engine):
+    sound = np.rint(300 * babble(20.0, np.random.default_rng(4))).astype(np.int16)
+    assert not [one.text for one in heard(engine, sound) if one.text]
 
 
 @pytest.mark.parametrize("phones", OTHERS)

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.speech.sound.activity import VoiceActivity, speech_span
+from linkwright.speech.sound.activity import VoiceActivity, speech_span, unsteady_noise
 from linkwright.speech.sound.resampling import Resampler, resample
 from linkwright.speech.sound.samples import RATE
 from linkwright.speech.sound.spectra import BANDS, HOP, MelFrames, mel_frames
 from linkwright.speech.sound.wav import parse_wav, read_wav, write_wav
-from tests.speech.voices import WORDS, say
+from tests.speech.voices import WORDS, babble, beside, say
 
 
 def tone(hertz, rate=RATE, seconds=0.5, level=0.5):
@@ -190,6 +190,45 @@ def test_a_fan_that_is_switched_on_is_speech_for_no_longer_than_two_seconds():
     levels = np.where(np.arange(8 * RATE) < 2 * RATE, 5.0, 300.0)
     found = spoken(np.rint(levels * rng.normal(size=8 * RATE)).astype(np.int16))
     assert not found[450:].any()
+
+
+def noise_told(samples):
+    """The floor at the end of a recording, and the noise beside it where it is no steady one."""
+    powers, activity = mel_frames(samples), VoiceActivity()
+    for frame in powers:
+        activity.step(frame)
+    return activity.floor, unsteady_noise(powers, activity.floor)
+
+
+@pytest.mark.parametrize("name", WORDS)
+@pytest.mark.parametrize("level", [3.0, 300.0, 900.0])
+def test_steady_noise_beside_a_word_is_what_the_floor_says(name, level):
+    assert noise_told(say(WORDS[name], level=3000.0, noise=level))[1] is None
+
+
+def test_a_hum_that_wavers_and_a_soft_beginning_are_no_talk_of_others():
+    at = np.arange(2 * RATE) / RATE
+    hum = (1.0 + 0.3 * np.sin(2 * np.pi * 11 * at)) * np.sin(2 * np.pi * 100 * at)
+    samples = say(WORDS["forward"], level=3000.0)
+    assert noise_told(beside(samples, hum, 10.0, 3000.0))[1] is None
+    softly = samples * np.clip((at[: len(samples)] - 0.5) / 0.3, 0.02, 1.0)
+    assert noise_told(np.rint(softly).astype(np.int16))[1] is None
+
+
+def test_the_talk_of_others_beside_a_word_is_told_as_noise_as_strong_as_it_gets():
+    samples = say(WORDS["forward"], level=3000.0)
+    talk = babble(len(samples) / RATE + 0.1, np.random.default_rng(5))
+    floor, noise = noise_told(beside(samples, talk, 15.0, 3000.0))
+    assert noise is not None
+    assert (noise >= floor).all()
+    before = mel_frames(beside(np.zeros_like(samples), talk, 15.0, 3000.0))
+    assert np.mean(before <= noise) > 0.85
+    assert np.mean(before <= floor) < 0.5
+
+
+def test_too_little_before_a_word_tells_nothing():
+    powers = mel_frames(say(WORDS["forward"], silence=0.1))
+    assert unsteady_noise(powers, np.full(BANDS, 1e-3)) is None
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])

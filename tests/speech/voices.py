@@ -79,3 +79,21 @@ def say(
     whole = np.concatenate((rest, sound, rest))
     whole += noise * rng.normal(size=len(whole))
     return np.clip(np.rint(whole), -32_768, 32_767).astype(np.int16)
+
+
+def babble(seconds: float, rng: np.random.Generator) -> np.ndarray:
+    """Three others who talk at once, in words with pauses between them; with an effective value of 1."""
+    count = int(seconds * RATE)
+    total = np.zeros(count)
+    sounds = [phone for phone in _PHONES if phone != "."]
+    for _ in range(3):
+        phones = "".join("".join(rng.choice(sounds, size=3)) + "....." for _ in range(round(2 * seconds)))
+        speed, pitch, size = rng.uniform((0.85, 90.0, 0.85), (1.1, 220.0, 1.1))
+        said = say(phones, speed=speed, pitch=pitch, size=size, silence=0.0, noise=0.0, seed=int(rng.integers(1000)))
+        total += np.roll(np.resize(said.astype(np.float64), count), int(rng.integers(count)))
+    return np.asarray(total / np.sqrt(np.mean(total**2)))
+
+
+def beside(samples: Samples, noise: np.ndarray, decibels: float, level: float) -> Samples:
+    """A recording with noise added that is so far below the level of the word in it."""
+    return np.rint(samples + level / 10 ** (decibels / 20) * noise[: len(samples)]).astype(np.int16)

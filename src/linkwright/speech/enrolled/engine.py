@@ -13,11 +13,12 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, displa
 from linkwright.speech.engine import EngineOptions, Heard, SpeechEngine
 from linkwright.speech.enrolled.recognition import ACCEPTED, Guess, Recogniser
 from linkwright.speech.enrolled.words import Words, words_path
-from linkwright.speech.sound.activity import VoiceActivity
+from linkwright.speech.sound.activity import VoiceActivity, unsteady_noise
 from linkwright.speech.sound.samples import RATE, Samples
 from linkwright.speech.sound.spectra import BANDS, HOP, MelFrames, Powers
 
 _BEFORE = 20  # frames kept from before somebody speaks: a word begins softly
+_EARLIER = 30  # frames before those, which only tell what noise there is
 _STEP = 5  # frames that must be new before an utterance is looked at again
 _TOO_LONG = 2.5  # times the longest take: no word
 
@@ -47,6 +48,7 @@ class EnrolledEngine(SpeechEngine):
             self._nothing_enrolled()
         self._frames = MelFrames()
         self._activity = VoiceActivity()
+        self._earlier: Powers = np.zeros((0, BANDS))
         self._kept: Powers = np.zeros((0, BANDS))
         self._seen = 0
         self._looked = 0
@@ -78,7 +80,10 @@ class EnrolledEngine(SpeechEngine):
 
     def _keep(self, frame: NDArray[np.float64], speech: bool) -> None:
         most = self._most() if speech else _BEFORE
-        self._kept = np.concatenate((self._kept, frame[None]))[-most:]
+        kept = np.concatenate((self._kept, frame[None]))
+        if len(kept) > most:
+            self._earlier = np.concatenate((self._earlier, kept[:-most]))[-_EARLIER:]
+        self._kept = kept[-most:]
 
     def _most(self) -> int:
         longest = self._recogniser.longest if self._recogniser is not None else 100
@@ -101,13 +106,16 @@ class EnrolledEngine(SpeechEngine):
         name = self._name(guess)
         self._partial = None
         heard = self._heard(name or "", guess, final=True)
-        self._kept = self._kept[-_BEFORE:]
+        self._kept, self._earlier = self._kept[-_BEFORE:], self._earlier[:0]
         return [heard]
 
     def _guess(self) -> Guess | None:
-        if self._recogniser is None or len(self._kept) >= self._most():
+        if self._recogniser is None:
             return None
-        return self._recogniser.guess(self._kept, self._activity.floor)
+        noise = unsteady_noise(np.concatenate((self._earlier, self._kept)), self._activity.floor)
+        if noise is None and len(self._kept) >= self._most():
+            return None
+        return self._recogniser.guess(self._kept, self._activity.floor if noise is None else noise)
 
     def _name(self, guess: Guess | None) -> str | None:
         """The phrase that was said, if it was one of them."""

@@ -28,6 +28,16 @@ _WATCHED = 80  # frames in which the least is looked for
 _OVER_THE_LEAST = 1.4  # the mean of noise over its least, of sums of three frames
 _UP, _DOWN = 0.05, 0.08  # shares by which the floor comes nearer with each frame
 
+_LOUDEST = 12  # frames
+_SOFTER = 7.0  # dB below the loudest: so much softer is all that is heard beside who speaks into the microphone
+_SOFT_BEGINNING = 8  # frames by which a word may begin before it is as loud as that
+_ENOUGH = 15  # frames from which noise is known
+_UNSTEADY = 1.2  # dB, deviation of the level: that of steady noise is 1, that of babble 2 and more
+_OVER_STEADY = (
+    5.0  # dB, in the middle, above what noise would have that were steady: that has up to 4, babble from 8 on
+)
+_DEVIATIONS = 1.5  # by which noise that swells is above its mean
+
 
 class VoiceActivity:
     """Follows a stream frame by frame.
@@ -78,6 +88,39 @@ class VoiceActivity:
         self.floor = self.floor + rate * (smooth - self.floor)
         if self._seen % 10 == 0 and len(self._watched) == _WATCHED:
             self.floor = np.maximum(self.floor, _OVER_THE_LEAST * np.min(self._watched, axis=0))
+
+
+def unsteady_noise(powers: Powers, floor: NDArray[np.float64]) -> NDArray[np.float64] | None:
+    """How strong noise gets that swells and fades, as the talk of others beside a word.
+
+    A floor follows the least of such noise, and most of it is far above. It is told from steady noise, and from a word
+    that begins softly, by what was heard before somebody spoke: by its level, and by how much that changes.
+
+    Args:
+        powers: of an utterance, with what was heard before.
+        floor: what is taken for the power of the noise, shape ``(BANDS,)``.
+
+    Returns:
+        The power of each band, nowhere below the floor, shape ``(BANDS,)``; None where the floor tells it.
+    """
+    before = np.maximum(powers[: _first_loud(powers) - _SOFT_BEGINNING], _LEAST_POWER)
+    if len(before) < _ENOUGH:
+        return None
+    smooth = (before[:-2] + before[1:-1] + before[2:]) / 3.0
+    steady = np.minimum(floor, _OVER_THE_LEAST * smooth.min(axis=0))  # the floor may not have fallen to it yet
+    above = np.mean(10.0 * np.log10(before / steady), axis=1)
+    changes = np.convolve(above, np.full(_SMOOTHED, 1.0 / _SMOOTHED), "valid")
+    if np.median(above) < _OVER_STEADY or changes.std() < _UNSTEADY:
+        return None
+    noise: NDArray[np.float64] = np.maximum(floor, before.mean(axis=0) + _DEVIATIONS * before.std(axis=0))
+    return noise
+
+
+def _first_loud(powers: Powers) -> int:
+    """The first frame that is nearly as loud as the loudest, and no earlier than a word may begin."""
+    totals = np.convolve(powers.sum(axis=1), np.full(_SMOOTHED, 1.0 / _SMOOTHED), "same")
+    loudest = np.sort(totals)[-_LOUDEST:].mean()
+    return max(_SOFT_BEGINNING, int(np.argmax(totals > 10.0 ** (-_SOFTER / 10.0) * loudest)))
 
 
 def speech_span(powers: Powers) -> tuple[int, int, NDArray[np.float64]]:
