@@ -106,6 +106,17 @@ def test_what_differs_from_a_word_in_one_sound_is_no_command(engine, phones):
     assert [one.text for one in heard(engine, samples) if one.text] == []
 
 
+def test_of_what_is_much_like_a_word_the_word_is_told_as_the_nearest(engine, path):
+    in_noise = say(WORDS["turn left"], speed=1.05, level=2000, noise=1000, silence=0.8, seed=1)
+    (found,) = [one for one in heard(engine, in_noise) if one.final]
+    assert (found.text, found.nearest) == ("", "turn left")
+    others = EnrolledEngine(EngineOptions(("stop", "back"), model=path))  # a word that is no phrase is not told
+    (found,) = [one for one in heard(others, in_noise) if one.final]
+    assert (found.text, found.nearest) == ("", "")
+    (found,) = [one for one in heard(others, say(OTHERS[0], silence=0.8, seed=11)) if one.final]
+    assert (found.text, found.nearest) == ("", "")
+
+
 @pytest.mark.parametrize("kind", ["silence", "noise", "hum", "click", "chirp"])
 def test_what_is_no_speech_is_no_command(engine, kind):
     rng = np.random.default_rng(12)

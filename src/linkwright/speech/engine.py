@@ -28,6 +28,7 @@ class Heard:
         final: whether the utterance is over; else it may still change.
         start: of the utterance, in seconds of sound since the engine was made.
         end: of what was heard.
+        nearest: where the text is empty, the phrase that is much like it; empty where none is.
     """
 
     text: str
@@ -35,6 +36,7 @@ class Heard:
     final: bool
     start: float
     end: float
+    nearest: str = ""
 
 
 @dataclass(frozen=True, slots=True)

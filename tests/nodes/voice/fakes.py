@@ -56,8 +56,8 @@ class ToldEngine(SpeechEngine):
         return tuple(self.says_at_end)
 
 
-def final(text: str, confidence: float = 1.0, start: float = 0.0) -> Heard:
-    return Heard(text, confidence, True, start, start + 1.0)
+def final(text: str, confidence: float = 1.0, start: float = 0.0, nearest: str = "") -> Heard:
+    return Heard(text, confidence, True, start, start + 1.0, nearest)
 
 
 def partial(text: str, start: float = 0.0) -> Heard:
@@ -96,6 +96,16 @@ class Talk:
 
     async def hold(self, held: bool) -> None:
         self.button.publish(BOOL(data=held))
+        await self.stage.graph.settle()
+
+    async def say_nothing_more(self) -> None:
+        """Wait until all that was heard was dealt with: press once more, and hear nothing that counts."""
+        ToldEngine.says_at_end[:] = [partial("the end")]
+        told = len(self.said["partial_text"])
+        await self.hold(True)
+        await self.hold(False)
+        await eventually(lambda: len(self.said["partial_text"]) > told)
+        ToldEngine.says_at_end.clear()
         await self.stage.graph.settle()
 
     async def say(self, *heard: Heard, stamp: float | None = None) -> None:

@@ -69,18 +69,21 @@ def test_silence_is_nothing(model):
 
 
 @pytest.mark.parametrize(
-    "words",
+    ("words", "nearest"),
     [
-        [("[unk]", 1.0)],
-        [("[unk]", 1.0), ("forward", 1.0)],
-        [("forward", LEAST_CONFIDENCE - 0.01)],
-        [("turn", 1.0)],
-        [("left", 1.0), ("turn", 1.0)],
+        ([("[unk]", 1.0)], ""),
+        ([("[unk]", 1.0), ("forward", 1.0)], ""),
+        ([("forward", LEAST_CONFIDENCE - 0.01)], "forward"),
+        ([("turn", 0.5), ("left", 1.0)], "turn left"),
+        ([("forward", 0.2)], ""),
+        ([("forward", 0.5), ("stop", 0.5)], ""),
+        ([("turn", 1.0)], ""),
+        ([("left", 1.0), ("turn", 1.0)], ""),
     ],
 )
-def test_other_speech_is_heard_as_none_of_the_phrases(words, model):
+def test_other_speech_is_heard_as_none_of_the_phrases(words, nearest, model):
     (heard,) = said(engine(model), "", words)
-    assert (heard.text, heard.final) == ("", True)
+    assert (heard.text, heard.final, heard.nearest) == ("", True, nearest)
 
 
 def test_phrases_one_after_another(model):

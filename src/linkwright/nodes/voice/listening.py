@@ -6,6 +6,7 @@ import threading
 from collections import deque
 from collections.abc import Callable
 from queue import SimpleQueue
+from typing import TypeAlias
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.graph import Node
@@ -14,6 +15,9 @@ from linkwright.speech.sound.samples import RATE, Samples
 
 _MOST_WAITING = 100
 """Blocks: an engine that is 10 s behind hears nothing new until it has caught up."""
+
+_Found: TypeAlias = Heard | Diagnostic | LinkwrightError | None
+"""What the thread tells; None: all until the end of the sound was heard."""
 
 _MOST_GAPS = 100
 _NEAR = 0.2  # s: engines do not know to the frame where a word begins
@@ -26,6 +30,7 @@ class Listener:
         node: whose callbacks `heard` and `failed` are.
         make: makes the engine, in the thread; it may take seconds.
         heard: takes what was heard.
+        finished: called when all that was said until `finish` was heard.
         warn: takes why an engine hears nothing, whenever that changes.
         failed: takes the error that the engine ended with.
     """
@@ -35,14 +40,15 @@ class Listener:
         node: Node,
         make: Callable[[], SpeechEngine],
         heard: Callable[[Heard], None],
+        finished: Callable[[], None],
         warn: Callable[[Diagnostic], None],
         failed: Callable[[LinkwrightError], None],
     ) -> None:
-        self._make, self._heard, self._warn, self._failed = make, heard, warn, failed
+        self._make, self._heard, self._finished, self._warn, self._failed = make, heard, finished, warn, failed
         self._handed = 0
         self._gaps: deque[tuple[float, float]] = deque(maxlen=_MOST_GAPS)  # where, and how long
         self._sound: SimpleQueue[Samples | bool | None] = SimpleQueue()
-        self._found: deque[Heard | Diagnostic | LinkwrightError] = deque()
+        self._found: deque[_Found] = deque()
         self._ready = node.create_guard_condition(self._tell)
         self._thread = threading.Thread(target=self._run, name="speech engine", daemon=True)
         self._thread.start()
@@ -93,12 +99,16 @@ class Listener:
                         self._pass(problem)
                 if (block := self._sound.get()) is None:
                     return
-                for heard in engine.finish() if isinstance(block, bool) else engine.hear(block):
-                    self._pass(heard)
+                if isinstance(block, bool):
+                    found: list[_Found] = [*engine.finish(), None]
+                else:
+                    found = [*engine.hear(block)]
+                for each in found:
+                    self._pass(each)
         finally:
             engine.close()
 
-    def _pass(self, found: Heard | Diagnostic | LinkwrightError) -> None:
+    def _pass(self, found: _Found) -> None:
         self._found.append(found)
         self._ready.trigger()
 
@@ -109,5 +119,7 @@ class Listener:
                 self._failed(found)
             elif isinstance(found, Diagnostic):
                 self._warn(found)
+            elif found is None:
+                self._finished()
             else:
                 self._heard(found)

@@ -30,6 +30,7 @@ from linkwright.nodes.voice.audio_messages import (
 from linkwright.nodes.voice.conversation import Conversation
 from linkwright.nodes.voice.driving import Driver, Ending
 from linkwright.nodes.voice.listening import Listener
+from linkwright.nodes.voice.presses import Presses
 from linkwright.nodes.voice.requests import Requests
 from linkwright.nodes.voice.sound_gaps import SoundGaps
 from linkwright.speech.commands.command_file import DEFAULT_FILE, read_command_file
@@ -73,6 +74,7 @@ class VoiceCommander(SingleNode):
         self._held = False
         self._spoken = False
         self._stopped = False
+        self._presses = Presses()
         with starting(self._node):
             self._start()
 
@@ -149,7 +151,7 @@ class VoiceCommander(SingleNode):
 
     def _listen(self, make: Any, clock: Clock) -> None:
         node = self._node
-        self._listener = Listener(node, make, self._heard, self._warn, self._failed)
+        self._listener = Listener(node, make, self._heard, self._press_heard, self._warn, self._failed)
         self._reader = AudioReader()
         self._gaps = SoundGaps()
         node.create_subscription(AUDIO_INFO, "audio/audio_info", self._on_info, INFO_QOS)
@@ -194,6 +196,8 @@ class VoiceCommander(SingleNode):
             self._listener.finish()
         if held:
             self._gaps.restart()  # nothing is published while no button is held
+        if held and not self._held:
+            self._presses.begin()
         self._stopped = False
         self._held = held
 
@@ -207,16 +211,32 @@ class VoiceCommander(SingleNode):
         # After a stop nothing else of the utterance is done, but a command in which the word is: "go to the stop sign".
         if stopped and not (self._commands.is_stop(heard.text) and self._commands.is_other(heard.text)):
             return
+        if self._is_done_or_answered(heard):
+            self._presses.settle()
+        else:
+            self._presses.note_unknown(heard)
+
+    def _is_done_or_answered(self, heard: Heard) -> bool:
+        """Do what was said, or ask for it again; False where neither is called for."""
         lost = 0.0 if self._listener is None else self._listener.lost_in(heard)
         is_certain = heard.confidence >= self._confidence
         if is_certain and lost <= _MOST_LOST and self._take(heard.text, by_voice=True):
-            return
+            return True
         if self._commands.is_stop(heard.text) and (self._held or self._conversation.is_busy):
             self._conversation.stop(heard.text)
         elif lost and (self._is_addressed or (heard.text and is_certain)):
             self._conversation.answer(phrase("I did not hear all of that: say it again"))
         elif heard.text and not is_certain and self._is_addressed and heard.confidence >= _NEARLY * self._confidence:
             self._conversation.answer(phrase("I am not sure that I heard '{text}': say it again", text=heard.text))
+        else:
+            return bool(heard.text) and is_certain  # it was not understood, and that was answered
+        return True
+
+    def _press_heard(self) -> None:
+        """All was heard that was said while the button was held."""
+        answer = self._presses.end()
+        if answer is not None and not self._open:
+            self._conversation.answer(answer)
 
     @property
     def _is_addressed(self) -> bool:
@@ -229,6 +249,7 @@ class VoiceCommander(SingleNode):
             return
         if self._conversation.is_busy or (self._held and not self._stopped):
             self._stopped = True
+            self._presses.settle()
             self._conversation.stop(text)
 
     def _warn(self, problem: Diagnostic) -> None:

@@ -24,6 +24,9 @@ from linkwright.speech.sound.samples import RATE, Samples
 LEAST_CONFIDENCE = 0.6
 """Of each word of a phrase."""
 
+_NEAR = 0.3
+"""Confidence from which a phrase that does not count is told as the nearest."""
+
 MODELS = {"en": "vosk-en", "zh": "vosk-zh"}
 """The models that are fetched by name, by language."""
 
@@ -75,7 +78,9 @@ class VoskEngine(SpeechEngine):
         confidence = min(each["conf"] for each in words)
         divided = self._phrasing.divided([each["word"] for each in words])
         if divided is None or confidence < LEAST_CONFIDENCE:
-            return [Heard("", confidence, True, words[0]["start"], words[-1]["end"])]
+            is_near = divided is not None and len(divided) == 1 and confidence >= _NEAR
+            nearest = divided[0][0] if divided and is_near else ""
+            return [Heard("", confidence, True, words[0]["start"], words[-1]["end"], nearest)]
         return [
             Heard(
                 text,

@@ -21,6 +21,10 @@ _BEFORE = 20  # frames kept from before somebody speaks: a word begins softly
 _EARLIER = 30  # frames before those, which only tell what noise there is
 _STEP = 5  # frames that must be new before an utterance is looked at again
 _TOO_LONG = 2.5  # times the longest take: no word
+_NEAR = 0.1
+"""Confidence from which a word is told as the nearest: that have most words in noise that are missed, and one of twenty
+other words.
+"""
 
 
 class EnrolledEngine(SpeechEngine):
@@ -127,7 +131,9 @@ class EnrolledEngine(SpeechEngine):
         begin = self._seen - len(self._kept)
         first, last = (guess.first, guess.last + 1) if guess is not None else (0, len(self._kept))
         confidence = guess.confidence if guess is not None and name else 0.0
-        return Heard(name, confidence, final, (begin + first) * HOP / RATE, (begin + last) * HOP / RATE)
+        is_near = guess is not None and not name and guess.confidence >= _NEAR
+        nearest = self._phrases.get(_plain(guess.name), "") if guess is not None and is_near else ""
+        return Heard(name, confidence, final, (begin + first) * HOP / RATE, (begin + last) * HOP / RATE, nearest)
 
     def _follow_file(self) -> None:
         stamp = _stamp(self._path)

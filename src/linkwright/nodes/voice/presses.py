@@ -1,0 +1,56 @@
+"""Presses of the button: who held it and was not understood is told so, once, when all of it was heard."""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass
+
+from linkwright.diagnostics import Phrase, phrase
+from linkwright.speech.engine import Heard
+
+
+@dataclass(slots=True)
+class _Press:
+    """What became of what was said.
+
+    Attributes:
+        is_settled: something of it was done or answered.
+        unknown: what was heard last that is none of the commands.
+    """
+
+    is_settled: bool = False
+    unknown: Heard | None = None
+
+
+class Presses:
+    """Those that the engine has not heard to their end. It is some time behind, so the next may have begun."""
+
+    def __init__(self) -> None:
+        self._presses: deque[_Press] = deque()
+
+    def begin(self) -> None:
+        """The button was pressed."""
+        self._presses.append(_Press())
+
+    def settle(self) -> None:
+        """Something that was said was done, or answered."""
+        if self._presses:
+            self._presses[0].is_settled = True
+
+    def note_unknown(self, heard: Heard) -> None:
+        """Something was said that is none of the commands."""
+        if self._presses:
+            self._presses[0].unknown = heard
+
+    def end(self) -> Phrase | None:
+        """All of the oldest was heard; what is to be answered to it, if anything is."""
+        if not self._presses:
+            return None
+        press = self._presses.popleft()
+        if press.is_settled or press.unknown is None:
+            return None
+        if press.unknown.nearest:
+            return phrase(
+                "I heard something that is none of the commands: '{text}' is the nearest", text=press.unknown.nearest
+            )
+        return phrase("I heard something that is none of the commands")
