@@ -152,7 +152,8 @@ describe("talking", () => {
     voice.press();
     await soon();
     deliver(Int16Array.of(5));
-    expect(frames.map((frame) => new Uint32Array(frame, 0, 4)[2])).toEqual([1600, 0, 3200, 0, 0]);
+    deliver(Int16Array.of(6), 3600); // the machine slept
+    expect(frames.map((frame) => new Uint32Array(frame, 0, 4)[2])).toEqual([1600, 0, 3200, 0, 0, 80_000]);
   });
 
   it("the microphone is given back a while after it was used, and at once when the page is left", async () => {

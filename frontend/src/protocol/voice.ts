@@ -6,6 +6,8 @@ export const SOUND_RATE = 16000;
 
 export const MOST_SAMPLES = 1600;
 
+export const MOST_LOST_SAMPLES = 80000;
+
 /** What is heard and answered is to be sent, or no longer. */
 export interface WatchVoice {
   watched: boolean;

@@ -65,6 +65,13 @@ def test_what_the_source_itself_lost_is_told_however_much_it_is():
     assert np.allclose([each for each in found if each], 0.4, atol=0.005)
 
 
+def test_stamps_do_not_run_ahead_of_the_clock_whatever_the_source_says_it_lost():
+    stamps = SampleStamps()
+    for each in range(20):
+        now = round((10.0 + 0.1 * each) * SECOND)
+        assert stamps.stamp(BLOCK, now, 1000.0) <= now + 2 * SECOND
+
+
 def test_after_the_next_press_of_a_button_gaps_are_told_at_once():
     gaps = SoundGaps()
     assert not any(gaps.missing(round((10.0 + 0.1 * each) * SECOND), BLOCK) for each in range(5))

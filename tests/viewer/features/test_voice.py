@@ -11,7 +11,7 @@ import pytest
 
 from linkwright.graph import DurabilityPolicy, QoSProfile
 from linkwright.viewer.features.voice import floor
-from linkwright.viewer.protocol.voice import unpack_sound
+from linkwright.viewer.protocol.voice import MOST_LOST_SAMPLES, unpack_sound
 from tests.viewer.scene import Client, World, page, world
 from tests.waiting import eventually
 
@@ -182,9 +182,31 @@ def test_as_much_sound_may_come_as_time_passes():
     budget = floor.SoundBudget(lambda: now)
     for _ in range(10_000):
         now += 0.1
-        assert budget.spend(1600)
-    assert all(budget.spend(1600) for _ in range(99))
-    assert not budget.spend(3200)
+        assert budget.spend(0.1, 0.1)  # a machine so busy that there is nothing but silence
+    assert all(budget.spend(0.1, 0.0) for _ in range(99))
+    assert not budget.spend(0.2, 0.0)
+
+
+async def test_a_page_that_says_more_was_lost_than_time_has_passed_is_cut_and_its_stamps_do_not_run_ahead():
+    async with heard() as (_, client, ears):
+        await client.send("watch_voice", watched=True)
+        await client.send("talk", mode="held")
+        for lost in (0, MOST_LOST_SAMPLES, MOST_LOST_SAMPLES, MOST_LOST_SAMPLES):
+            await client.socket.send_bytes(frame(BLOCK, lost=lost))
+        await client.until("voice_state", talking="nobody", cut=True)
+        await eventually(lambda: ears.held == [True, False])
+        assert len(ears.stamps) == 3
+        assert max(ears.stamps) - ears.stamps[0] < 3.0
+
+
+async def test_a_page_that_says_that_hours_were_lost_is_closed():
+    async with heard() as (_, client, ears):
+        await client.send("talk", mode="held")
+        await client.socket.send_bytes(frame(BLOCK, lost=MOST_LOST_SAMPLES + 1))
+        with pytest.raises(ConnectionError):
+            await client.until("nothing of this kind")
+        assert client.socket.close_code == 1003
+        assert ears.stamps == []
 
 
 async def test_pages_hear_the_conversation():
@@ -213,7 +235,15 @@ async def test_commands_are_sent_as_text_and_pages_know_whether_anybody_takes_th
 
 @pytest.mark.parametrize(
     "bad",
-    [b"", b"\5", frame(BLOCK, kind=4), frame(BLOCK, count=1599), frame(BLOCK[:0]), frame(np.zeros(1601, np.int16))],
+    [
+        b"",
+        b"\5",
+        frame(BLOCK, kind=4),
+        frame(BLOCK, count=1599),
+        frame(BLOCK[:0]),
+        frame(np.zeros(1601, np.int16)),
+        frame(BLOCK, lost=2**32 - 1),
+    ],
 )
 def test_other_binary_frames_are_no_sound(bad):
     assert unpack_sound(bad) is None

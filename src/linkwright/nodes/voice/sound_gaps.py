@@ -36,13 +36,15 @@ class SampleStamps:
         Args:
             samples: how many it has.
             now: the time, when its last sample was heard or some time later.
-            lost: seconds that are missing in it or before it: the stamp jumps over them.
+            lost: seconds that are missing in it or before it: the stamp jumps over them, but over no more than a second
+                that has not passed.
         """
         length = samples * _SECOND // RATE
         began = max(0, now - length)
         if self._next is not None and -_MOST_AHEAD < (behind := began - self._next) < _MOST_BEHIND:
             most = round(_DRIFT * length)
-            began = self._next + min(max(behind, -most), most) + round(lost * _SECOND)
+            jump = min(round(lost * _SECOND), max(behind, 0) + _MOST_AHEAD)
+            began = self._next + min(max(behind, -most), most) + jump
         self._next = began + length
         return began
 

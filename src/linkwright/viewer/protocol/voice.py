@@ -23,6 +23,9 @@ SOUND_RATE = 16_000
 MOST_SAMPLES = 1600
 """Of one frame."""
 
+MOST_LOST_SAMPLES = 5 * SOUND_RATE
+"""Samples that a frame may say were lost; of more than that a page says so many."""
+
 _HEADER = struct.Struct("<IIII")
 
 
@@ -45,6 +48,8 @@ def unpack_sound(frame: bytes) -> SoundBlock | None:
         return None
     kind, count, lost, _ = _HEADER.unpack_from(frame)
     if kind != SOUND_KIND or not 0 < count <= MOST_SAMPLES or len(frame) != _HEADER.size + 2 * count:
+        return None
+    if lost > MOST_LOST_SAMPLES:
         return None
     return SoundBlock(np.frombuffer(frame, "<i2", count, _HEADER.size).astype(np.int16), lost / SOUND_RATE)
 
@@ -84,7 +89,7 @@ class VoiceState(ServerMessage):
             that listens all the time.
         sound_listeners: how many subscribe to sound.
         text_listeners: how many take commands as text.
-        cut: the page sent more sound than time has passed, and has to begin anew.
+        cut: the page sent more sound than time has passed, or says that more was lost, and has to begin anew.
     """
 
     talking: Talking

@@ -9,6 +9,7 @@ from typing import Any
 from linkwright.graph import Publisher, PublisherEventCallbacks, Subscription
 from linkwright.graph.endpoints.event_types import QoSPublisherMatchedInfo
 from linkwright.nodes.voice.audio_topics import NAMESPACE, AudioTopics
+from linkwright.speech.sound.samples import RATE
 from linkwright.viewer.features.page_feature import FeatureHost, PageFeature
 from linkwright.viewer.features.voice.floor import Floor, SoundBudget
 from linkwright.viewer.features.voice.words import WordBook
@@ -142,7 +143,7 @@ class VoiceFeature(PageFeature):
         budget = self._budgets.get(page)
         if budget is None:
             return
-        if not budget.spend(block.samples.size):
+        if not budget.spend(block.samples.size / RATE, block.lost):
             self._cut.add(page)
             self._talk(page, Talk("off"))
         elif self._words.hear(page, block.samples):  # it is an example of a word

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from linkwright.speech.sound.samples import RATE
 from linkwright.viewer.protocol.voice import TalkMode
 from linkwright.viewer.web.audience import Page
 
@@ -47,7 +46,9 @@ class Floor:
 
 
 class SoundBudget:
-    """How much sound a page may send: as much as time passes.
+    """How much sound a page may send, and how much it may say was lost: as much of each as time passes.
+
+    The two are apart because what was lost may be in what is sent, as silence.
 
     Args:
         clock: seconds.
@@ -56,11 +57,13 @@ class SoundBudget:
     def __init__(self, clock: Callable[[], float]) -> None:
         self._clock = clock
         self._at = clock()
-        self._left = _LEAD
+        self._sound = self._lost = _LEAD
 
-    def spend(self, samples: int) -> bool:
-        """Whether so many samples are within the bounds."""
+    def spend(self, sound: float, lost: float) -> bool:
+        """Whether so many seconds are within the bounds."""
         now = self._clock()
-        self._left = min(_LEAD, self._left + (now - self._at) * _DRIFT) - samples / RATE
+        gained = (now - self._at) * _DRIFT
         self._at = now
-        return self._left >= 0.0
+        self._sound = min(_LEAD, self._sound + gained) - sound
+        self._lost = min(_LEAD, self._lost + gained) - lost
+        return self._sound >= 0.0 and self._lost >= 0.0
