@@ -1,4 +1,4 @@
-"""A bridge between two networks: nodes of either are had in the other one, with what they publish and serve.
+"""A bridge between two networks: each shows the nodes of the other one, with their topics and services.
 
 Two bridges between the same networks do not carry what the other one carries: nodes that a bridge has somewhere are
 known by their enclave, and what two could carry is carried by the one whose id comes first (decision 0066).
@@ -105,7 +105,7 @@ async def _carry(first: Side, second: Side, directions: tuple[Direction, Directi
 
 
 def _relevant(log: LogSink) -> LogSink:
-    """Leaves out what nodes say that stand for others: their quality of service is not theirs."""
+    """Drops the log of mirrored nodes, which warn of a quality of service that is not their own choice."""
 
     def take(record: LogRecord) -> None:
         if record.node in _OF_THE_BRIDGE or record.level >= LogLevel.ERROR:

@@ -1,4 +1,4 @@
-"""One way of a bridge: what there is in the network at its source is had in the one at its target."""
+"""One direction of a bridge: publishers and services of the source network are mirrored in the target network."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Early(NamedTuple):
 
 
 class Direction:
-    """Carries from a source to a target.
+    """Carries messages, requests and responses from a source network to a target network.
 
     A node at the source has one of its name at the target, with the publishers and the services that it has at home;
     its subscriptions and clients are only shown there, see `Presence`. The bridge's own node listens at the source, to
@@ -85,7 +85,7 @@ class Direction:
     # --- after changes -----------------------------------------------------------------------------------------------
 
     def withdraw(self) -> None:
-        """Take away what has left, having found out what there is to be carried now."""
+        """Decide what is to be mirrored now, and remove mirrors of endpoints that have left."""
         self._decide()
         self._leaving = {
             gid: self._leaving.get(gid, 0) for gid in self._publishers.keys() - self._wanted_publishers.keys()
@@ -97,7 +97,7 @@ class Direction:
         self._let_go()
 
     def add(self) -> None:
-        """Have at the target what is new."""
+        """Mirror new nodes, publishers and services at the target."""
         for name, node in self._wanted_nodes.items():
             if name not in self._nodes:
                 self._nodes[name] = self._target.open_node(node)
@@ -112,7 +112,7 @@ class Direction:
                 self._services[key] = MirroredService(self._node_of(info), self._source.own, info)
 
     def show(self, back: Direction) -> bool:
-        """Have who hears and who calls at the source seen at the target; whether all are.
+        """Show the subscriptions and clients of the source at the target; whether all are shown.
 
         Publishers there may say something as soon as they see a subscription, and it has to be heard by then.
 
@@ -144,7 +144,7 @@ class Direction:
         )
 
     def settle(self) -> bool:
-        """Do what had to wait; whether nothing waits any more."""
+        """Go on with what had to wait (messages, removals, matching); whether nothing waits any more."""
         is_settled = not self._leaving
         self._say_early()
         self._let_go()
@@ -156,14 +156,14 @@ class Direction:
         return is_settled and not self._early
 
     def close(self) -> None:
-        """Carry no more."""
+        """Close the mirrored publishers."""
         for publisher in self._publishers.values():
             publisher.close()
 
     # --- inside ------------------------------------------------------------------------------------------------------
 
     def _let_go(self) -> None:
-        """Take away publishers that have left, once what they said last was carried, and nodes that have."""
+        """Remove the mirrors of publishers that have left, once their last messages were carried, and empty nodes."""
         for gid, quiet in tuple(self._leaving.items()):
             publisher = self._publishers[gid]
             tap = self._taps.get(publisher.stream)
@@ -183,7 +183,7 @@ class Direction:
         return self._nodes[info.node.full_name]
 
     def _decide(self) -> None:
-        """What of the source is to be had at the target."""
+        """Decide which endpoints and nodes of the source are mirrored at the target, and what is awaited there."""
         seen, there = self._source.seen, self._target.seen
         self._wanted_publishers, self._wanted_services, self._wanted_nodes = {}, {}, {}
         self._wanted_presences = {}
@@ -221,7 +221,7 @@ class Direction:
         return any(can_hear(each, publisher, keyed=self._target.needs_hashes) for each in demanding)
 
     def _can_carry(self, info: EndpointInfo) -> bool:
-        """Whether a topic or service of this type can be had at the target; it is said once that it cannot."""
+        """Whether a topic or service of this type can be made at the target; once for each, a warning if not."""
         if not self._target.needs_hashes or hash_of(info):
             return True
         if info.name not in self._told:
@@ -256,7 +256,7 @@ class Direction:
             self._taps[stream] = Tap(self._source.own, stream, self._take)
 
     def _take(self, tap: Tap, data: bytes, info: MessageInfo) -> None:
-        """Carry a message. What bridges have said is none."""
+        """Carry a message, unless a bridge published it."""
         if not info.from_outside:
             return
         publisher = self._publisher(info.publisher_gid)
@@ -268,7 +268,7 @@ class Direction:
             self._early.append(Early(time.monotonic() + _KNOWN_WITHIN, tap, info.publisher_gid, data))
 
     def _say_early(self) -> None:
-        """Carry what came before its publisher was known."""
+        """Carry the messages that came before their publisher was discovered."""
         now = time.monotonic()
         for _ in range(len(self._early)):
             early = self._early.popleft()
@@ -286,7 +286,7 @@ class Direction:
         return self._publishers.get(self._aliases.get(gid, gid))
 
     def _any_of(self, early: Early) -> MirroredPublisher | None:
-        """Who speaks for a publisher whose messages have another gid than is told of it, as some have over Zenoh."""
+        """The mirror for messages whose gid no publisher was announced with, as of some programs over Zenoh."""
         for gid, publisher in self._publishers.items():
             if publisher.stream == early.tap.stream:
                 self._aliases[early.gid] = gid

@@ -1,4 +1,4 @@
-"""What a bridge has in one network for what there is in the other one: publishers, subscriptions and services."""
+"""Mirrors: the publishers, subscriptions and services of a bridge that stand for those of the other network."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class Tap:
 
 
 class MirroredPublisher:
-    """Says in one network what a publisher says in the other one.
+    """Publishes in one network what a publisher publishes in the other one.
 
     What it is given before somebody listens to it waits: who is there has not met it yet.
 
@@ -97,12 +97,12 @@ class MirroredPublisher:
         return self._publisher.gid
 
     def listeners(self) -> int:
-        """How many subscriptions of others hear it, those of other bridges too."""
+        """The number of matching subscriptions of others, other bridges included."""
         return self._publisher.get_subscription_count() - len(self._publisher.matched())
 
     @property
     def waits(self) -> bool:
-        """Whether what it says waits for somebody to listen."""
+        """Whether its messages are held back until a subscription matches."""
         return self._waiting is not None
 
     def say(self, data: bytes) -> None:
@@ -114,7 +114,7 @@ class MirroredPublisher:
             self.settle()
 
     def settle(self) -> bool:
-        """Publish what waits, if it is time; whether nothing waits any more."""
+        """Publish the messages that were held back, if it is time; whether none is left."""
         if self._waiting is not None and (self.stream.lasts or self.listeners() or self._has_waited()):
             waiting, self._waiting = self._waiting, None
             for data in waiting:
@@ -128,7 +128,7 @@ class MirroredPublisher:
         self._publisher.destroy()
 
     def has_more(self) -> bool:
-        """Whether what it was given waits to be published."""
+        """Whether messages wait to be published."""
         return self._outlet is not None and self._outlet.has_more()
 
     def _has_waited(self) -> bool:
@@ -172,7 +172,7 @@ class MirroredService:
         return self._service is not None
 
     def close(self) -> None:
-        """Take it away; who waits for an answer learns what the network tells of a service that has left."""
+        """Remove it; a caller who waits for a response is told by the network that the service has left."""
         if self._service is not None:
             self._service.destroy()
         self._client.destroy()

@@ -1,4 +1,4 @@
-"""Publishing that may have to wait for who listens, beside what must not wait for it."""
+"""A queue and a thread for a publisher that may block, so that the rest of a bridge does not."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from linkwright.wire.living_threads import guarded
 
 
 class Outlet:
-    """Publishes what it is given in a thread of its own, in the order in which it came.
+    """Publishes messages in order, in a thread of its own.
 
     A publisher that keeps everything waits for a listener that has stopped, for seconds; all else that a bridge carries
     goes on meanwhile.

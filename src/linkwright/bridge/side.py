@@ -1,4 +1,4 @@
-"""One of the networks that a bridge connects: what others have there, and where the bridge has its own."""
+"""One of the two networks that a bridge connects: the graph of others there, and the bridge's own nodes."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ Provision = tuple[str, EndpointKind, str, str]
 
 @dataclass
 class Seen:
-    """What was there when it was looked last, without what bridges have.
+    """A snapshot of the nodes and endpoints of a network, without those of bridges.
 
     Attributes:
         nodes: the nodes.
@@ -86,13 +86,13 @@ class Side:
         return self.graph.open_node(NodeIdentity(node.name, node.namespace, self._enclave), Remappings(()))
 
     def watch(self, changed: Callable[[], None]) -> None:
-        """Have something called, from any thread, when something comes or goes, or its process was killed."""
+        """Register a callback, called from any thread, for every change of the graph, killed processes included."""
         self._transport.watch(changed)
         self._transport.watch_lost(lambda _publisher: changed())
         self._transport.look_around()
 
     def look(self) -> None:
-        """Find out what there is now."""
+        """Take a new snapshot, `seen`."""
         seen = Seen()
         for node in self._transport.remote_nodes():
             other = _bridge_of(node)
@@ -124,6 +124,6 @@ def provision_of(endpoint: EndpointInfo) -> Provision:
 
 
 def _bridge_of(node: NodeIdentity) -> str:
-    """The id of the bridge that has a node there; empty for one that is at home."""
+    """The id of the bridge that a node belongs to; empty for a node of the network itself."""
     root, slash, bridge_id = node.enclave.rpartition("/")
     return bridge_id if slash and root == ENCLAVE else ""

@@ -1,4 +1,4 @@
-"""What one subscription of a bridge can hear all of: the publishers of a topic that are of one kind."""
+"""Streams: the publishers of a topic whose type and quality of service let one subscription receive them all."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from linkwright.graph.qos.profile import (
 from linkwright.messages import InterfaceNotFoundError, type_hash
 
 KEPT = 1000
-"""Messages that wait where they must not be lost: history for late joiners, and what a new publisher says."""
+"""Messages that are queued where none may be lost: the history for late joiners, and those of a new publisher."""
 
 _UNTOLD_DEPTH = 10
 """What a publisher keeps that does not tell how much, as one of Fast DDS does not."""
 
 
 class Stream(NamedTuple):
-    """What one subscription of a bridge can hear all of.
+    """A topic with the type and quality of service that one subscription of a bridge receives all publishers of.
 
     Attributes:
         name: the topic.
@@ -117,7 +117,7 @@ def _stream(
 
 
 def offered(qos: QoSProfile) -> QoSProfile:
-    """What a publisher offers, in the place of what it does not tell ROS's defaults."""
+    """The profile that a publisher offers, with ROS's defaults where discovery does not tell."""
     lasts = qos.durability is DurabilityPolicy.TRANSIENT_LOCAL
     keeps_all = qos.history is HistoryPolicy.KEEP_ALL
     told = qos.history in (HistoryPolicy.KEEP_LAST, HistoryPolicy.KEEP_ALL)

@@ -89,7 +89,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 @dataclass(frozen=True, slots=True)
 class _Words:
-    """What the command line says of every file."""
+    """The settings of the command line, for every file."""
 
     values: dict[str, str]
     select: tuple[str, ...] | None
@@ -108,7 +108,7 @@ class _Words:
         return self.finders[folder]
 
     def unknown_selector(self) -> str | None:
-        """What to say of a selector that selects nothing, or None."""
+        """The finding on a selector that selects nothing, or None."""
         from linkwright.lint.selector_words import is_selector, selector_hint
 
         for word in (*(self.select or ()), *self.ignore):
@@ -127,7 +127,7 @@ class _Words:
 
 
 def _contents(checked: Checked) -> str:
-    """What a file describes: the tree of a robot's links, or what stands in a world."""
+    """A summary of a file: the tree of a robot's links, or the models in a world."""
     if checked.robot is not None:
         from linkwright.urdf import tree_text
 

@@ -95,7 +95,7 @@ _COLLECT_FIRST_AFTER = 200_000
 
 
 class Verb(Protocol):
-    """What a verb's module offers."""
+    """The interface of a verb's module."""
 
     def configure(self, parser: argparse.ArgumentParser) -> None:
         """Declare the verb's arguments."""

@@ -110,7 +110,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _summary(robot: Robot, found: Inference) -> Phrase:
-    """What was inferred, in a line."""
+    """The inferred facts, in a line."""
     drive = found.drive
     parts: list[Phrase] = []
     if drive is not None and drive.left:

@@ -73,7 +73,7 @@ class EchoFormat:
         )
 
     def text(self, message: Any, info: MessageInfo | None = None) -> str:
-        """What is printed of a message, which may be one as bytes.
+        """The text to be printed for a message or its bytes.
 
         Raises:
             LinkwrightError: CLI414, the message has no such field.

@@ -91,7 +91,7 @@ def _open_as(number: int, flags: int, mode: str) -> object:
 
 
 def _trouble_of_the_system(error: OSError) -> Diagnostic | None:
-    """What the machine refuses: the output, the working directory, a file; None for what is a bug of ours."""
+    """The error of the machine: it refuses the output, the working directory, a file; None for a bug of ours."""
     reason = foreign(error.strerror or error)
     # Whatever writes files says which file was refused, so one without a name is the output.
     if error.filename is None and error.errno in _OF_OUTPUT:

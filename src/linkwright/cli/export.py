@@ -97,7 +97,7 @@ def _write(arguments: argparse.Namespace, pair: Pair | None) -> int:
 
 
 def _from_outside(files: Sequence[Path]) -> Diagnostic:
-    """That files of no package are in what is given away: an include or ``file://`` reaches any file of the machine."""
+    """A warning that files of no package are exported: an include or ``file://`` reaches any file of the machine."""
     message = counted(
         "what a file outside the packages says is in it",
         "what {count} files outside the packages say is in it",

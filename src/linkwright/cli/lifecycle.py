@@ -177,7 +177,7 @@ async def change(session: Session, node: str, transition: Any) -> bool:
 
 
 def transition_lines(descriptions: Sequence[Any]) -> list[str]:
-    """What ``lifecycle list`` prints."""
+    """The lines of ``lifecycle list``."""
     lines = []
     for each in descriptions:
         lines += [

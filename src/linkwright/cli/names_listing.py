@@ -1,4 +1,4 @@
-"""What the verbs share that ask for names of the graph and their types: options, answers, what is said of none."""
+"""Verbs that list names of the graph with their types: options, answers, and what is printed for none."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Kind:
-    """What has names and types in the graph: topics, services or actions.
+    """The kinds of names with types: topics, services, actions.
 
     Attributes:
         found: those that there are.

@@ -164,7 +164,7 @@ def run_describe(arguments: argparse.Namespace) -> int:
 
 
 def _description(descriptor: Any) -> list[str]:
-    """What is printed of a rcl_interfaces/msg/ParameterDescriptor."""
+    """The text of a rcl_interfaces/msg/ParameterDescriptor."""
     lines = [f"Parameter name: {descriptor.name}", f"  Type: {TYPE_NAMES.get(descriptor.type, 'unknown')}"]
     if descriptor.description:
         lines.append(f"  Description: {descriptor.description}")

@@ -44,7 +44,7 @@ class RemoteParameters:
 
     @classmethod
     async def of(cls, session: Session, arguments: argparse.Namespace) -> RemoteParameters:
-        """Those of the node that the command line names.
+        """The parameters of the node that the command line names.
 
         Raises:
             LinkwrightError: CLI423, it is not running.

@@ -48,7 +48,7 @@ def add_session_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 class Session:
-    """What a verb works with.
+    """The graph, node and options of a running verb.
 
     Attributes:
         graph: joined with what runs outside.

@@ -1,4 +1,4 @@
-"""What ``linkwright sim``, ``drive`` and ``spawn`` share: options of a simulation, and reading what is put into it."""
+"""Options that ``linkwright sim``, ``drive`` and ``spawn`` share, and reading the models for a simulation."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ def recording(arguments: argparse.Namespace) -> AbstractContextManager[BagWriter
 
 
 class LoadedModel(NamedTuple):
-    """What is put into a world.
+    """A model that is put into a world.
 
     Attributes:
         text: URDF or SDF.

@@ -35,7 +35,7 @@ _ADDRESSES = {
 
 @dataclass(frozen=True, slots=True)
 class Converted:
-    """What a file came to as SDF.
+    """A file converted to SDF.
 
     Attributes:
         sdf: what it says; None where it cannot be read.

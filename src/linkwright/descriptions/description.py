@@ -1,4 +1,4 @@
-"""What a file or text came to."""
+"""Descriptions: a file or text with the robot, the origins and the findings that were made of it."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class Description:
 
     @classmethod
     def of_expansion(cls, name: str, expansion: Expansion, overlay: Overlay | None = None) -> Description:
-        """What an expansion of a file came to; without `problems` of the expansion that is the whole robot."""
+        """The description of an expanded file; without `problems` of the expansion it has the whole robot."""
         reading = read(expansion.document)
         if expansion.problems:
             reading = Reading(None, tuple(found for found in reading.diagnostics if found.code in TRUE_OF_PARTS))
@@ -69,7 +69,7 @@ class Description:
 
     @property
     def remarks(self) -> tuple[Diagnostic, ...]:
-        """What xacro warned of, and what the description says through ``xacro.message`` and its like."""
+        """The warnings of xacro, and the messages of ``xacro.message`` and its like."""
         return () if self.expansion is None else self.expansion.diagnostics
 
     @cached_property

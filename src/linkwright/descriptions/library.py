@@ -20,7 +20,7 @@ _KEPT_TEXTS = 32
 
 
 class DescriptionLibrary:
-    """The descriptions that are about, by their texts, so that each is read once.
+    """A cache of descriptions by their expanded texts, so that each is read once.
 
     The launcher remembers the description that a text was expanded from; the nodes and the viewer, which get the bare
     text from a parameter or topic, then know where everything was written.
@@ -31,7 +31,7 @@ class DescriptionLibrary:
         self._finders: dict[str, PackageFinder] = {}
 
     def remember(self, description: Description, text: str | None = None, packages: PackageFinder | None = None) -> str:
-        """Keep a description for those who have no more than its text.
+        """Keep a description, to be found by its text.
 
         Args:
             description: a description.
@@ -51,15 +51,15 @@ class DescriptionLibrary:
         return text
 
     def packages(self, text: str) -> PackageFinder | None:
-        """What finds the packages that a remembered description names; None where nobody said so."""
+        """The package finder of a remembered description; None where none was given."""
         return self._finders.get(text)
 
     def description(self, text: str) -> Description | None:
-        """The remembered description that a text stands for; None where nobody said so."""
+        """The remembered description with a text; None where there is none."""
         return self._descriptions.get(text)
 
     def files(self, text: str) -> tuple[Path, ...]:
-        """What a remembered description was made from, the main file first; empty where nobody said so."""
+        """The files of a remembered description, the main file first; empty where none are known."""
         known = self._descriptions.get(text)
         return () if known is None else known.files
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Model:
-    """One of the two.
+    """One of the two compared descriptions.
 
     Attributes:
         path: the file, absolute.
@@ -35,7 +35,7 @@ class Model:
     revision: Revision | None = None
 
     def label(self) -> str:
-        """What readers know the file by."""
+        """The file's name for readers."""
         return self.named(str(self.path))
 
     @property
@@ -105,7 +105,7 @@ class Pair:
             self.old.revision.close()
 
     def label(self, file: str) -> str:
-        """What readers know a file of either by."""
+        """The name of a file of either for readers."""
         return self.old.named(file)
 
     def compared(self) -> Comparison:

@@ -85,7 +85,7 @@ class Revision:
         return f"{self.name}:{inside.as_posix()}"
 
     def normalizers(self, finder: PackageFinder) -> tuple[Callable[[str], str], Callable[[str], str]]:
-        """What makes paths in the texts of both comparable: of the commit's descriptions, and of those found otherwise.
+        """Functions that make paths in both texts comparable: for the commit's description, and for the other one.
 
         Args:
             finder: finds the packages of the other description.

@@ -1,4 +1,4 @@
-"""What can be said about a user's input, and the error that carries it."""
+"""Diagnostics: findings about a user's input, and the exception that carries them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Texts that say what they are made of: a template in English and what was filled in, so that they can be translated.
+"""Translatable texts: an English template, and the arguments that were filled in.
 
 A `Phrase` is an ordinary string, the English text, wherever one is wanted. What reads it in another language looks its
 template up in that language's catalogue and fills that in with the same arguments, translated where they are phrases.
@@ -32,7 +32,7 @@ class Wording(Protocol):
         """The one of two templates that fits the number, in this language."""
 
     def pgettext(self, context: str, message: str, /) -> str:
-        """The template in this language, as it is to be read in the context."""
+        """The translation of a template that has several by context."""
 
 
 class Phrase(str):
@@ -68,7 +68,7 @@ class Phrase(str):
 
     @property
     def chosen_template(self) -> str:
-        """The English template that was filled in: of those for one and for several things, the one that fits."""
+        """The English template that was filled in; of a singular and a plural one, that which fits the count."""
         return self.template
 
     def translated(self, wording: Wording) -> Phrase:
@@ -120,7 +120,7 @@ class _Said(Phrase):
 
 
 class _Counted(Phrase):
-    """A phrase that is another for one thing than for several."""
+    """A phrase with a singular and a plural template."""
 
     __slots__ = ("several",)
     several: str
@@ -214,12 +214,12 @@ def term(word: str) -> Phrase:
 
 
 def title_of_page(text: str) -> Phrase:
-    """What a rule or another diagnostic code reports, as its page begins; looked up as a whole, among titles."""
+    """The title of the page on a rule or diagnostic code; looked up as a whole, among titles."""
     return _Known(text, RULES)
 
 
 def foreign(words: object) -> Phrase:
-    """What another program said, such as the text of an exception; translated where a catalogue has exactly this."""
+    """A text of another program, such as that of an exception; translated where a catalogue has exactly this."""
     said = str(words)
     return said if isinstance(said, Phrase) else _Known(said, FOREIGN)
 

@@ -68,7 +68,7 @@ def _meant(names: Sequence[str]) -> Phrase | None:
 
 
 def missing_file_hint(path: Path, wanted: Callable[[str], bool] | None = None) -> Phrase:
-    """What to say about a file that is not there: a missing folder, the nearest names beside it, or what is beside it.
+    """A hint for a missing file: the missing folder, the nearest names beside it, or all names there.
 
     Args:
         path: of the file.

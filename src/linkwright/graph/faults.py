@@ -1,10 +1,10 @@
-"""What programs that use the graph must be ready for, with the classes that rclpy raises as their patterns."""
+"""The exceptions of the graph, modelled on those of rclpy."""
 
 from __future__ import annotations
 
 
 class RclError(RuntimeError):
-    """What the C library below rclpy complains about (rclpy ``RCLError``)."""
+    """An error that the C library below rclpy would report (rclpy ``RCLError``)."""
 
 
 class InvalidHandleError(RuntimeError):
@@ -51,4 +51,4 @@ class ExternalShutdownException(Exception):  # noqa: N818  # rclpy's name
 
 
 class ConditionReachedException(Exception):  # noqa: N818  # rclpy's name
-    """What was waited for has come true."""
+    """The condition that was waited for holds."""

@@ -1,4 +1,4 @@
-"""What the nodes of a process share: the bus, the transport to other processes, time and logging."""
+"""The state that the nodes of a process share: the bus, the transport to other processes, time and logging."""
 
 from __future__ import annotations
 
@@ -76,17 +76,17 @@ class LocalGraph(GraphQueries):
 
     @property
     def clock(self) -> Timebase:
-        """What the graph's time is made of."""
+        """The source of the graph's time."""
         return self.timebase
 
     @property
     def dispatcher(self) -> LoopDispatcher | None:
-        """What runs the callbacks of nodes that get no other; None without an event loop."""
+        """The default dispatcher of callbacks; None without an event loop."""
         return self._dispatcher
 
     @property
     def transport(self) -> Transport | None:
-        """What carries the graph's traffic out of the process; None where nothing does."""
+        """The transport to other processes; None without one."""
         return self._transport
 
     @property

@@ -146,7 +146,7 @@ class Node(NodeParameters, NodeQueries):
 
     @property
     def handle(self) -> NodeHandle:
-        """What the graph knows of the node; entered while the node is used."""
+        """The node's handle in the graph; entered while the node is used."""
         return self.__handle
 
     @property

@@ -1,4 +1,4 @@
-"""What programs use of the ``ros2 launch`` verb (``ros2launch.api``)."""
+"""The functions of the ``ros2 launch`` verb that programs use (``ros2launch.api``)."""
 
 from __future__ import annotations
 

@@ -141,7 +141,7 @@ def print_description(target: LaunchTarget) -> str:
 
 
 def _read(target: LaunchTarget, tell: Callable[[LaunchDescription], str]) -> str:
-    """What is told of a launch file that is read and not run."""
+    """Read a launch file without running it, and return the text that is made of its description."""
     finder = target.finder()
     with own_environment(finder):
         return tell(load_launch_file(target.resolve(finder)))

@@ -26,7 +26,7 @@ class LaunchTarget:
     package: str | None = None
 
     def finder(self) -> PackageFinder:
-        """What finds packages for this launch: from the file's folder and then from the current one."""
+        """The package finder of this launch, which begins at the file's folder and then the current one."""
         if self.package is None:
             return PackageFinder(start=[Path(self.file).absolute().parent, Path.cwd()])
         return PackageFinder()

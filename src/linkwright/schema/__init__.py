@@ -1,4 +1,4 @@
-"""What an XML language consists of, as data, and what that data drives: reading, writing, explaining.
+"""XML languages as data: elements and attributes in tables that drive reading, writing and explaining.
 
 A language is a tree of `ElementRule` objects. This room knows no language itself; URDF's is `linkwright.urdf.schema`.
 """

@@ -1,4 +1,4 @@
-"""What a rule says, in words: for hover texts and for documentation."""
+"""Rules in words, for hover texts and documentation."""
 
 from __future__ import annotations
 

@@ -116,7 +116,7 @@ def _compiled_later(name: str, rule: ElementRule, version: Version, scope: dict[
 
 
 def _scope(rule: ElementRule, version: Version) -> dict[str, Any]:
-    """What names in the source of a reader stand for."""
+    """The names that the generated source of a reader uses."""
     scope: dict[str, Any] = {
         "Element": Element,
         "UNREADABLE": UNREADABLE,

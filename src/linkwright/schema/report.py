@@ -1,4 +1,4 @@
-"""What a reader of elements tells, and to whom."""
+"""The interface by which readers of elements report findings."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ UNREADABLE: Final = type("Unreadable", (), {"__repr__": lambda _: "UNREADABLE"})
 
 
 class Report(Protocol):
-    """Where a reader tells what it finds, in the words of a language.
+    """Takes the findings of a reader, and words them for one XML language.
 
     `owner` is the element that messages name an element's place by: the link or joint that it is part of.
 
@@ -27,7 +27,7 @@ class Report(Protocol):
         """A required attribute, or text inside, is not there."""
 
     def malformed(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> Any:
-        """An attribute, or the text inside, does not say what it must; the value to go on with, or `UNREADABLE`."""
+        """An attribute, or the text inside, cannot be parsed; returns the value to go on with, or `UNREADABLE`."""
 
     def too_new(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> None:
         """An attribute is ignored, because it came with a later version of the language."""
@@ -39,7 +39,7 @@ class Report(Protocol):
         """None of several children is there."""
 
     def unknown_choice(self, child: Element, rule: ElementRule, owner: Element) -> None:
-        """The child that should be one of several is none of them in this version of the language."""
+        """A child stands where one of several is expected, and is none of them in this version of the language."""
 
 
 Read = Callable[[Element, Element, Report], Any]

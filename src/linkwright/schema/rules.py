@@ -12,7 +12,7 @@ Version = tuple[int, int]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ValueType:
-    """What a value in a file must be.
+    """The type of a value in a file.
 
     Attributes:
         name: as messages and documentation say it: ``3 numbers``.
@@ -71,7 +71,7 @@ class AttributeRule:
         return self.required and (self.until is None or version < self.until)
 
     def absent_value(self, version: Version) -> Any:
-        """What stands for it where a file of this version does not give it; None where nothing does."""
+        """Its default in this version of the language; None where there is none."""
         if self.later_default is not None and version >= self.later_default[0]:
             return self.later_default[1]
         return None if self.default is None else self.type.read(self.default)
@@ -155,5 +155,5 @@ class ElementRule:
 
     @property
     def values(self) -> tuple[AttributeRule, ...]:
-        """What it says itself: its attributes, and the text inside."""
+        """Its own values: its attributes, and the text inside."""
         return self.attributes if self.text is None else (*self.attributes, self.text)

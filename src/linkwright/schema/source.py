@@ -134,7 +134,7 @@ def _child(name: str, child: ElementRule) -> Iterator[str]:
 
 
 def _unreadable(rule: ElementRule, attributes: list[str], children: list[tuple[str, ElementRule]]) -> Iterator[str]:
-    """What becomes of an element with unreadable parts."""
+    """The generated code for an element with unreadable parts."""
     singles = [*attributes, *(name for name, child in children if not child.many)]
     if rule.keeps:
         for name in singles:
@@ -149,7 +149,7 @@ def _unreadable(rule: ElementRule, attributes: list[str], children: list[tuple[s
 
 
 def _fields(name: str, child: ElementRule) -> Iterator[str]:
-    """What the object is made with on behalf of a child."""
+    """The generated arguments for a child."""
     if child.is_inline:
         for place, attribute in enumerate(child.values):
             yield f"{attribute.target}=({name}_absent if {name} is None else {name})[{place}]"

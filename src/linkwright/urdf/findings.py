@@ -11,7 +11,7 @@ from linkwright.xmltree import Element
 
 
 class Findings:
-    """What is wrong with a description, and whether it is so wrong that there is no robot.
+    """The findings of one reading, and whether they keep a robot from being made.
 
     Attributes:
         version: the URDF version the file is read as.

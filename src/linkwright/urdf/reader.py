@@ -37,7 +37,7 @@ PartT = TypeVar("PartT", Link, Joint)
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """What came of reading a description.
+    """The result of reading a description.
 
     Attributes:
         robot: the robot, or None when urdfdom would refuse the model. It may be there beside errors: urdfdom, and so

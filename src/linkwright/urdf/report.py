@@ -1,4 +1,4 @@
-"""Words for what is wrong with an element, from its rule and what is written in its place."""
+"""Findings of the reader in words: missing, malformed and misplaced elements and attributes of URDF."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ _SHAPE_ALIASES = {"cube": "box", "cuboid": "box", "ball": "sphere", "tube": "cyl
 
 
 def owner_name(owner: Element) -> Phrase:
-    """What messages call the element that another is part of: ``joint 'elbow'``, ``the robot``."""
+    """The name of an element's owner in messages: ``joint 'elbow'``, ``the robot``."""
     name = owner.attributes.get("name")
     if owner.tag == "joint":
         return phrase("a joint without a name") if name is None else phrase("joint '{name}'", name=name)
@@ -151,7 +151,7 @@ class UrdfReport(Findings):
         self.error("URDF131", phrase("<geometry> of {owner} is empty", owner=owner_name(owner)), element, hint=hint)
 
     def unknown_choice(self, child: Element, rule: ElementRule, owner: Element) -> None:
-        """What should be a shape is none, or not in this version."""
+        """An element in the place of a shape is none, or none in this version."""
         if child.tag in rule.child_rules:
             hint = phrase('write <robot version="1.1" ...>, or build it from a cylinder and two spheres')
             self.error(

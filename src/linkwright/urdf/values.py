@@ -156,7 +156,7 @@ def looks_like_degree_limits(lower: float, upper: float) -> bool:
 
 
 def degrees_hint(*angles: float) -> Phrase:
-    """What angles are in radians, taken as degrees."""
+    """A hint with angles in radians, taken as degrees."""
     return phrase("angles are in radians: '{angles}'", angles=" ".join(f"{radians(angle):.6g}" for angle in angles))
 
 

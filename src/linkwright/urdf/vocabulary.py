@@ -1,4 +1,4 @@
-"""What an element or attribute of URDF means, looked up by its name or by its path, such as ``joint.limit.effort``."""
+"""The meanings of URDF's elements and attributes, by their names or paths such as ``joint.limit.effort``."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _Path = tuple[str, ...]
 
 
 def meanings(name: str) -> list[Phrase]:
-    """What a name or path stands for, each meaning in Markdown; none where URDF has no such thing.
+    """The meanings of a name or path, each in Markdown; none where URDF has no such thing.
 
     A path goes from the outside in, may begin anywhere and may end with an attribute: ``joint.limit.effort``
     and ``limit.effort`` are the same, and so are ``limit/effort`` and ``<limit> effort``.

@@ -1,4 +1,4 @@
-"""What transports share: an engine mirrors the graph of this process, and is made in the background."""
+"""The base of transports: an engine, made in the background, that mirrors the graph of this process."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _CLOSED_WITHIN = 0.05
 
 
 class Outside(Protocol):
-    """What discovery found; written by one thread, read by any."""
+    """The nodes and endpoints that discovery found; written by one thread, read by any."""
 
     changed_at: float
     """When something changed last, by the steady clock."""

@@ -1,4 +1,4 @@
-"""What the engines of the wires share: work that any thread asks for, done by one in the order of asking."""
+"""The base of the transports' engines: work that any thread asks for, done by one thread in order."""
 
 from __future__ import annotations
 
@@ -93,13 +93,13 @@ class Engine(ABC):
     # --- what was asked for ------------------------------------------------------------------------------------------
 
     def _do_some_work(self) -> None:
-        """Do what there is to do, for a while."""
+        """Make and delete the endpoints that were asked for, for a limited time."""
         until = time.monotonic() + _WORK_SPAN
         while self._work and time.monotonic() < until:
             self._do_next()
 
     def _do_all_work(self) -> None:
-        """Do what is left to do, at the end."""
+        """The same without a limit, before the engine ends."""
         while self._work:
             self._do_next()
 

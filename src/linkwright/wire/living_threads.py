@@ -1,4 +1,4 @@
-"""Threads that others depend on, and that go on when something which they call fails."""
+"""Calls whose failure is reported and does not end the thread that makes them."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ R = TypeVar("R")
 
 
 def guarded(call: Callable[[], R], report: Callable[[Exception], object] | None = None) -> R | None:
-    """Call something; if it fails that is told, and the thread goes on.
+    """Call a function; an exception is reported, not raised.
 
     Args:
         call: what to call.

@@ -22,5 +22,5 @@ def is_switched_off(environment: Mapping[str, str] | None = None) -> bool:
 
 
 def switched_off() -> Phrase:
-    """What is said of it."""
+    """The reason to give for it."""
     return phrase("the environment variable {switch} is 0", switch=SWITCH)

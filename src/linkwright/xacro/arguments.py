@@ -52,7 +52,7 @@ class Argument:
 
 @dataclass(frozen=True, slots=True)
 class Arguments:
-    """What a description takes.
+    """The arguments of a description, as `examine_arguments` found them.
 
     Attributes:
         arguments: the arguments, in the order in which they are met.
@@ -66,7 +66,7 @@ class Arguments:
 
 
 def examine_arguments(inputs: Inputs) -> Arguments:
-    """The arguments that a description takes, and what is to be said of those given.
+    """The arguments that a description takes, and findings about the given ones.
 
     Raises:
         LinkwrightError: the file cannot be read or is not XML.
@@ -128,14 +128,14 @@ class _Session(TracedSession):
         return super().argument(name)
 
     def declare(self, expander: Expander, site: Site) -> None:
-        """What ``<xacro:arg>`` does."""
+        """The directive ``<xacro:arg>``: it records the declaration."""
         DIRECTIVES["xacro:arg"](expander, site)
         self.declared.setdefault(site.node.attributes["name"], site.node)
 
 
 @dataclass
 class _Findings:
-    """What was found out about the arguments, by name.
+    """The findings about arguments, by name.
 
     Attributes:
         complete: whether the expansion came to its end, so that what it asked for is all that it needs.

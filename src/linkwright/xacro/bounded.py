@@ -38,7 +38,7 @@ HASHING = frozenset(
 
 
 def keys(value: Any) -> Any:
-    """What a set or dict may be made of: the value itself, or its items where they come one by one.
+    """The value that a set or dict is to be made of: the given one, or a list of its items if it is an iterator.
 
     Raises:
         RefusalError: too many of its items, or of the first of its pairs, have the same hash.

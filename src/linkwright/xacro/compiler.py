@@ -1,4 +1,4 @@
-"""From the syntax tree of an expression to nested closures.
+"""Compiles the syntax tree of an expression to nested closures.
 
 There is one method for each kind of node that expressions may use; a node of any other kind is refused. A closure
 takes the environment and gives the value of its node; what it does to values goes through the sandbox. Every closure
@@ -17,7 +17,7 @@ from linkwright.diagnostics import Phrase, foreign, phrase
 from linkwright.xacro import sandbox
 from linkwright.xacro.bounded import keys
 from linkwright.xacro.faults import Fault
-from linkwright.xacro.function_calls import call, cost, made
+from linkwright.xacro.function_calls import call, charged, cost
 from linkwright.xacro.functions import Function, bind_parameters
 from linkwright.xacro.refusal import RefusalError
 from linkwright.xacro.scope import Environment
@@ -35,7 +35,7 @@ _CHANGING = frozenset(
 
 _WITH_UNIT = r"\s*([-+]?[0-9.]+)\s*[^\W\d]+\s*"  # not compiled here: few files need it
 _GENERATOR = 10
-"""What it costs, in steps, to make one, for the memory that it takes."""
+"""Steps that making a generator costs, for its memory."""
 _LINES = r"[^\r\n]*(?:\r\n?|\n|\Z)"
 _DEEPEST = 500
 """How deep the nodes of an expression may nest; a sum nests as deep as it has terms."""
@@ -127,13 +127,7 @@ class Compiler:
         """
         method = _METHODS.get(node.__class__)
         if method is None:
-            start, end = self._place(node)
-            raise Fault(
-                "XAC204",
-                phrase("'{segment}' may not be used in an expression", segment=self._segment(start, end)),
-                start,
-                end,
-            )
+            raise self._refused(node)
         self._depth += 1
         if self._depth > _DEEPEST:
             raise Fault("XAC102", phrase("the expression is nested too deeply"))
@@ -160,8 +154,13 @@ class Compiler:
     def _failure(self, error: Exception, start: int, end: int) -> Fault:
         return failure(error, self._segment(start, end), start, end)
 
+    def _refused(self, node: ast.AST) -> Fault:
+        start, end = self._place(node)
+        message = phrase("'{segment}' may not be used in an expression", segment=self._segment(start, end))
+        return Fault("XAC204", message, start, end)
+
     def _operand_hint(self, error: Exception, *operands: tuple[ast.expr, Any]) -> Phrase | None:
-        """Which operand is not what it should be, for what is written as a name or reached through one."""
+        """A hint on the operand that does not fit, unless it is a constant: zero, a text, a number with its unit."""
         for node, value in operands:
             written = self._segment(*self._place(node))
             if isinstance(node, ast.Constant) or len(written) > 40:
@@ -221,8 +220,8 @@ class Compiler:
 
         def formatted(env: Environment) -> Any:
             try:
-                result = sandbox.formatted(made(env.session.budget, value(env)), conversion, specification(env))
-                return made(env.session.budget, result)
+                result = sandbox.formatted(charged(env.session.budget, value(env)), conversion, specification(env))
+                return charged(env.session.budget, result)
             except FAILURES as error:
                 raise self._failure(error, start, end) from None
 
@@ -431,7 +430,7 @@ class Compiler:
 
         def display(env: Environment) -> Any:
             try:
-                return made(env.session.budget, kind(_arguments(env, items, [])[0]))
+                return charged(env.session.budget, kind(_arguments(env, items, [])[0]))
             except (RefusalError, TypeError) as error:
                 raise self._failure(error, start, end) from None
 
@@ -449,7 +448,7 @@ class Compiler:
             try:
                 for key, value in items:
                     result.update(keys(value(env)) if key is None else {key(env): value(env)})
-                return made(env.session.budget, result)
+                return charged(env.session.budget, result)
             except (RefusalError, TypeError, ValueError) as error:
                 raise self._failure(error, start, end) from None
 
@@ -471,7 +470,7 @@ class Compiler:
 
         def comprehension(env: Environment) -> Any:
             try:
-                return made(env.session.budget, kind(item(inner) for inner in turns(env)))
+                return charged(env.session.budget, kind(item(inner) for inner in turns(env)))
             except (RefusalError, TypeError, ValueError) as error:
                 raise self._failure(error, start, end) from None
 
@@ -483,7 +482,7 @@ class Compiler:
 
         def comprehension(env: Environment) -> Any:
             try:
-                return made(env.session.budget, {key(inner): value(inner) for inner in turns(env)})
+                return charged(env.session.budget, {key(inner): value(inner) for inner in turns(env)})
             except (RefusalError, TypeError, ValueError) as error:
                 raise self._failure(error, start, end) from None
 
@@ -499,7 +498,7 @@ class Compiler:
         return generator
 
     def _turns(self, generators: list[ast.comprehension]) -> Callable[[Environment], Iterator[Environment]]:
-        """What runs through the loops of a comprehension, giving the environment of each turn."""
+        """The loops of a comprehension: a generator of the environment of each turn."""
         loops = []
         for generator in generators:
             if generator.is_async:
@@ -542,13 +541,7 @@ class Compiler:
                     bind(env, item)
 
             return unpack
-        start, end = self._place(node)
-        raise Fault(
-            "XAC204",
-            phrase("'{segment}' may not be used in an expression", segment=self._segment(start, end)),
-            start,
-            end,
-        )
+        raise self._refused(node)
 
 
 def _warn_of_plain_mapping(env: Environment, name: str) -> None:
@@ -565,7 +558,7 @@ _METHODS: dict[type[ast.AST], Callable[[Compiler, Any], Closure]] = {
     for kind in vars(ast).values()
     if isinstance(kind, type) and issubclass(kind, ast.AST) and hasattr(Compiler, f"_{kind.__name__.lower()}")
 }
-"""Node of a syntax tree -> what compiles it."""
+"""Class of a node of the syntax tree -> the method that compiles it."""
 
 
 def _arguments(

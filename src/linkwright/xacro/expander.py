@@ -94,7 +94,7 @@ class Expander:
         return tuple(_without_repeats(self._errors))
 
     def walk(self, document: Document) -> Document | None:
-        """What a document expands to in spite of the mistakes in `errors`; None where the walk had to stop."""
+        """Expand a document in spite of the mistakes in `errors`; None where the walk had to stop."""
         root = document.root
         container = Container("")
         target = root.attributes.get("xacro:targetNamespace")
@@ -171,7 +171,7 @@ class Expander:
             self.children(node, made, scope, macros)
 
     def blocks(self, node: Element, scope: Scope, macros: MacroTable) -> Element:
-        """What the elements inside of a macro call expand to, in a container."""
+        """Expand the elements inside of a macro call, into a container."""
         container = Container(node.tag)
         if node.children:
             self.children(node, container, scope, macros)
@@ -256,7 +256,7 @@ class Expander:
         return self.written(node, name, self.value(node, name, scope))
 
     def written(self, node: Element, name: str, value: object) -> str:
-        """What is written for a value that an attribute of the element has."""
+        """The text that is written for the value of an attribute."""
         try:
             return self.session.written(node.attributes[name], value)
         except Fault as fault:

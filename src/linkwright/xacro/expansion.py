@@ -1,4 +1,4 @@
-"""What comes out of an expansion."""
+"""The result of an expansion: the document, its arguments and dependencies, and what was found on the way."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class Expansion:
-    """What comes out of a file.
+    """The result of expanding a file.
 
     Attributes:
         document: the expanded document. Every element has the source and offset where it was written.

@@ -25,11 +25,11 @@ _QUICK = frozenset(
         *("values",),
     }
 )
-"""What takes no longer for a long value than for a short one."""
+"""Functions that take no longer for a long value than for a short one."""
 
 
 def cost(value: Any) -> int:
-    """How many steps it takes to run through a value once; what is inside of its items does not count."""
+    """The steps that one pass over a value costs; what its items contain does not count."""
     share = _SHARES.get(value.__class__)
     return len(value) // share if share else 0
 
@@ -57,14 +57,14 @@ def call(budget: Budget, function: Any, arguments: list[Any], keywords: dict[str
             steps += cost(owner)
     budget.step(steps)
     if (function is map or function is filter) and arguments:
-        arguments = [_paying(budget, arguments[0]), *arguments[1:]]
+        arguments = [_metered(budget, arguments[0]), *arguments[1:]]
     if "key" in keywords:
-        keywords = {**keywords, "key": _paying(budget, keywords["key"])}
-    return made(budget, function(*arguments, **keywords))
+        keywords = {**keywords, "key": _metered(budget, keywords["key"])}
+    return charged(budget, function(*arguments, **keywords))
 
 
-def made(budget: Budget, value: Any) -> Any:
-    """A value that was made, paid for with all that is in it.
+def charged(budget: Budget, value: Any) -> Any:
+    """Charge the budget for a new value with all its items, and give it back.
 
     Raises:
         RefusalError: it is too large.
@@ -76,12 +76,12 @@ def made(budget: Budget, value: Any) -> Any:
     return value
 
 
-def _paying(budget: Budget, function: Any) -> Any:
-    """A function that pays when Python's own functions call it; a lambda does so by itself."""
+def _metered(budget: Budget, function: Any) -> Any:
+    """A function that charges the budget when Python's own functions call it; lambdas of expressions do so anyway."""
     if not callable(function) or isinstance(function, Function):
         return function
 
-    def paying(*arguments: Any) -> Any:
+    def metered(*arguments: Any) -> Any:
         return call(budget, function, list(arguments), {})
 
-    return paying
+    return metered

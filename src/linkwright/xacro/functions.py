@@ -96,7 +96,7 @@ class Function:
 def bind_parameters(
     arguments: ast.arguments, compile_node: Callable[[ast.AST], _Closure]
 ) -> Callable[[Environment], Parameters]:
-    """What gives the parameters of a lambda when the lambda is evaluated; its defaults are evaluated then."""
+    """Compile the parameters of a lambda; their defaults are evaluated when the lambda is."""
     positional = tuple(argument.arg for argument in (*arguments.posonlyargs, *arguments.args))
     keyword_only = tuple(argument.arg for argument in arguments.kwonlyargs)
     defaults = {

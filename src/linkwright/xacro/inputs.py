@@ -1,4 +1,4 @@
-"""What an expansion starts from."""
+"""The inputs of an expansion."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from linkwright.xmltree import Document, Overlay, parse
 
 
 class Inputs(NamedTuple):
-    """What an expansion starts from; see `linkwright.xacro.expand`."""
+    """The inputs of an expansion; see `linkwright.xacro.expand`."""
 
     name: str
     arguments: Mapping[str, str]

@@ -1,6 +1,6 @@
-"""What a description takes and where its parts come from, for who wants to know more than its expansion.
+"""Questions about a description beyond its expansion: the arguments that it takes, and the provenance of its elements.
 
-What finds that out is imported when somebody asks.
+The modules that answer them are imported on demand.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ def arguments_of(
     limits: Limits | None = None,
     root_dir: str | Path | None = None,
 ) -> tuple[Argument, ...]:
-    """The arguments that a file and those that it includes take, in the order in which they are met.
+    """The arguments of a file and of those that it includes, in the order in which they are met.
 
     The file need not be one that can be expanded without arguments.
 

@@ -16,7 +16,7 @@ from linkwright.xacro.faults import Fault
 
 
 class TokenKind(Enum):
-    """What a token is."""
+    """The kinds of tokens."""
 
     TEXT = "text"
     EXPRESSION = "expression"

@@ -79,7 +79,7 @@ LONG = 1_000
 
 
 class Budget:
-    """What is left to one expansion.
+    """The budget of one expansion: steps, elements and depth that are left.
 
     Attributes:
         elements: how many elements may still be produced; who does counts it down, and calls `too_many_elements`
@@ -99,7 +99,7 @@ class Budget:
         self._ends = thread_time() + limits.seconds
 
     def too_many_elements(self) -> Fault:
-        """What is wrong when no elements are left: XAC602."""
+        """The error when no elements are left: XAC602."""
         message = phrase(
             "the expansion makes more than {limit:,} elements, macro calls counting as {macro}",
             limit=self._limits.elements,

@@ -1,4 +1,4 @@
-"""From what is written to a value: the literal rule, and what counts as true.
+"""Values of literals: numbers and booleans out of strings, and the texts that count as true.
 
 Both are ros/xacro's, on which real robots rely: ``007`` is 7, ``true`` is True, but ``TRUE``, ``0x10`` and ``1_000``
 are strings.

@@ -111,7 +111,7 @@ class MacroTable:
         self._entries[name] = entry
 
     def find(self, name: str) -> Macro | MacroTable | None:
-        """What has a name, here or in a table around."""
+        """Look a name up, here and then in the tables around."""
         table: MacroTable | None = self
         while table is not None:
             entry = table._entries.get(name)

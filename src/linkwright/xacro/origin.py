@@ -1,4 +1,4 @@
-"""How an element came to be where it is: the macro calls and includes on the way."""
+"""The origin of an element: the macro calls and includes that brought it into the document."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Frame:
         self.depth: int = 1 if around is None else around.depth + 1
 
     def note(self) -> Note:
-        """What a message says of it."""
+        """Its note in a message."""
         what = (
             phrase("included from here")
             if self.macro is None

@@ -42,7 +42,7 @@ _OUTER_PROPERTY = re.compile(r"""<xacro:property\s[^>]*?\bscope\s*=""")
 
 
 def expand_parts(inputs: Inputs, error: LinkwrightError) -> Expansion:
-    """What a description expands to but for the parts that have mistakes.
+    """Expand a description without the parts that have mistakes.
 
     Args:
         inputs: what the expansion starts from.
@@ -107,7 +107,7 @@ class _PartsExpander(Expander):
         return result
 
     def blocks(self, node: Element, scope: Scope, macros: MacroTable) -> Element:
-        """What the elements inside of a call expand to; a call that lacks some of them is left out."""
+        """Expand the elements inside of a call; a call that lacks some of them is left out."""
         container = super().blocks(node, scope, macros)
         if _GAP in container.attributes:
             raise _LeftOutError

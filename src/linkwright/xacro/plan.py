@@ -1,4 +1,4 @@
-"""What there is to do for an element when it is expanded, worked out once for each element that was read.
+"""Plans: the steps of expanding an element, worked out once for each element that was read.
 
 Most of a description does not depend on anything: an element without a dollar sign and without tags of the language
 comes out as it is, with all that it holds. Its plan says so, and the walk copies it. Of any other element the plan

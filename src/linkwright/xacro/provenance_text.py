@@ -24,7 +24,7 @@ def provenance_text(provenance: Provenance) -> str:
 
 
 def provenance_lines(provenance: Provenance) -> list[str]:
-    """What `provenance_text` says after the element itself."""
+    """The lines of `provenance_text` after the element itself."""
     lines = [f"written at {place(provenance.span)}"]
     lines += [f"  {line}" for call in provenance.calls for line in _call_lines(call)]
     evaluated = [line for part in provenance.walk() for line in _element_lines(part, provenance)]

@@ -76,7 +76,7 @@ class Recorder:
         self._kept: list[Any] = []  # what is known by its id must live on
 
     def call(self, expander: Expander, site: Site) -> None:
-        """What expands macro calls."""
+        """The function that expands macro calls."""
         self._watched(call_macro)(expander, site)
 
     # what was recorded

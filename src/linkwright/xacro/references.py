@@ -1,4 +1,4 @@
-"""What a text with expressions refers to: the names in it, each with its value and where it got it."""
+"""The names that a text with expressions refers to, each with its value and the place that gave it."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _LONGEST = 100
 
 @dataclass(frozen=True, slots=True)
 class Value:
-    """What a name stood for when a text was evaluated.
+    """The value of a name when a text was evaluated.
 
     Attributes:
         name: the name as written, such as ``radius``, ``arm.length`` or ``$(arg prefix)``.

@@ -1,4 +1,4 @@
-"""What an expression may not do."""
+"""The error for operations that expressions may not use."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What an expression may do to the values it works on.
+"""The sandbox of expressions: the operations that they may apply to values.
 
 Expressions come from strangers' files, so nothing here is forbidden by name: what is allowed is listed, and everything
 else is refused. An attribute is reached only on a type listed here and only if it is listed for that type; a type is
@@ -295,7 +295,7 @@ _PLAIN: frozenset[type] = frozenset({bool, complex, float, int, str})
 
 
 def formatted(value: Any, conversion: int, specification: str) -> str:
-    """What a field of an f-string gives, such as ``{value!r:>8}``.
+    """The text of a field of an f-string, such as ``{value!r:>8}``.
 
     Args:
         value: its value.

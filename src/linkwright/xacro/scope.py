@@ -39,7 +39,7 @@ class Context(Protocol):
 
     @property
     def working_directory(self) -> str:
-        """What ``$(cwd)`` gives."""
+        """The working directory, for ``$(cwd)``."""
         ...
 
     def evaluate(self, text: str, scope: Scope) -> Any:
@@ -134,7 +134,7 @@ class Scope:
         self.values[name] = plain
 
     def assign(self, name: str, value: Any) -> None:
-        """What ``name := value`` in an expression does: it defines a property here."""
+        """Define a property here, for ``name := value`` in an expression."""
         self.define(name, value, lazy=True)
 
     def bind(self, name: str, value: Any) -> None:
@@ -233,7 +233,7 @@ class Local:
         self._values[name] = value
 
     def assign(self, name: str, value: Any) -> None:
-        """What ``name := value`` does: it defines a property in the scope around."""
+        """Define a property in the scope around, for ``name := value``."""
         self._around.assign(name, value)
 
     def inner(self) -> Local:

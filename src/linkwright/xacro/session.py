@@ -1,4 +1,4 @@
-"""What one expansion knows and has counted: its arguments, packages, files, warnings and limits."""
+"""Sessions: the state of one expansion, with its arguments, packages, files, warnings and limits."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 
 
 class Packages(Protocol):
-    """What finds the share folder of a package; `linkwright.packages.PackageFinder` does."""
+    """Finds the share folders of packages, as `linkwright.packages.PackageFinder` does."""
 
     def share(self, name: str) -> Path:
         """The share folder of a package; raises `LinkwrightError` when there is no such package."""
@@ -51,7 +51,7 @@ PackageSource = Mapping[str, Any] | Packages | None
 
 
 class Session:
-    """The state of one expansion that is not the tree.
+    """The state of one expansion, apart from the tree.
 
     Attributes:
         arguments: name -> value of every argument given or declared so far.
@@ -113,7 +113,7 @@ class Session:
         return template.evaluate(scope)
 
     def evaluate_text(self, text: str, scope: Scope) -> str:
-        """What is written for a text in a scope.
+        """The text that is written for one with expressions, in a scope.
 
         Raises:
             Fault: it has no value.
@@ -127,7 +127,7 @@ class Session:
         return self.written(text, value)
 
     def written(self, text: str, value: Any) -> str:
-        """What is written for a value that a text has.
+        """The text that is written for the value of an expression.
 
         Raises:
             Fault: XML cannot hold it, or it is too long.
@@ -230,7 +230,7 @@ class Session:
 
     @property
     def working_directory(self) -> str:
-        """What ``$(cwd)`` gives."""
+        """The working directory, for ``$(cwd)``."""
         return os.path.abspath(self.root_dir)  # noqa: PTH100 - a string is wanted
 
     def on_disk(self, path: str) -> str:
@@ -381,7 +381,7 @@ class Session:
         return warning
 
     def say(self, name: str, code: str, severity: Severity) -> Callable[..., str]:
-        """One of the functions with which a description says something to its user."""
+        """Make ``xacro.message``, ``xacro.warning`` or ``xacro.error``, by which a description addresses its user."""
 
         def said(*words: Any, **_options: Any) -> str:
             text = foreign(" ".join(map(sandbox.as_text, words))) or phrase("here")

@@ -141,7 +141,7 @@ def _fatal(*words: Any) -> None:
 
 
 class Provider(Protocol):
-    """What stands behind the functions of ``xacro``; a `Session` does."""
+    """The interface of a `Session` for the functions of ``xacro``."""
 
     def load_yaml(self, name: str) -> Any:
         """The value of a YAML file."""
@@ -160,7 +160,7 @@ class Provider(Protocol):
         ...
 
     def say(self, name: str, code: str, severity: Severity) -> Callable[..., str]:
-        """One of the functions with which a description says something to its user."""
+        """Make ``xacro.message``, ``xacro.warning`` or ``xacro.error``, by which a description addresses its user."""
         ...
 
     def deprecated(self, better: str, function: Callable[..., Any]) -> Callable[..., Any]:

@@ -100,7 +100,7 @@ def _placed(evaluate: _Part, start: int, end: int) -> _Part:
 
 
 def _joined(texts: list[str], parts: list[_Part | None]) -> _Part:
-    """What evaluates the parts of a text and joins them; those without one stand for their text."""
+    """A function that evaluates the parts of a text and joins them; a part without one stands for its text."""
     evaluated = [(place, part) for place, part in enumerate(parts) if part is not None]
 
     def join(scope: Scope) -> str:

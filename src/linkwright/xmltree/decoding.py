@@ -49,7 +49,7 @@ def decode(data: bytes, name: str) -> str:
 
 
 def decoded(data: bytes, name: str) -> Decoded:
-    """The same with the encoding that the text was in.
+    """The text of bytes, and its encoding.
 
     Raises:
         LinkwrightError: XML104, or XML106 where the file itself was never fetched.

@@ -1,4 +1,4 @@
-"""What is wrong with a text that is not well-formed XML, in plain words."""
+"""Errors of texts that are not well-formed XML, in plain words."""
 
 from __future__ import annotations
 

@@ -59,7 +59,7 @@ def escaped(value: str) -> str:
 
 
 def newline_of(text: str) -> str:
-    """What ends the lines of a text."""
+    """The line ending of a text."""
     return "\r\n" if "\r\n" in text else "\n"
 
 

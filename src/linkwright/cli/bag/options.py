@@ -28,7 +28,7 @@ def add_overrides_argument(parser: argparse.ArgumentParser) -> None:
 
 
 def read_overrides(arguments: argparse.Namespace) -> dict[str, QoSProfile]:
-    """What the file says; nothing without one.
+    """The overrides in a file; none without one.
 
     Raises:
         LinkwrightError: BAG106, it cannot be read or has another form.

@@ -1,4 +1,4 @@
-"""What shells run for TAB: ``python -m linkwright.cli.completion (--line LINE | WORD ...)``.
+"""The program that shells run for TAB: ``python -m linkwright.cli.completion (--line LINE | WORD ...)``.
 
 The words are those of the command line, the program first and the word at the cursor, which may be empty, last. What
 may stand there is printed, a line each.

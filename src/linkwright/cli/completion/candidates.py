@@ -1,4 +1,4 @@
-"""What may stand at the end of a command line.
+"""Completions of a command line.
 
 The commands, their options and what each takes are a table, ``commands.json``, which `tools/command_reference.py`
 writes from the commands' own parsers: to make these takes longer than a user waits for TAB. What an argument is, its
@@ -30,7 +30,7 @@ def divided(line: str) -> list[str]:
 
 
 def complete(words: Sequence[str]) -> list[str]:
-    """What may stand in the place of the last word; `scripts.FILES` for any file."""
+    """The completions of the last word; `scripts.FILES` for any file."""
     program, *given = words
     *before, current = given or [""]
     current = current.lstrip("'\"")  # of a quote that is still open

@@ -1,4 +1,4 @@
-"""What bash, zsh and fish read: they hand the words to ``python -m linkwright.cli.completion`` and show what comes."""
+"""Scripts for bash, zsh and fish, which hand the words to ``python -m linkwright.cli.completion``."""
 
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ end
 
 
 def script(shell: str, python: str, commands: Sequence[str]) -> str:
-    """What a shell reads in order to complete.
+    """The completion script of a shell.
 
     Args:
         shell: a key of `SHELLS`.

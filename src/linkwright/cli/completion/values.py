@@ -1,4 +1,4 @@
-"""What an argument may be: packages, executables, launch files and their arguments, names and types of the graph."""
+"""The values of arguments: packages, executables, launch files and their arguments, names and types of the graph."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ Asked = tuple[list[str], list[str], Mapping[str, Any]]
 
 
 def candidates_of(kind: str, path: list[str], placed: list[str], table: Mapping[str, Any]) -> Iterable[str]:
-    """What an argument may be.
+    """The values that an argument may have.
 
     Args:
         kind: its name in the help.

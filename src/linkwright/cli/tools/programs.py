@@ -1,4 +1,4 @@
-"""What each of the commands of ROS 2 does here; arguments, output and exit statuses are those of the originals."""
+"""The programs of ROS 2's commands; arguments, output and exit statuses are those of the originals."""
 
 from __future__ import annotations
 

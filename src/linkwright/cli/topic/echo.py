@@ -78,7 +78,7 @@ def run_echo(arguments: argparse.Namespace) -> int:
 
 
 def lost_text(event: Any) -> str:
-    """What is printed when messages were lost (rclpy ``QoSMessageLostInfo``)."""
+    """The text for lost messages (rclpy ``QoSMessageLostInfo``)."""
     return (
         "A message was lost!!!\n"
         f"\ttotal count change:{event.total_count_change}\n"

@@ -19,7 +19,7 @@ _NAMES: dict[str, Any] = {**_FUNCTIONS, "math": math, "True": True, "False": Fal
 
 
 def compile_filter(text: str) -> Callable[[Any], bool]:
-    """What tells whether a message fits an expression such as ``m.data > 3``.
+    """Compile an expression such as ``m.data > 3`` to a test of messages.
 
     The expression sees the message as ``m``, the module ``math`` and a few functions, and no name that begins with an
     underscore.

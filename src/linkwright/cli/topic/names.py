@@ -123,7 +123,7 @@ def run_type(arguments: argparse.Namespace) -> int:
 
 
 def endpoint_text(info: Any) -> str:
-    """What is known of an endpoint (rclpy ``TopicEndpointInfo``), in several lines.
+    """The description of an endpoint (rclpy ``TopicEndpointInfo``), in several lines.
 
     The type's hash is shown where the other side tells it, which Humble does not.
     """

@@ -14,7 +14,7 @@ _SECOND = 1_000_000_000
 
 @dataclass(frozen=True, slots=True)
 class Spread:
-    """What is told of a window of durations, all in nanoseconds.
+    """The statistics of a window of durations, in nanoseconds.
 
     Attributes:
         mean: their average.
@@ -102,7 +102,7 @@ class DelayWindow:
         self._delays.append(now_ns - stamp_ns)
 
     def text(self) -> str | None:
-        """What ``topic delay`` prints; None before the first message."""
+        """The line of ``topic delay``; None before the first message."""
         if not self._delays:
             return None
         if not self._new:
@@ -116,7 +116,7 @@ class BandwidthWindow(TrafficWindow):
     """The sizes of the last messages of a topic, as ``topic bw`` tells of them."""
 
     def text(self, now_ns: int) -> str | None:
-        """What ``topic bw`` prints; None while there are fewer than two messages."""
+        """The line of ``topic bw``; None while there are fewer than two messages."""
         traffic = self.traffic(now_ns)
         if traffic is None:
             return None
@@ -127,7 +127,7 @@ class BandwidthWindow(TrafficWindow):
 
 
 def _unit_for(bytes_each_second: float) -> Callable[[float], str]:
-    """What writes numbers of bytes in the unit that suits a rate, as ros2 does."""
+    """A function that writes numbers of bytes in the unit that suits a rate, as ros2 does."""
     scale, digits, name = next(unit for limit, unit in _UNITS if bytes_each_second < limit)
     return lambda size: f"{size / scale:.{digits}f} {name}"
 
@@ -136,7 +136,7 @@ _UNITS = ((1e3, (1.0, 0, "B")), (1e6, (1e3, 2, "KB")), (math.inf, (1e6, 2, "MB")
 
 
 def rate_text(spread: Spread) -> str:
-    """What ``topic hz`` prints of one topic."""
+    """The line of ``topic hz`` for one topic."""
     return f"average rate: {spread.rate:.3f}\n{spread.bounds()}"
 
 
@@ -144,7 +144,7 @@ _HEADER = ("topic", "rate", "min_delta", "max_delta", "stddev", "window")
 
 
 def rate_table(spreads: Mapping[str, Spread]) -> str:
-    """What ``topic hz`` prints of several topics."""
+    """The table of ``topic hz`` for several topics."""
     rows = [
         (
             topic,

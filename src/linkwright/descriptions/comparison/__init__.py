@@ -1,4 +1,4 @@
-"""What has changed from one robot description to another: links, joints, origins, masses, with places in both."""
+"""Comparing robot descriptions: the changes of links, joints, origins and masses, with their places in both."""
 
 from linkwright.descriptions.comparison.compare import Comparison, Difference, Kind, Place, Side, Subject, compare
 from linkwright.descriptions.comparison.report import as_data, as_text, sentence

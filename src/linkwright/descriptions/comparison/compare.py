@@ -352,7 +352,7 @@ def _meshes_of(shapes: Sequence[Visual | Collision]) -> dict[str, Element | None
 
 
 def _told_of_bytes(old: Path, new: Path) -> tuple[str, str, str]:
-    """What tells two files apart: their sizes, else the beginnings of their hashes; and the unit."""
+    """The difference of two files' bytes: their sizes, else the beginnings of their hashes; and the unit."""
     sizes = [path.stat().st_size for path in (old, new)]
     if sizes[0] != sizes[1]:
         return str(sizes[0]), str(sizes[1]), "bytes"

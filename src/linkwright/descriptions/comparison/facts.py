@@ -1,4 +1,4 @@
-"""What a description says of a link or joint, property by property, each with the place where it is written."""
+"""The properties of links and joints that are compared, each with the place where it is written."""
 
 from __future__ import annotations
 
@@ -128,22 +128,22 @@ def nearest(element: Element | None, *tags: str) -> Element | None:
 
 
 def blocks_of_link(link: Link) -> list[Block]:
-    """What is said of a link, all but its shapes."""
+    """The properties of a link without those of its shapes."""
     return [] if link.inertial is None else [_inertial(link.inertial)]
 
 
 def visuals_of(link: Link) -> list[Block]:
-    """What is said of each ``<visual>`` of a link."""
+    """The properties of each ``<visual>`` of a link."""
     return [_visual(each) for each in link.visuals]
 
 
 def collisions_of(link: Link) -> list[Block]:
-    """What is said of each ``<collision>`` of a link."""
+    """The properties of each ``<collision>`` of a link."""
     return [_shape("collision", each) for each in link.collisions]
 
 
 def blocks_of_joint(joint: Joint) -> list[Block]:
-    """What is said of a joint."""
+    """The properties of a joint, one block for each element that holds some."""
     element = joint.element
     own = Block("", element)
     own.words("type", joint.type, element, "type")

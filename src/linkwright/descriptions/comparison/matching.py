@@ -1,4 +1,4 @@
-"""Which link and joint of one description is which of another: by name, and renamed where all else is equal."""
+"""Matching the links and joints of two descriptions: by name, or as renamed where all else is equal."""
 
 from __future__ import annotations
 

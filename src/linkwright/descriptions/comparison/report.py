@@ -32,7 +32,7 @@ def as_text(comparison: Comparison, label: Label) -> str:
 
 
 def sentence(difference: Difference) -> Phrase:
-    """What has changed, in one line."""
+    """A change in one line."""
     subject, name = term(difference.subject), difference.name
     if difference.kind == "added":
         return phrase("{subject} '{name}' added", subject=subject, name=name)

@@ -134,7 +134,7 @@ def _given(site: Element, name: str, default: list[Place], index: int | None) ->
 
 
 def _keys(path: str) -> tuple[str, ...]:
-    """What is reached for in a name, such as ``("wheel", "radius")`` of ``config['wheel'].radius``; what varies not."""
+    """The constant keys of an expression, such as ``("wheel", "radius")`` of ``config['wheel'].radius``."""
     keys: list[str] = []
     try:
         node: ast.AST = ast.parse(path, mode="eval").body

@@ -49,7 +49,7 @@ def path_to(root: Element, element: Element) -> tuple[int, ...] | None:
 
 
 def others(before: Element, after: Element, target: Target) -> Iterator[tuple[Element, ...]]:
-    """What differs besides the attribute that is edited.
+    """The differences besides the edited attribute.
 
     Args:
         before: the root of a document.
@@ -78,7 +78,7 @@ def others(before: Element, after: Element, target: Target) -> Iterator[tuple[El
 
 
 def described(trail: tuple[Element, ...]) -> str:
-    """What a trail leads to, in the words of a description, such as ``joint 'wheel_joint'``."""
+    """The element that a trail leads to, in words, such as ``joint 'wheel_joint'``."""
     named = [element for element in trail if element.attributes.get("name") or element.attributes.get("reference")]
     if not trail:
         return term("robot")
@@ -91,7 +91,7 @@ def described(trail: tuple[Element, ...]) -> str:
 
 
 def _place(old: Element, child: Element, index: int, is_owner: bool) -> int:
-    """Which of the elements inside a child is; in the owner one of them was taken out before."""
+    """The index of a child among its siblings; in the owner `index` does not count the one taken out before."""
     return next(i for i, each in enumerate(old.elements()) if each is child) if is_owner else index
 
 

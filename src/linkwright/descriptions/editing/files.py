@@ -22,7 +22,7 @@ _MOST_STEPS = 200
 
 
 class Workspace:
-    """What may be written for a description: files of its own workspace, which nobody installed.
+    """The files that edits of a description may write: those of its own workspace, unless they are installed ones.
 
     The workspace is the largest of these folders around the main file: that of its package, that of its git
     repository, and the one whose ``src`` it lies in.
@@ -56,7 +56,7 @@ class Workspace:
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """What an edit did: real path of a file -> its bytes before and after."""
+    """A done edit: real path of a file -> its bytes before and after."""
 
     files: Mapping[str, tuple[bytes, bytes]]
 

@@ -26,7 +26,7 @@ class Place:
 
     @property
     def text(self) -> str:
-        """What is written there."""
+        """The text there."""
         return self.source.text[self.start : self.end]
 
     @property
@@ -57,7 +57,7 @@ class Candidate:
 
 
 def words(place: Place) -> list[Place]:
-    """What stands between blanks, expressions in one piece."""
+    """The words of a text, where expressions are in one piece."""
     return [place.part(*found.span()) for found in _WORD.finditer(place.text)]
 
 

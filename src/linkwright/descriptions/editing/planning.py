@@ -1,4 +1,4 @@
-"""From an edit of a robot to the smallest edit of its text, or to the reason why there is none.
+"""Plans edits: the smallest edit of the text that makes a requested change of the robot, or why there is none.
 
 The texts that may have made a number are tried one after the other, and the first is taken after which the expanded
 document differs in exactly what was asked for.
@@ -44,7 +44,7 @@ _FEWEST = {"origin": [0.0, 0.0, 0.0], "axis": [1.0, 0.0, 0.0]}
 
 @dataclass(frozen=True, slots=True)
 class EditPlan:
-    """What an edit comes to.
+    """A planned edit.
 
     Attributes:
         texts: real path of a file -> its text afterwards, without a byte order mark; empty where nothing changes.
@@ -75,7 +75,7 @@ def plan_edit(description: Description, request: EditRequest, allowed: Allowed =
 
 
 class _Found(NamedTuple):
-    """A description with a number that does what is wanted, and what else differs."""
+    """An edited description that has the wanted number, and the names of other parts that changed with it."""
 
     snapshot: Snapshot
     also: tuple[str, ...]
@@ -136,7 +136,7 @@ class _Planner:
             self._set_one(target, i, wanted[i])
 
     def plan(self) -> EditPlan:
-        """What the edits come to."""
+        """The plan of all edits."""
         texts = {str(path): text for path, text in self._now.texts.items()}
         before = {path: Overlay().read(path).text for path in texts}
         return EditPlan(texts, before, tuple(self._also_changed))
@@ -174,7 +174,7 @@ class _Planner:
     def _tried(
         self, candidate: Candidate, target: Target, index: int, wanted: float, attempts: list[Attempt]
     ) -> _Found | None:
-        """The description with a candidate that does what is wanted; None for one that does not."""
+        """Try one place to write at: the edited description, or None where it does not give the wanted number."""
         why_not = self._allowed(os.path.realpath(candidate.place.source.name))
         if why_not is not None:
             attempts.append(Attempt(candidate.place, forbidden=why_not))
@@ -229,7 +229,7 @@ class _Planner:
             return None
 
     def _also(self, trial: Snapshot, target: Target, index: int, values: list[float]) -> tuple[str, ...]:
-        """What else a trial changes."""
+        """The other differences that a trial makes."""
         found = self._differences(trial, target)
         present = self._values(target.attribute)
         if any(values[i] != present[i] for i in range(len(values)) if i != index):

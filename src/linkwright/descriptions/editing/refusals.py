@@ -1,4 +1,4 @@
-"""Why no edit of text does what is asked for, and nothing else."""
+"""Refusals: why no edit of the text makes exactly the requested change."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Attempt:
 
 
 def refusal(place: Place, index: int | None, attempts: Sequence[Attempt], tag: str = "") -> Diagnostic:
-    """What to tell.
+    """The finding that says why an edit is refused.
 
     Args:
         place: the attribute as it is written, or where one would be.
@@ -83,7 +83,7 @@ def _named(also: Sequence[str]) -> object:
 
 
 def forbidden_file(path: str, why: object) -> Diagnostic:
-    """That a file may not be written."""
+    """The finding that a file may not be written."""
     message = phrase("'{path}' is not written: {why}", path=display_path(path), why=why)
     hint = phrase("open the description from your own workspace, or change a copy of the file")
     return Diagnostic("EDIT106", message, hint=hint)

@@ -1,4 +1,4 @@
-"""What is asked for when a robot is edited."""
+"""Requests to edit a robot: which part, which values."""
 
 from __future__ import annotations
 

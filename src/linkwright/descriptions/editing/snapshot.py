@@ -1,4 +1,4 @@
-"""A description as its files say it, with the changes that are tried."""
+"""Snapshots of a description: its files' texts, some replaced by edits that are being tried."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Snapshot:
 
     @classmethod
     def of(cls, description: Description) -> Snapshot:
-        """That of a description that was just read."""
+        """The snapshot of a description that was just read."""
         return cls(description, {}, description.document, description.files)
 
     @property

@@ -1,4 +1,4 @@
-"""Which language messages are in: what was asked for, else what the environment says, else English."""
+"""The language of messages: the one asked for, else that of the environment, else English."""
 
 from __future__ import annotations
 

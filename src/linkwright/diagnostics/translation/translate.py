@@ -14,7 +14,7 @@ _LABELS = ("error", "warning", "info", "note", "hint", ": ")
 
 
 def labels(lang: str | None = None) -> Mapping[str, str]:
-    """What a severity, ``note``, ``hint`` and the colon after them are called; in the reader's language if not told."""
+    """The labels of severities, notes and hints, and the colon after them; in the reader's language if not told."""
     lang = language() if lang is None else lang
     return {each: each if lang == "en" else term(each).said_in(wording(lang)) for each in _LABELS}
 

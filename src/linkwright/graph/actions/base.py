@@ -1,4 +1,4 @@
-"""What action servers and action clients share: a name, a type, and their end."""
+"""The base of action servers and action clients."""
 
 from __future__ import annotations
 

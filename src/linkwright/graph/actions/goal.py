@@ -24,7 +24,7 @@ class GoalStatus(IntEnum):
 
 
 class GoalEvent(Enum):
-    """What takes a goal from one state to another; numbers as in rcl_action."""
+    """The events that change the state of a goal; numbers as in rcl_action."""
 
     EXECUTE = 1
     CANCEL_GOAL = 2

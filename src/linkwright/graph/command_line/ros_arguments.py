@@ -35,7 +35,7 @@ class RemapRule:
 
 @dataclass(slots=True)
 class RosArguments:
-    """What the ROS arguments of a command line say.
+    """The parsed ROS arguments of a command line.
 
     Attributes:
         remap_rules: remappings, in order.

@@ -1,4 +1,4 @@
-"""What publishers, subscriptions, services and clients share: a name, a type, a quality of service.
+"""The base of publishers, subscriptions, services and clients: a name, a type, a quality of service.
 
 Whether a class is that of a message or service is checked as rclpy's ``type_support`` does, with its errors.
 """

@@ -164,7 +164,7 @@ def report_to_publisher(publisher: Publisher[Any], policy: str, sides: str) -> N
 def describe_mismatch(
     publisher: str, offered: QoSProfile, subscription: str, requested: QoSProfile, policies: list[QoSPolicyKind]
 ) -> str:
-    """What the two nodes offer and request in the policies that are incompatible."""
+    """The values that two nodes offer and request in the incompatible policies."""
     return f"'{publisher}' offers {_terms(offered, policies)}, '{subscription}' requests {_terms(requested, policies)}"
 
 

@@ -232,4 +232,4 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
 
 
 def _nothing() -> None:
-    """Gives up a request to a service of this process, for which there is nothing to do."""
+    """Cancels a request to a service of this process: nothing needs to be undone."""

@@ -1,4 +1,4 @@
-"""Who gave the command that holds, for what goes on with it until the next one: a drive, for one."""
+"""Tracks the publisher of the last command, so that a drive, say, can stop when that publisher is lost."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class Commander:
-    """Notes whose command holds, and takes it back when that publisher is lost.
+    """Tracks the publisher of the command in force, and revokes the command when that publisher is lost.
 
     A publisher that leaves has ended, and its last command holds. One that is lost was killed, has crashed or is out of
     reach: nobody is there who could give another command. What others command holds whatever becomes of it.
@@ -32,11 +32,11 @@ class Commander:
         self._gid: bytes | None = None
 
     def taking(self, take: Callable[[Any], object]) -> Callable[[Any, MessageInfo], object]:
-        """A callback for a subscription that commands come by, which calls another one with the message alone."""
+        """A callback for a subscription to commands: it notes the publisher and passes the message on."""
         return partial(self._taken, take)
 
     def obey(self, info: MessageInfo) -> None:
-        """The command of a message holds from now on, for callbacks that are none of `taking`."""
+        """Note the publisher of a command that came by another callback than those of `taking`."""
         self._gid = info.publisher_gid
 
     def watch(self, subscription: Subscription[Any]) -> None:

@@ -1,4 +1,4 @@
-"""Several publishers that command one thing at the same time: noticed by what they send, and told in the log."""
+"""Detects several publishers that command one thing at the same time, and warns of them in the log."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _NANOSECONDS = 1e9
 
 
 class Dispute:
-    """Who contradicts each other: commands with others replace those of one that goes on sending its own.
+    """Detects publishers whose commands replace each other again and again.
 
     A command takes over when it differs from the one before, which somebody else sent. It is a dispute when several
     have taken over again and again for a while. So a handover is none, nor is a stop that somebody sends at the end,
@@ -74,7 +74,7 @@ class Dispute:
 
 
 class KnownEndpoints(Protocol):
-    """What is asked of the graph."""
+    """The part of the graph that `DriverWatch` asks."""
 
     def endpoints(self) -> Collection[EndpointInfo]:
         """All endpoints that are known."""
@@ -84,7 +84,7 @@ class KnownEndpoints(Protocol):
 
 
 class CommandedNode(Protocol):
-    """What is asked of a node."""
+    """The part of a node that `DriverWatch` needs."""
 
     @property
     def graph(self) -> KnownEndpoints:
@@ -116,7 +116,7 @@ class DriverWatch:
 
     @classmethod
     def of(cls, node: CommandedNode) -> DriverWatch:
-        """That of a node, by its clock, which warns in its log."""
+        """A watch that uses the clock of a node and warns in its log."""
         return cls(node.get_logger(), node.graph, node.get_clock().now_ns)
 
     def hear(self, message: Any, info: MessageInfo) -> None:

@@ -1,4 +1,4 @@
-"""Endpoints that are seen in the graph, and take no part in it."""
+"""Endpoints that are announced in the graph and carry no data."""
 
 from __future__ import annotations
 

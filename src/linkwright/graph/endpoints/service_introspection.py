@@ -25,7 +25,7 @@ class ServiceIntrospectionState(IntEnum):
 
 
 class EventType(IntEnum):
-    """What happened (``service_msgs/msg/ServiceEventInfo``)."""
+    """The kinds of service events (``service_msgs/msg/ServiceEventInfo``)."""
 
     REQUEST_SENT = 0
     REQUEST_RECEIVED = 1

@@ -94,7 +94,7 @@ class Subscription(TopicEndpoint[M], Entity):
 
     @property
     def callback(self) -> Callable[..., object]:
-        """What is called: with the message, or, when it takes two arguments, with the message and a `MessageInfo`.
+        """The callback; it is called with the message, and with a `MessageInfo` if it takes two arguments.
 
         Raises:
             RuntimeError: what is assigned takes neither one argument nor two.

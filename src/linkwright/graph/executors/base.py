@@ -1,4 +1,4 @@
-"""What all executors share: nodes, ready work, tasks and shutdown (rclpy ``executors.Executor``)."""
+"""The base of all executors: nodes, ready work, tasks and shutdown (rclpy ``executors.Executor``)."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _POSTPONED_AT_MOST = 2
 
 
 class Context(Protocol):
-    """What says whether the program is to go on (rclpy ``Context``)."""
+    """The context that tells executors whether the program goes on (rclpy ``Context``)."""
 
     def ok(self) -> bool:
         """Whether the program is to go on."""
@@ -49,7 +49,7 @@ class SpunNode(Protocol):
 
     @property
     def handle(self) -> NodeHandle:
-        """What the graph knows of it."""
+        """Its handle in the graph."""
 
 
 def deadline_after(timeout_sec: float | None) -> int | None:

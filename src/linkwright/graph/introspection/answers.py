@@ -1,4 +1,4 @@
-"""What the graph answers, in the forms of rclpy."""
+"""The answers of graph queries, in the types of rclpy."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _FEEDBACK = "_FeedbackMessage"
 
 
 class TopicEndpointTypeEnum(IntEnum):
-    """What an endpoint of a topic is (rclpy)."""
+    """The kinds of endpoints of a topic (rclpy)."""
 
     INVALID = 0
     PUBLISHER = 1

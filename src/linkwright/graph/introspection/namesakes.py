@@ -13,7 +13,7 @@ OnNamesakes = Callable[[frozenset[str]], object]
 
 
 class Namesakes:
-    """Which names are shared, and who is told when that changes.
+    """Tracks names of our nodes that nodes of other processes share, and reports changes.
 
     Args:
         tell: what is told. When left out, each name is logged once by its node, as long as it is shared.
@@ -25,7 +25,7 @@ class Namesakes:
         self._lock = threading.RLock()
 
     def review(self, ours: Collection[NodeHandle], outside: Collection[NodeIdentity]) -> None:
-        """Look which names are shared now."""
+        """Compare the names of our nodes with those outside; report when the shared ones have changed."""
         if not outside and not self._shared:
             return
         with self._lock:

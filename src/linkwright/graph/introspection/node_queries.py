@@ -16,7 +16,7 @@ R = TypeVar("R")
 
 
 class NodeQueries:
-    """What a node can ask about the graph; `Node` derives from it. Names are the node's own, which are remapped."""
+    """A node's queries about the graph, a base of `Node`. Names are relative to the node, and remapped."""
 
     def __init__(self, graph: GraphQueries, handle: NodeHandle) -> None:
         # The names are mangled, for users' nodes to have attributes of these names.

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 
 class TransitionCallbackReturn(IntEnum):
-    """What a callback says of its transition; numbers of lifecycle_msgs/msg/Transition."""
+    """The results of transition callbacks; numbers of lifecycle_msgs/msg/Transition."""
 
     SUCCESS = 97
     FAILURE = 98

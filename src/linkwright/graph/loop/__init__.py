@@ -1,1 +1,1 @@
-"""What runs callbacks: nodes and their entities, timers, rates, futures, and the dispatcher of the event loop."""
+"""Running callbacks: nodes and their entities, timers, rates, futures, and the dispatcher of the event loop."""

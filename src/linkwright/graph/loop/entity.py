@@ -22,7 +22,7 @@ T = TypeVar("T")
 
 
 class Entity(Part, ABC):
-    """What a dispatcher takes calls from.
+    """A source of callbacks, from which a dispatcher takes calls.
 
     Attributes:
         callback_group: which entities may run beside it; the node's default group unless another one is given.
@@ -59,7 +59,7 @@ class Entity(Part, ABC):
     @property
     @abstractmethod
     def what(self) -> str:
-        """What it is, for messages about a failed call."""
+        """Its name in messages about a failed call."""
 
     def set_dispatcher(self, dispatcher: Dispatcher | None) -> None:
         """Have the calls run by a dispatcher from now on; what is pending is announced to it."""
@@ -77,7 +77,7 @@ class Entity(Part, ABC):
                 dispatcher.ready(self)
 
     def _next_of(self, queue: deque[T]) -> T | None:
-        """What waits longest, taken out of the queue that the entity's calls come from; None when there is nothing.
+        """Take the oldest item out of a queue that the entity's calls come from; None when it is empty.
 
         What waits behind it is announced.
         """

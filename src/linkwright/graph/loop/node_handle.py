@@ -107,7 +107,7 @@ class HomeGraph(Protocol):
 
 
 class Part(Handled):
-    """What a node owns: an endpoint, a timer, ...; at the end of a ``with`` block it is destroyed.
+    """A part of a node, such as an endpoint or a timer; at the end of a ``with`` block it is destroyed.
 
     Attributes:
         node: whose it is.
@@ -253,7 +253,7 @@ class NodeHandle(Handle):
         self._cleanups[callback] = None
 
     def remove_cleanup(self, callback: Callable[[], object]) -> None:
-        """Do not have it called."""
+        """Undo `add_cleanup`."""
         self._cleanups.pop(callback, None)
 
     def destroy(self) -> bool:

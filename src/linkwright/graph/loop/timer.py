@@ -97,7 +97,7 @@ class Timer(Entity):
 
     @property
     def callback(self) -> Callable[..., object] | None:
-        """What is called; None for a timer that calls nothing."""
+        """The callback; None for a timer without one."""
         return self._callback
 
     @callback.setter
@@ -196,7 +196,7 @@ class Timer(Entity):
         self._disarm_alarm()
 
     def after_switch(self) -> None:
-        """Go on by the other clock."""
+        """Resume on the new clock with what was left of the period."""
         self._due_ns = self.clock.timer_ns() + self._rest_ns
         self._last_ns = self._due_ns - self._period_ns
         if self._running and not self._due:

@@ -1,4 +1,4 @@
-"""What can go wrong with parameters: rclpy's exceptions, by its names and in its words, with our hints."""
+"""The exceptions of parameters: rclpy's, by its names and in its words, with our hints."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class ParameterException(LinkwrightError):  # noqa: N818  # rclpy's name, which users' code catches
-    """What rclpy's parameter exceptions have in common.
+    """The base of rclpy's parameter exceptions.
 
     Args:
         error_msg: what is wrong.

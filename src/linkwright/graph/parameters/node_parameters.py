@@ -21,7 +21,7 @@ from linkwright.graph.parameters.store import (
 
 
 class NodeParameters:
-    """What a node does with parameters; `Node` derives from it.
+    """The parameter methods of a node, a base of `Node`.
 
     Descriptors, results and parameter values are accepted as our own small classes and as messages of rcl_interfaces;
     what is given back are messages, as in rclpy.

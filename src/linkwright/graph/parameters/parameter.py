@@ -217,7 +217,7 @@ class Range:
 
 @dataclass(slots=True)
 class ParameterDescriptor:
-    """What a node says of a parameter; the fields of rcl_interfaces/msg/ParameterDescriptor, which may stand for it.
+    """The description of a parameter; the fields of rcl_interfaces/msg/ParameterDescriptor, which may stand for it.
 
     Attributes:
         name: the parameter's name; filled in when it is declared.

@@ -29,7 +29,7 @@ _DURATIONS = (QoSPolicyKind.DEADLINE, QoSPolicyKind.LIFESPAN, QoSPolicyKind.LIVE
 
 
 class InvalidQosOverridesError(LinkwrightError):
-    """What parameters say of a quality of service cannot be, or is refused by the node."""
+    """Parameters override a quality of service with invalid values, or with some that the node refuses."""
 
     def __init__(self, message: Phrase, hint: Phrase | None = None) -> None:
         super().__init__(Diagnostic("GRAPH208", message, hint=hint))

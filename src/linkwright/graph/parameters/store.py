@@ -39,7 +39,7 @@ _ONLY_A_NAME = (
 
 @dataclass(slots=True)
 class ParameterChange:
-    """What one setting did: parameters that got their first value, got another, or went."""
+    """The outcome of setting parameters: those that are new, changed or deleted."""
 
     new: list[Parameter] = field(default_factory=list)
     changed: list[Parameter] = field(default_factory=list)

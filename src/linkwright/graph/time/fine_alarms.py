@@ -28,7 +28,7 @@ _NANOSECONDS = 1_000_000_000
 
 
 def fine_alarms(loop: AbstractEventLoop) -> FineAlarms | None:
-    """Those of an event loop; None where there are none, and the loop's own have to do. Asked in the loop's thread."""
+    """The fine alarms of an event loop, asked for in its thread; None where its own alarms must do."""
     if loop not in _of_loops:
         _of_loops[loop] = _made(loop)
     return _of_loops[loop]

@@ -336,7 +336,7 @@ class BufferCore:
         return plan
 
     def _cache(self, number: int, static: bool) -> FrameCache:
-        """What is remembered of a frame; anew when it begins to move or to stand still."""
+        """The cache of a frame; a new one when the frame changes between static and moving."""
         cache = self._caches[number]
         if cache is None or isinstance(cache, StaticCache) is not static:
             cache = self._caches[number] = StaticCache() if static else MovingCache(self._span_ns)

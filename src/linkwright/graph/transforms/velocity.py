@@ -15,7 +15,7 @@ _EARLIEST_S = 0.00001
 
 
 class PoseSource(Protocol):
-    """What gives poses of frames in frames."""
+    """Gives the poses of frames in other frames."""
 
     def lookup(self, target: str, source: str, time_ns: int) -> tuple[Transform, int]:
         """The pose of the source frame in the target frame, and its time."""

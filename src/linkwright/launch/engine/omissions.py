@@ -1,4 +1,4 @@
-"""What a launch leaves out because something that it needs is not there."""
+"""The parts that a launch leaves out because software they need is not installed."""
 
 from __future__ import annotations
 

@@ -68,7 +68,7 @@ class ProcessTable:
 
     @property
     def names(self) -> list[str]:
-        """Those of the processes that run, as the log has them."""
+        """The names of the running processes, as in the log."""
         return sorted(process.name for process in self._running)
 
     def seconds_to_end(self) -> float:

@@ -116,7 +116,7 @@ class LaunchService:
         return asyncio.run(self.run_async(shutdown_when_idle=shutdown_when_idle))
 
     async def run_async(self, *, shutdown_when_idle: bool = True) -> int:
-        """The same as a coroutine, on the running loop."""
+        """`run` as a coroutine, on the running loop."""
         from linkwright.hosting.launch_log import LaunchLog
         from linkwright.hosting.signals import SignalWatch
         from linkwright.hosting.xacro_calls import Descriptions, use_descriptions

@@ -349,7 +349,7 @@ class LaunchSession:
         self._react(event)
 
     def _react(self, event: events.Event) -> None:
-        """What the launcher itself does about an event."""
+        """Carry out the events that end the launch, or stop and signal its processes."""
         if isinstance(event, events.Shutdown):
             if not self.ending:
                 self._begin_end(event)

@@ -1,4 +1,4 @@
-"""What the parts of a session that run processes may ask of it."""
+"""The interface by which the parts that run processes use their session."""
 
 from __future__ import annotations
 

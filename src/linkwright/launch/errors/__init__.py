@@ -1,1 +1,1 @@
-"""What is wrong with a launch file, and where: the places in it, and the exceptions that programs expect from ROS."""
+"""Errors in launch files: places in the user's files, and the exceptions that programs expect from ROS."""

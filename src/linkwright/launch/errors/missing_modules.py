@@ -74,7 +74,7 @@ _ENDINGS = (
 
 
 def provider_hint(module: str) -> Phrase:
-    """What to do so that a module can be imported."""
+    """A hint on how to get a module that cannot be imported."""
     return known_provider_hint(module) or phrase(
         "install the Python package that provides '{module}', or put the ROS package with it into the workspace",
         module=module,

@@ -100,7 +100,7 @@ class MarkupPlace(Place):
 
 
 class Placed:
-    """What knows where in the user's program or launch file it was made.
+    """Something that knows the place in the user's program or launch file where it was made.
 
     Attributes:
         place: where it was written; None where that is not known.

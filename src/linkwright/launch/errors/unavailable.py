@@ -1,4 +1,4 @@
-"""Errors about what others make and is not on this machine, as opposed to mistakes of the user.
+"""Errors because software of others is not installed here, told from mistakes of the user.
 
 A launch leaves such a part out and goes on: the simulation of a robot is of use without move_group.
 """
@@ -12,7 +12,7 @@ _MARK = "is_unavailable"
 
 
 def unavailable(error: LinkwrightError) -> LinkwrightError:
-    """The error, marked: what it tells of is not here, and nothing says that it is misspelt."""
+    """Mark an error: the package or program that it names is not installed, and does not look misspelt."""
     vars(error)[_MARK] = True
     return error
 

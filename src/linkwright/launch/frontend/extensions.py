@@ -1,4 +1,4 @@
-"""What brings tags, substitutions and languages of launch files: our modules, installed packages, the workspace's."""
+"""Extensions of launch files (tags, substitutions, languages): ours, of installed packages, of the workspace."""
 
 from __future__ import annotations
 

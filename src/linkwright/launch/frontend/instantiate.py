@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def _method(methods: dict[str, Any], name: str) -> Any:
-    """What reads a tag or substitution; when nobody knows it, those of packages that were not built are loaded."""
+    """The function that reads a tag or substitution; for an unknown one, extensions of unbuilt packages are loaded."""
     if name not in methods:
         from linkwright.launch.frontend.extensions import load_workspace_extensions
 

@@ -1,4 +1,4 @@
-"""What the entities of XML and YAML share: a record of which parts were read, and messages about the others."""
+"""The base of XML and YAML entities: it records which parts were read, and reports the others."""
 
 from __future__ import annotations
 

@@ -197,7 +197,7 @@ def read_file(file: Any) -> tuple[str, str]:
 
 
 def _likely_diagnostics(name: str, text: str, errors: Sequence[Exception]) -> tuple[Diagnostic, ...]:
-    """What to tell of a file that no parser can read: what the one says whose language it looks like."""
+    """The findings on a file that no parser can read: those of the parser whose language it looks like."""
     told = [error.diagnostics for error in errors if isinstance(error, LinkwrightError)]
     looks_like_xml = text.lstrip().startswith("<")
     for diagnostics in told:

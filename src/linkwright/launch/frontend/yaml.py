@@ -219,7 +219,7 @@ _Loader.add_constructor("tag:yaml.org,2002:map", _mapping)
 
 
 def load(text: str, name: str) -> Any:
-    """What a YAML text holds; its texts are `PlacedText`.
+    """The data of a YAML text; its strings are `PlacedText`.
 
     Raises:
         LinkwrightError: LAUNCH108, it is no YAML.

@@ -1,1 +1,1 @@
-"""What a launch description is made of; nothing here reads a file or starts a process."""
+"""The elements of launch descriptions; nothing here reads a file or starts a process."""

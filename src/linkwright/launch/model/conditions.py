@@ -69,7 +69,7 @@ class Condition(Placed):
 
 
 class _OnExpression(Condition):
-    """What asks whether an expression is true."""
+    """The base of conditions on an expression."""
 
     def __init__(self, predicate_expression: Any, wanted: bool) -> None:
         expression = normalize_to_list_of_substitutions(_text(predicate_expression))

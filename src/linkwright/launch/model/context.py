@@ -1,4 +1,4 @@
-"""What a running launch knows: configurations, environment, locals, event handlers."""
+"""The context of a launch: configurations, environment, locals, event handlers."""
 
 from __future__ import annotations
 
@@ -177,7 +177,7 @@ class LaunchContext:
         self._configurations_stack.append(dict(self.launch_configurations))
 
     def pop_launch_configurations(self) -> None:
-        """Close it: they are what they were before.
+        """Close the innermost scope of launch configurations, and restore those before it.
 
         Raises:
             RuntimeError: when none is open.
@@ -193,7 +193,7 @@ class LaunchContext:
         self._environment_stack.append(dict(self.environment))
 
     def pop_environment(self) -> None:
-        """Close it: they are what they were before.
+        """Close the innermost scope of environment variables, and restore those before it.
 
         Raises:
             RuntimeError: when none is open.
@@ -203,7 +203,7 @@ class LaunchContext:
         self.reset_environment(self._environment_stack.pop())
 
     def reset_environment(self, environment: dict[str, str] | None = None) -> None:
-        """Make the environment the one given, by default that in which the context was made."""
+        """Replace the environment by another one; by that in which the context was made when none is given."""
         if environment is None:
             environment = self._initial_environment
         for name in [name for name in self.environment if name not in environment]:

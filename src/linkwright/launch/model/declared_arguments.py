@@ -27,7 +27,7 @@ def declared_arguments(
 
 
 def undeclared_names(entities: Iterable[LaunchDescriptionEntity], names: Iterable[str]) -> list[str]:
-    """Those of some names that nothing in a description declares; none where not all of it can be known yet."""
+    """The names among the given ones that a description does not declare; none where not all of it is known yet."""
     found = _Declared.by(entities)
     return [] if found.incomplete else [name for name in names if name not in found.names]
 

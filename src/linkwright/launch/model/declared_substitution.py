@@ -140,7 +140,7 @@ class TextLists(Texts):
 
 @dataclass_transform(field_specifiers=(Texts, OptionalTexts, AnyTexts, AnyOptionalTexts, TextLists))
 class DeclaredSubstitution(Substitution):
-    """What declared substitutions derive from.
+    """The base of declared substitutions.
 
     Class arguments:
         tag: the name in ``$(name ...)``; several with slashes between them; none for Python code only.

@@ -94,7 +94,7 @@ class LaunchDescription(LaunchDescriptionEntity):
 
 
 def _checked(entity: Any) -> Any:
-    """What a description is given, if it can be visited: ROS fails when the launch runs, and far from the place."""
+    """Check that entities can be visited: ROS fails only when the launch runs, and far from the place."""
     if isinstance(entity, LaunchDescriptionEntity) or hasattr(entity, "visit"):
         return entity
     kind = type(entity).__name__

@@ -41,11 +41,11 @@ class LaunchDescriptionEntity(Placed):
         return False
 
     def explain_inside(self, error: LinkwrightError) -> LinkwrightError:
-        """An error that happened in the entities that this one led to, with what there is to say of the way there."""
+        """An error of the entities that this one led to, with notes on how they were reached."""
         return error
 
     def get_asyncio_future(self) -> asyncio.Future[Any] | None:
-        """What is done when the entity is, for one that goes on after its visit."""
+        """A future that is done when the entity has ended; None when it ends with its visit."""
         return None
 
 

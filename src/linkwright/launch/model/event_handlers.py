@@ -1,4 +1,4 @@
-"""Event handlers: what is to be done when something happens."""
+"""Event handlers: the entities to be visited when an event comes."""
 
 from __future__ import annotations
 
@@ -34,12 +34,12 @@ class BaseEventHandler:
 
     @property
     def handler_description(self) -> str | None:
-        """What it does, for listings."""
+        """The reaction in words, for listings of a launch."""
         return None
 
     @property
     def matcher_description(self) -> str | None:
-        """Which events it is for, for listings."""
+        """The events that it is for in words, for listings of a launch."""
         return None
 
     @property
@@ -52,7 +52,7 @@ class BaseEventHandler:
         return self._matcher(event)
 
     def describe(self) -> tuple[str, list[LaunchDescriptionEntity]]:
-        """What listings say of it, and the entities that it visits."""
+        """A line for listings of a launch, and the entities that it visits."""
         text = (
             f"{type(self).__name__}(matcher='{self.matcher_description}', handler='{self.handler_description}', "
             f"handle_once={self.handle_once})"
@@ -94,7 +94,7 @@ class EventHandler(BaseEventHandler):
 
 
 class _ReactingHandler(BaseEventHandler):
-    """Gives entities, or what a function of the event gives, to be visited.
+    """Has given entities visited, or those that a function of event and context returns.
 
     Args:
         matcher: called with the event.

@@ -1,4 +1,4 @@
-"""What actions have run as a process; nodes of the launcher's own are `linkwright.hosting.plans.HostedPlan`s."""
+"""Plans of processes, which actions make; those of our own nodes are `linkwright.hosting.plans.HostedPlan`s."""
 
 from __future__ import annotations
 

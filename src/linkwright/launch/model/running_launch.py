@@ -1,4 +1,4 @@
-"""What actions may ask of the launch that runs. They describe what is to be done; the engine does it."""
+"""The interface of the running launch for actions: they describe what is to be done, and the engine does it."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ Schedule = Callable[[float, Callable[[], None]], Scheduled]
 
 
 class NodeHosting(Protocol):
-    """What runs nodes in the launcher's own process."""
+    """Runs nodes in the launcher's own process."""
 
     @property
     def graph(self) -> Graph:
@@ -56,7 +56,7 @@ class RunningLaunch(Protocol):
 
     @property
     def log(self) -> LaunchLog:
-        """What is printed."""
+        """The log of the launch."""
 
     @property
     def descriptions(self) -> Descriptions:
@@ -68,7 +68,7 @@ class RunningLaunch(Protocol):
 
     @property
     def host(self) -> NodeHosting:
-        """What runs nodes in the launcher's own process."""
+        """Runs nodes in the launcher's own process."""
 
     @property
     def loop(self) -> asyncio.AbstractEventLoop | None:

@@ -1,4 +1,4 @@
-"""What a launch file asks of xacro by the words of a command."""
+"""The command line of xacro in launch files."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _OPTIONS_WITH_A_VALUE = frozenset({"-v", "--verbosity"})
 
 
 def parse_xacro_words(words: Sequence[str], text: str, folder: Path) -> tuple[XacroCall, Phrase | None]:
-    """What ``xacro`` is asked for by the words of a command.
+    """Parse the arguments of ``xacro``.
 
     Args:
         words: what follows ``xacro``.

@@ -1,4 +1,4 @@
-"""What launch files of MoveIt configuration packages import: ``launch_param_builder`` and ``moveit_configs_utils``.
+"""The modules that launch files of MoveIt packages import: ``launch_param_builder`` and ``moveit_configs_utils``.
 
 Both collect parameters from the files of a package. With them such packages load here as well, and their
 ``robot_state_publisher`` and viewer run; the programs of MoveIt themselves are compiled ones.

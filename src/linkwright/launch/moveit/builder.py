@@ -236,7 +236,7 @@ class MoveItConfigsBuilder(ParameterBuilder):
         return configs
 
     def to_dict(self, include_moveit_configs: bool = True) -> Parameters:
-        """The parameters that were added one by one, and by default all others as well."""
+        """The parameters that were added one by one, and unless told otherwise those of `to_moveit_configs`."""
         if include_moveit_configs:
             self._parameters.update(self.to_moveit_configs().to_dict())
         return self._parameters

@@ -182,7 +182,7 @@ def autostarts(context: LaunchContext, value: Any) -> bool:
 
 
 def autostart_actions(action: Any) -> list[Any]:
-    """What configures a lifecycle node when it has started, and activates it when it is configured."""
+    """The handlers that configure a lifecycle node when it has started, and activate it when it is configured."""
     change = {
         number: EmitEvent(event=ChangeState(lifecycle_node_matcher=events.matches_action(action), transition_id=number))
         for number in (_CONFIGURE, _ACTIVATE)

@@ -155,12 +155,12 @@ class OnStateTransition(EventHandler):
 
     @property
     def handler_description(self) -> str:
-        """What is done."""
+        """The reaction in words."""
         return "<actions>"
 
     @property
     def matcher_description(self) -> str:
-        """What for."""
+        """The events in words."""
         if self._target is None:
             return "event == StateTransition"
         return f"event == StateTransition and event.action == LifecycleNode({hex(id(self._target))})"

@@ -1,4 +1,4 @@
-"""What the launch files of nav2_bringup have in common: servers, alone or composed, and what activates them."""
+"""The common parts of nav2_bringup's launch files: servers, alone or composed, and their lifecycle manager."""
 
 from __future__ import annotations
 

@@ -132,7 +132,7 @@ class Node(ExecuteProcess):
 
     @staticmethod
     def parse_nested_parameters(params: list[Entity], parser: Parser) -> list[Any]:
-        """What ``param`` tags say, for ``parameters``."""
+        """The parameters in ``param`` tags."""
         from linkwright.launch.ros.parsing import parse_parameters
 
         return parse_parameters(params, parser)
@@ -286,7 +286,7 @@ class Node(ExecuteProcess):
 
     @property
     def __expanded_parameter_arguments(self) -> list[tuple[str, bool]]:
-        """What a process is told of the parameters; files for it are made when somebody asks.
+        """The parameter arguments of the command line, each with whether it is a file; files are written on demand.
 
         Of the scope's parameters only files count here, as in launch_ros.
         """

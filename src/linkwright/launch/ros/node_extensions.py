@@ -18,7 +18,7 @@ GROUP = "launch_ros.node_action"
 
 
 class NodeActionExtension:
-    """What an extension derives from.
+    """The base of extensions of `Node`.
 
     Attributes:
         NAME: that of its entry point, when it was found by one.

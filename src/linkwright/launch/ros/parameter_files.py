@@ -90,7 +90,7 @@ class ParameterFile(Placed):
         return self._evaluated
 
     def rules(self, context: LaunchContext) -> ParameterRules:
-        """What is in the file.
+        """The parameter rules of the file.
 
         Raises:
             LinkwrightError: LAUNCH133, what is wrong with the file.

@@ -53,7 +53,7 @@ def parse_remappings(entity: Entity, parser: Parser) -> dict[str, Any]:
 
 
 def parse_parameters(tags: list[Entity], parser: Parser) -> list[Any]:
-    """What ``param`` tags say, for ``parameters`` of a node.
+    """The parameters in ``param`` tags, as ``parameters`` of a node.
 
     Raises:
         RuntimeError: LAUNCH118, a tag says too much or too little.

@@ -29,7 +29,7 @@ _PARAMETERS = "ros__parameters"
 
 
 class _OfFile(Substitution):
-    """What is made from a file."""
+    """A substitution that is made from a YAML file."""
 
     def __init__(self, source_file: SomeSubstitutionsType) -> None:
         self._source_file = normalize_to_list_of_substitutions(source_file)

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 class _OfLaunchRos(DeclaredSubstitution):
-    """What the substitutions of ``launch_ros`` share."""
+    """The base of the substitutions of ``launch_ros``."""
 
     @classmethod
     def wrong_count(cls, expected: str, given: int) -> Exception:
@@ -36,12 +36,12 @@ class _OfLaunchRos(DeclaredSubstitution):
 
 
 class FindPackage(_OfLaunchRos, shown="{kind}(pkg={package})"):
-    """What finds something about a package; derived classes say what. With ``/`` it gives a path below it."""
+    """The base of substitutions that give a folder of a package; with ``/`` they give a path below it."""
 
     package: Texts = Texts()
 
     def find(self, package_name: str) -> str:
-        """What is asked for about a package."""
+        """The folder of a package."""
         raise NotImplementedError
 
     def __truediv__(self, other: SomeSubstitutionsType) -> PathJoinSubstitution:

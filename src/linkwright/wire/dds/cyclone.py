@@ -46,7 +46,7 @@ SUBSCRIPTION_MATCHED = 1 << 12
 
 
 class Sample(c.Structure):
-    """What a writer of a type described in Python is given: serialised bytes."""
+    """A sample for a writer of a type described in Python: serialised bytes."""
 
     _fields_ = (("data", c.c_char_p), ("size", c.c_size_t))
 

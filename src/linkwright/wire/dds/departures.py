@@ -1,4 +1,4 @@
-"""Publishers that are lost, told from those that left.
+"""Tells publishers that were lost (killed, crashed, out of reach) from those that left in order.
 
 Who leaves says so: ROS 2 withdraws an endpoint from ``ros_discovery_info`` before it takes it out of the domain
 (rmw_dds_common), and so do we. An endpoint that is gone and was not withdrawn is lost: its participant was not heard of
@@ -31,7 +31,7 @@ LOOK_AGAIN = 0.2
 
 @dataclass(slots=True)
 class _Gone:
-    """A writer that is gone, which was not withdrawn by then.
+    """A writer that disappeared before its node withdrew it.
 
     Attributes:
         endpoint: the writer.
@@ -66,18 +66,18 @@ class Departures:
         self._watchers.append(lost)
 
     def endpoint_went(self, endpoint: RemoteEndpoint, node: NodeIdentity | None) -> None:
-        """Take note of an endpoint that is gone, and of the node whose it still is by the last announcement."""
+        """Note that an endpoint disappeared; `node` still announces it, or is None where it was withdrawn."""
         if self._watchers and endpoint.is_writer and node is not None and endpoint.participant not in self._told:
             self._gone.append(_Gone(endpoint, node))
 
     def announced(self, participant: bytes, endpoints: Collection[bytes]) -> None:
-        """Take note of what the nodes of a participant have now: what is gone and not there any more was withdrawn."""
+        """Note what a participant announces now: endpoints that disappeared and are not announced were withdrawn."""
         self._gone = [
             each for each in self._gone if each.endpoint.participant != participant or each.endpoint.guid in endpoints
         ]
 
     def review(self) -> float | None:
-        """Tell of those that are lost by now; seconds after which to call this again, or None."""
+        """Report the publishers that count as lost by now; seconds until it is to be called again, or None."""
         if not self._watchers:
             return None
         self._review_gone()

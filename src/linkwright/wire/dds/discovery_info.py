@@ -31,7 +31,7 @@ class NodeEntities:
 
 @dataclass(frozen=True, slots=True)
 class ParticipantEntities:
-    """What a participant says of itself."""
+    """A participant's announcement of its nodes and their endpoints."""
 
     participant: bytes
     nodes: Sequence[NodeEntities] = field(default=())

@@ -12,7 +12,7 @@ DISCOVERY_TOPIC = "ros_discovery_info"
 
 
 class Role(Enum):
-    """What a DDS topic carries."""
+    """The roles of DDS topics: topics of ROS, requests, responses."""
 
     TOPIC = "rt"
     REQUEST = "rq"

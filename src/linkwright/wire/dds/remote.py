@@ -145,7 +145,7 @@ class RemoteEndpoint:
 
 
 class DepartureWatch(Protocol):
-    """What is told of endpoints that are gone; see `linkwright.wire.dds.departures.Departures`."""
+    """Is notified of endpoints that disappear; see `linkwright.wire.dds.departures.Departures`."""
 
     def endpoint_went(self, endpoint: RemoteEndpoint, node: NodeIdentity | None) -> None:
         """Take note of an endpoint that is gone, and of the node whose it still is by the last announcement."""
@@ -155,7 +155,7 @@ class DepartureWatch(Protocol):
 
 
 class RemoteGraph:
-    """What discovery found; written by one thread, read by any."""
+    """The nodes and endpoints that discovery found; written by one thread, read by any."""
 
     def __init__(self) -> None:
         self._lock = Lock()

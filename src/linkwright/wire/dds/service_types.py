@@ -1,4 +1,4 @@
-"""What the two ways to call services over DDS tell others: with Cyclone, and with participants of Fast DDS."""
+"""The types that services announce over DDS, in Cyclone's way and in that of Fast DDS."""
 
 from __future__ import annotations
 

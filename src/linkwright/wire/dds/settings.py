@@ -54,7 +54,7 @@ class Range(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """What a participant is made with.
+    """The settings of a participant.
 
     Attributes:
         domain_id: the DDS domain.

@@ -281,7 +281,7 @@ class IncomingTopic(MirroredTopic):
 
 
 class _Told:
-    """What has been logged already."""
+    """Remembers what has been logged."""
 
     _AGAIN_AFTER = 30.0
 

@@ -1,4 +1,4 @@
-"""What goes with each message, request and reply: 33 bytes, as rmw_zenoh_cpp has zenoh-ext write them.
+"""The attachment of each message, request and reply: 33 bytes, as rmw_zenoh_cpp has zenoh-ext write them.
 
 They are a sequence number, the time of sending, and the gid of the sender. A receiving rmw_zenoh_cpp ends its process
 when they are malformed, so each sample has them.
@@ -16,7 +16,7 @@ _LAYOUT = Struct("<qqB16s")
 
 
 class Attachment(NamedTuple):
-    """What goes with a sample.
+    """The attachment of a sample.
 
     Attributes:
         number: the sequence number, from 1 on; a reply has that of its request.

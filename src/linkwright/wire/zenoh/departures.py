@@ -1,4 +1,4 @@
-"""Publishers that are lost, told from those that left.
+"""Tells publishers that were lost (killed, crashed, out of reach) from those that left in order.
 
 A token goes when its owner withdraws it, and when its session ends, however that ends. Linkwright's sessions have a
 token of their own, and say that they leave before it goes: what they had is lost when it goes without that. Others
@@ -69,7 +69,7 @@ class Departures:
 
     @property
     def here(self) -> AbstractSet[str]:
-        """The sessions of Linkwright's that are there, and say so when they leave."""
+        """The live sessions of Linkwright, which announce their end."""
         return self._here
 
     def session_came(self, session: str) -> None:
@@ -96,7 +96,7 @@ class Departures:
             self._gone.append(_Gone(key, token, self._now() + GRACE))
 
     def review(self) -> float | None:
-        """Tell of those that are lost by now; seconds after which to call this again, or None."""
+        """Report the publishers that count as lost by now; seconds until it is to be called again, or None."""
         now = self._now()
         due = [each for each in self._gone if each.due <= now]
         self._gone = [each for each in self._gone if each.due > now]

@@ -245,7 +245,7 @@ class Engine(AnyEngine):
             raise
 
     def look_around(self, seconds: float, told: Callable[[], None]) -> None:
-        """Hear of all there is from now on.
+        """Discover the whole graph from now on.
 
         Args:
             seconds: after which who is there now has said so at the latest.

@@ -1,4 +1,4 @@
-"""Opening a session that waits for those it connects to, until it is given up; it says what it waits for."""
+"""Opening a session that waits for its router or peers, which the log tells and which can be interrupted."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Why nobody is reached at an address: Zenoh itself says no more than that it is so.
+"""Why a connection to an address fails, of which Zenoh itself gives no reason.
 
 The address is called as Zenoh calls it, as far as sockets and TLS go.
 """
@@ -42,7 +42,7 @@ def of_mode(config: zenoh.Config, key: str, *, default: Any) -> Any:
 
 
 def obstacles(config: zenoh.Config) -> list[Phrase]:
-    """What stands in the way of each address that a session connects to; nothing where none is found."""
+    """The reasons why a session cannot connect to its addresses, as far as they are found."""
     tls = json.loads(config.get_json("transport/link/tls")) or {}
     found = [found for each in asked_for(config) if (found := obstacle(each, tls))]
     if not found and json.loads(config.get_json("id")) is not None:
@@ -51,7 +51,7 @@ def obstacles(config: zenoh.Config) -> list[Phrase]:
 
 
 def obstacle(address: str, tls: Mapping[str, Any]) -> Phrase:
-    """What stands in the way of an address; empty where nothing is found.
+    """Why a connection to an address fails; empty where no reason is found.
 
     Args:
         address: such as ``tls/cloud.example.com:7448``.

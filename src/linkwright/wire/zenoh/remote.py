@@ -17,7 +17,7 @@ _GONE_FOR = 0.5
 
 
 class RemoteGraph:
-    """What discovery found; written by one thread, read by any."""
+    """The nodes and endpoints that discovery found; written by one thread, read by any."""
 
     def __init__(self) -> None:
         self._lock = Lock()
@@ -73,7 +73,7 @@ class RemoteGraph:
             self._counts.pop((kind, data_key), None)
 
     def forget_nodes(self, full_name: str) -> None:
-        """The same for the nodes of a name."""
+        """Remove the nodes of a name, of which nothing is heard any more."""
         with self._lock:
             for key in [key for key, each in self._tokens.items() if each.kind is None]:
                 if self._tokens[key].node.full_name == full_name:

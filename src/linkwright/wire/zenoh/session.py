@@ -47,7 +47,7 @@ def close_session(session: zenoh.Session) -> None:
 
 
 def refusal(error: zenoh.ZError, config: zenoh.Config) -> LinkwrightError:
-    """What there is to say of a session that cannot be opened, DDS112."""
+    """The error for a session that cannot be opened, DDS112."""
     found = obstacles(config) if could_not_connect(error) else []
     return LinkwrightError(
         Diagnostic(
@@ -119,7 +119,7 @@ def _override(config: zenoh.Config, key: str, value: str) -> None:
 
 
 def _reason(error: Exception) -> str:
-    """What went wrong, without the places in Zenoh's source."""
+    """The words of an error, without the places in Zenoh's source."""
     return _PLACE.sub("", str(error)).strip().rstrip(".")
 
 

@@ -58,7 +58,7 @@ _ROUTER: Entries = (
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """What a session is opened with.
+    """The settings of a session.
 
     Attributes:
         domain_id: the ROS domain.

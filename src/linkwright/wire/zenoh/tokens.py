@@ -90,7 +90,7 @@ class Token:
 
     @property
     def node_key(self) -> tuple[str, str]:
-        """What is the same for a node and its endpoints."""
+        """The key that a node and its endpoints have in common."""
         return self.session, self.node_id
 
     def described(self) -> EndpointInfo | None:

@@ -86,7 +86,7 @@ class AppendEnvironmentVariable(AssigningAction):
 
     @property
     def separator(self) -> list[Substitution]:
-        """What stands between, as substitutions."""
+        """The separator between the values, as substitutions."""
         return self._separator
 
     def execute(self, context: LaunchContext) -> None:

@@ -113,7 +113,7 @@ class ExecuteLocal(Action):
 
     @property
     def process_description(self) -> Executable:
-        """What is run."""
+        """The description of the process."""
         return self._description
 
     @property
@@ -150,7 +150,7 @@ class ExecuteLocal(Action):
         return self._cached_text(2)
 
     def get_sub_entities(self) -> Sequence[LaunchDescriptionEntity]:
-        """What is visited when it has ended."""
+        """The entities that are visited when it has ended."""
         return self._on_exit
 
     def describe(self) -> str:
@@ -180,7 +180,7 @@ class ExecuteLocal(Action):
         return None
 
     def exited(self, event: events.ProcessExited, context: LaunchContext) -> list[LaunchDescriptionEntity]:
-        """What is to be visited now that the process has ended."""
+        """The entities to be visited now that the process has ended."""
         self.return_code = event.returncode
         if self._after_exit is None:
             return self._on_exit

@@ -1,4 +1,4 @@
-"""What actions on launch configurations and environment variables share: a name, and perhaps a value."""
+"""The base of actions on launch configurations and environment variables: a name, and perhaps a value."""
 
 from __future__ import annotations
 

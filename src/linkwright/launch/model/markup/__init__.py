@@ -1,1 +1,1 @@
-"""What actions and substitutions need in order to be written in XML and YAML."""
+"""Actions and substitutions in XML and YAML: registering them, reading their tags and values."""

@@ -1,4 +1,4 @@
-"""What the functions that read tags are given: the entity, an XML tag or YAML mapping, and the parser of its file."""
+"""The interfaces of functions that read tags: the entity (an XML tag or YAML mapping), and the parser of its file."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from linkwright.launch.model.substitution import Substitution
 
 
 class Entity:
-    """What the readers of XML and YAML have in common, as functions that read tags see it."""
+    """An XML tag or YAML mapping, as functions that read tags see it."""
 
     @property
     def type_name(self) -> str:

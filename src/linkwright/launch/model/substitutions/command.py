@@ -29,7 +29,7 @@ _ON_STDERR = ("fail", "warn", "ignore", "capture")
 
 
 class Command(DeclaredSubstitution, tag="command", shown="Command({command})"):
-    """What a command writes to stdout.
+    """The standard output of a command.
 
     Args:
         command: program and arguments, as in a shell.
@@ -128,7 +128,7 @@ class Command(DeclaredSubstitution, tag="command", shown="Command({command})"):
 
 
 def _words_of_xacro(words: list[str]) -> list[str] | None:
-    """What follows ``xacro`` if the command runs it, else None."""
+    """The arguments of ``xacro`` if the command runs it, else None."""
     if words[:3] == ["ros2", "run", "xacro"] and words[3:4] == ["xacro"]:
         return words[4:]
     if Path(words[0]).name == "xacro":

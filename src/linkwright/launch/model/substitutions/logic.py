@@ -100,7 +100,7 @@ class OrSubstitution(AndSubstitution, tag="or"):
 
 
 class _Several(Substitution):
-    """What combines any number of values."""
+    """The base of substitutions that combine any number of values."""
 
     def __init__(self, *args: SomeSubstitutionsType) -> None:
         self._values = [normalize_to_list_of_substitutions(value) for value in args]

@@ -1,4 +1,4 @@
-"""Substitutions that give paths and what is in files."""
+"""Substitutions that give paths, and the contents of files."""
 
 from __future__ import annotations
 
@@ -102,7 +102,7 @@ class FindExecutable(DeclaredSubstitution, tag="find-exec", shown="FindExec({nam
 
 
 class FileContent(DeclaredSubstitution, tag="file-content"):
-    """What is in a text file."""
+    """The contents of a text file."""
 
     path: Texts = Texts()
 

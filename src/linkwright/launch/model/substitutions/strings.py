@@ -45,7 +45,7 @@ class StringJoinSubstitution(DeclaredSubstitution, tag="string-join", shown="Str
 
 
 class _OfOneText(DeclaredSubstitution):
-    """What works on one text."""
+    """The base of substitutions of one text."""
 
     value: Texts = Texts()
 

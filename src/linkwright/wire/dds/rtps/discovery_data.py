@@ -1,4 +1,4 @@
-"""What participants and endpoints tell of themselves (SPDP and SEDP; DDSI-RTPS 2.5, 8.5 and 9.6.2)."""
+"""The data by which participants and endpoints announce themselves (SPDP and SEDP; DDSI-RTPS 2.5, 8.5 and 9.6.2)."""
 
 from __future__ import annotations
 

@@ -60,7 +60,7 @@ class Data:
 
 @dataclass(frozen=True, slots=True)
 class Heartbeat:
-    """A writer says what it has; `first` is one more than `last` when that is nothing."""
+    """HEARTBEAT: a writer has the samples from `first` to `last`; `first` is one more than `last` when it has none."""
 
     source: bytes
     reader: bytes
@@ -72,7 +72,7 @@ class Heartbeat:
 
 @dataclass(frozen=True, slots=True)
 class Gap:
-    """A writer says what is not for a reader: everything from `start` to before `base`, and `others`."""
+    """GAP: the samples from `start` to before `base`, and `others`, are not for a reader, or no longer there."""
 
     source: bytes
     reader: bytes
@@ -84,7 +84,7 @@ class Gap:
 
 @dataclass(frozen=True, slots=True)
 class AckNack:
-    """A reader says that it has everything before `base`, and what it lacks of the rest."""
+    """ACKNACK: a reader has every sample before `base`; of the later ones it lacks `missing`."""
 
     source: bytes
     reader: bytes
@@ -96,7 +96,7 @@ class AckNack:
 
 @dataclass(frozen=True, slots=True)
 class NackFrag:
-    """A reader says which fragments of a sample it lacks."""
+    """NACK_FRAG: the fragments of a sample that a reader lacks."""
 
     source: bytes
     reader: bytes
@@ -122,7 +122,7 @@ def vendor_of(packet: bytes) -> bytes:
 
 
 def parse(packet: bytes, own_prefix: bytes) -> Iterator[Submessage]:
-    """What a message says to a participant; it ends where the message cannot be understood."""
+    """The submessages of a message for a participant, up to the first malformed one."""
     if not vendor_of(packet):
         return
     context = _Context(packet[8:_HEADER], own=own_prefix)

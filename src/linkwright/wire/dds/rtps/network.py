@@ -1,4 +1,4 @@
-"""The socket of a participant, and where others are looked for."""
+"""The UDP sockets of a participant, and the addresses at which it looks for others."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _NETWORK_TTL = 32
 
 @dataclass(frozen=True, slots=True)
 class Places:
-    """Where a participant is to be reached, and where it looks for others.
+    """The addresses of a participant, and those at which it looks for others.
 
     Attributes:
         own: its addresses, without ports.

@@ -395,7 +395,7 @@ class RtpsParticipant:
     # --- what comes ---------------------------------------------------------------------------------------------------
 
     def _understand(self, packet: bytes, source: Address, calls: list[Callable[[], None]]) -> list[Packet]:
-        """What is to be answered; `calls` gets what is to be done without the lock."""
+        """The packets that answer one; callbacks to be made without the lock are appended to `calls`."""
         packets: list[Packet] = []
         vendor = vendor_of(packet)
         for said in parse(packet, self.prefix):
@@ -416,7 +416,7 @@ class RtpsParticipant:
         return packets
 
     def _stranger_said(self, said: Submessage, source: Address) -> list[Packet]:
-        """What keeps those quiet whom we tell nothing: there is nothing to be had, and nothing is lacked."""
+        """Answer a participant that is not matched, so that it does not repeat itself: neither side lacks anything."""
         self._count += 1
         if isinstance(said, AckNack) and said.writer in (v.PUBLICATIONS_WRITER, v.SUBSCRIPTIONS_WRITER):
             answer = heartbeat(said.reader[v.PREFIX :], said.writer, 1, 0, self._count, final=True)

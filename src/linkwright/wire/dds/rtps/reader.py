@@ -100,7 +100,7 @@ class Reader:
         return self._writers.keys()
 
     def heard_at(self, writer: bytes) -> float | None:
-        """When a writer said first what it has, so that it knows this reader; by the steady clock."""
+        """When the first heartbeat of a writer came, by the steady clock: it has matched this reader."""
         known = self._writers.get(writer)
         return known.heard_at if known is not None else None
 
@@ -110,7 +110,7 @@ class Reader:
         return known.last if known is not None else 0
 
     def match(self, writer: bytes, addresses: tuple[Address, ...]) -> list[Packet]:
-        """Hear a writer from now on; what it is to be told."""
+        """Match a writer; returns the packets that ask it for its samples."""
         if writer in self._writers:
             self._writers[writer].addresses = addresses
             return []
@@ -149,7 +149,7 @@ class Reader:
         return [self._answer(said.writer, known)]
 
     def on_gap(self, said: Gap) -> None:
-        """Wait no more for what is not to be had."""
+        """Handle a GAP: samples that the writer no longer has, or that are not for this reader, count as received."""
         known = self._writers.get(said.writer)
         if known is None:
             return
@@ -163,7 +163,7 @@ class Reader:
                 known.add(number)
 
     def remind(self, now: float) -> list[Packet]:
-        """What asks the writers that have said nothing yet for what they have."""
+        """The packets that ask silent writers again, where it is time."""
         silent = [each for each in self._writers.items() if each[1].heard_at is None and now >= each[1].due]
         return [self._ask(writer, known, now) for writer, known in silent]
 

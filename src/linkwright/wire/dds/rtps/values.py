@@ -66,7 +66,7 @@ Parameters = dict[int, list[bytes]]
 
 
 class MalformedError(ValueError):
-    """What came is not what the specification says."""
+    """A packet does not follow the RTPS specification."""
 
 
 def parameter(pid: int, value: bytes) -> bytes:

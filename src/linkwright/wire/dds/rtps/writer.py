@@ -75,12 +75,12 @@ class Writer:
         return self._readers.keys()
 
     def has_heard(self, reader: bytes) -> bool:
-        """Whether a reader has said something, so that it knows this writer."""
+        """Whether a reader has answered, and so has matched this writer."""
         known = self._readers.get(reader)
         return known is not None and known.heard
 
     def match(self, reader: bytes, addresses: tuple[Address, ...]) -> list[Packet]:
-        """Write for a reader from now on; what it is to be told first."""
+        """Match a reader; returns the first packets for it: the history if this writer keeps it, else a heartbeat."""
         if reader in self._readers:
             self._readers[reader].addresses = addresses
             return []
@@ -118,7 +118,7 @@ class Writer:
         return packets
 
     def withdraw(self, number: int) -> None:
-        """Tell those who come later no more of a sample."""
+        """Drop a sample from the history for late joiners."""
         self._drop(number)
 
     @property
@@ -127,7 +127,7 @@ class Writer:
         return self._last
 
     def on_acknack(self, said: AckNack) -> list[Packet]:
-        """What a reader that acknowledges, and lacks something, is to be sent."""
+        """Handle an ACKNACK; returns the packets that repeat what the reader lacks."""
         known = self._readers.get(said.reader)
         if known is None:
             return []
