@@ -250,6 +250,30 @@ async def test_steps_go_from_message_to_message_of_what_somebody_listens_to(show
     assert await shown.taken() == []
 
 
+async def test_steps_may_go_by_the_messages_of_one_topic(shown: Shown) -> None:
+    shown.listen("/a")
+    await shown.taken()
+    shown.playback.step(True, "/b")
+    assert await shown.taken() == ["a 1", "a 2", "a 3", "a 4"], "what lies between is shown, too"
+    assert shown.playback.position_ns == START + 4 * SECOND
+    shown.playback.step(False, "/tf_static")
+    assert await shown.taken() == ["anew", "a 0"]
+    shown.playback.seek(START + 19 * SECOND)
+    await shown.taken()
+    shown.playback.step(True, "/b")
+    assert await shown.taken() == [], "there is no later one"
+    assert shown.playback.position_ns == START + 19 * SECOND
+
+
+async def test_a_step_over_more_than_goes_in_a_turn_is_a_jump(shown: Shown, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("linkwright.bag.playback._MOST_MESSAGES", 2)
+    shown.listen("/a")
+    await shown.taken()
+    shown.playback.step(True, "/b")
+    assert (await shown.taken())[-2:] == ["anew", "a 4"]
+    assert shown.playback.position_ns == START + 4 * SECOND
+
+
 async def test_a_step_back_stays_where_nobody_listens(shown: Shown) -> None:
     shown.playback.seek(START + 8 * SECOND)
     await shown.settle()

@@ -119,6 +119,38 @@ def test_steps_go_from_message_to_message(page: Page):
     until(page, "Math.abs(lw.timeline.position - 9.8) < 1e-5")
 
 
+def test_after_a_click_into_the_scene_the_arrows_step_as_well(page: Page):
+    seek(page, 9.95)
+    page.locator(".canvas-box canvas").first.click(position={"x": 30, "y": 30})
+    page.keyboard.press("ArrowLeft")
+    until(page, "Math.abs(lw.timeline.position - 9.9) < 1e-5")
+    page.keyboard.press("ArrowRight")
+    until(page, "Math.abs(lw.timeline.position - 10) < 1e-5")
+
+
+def test_steps_go_by_the_topic_that_is_chosen(start, open_page, tmp_path: Path):
+    with BagWriter(tmp_path / "rare") as writer:
+        writer.add_topic("/second", "std_msgs/msg/Float64", [DEFAULT_QOS])
+        writer.add_topic("/rare", "std_msgs/msg/Float64", [DEFAULT_QOS])
+        for tenth in range(101):
+            for topic in ("/second", *(["/rare"] if tenth % 40 == 0 else [])):
+                writer.write(topic, START * SECOND + tenth * SECOND // 10, serialize(FLOAT(data=0.0)))
+    page = open_page(start("view", str(tmp_path / "rare")), wait=False)
+    until(page, "lw.timeline")
+    page.get_by_role("combobox", name="Step by the messages of").select_option("/rare")
+    if state(page, "timeline")["playing"]:
+        page.get_by_role("button", name="Pause (Space)").click()
+    until(page, "!lw.timeline.playing")
+    page.get_by_role("slider", name="Time in the recording").press("Home")
+    until(page, "lw.timeline.position === 0")
+    page.get_by_role("button", name="To the next message (→)").click()
+    until(page, "Math.abs(lw.timeline.position - 4) < 1e-5")
+    page.get_by_role("button", name="To the next message (→)").click()
+    until(page, "Math.abs(lw.timeline.position - 8) < 1e-5")
+    page.get_by_role("button", name="To the message before (←)").click()
+    until(page, "Math.abs(lw.timeline.position - 4) < 1e-5")
+
+
 def test_space_plays_and_pauses_at_the_speed_that_is_chosen(page: Page):
     page.get_by_role("combobox", name="Speed").select_option("10")
     seek(page, 2.05)

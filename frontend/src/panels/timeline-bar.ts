@@ -20,6 +20,9 @@ export class TimelineBar {
   private readonly play: HTMLButtonElement;
   private readonly loop: HTMLButtonElement;
   private readonly speed = h("select", { class: "choice", title: strings.timeline.speed, aria: { label: strings.timeline.speed } });
+  private readonly steps = h("select", { class: "choice timeline-steps", title: strings.timeline.steps, aria: { label: strings.timeline.steps } });
+  /** Whether what has the keyboard got it by a press, and not by Tab. */
+  private pressed = false;
   private readonly time = h("output", { class: "timeline-time" });
   private readonly marks = h("canvas", { class: "timeline-marks" });
   private readonly head = h("div", { class: "timeline-head" });
@@ -48,6 +51,7 @@ export class TimelineBar {
     this.forward = button(words.forward, () => timeline.step(true), "tool bare", icon("step"));
     this.speed.append(...SPEEDS.map((speed) => new Option(`${speed}×`, String(speed))));
     this.speed.addEventListener("change", () => timeline.setSpeed(Number(this.speed.value)));
+    this.steps.addEventListener("change", () => (timeline.stepTopic = this.steps.value));
     this.track = h("div", { class: "timeline-track", role: "slider", tabIndex: 0, aria: { label: words.position } }, this.marks, this.part, this.head);
     this.track.addEventListener("pointerdown", (event) => this.drag(event));
     this.track.addEventListener("pointermove", (event) => {
@@ -62,6 +66,7 @@ export class TimelineBar {
       this.back,
       this.play,
       this.forward,
+      this.steps,
       this.track,
       this.problem,
       this.time,
@@ -75,6 +80,7 @@ export class TimelineBar {
     timeline.moved.on(coalesced(() => this.move()));
     new ResizeObserver(() => this.drawMarks()).observe(this.track);
     this.takeKeys();
+    this.takeKeysOfScene();
     this.show();
   }
 
@@ -89,6 +95,7 @@ export class TimelineBar {
     this.forward.hidden = this.speed.hidden = minutes && this.timeline.live;
     this.loop.hidden = minutes;
     this.track.setAttribute("aria-label", minutes ? words.minutes : words.position);
+    this.offerSteps();
     const label = playing ? words.pause : words.play;
     if (this.play.title !== label) {
       this.play.title = label;
@@ -102,6 +109,15 @@ export class TimelineBar {
     this.problem.title = problem;
     this.drawMarks();
     this.move();
+  }
+
+  /** The topics that can be stepped by: those of a recording; of what comes now only what is shown is kept. */
+  private offerSteps(): void {
+    const topics = (this.timeline.timeline?.topics ?? []).filter(({ count }) => count > 0).map(({ name }) => name);
+    this.steps.hidden = topics.length < 2;
+    const offered = [new Option(strings.timeline.allSteps, ""), ...topics.map((name) => new Option(name, name))];
+    if (this.steps.options.length !== offered.length) this.steps.replaceChildren(...offered);
+    this.steps.value = this.timeline.stepTopic;
   }
 
   private showAtAll(): void {
@@ -184,6 +200,25 @@ export class TimelineBar {
       else return;
       event.preventDefault();
     });
+  }
+
+  /** Who has pressed into the scene of another time steps on with the arrows; who came there by Tab turns the camera with them. */
+  private takeKeysOfScene(): void {
+    document.addEventListener("pointerdown", () => (this.pressed = true), true);
+    document.addEventListener(
+      "keydown",
+      (event) => {
+        if (event.key === "Tab") this.pressed = false;
+        const forward = event.key === "ArrowRight";
+        if (!forward && event.key !== "ArrowLeft") return;
+        if (event.shiftKey || event.ctrlKey || event.metaKey || event.altKey || !this.pressed) return;
+        if (!(event.target instanceof HTMLCanvasElement) || !this.timeline.timeline || this.timeline.live) return;
+        this.timeline.step(forward);
+        event.preventDefault();
+        event.stopPropagation();
+      },
+      true,
+    );
   }
 
   private isFree(target: Element): boolean {

@@ -51,9 +51,10 @@ export interface SeekTime {
   type: "seek_time";
 }
 
-/** The user goes to the next message of what is shown, or to the one before. */
+/** The user goes to the next message of what is shown, or to the one before; or to that of a single topic. */
 export interface StepTime {
   forward: boolean;
+  topic: string;
   type: "step_time";
 }
 

@@ -22,12 +22,15 @@ export class TimelineState {
   private asked = false;
   private wanted = 0;
   private marked: Span | null = null;
+  /** The topic whose messages are stepped by; empty for those of all that are shown. */
+  stepTopic = "";
 
   constructor(private readonly connection: Connection) {
     connection.on("hello", () => {
       // A new connection knows nothing of what was asked for; a program without a recording tells of none.
       this.recording = this.playhead = this.keptNow = this.target = this.marked = null;
       this.asked = false;
+      this.stepTopic = "";
       this.changed.emit();
     });
     connection.on("timeline", (timeline) => {
@@ -111,7 +114,7 @@ export class TimelineState {
   }
 
   step(forward: boolean): void {
-    this.connection.send({ type: "step_time", forward });
+    this.connection.send({ type: "step_time", forward, topic: this.stepTopic });
   }
 
   setSpeed(speed: number): void {

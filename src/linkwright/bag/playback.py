@@ -147,14 +147,21 @@ class Playback:
         if not pending:
             asyncio.get_running_loop().call_soon(self._begin_landing)
 
-    def step(self, forward: bool) -> None:
-        """Pause, and show the time of the next message that somebody listens to, or of the one before."""
+    def step(self, forward: bool, topic: str = "") -> None:
+        """Pause, and show the time of the next message, or of the one before.
+
+        Args:
+            forward: whether to the next one.
+            topic: whose messages count; all that somebody listens to where it is empty.
+        """
         self.pause()
         try:
             if not forward:
-                before = self._recording.time_before(self._wanted, self._aim())
+                before = self._recording.time_before({topic} if topic else self._wanted, self._aim())
                 if before is not None:
                     self.seek(before)
+            elif topic:
+                self._step_to_next_of(topic)
             elif self._target_ns is None:
                 self._next = next(self._stream, None) if self._next is None else self._next
                 if self._next is not None:
@@ -162,6 +169,17 @@ class Playback:
                     self._tell()
         except LinkwrightError as error:
             self._fail(error)
+
+    def _step_to_next_of(self, topic: str) -> None:
+        """Show what came until the next message of a topic; where that is too much for a turn, go there at once."""
+        following = next(self._recording.messages({topic}, self._aim() + 1), None)
+        if self._target_ns is None:
+            self._open_stream()  # of a file, only one can be read at a time
+            if following is not None:
+                self._show_until(following[1])
+        if following is not None and self._aim() < following[1]:
+            self.seek(following[1])
+        self._tell()
 
     def take_over(self, stamp_ns: int) -> None:
         """Go on from a time whose state listeners know already."""

@@ -5,6 +5,8 @@ export const timeline = {
   pause: "Pause (Space)",
   back: "To the message before (←)",
   forward: "To the next message (→)",
+  steps: "Step by the messages of",
+  allSteps: "all shown",
   speed: "Speed",
   loop: "Begin anew at the end",
   live: "Live: show the present again",

@@ -7,6 +7,8 @@ export const timeline: typeof english = {
   pause: "暂停（空格）",
   back: "上一条消息（←）",
   forward: "下一条消息（→）",
+  steps: "按哪个话题的消息单步",
+  allSteps: "所有显示的",
   speed: "速度",
   loop: "到结尾后从头播放",
   live: "实时：回到当前时刻",

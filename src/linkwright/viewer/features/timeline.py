@@ -140,8 +140,8 @@ class TimelineFeature(PageFeature):
                 start = playback.start_ns
                 # Relative to the start, because a float of seconds since the epoch is off by a tenth of a microsecond.
                 playback.seek(start + round((position - start / _SECOND) * _SECOND))
-            case StepTime(forward):
-                playback.step(forward)
+            case StepTime(forward, topic):
+                playback.step(forward, topic)
             case SetPlayback(speed, loop) if SLOWEST <= speed <= FASTEST:
                 playback.set_speed(speed)
                 playback.set_loop(loop)

@@ -69,9 +69,10 @@ class SeekTime(PageMessage):
 
 
 class StepTime(PageMessage):
-    """The user goes to the next message of what is shown, or to the one before."""
+    """The user goes to the next message of what is shown, or to the one before; or to that of a single topic."""
 
     forward: bool
+    topic: str = ""
 
 
 class GoLive(PageMessage):
