@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
-import numpy as np
+import threading
 
-from linkwright.bag import History
+import numpy as np
+import pytest
+
+from linkwright.bag import History, shrinking
+from linkwright.bag.shrinking import whole
 from linkwright.messages import TFMessage, TransformBatch, serialize
+from tests.waiting import wait_until
 
 SECOND = 1_000_000_000
 
@@ -78,3 +83,59 @@ def test_who_has_read_to_the_end_reads_on_when_more_has_come() -> None:
     history.add("/a", b"\12")
     assert numbers(stream) == [8, 9, 10]
     assert history.end_ns == 3 * SECOND
+
+
+def picture(shade: int, size: int = 200_000) -> bytes:
+    return bytes([shade]) * size
+
+
+def packed(history: History, most: int) -> None:
+    """Wait until what is kept takes no more than so many bytes."""
+    wait_until(lambda: history.size <= most)
+
+
+def test_large_messages_that_repeat_themselves_take_less_room_and_are_read_as_they_came() -> None:
+    clock = Clock()
+    history = History(10**6, clock)
+    for second in range(100):  # as they are, these would be 20 MB
+        clock.ns = second * SECOND
+        history.add("/camera", picture(second))
+        packed(history, (second + 1) * 1000)
+    assert history.start_ns == 0
+    assert history.state_at(["/camera"], 50 * SECOND) == [("/camera", 50 * SECOND, picture(50))]
+    assert [data for _, _, data in history.messages(["/camera"], 98 * SECOND)] == [picture(98), picture(99)]
+    part = history.part(97 * SECOND, 99 * SECOND)
+    assert sum(len(data) for _, _, data in part) < 204_000, "packed, but for the state before them"
+    assert [whole(data) for _, _, data in part] == [picture(96), picture(97), picture(98), picture(99)]
+    history.close()
+
+
+def test_noise_is_kept_as_it_is() -> None:
+    noise = np.random.default_rng(0).integers(0, 256, 200_000).astype(np.uint8).tobytes()
+    history, _ = filled(count=0, most=10**7)
+    history.add("/camera", noise)
+    history.add("/camera", picture(1))
+    packed(history, 202_000)
+    assert history.size > 200_000
+    assert history.state_at(["/camera"], 0) == [("/camera", 0, picture(1))]
+    assert next(history.messages(["/camera"], 0)) == ("/camera", 0, noise)
+    history.close()
+
+
+def test_what_was_dropped_before_it_was_packed_does_no_harm(monkeypatch: pytest.MonkeyPatch) -> None:
+    go_on = threading.Event()
+    compress = shrinking._zstd().compress
+
+    def slow(data: bytes, level: int) -> bytes:
+        go_on.wait(10)
+        return bytes(compress(data, level))
+
+    monkeypatch.setattr(shrinking._zstd(), "compress", slow)
+    history, _ = filled(count=0, most=500_000)
+    for shade in range(5):
+        history.add("/camera", picture(shade))
+    assert history.size == 2 * 200_200, "one, and the one before it"
+    go_on.set()
+    packed(history, 210_000)
+    assert [data[0] for _, _, data in history.messages(["/camera"], 0)] == [4]
+    history.close()

@@ -9,6 +9,7 @@ from collections import deque
 from collections.abc import Callable, Collection, Iterator
 
 from linkwright.bag.moments import STATIC_TRANSFORMS, TRANSFORMS, TRANSFORMS_NS, Recorded
+from linkwright.bag.shrinking import Packed, Shrinker, whole
 from linkwright.messages import TFMessage, deserialize
 
 _OVERHEAD = 200
@@ -46,10 +47,19 @@ class _Track:
             self.first = 0
         if self.name == TRANSFORMS:
             return _size(oldest[2])  # of these only the last seconds are of use
-        key = deserialize(oldest[2], TFMessage).batch.children if self.name == STATIC_TRANSFORMS else None
+        key = deserialize(whole(oldest[2]), TFMessage).batch.children if self.name == STATIC_TRANSFORMS else None
         replaced = self.before.pop(key, None)
         self.before[key] = oldest
         return 0 if replaced is None else _size(replaced[2])
+
+    def replace(self, number: int, packed: Packed) -> int:
+        """Have a message packed, by its number; returns the bytes that are free now."""
+        place = bisect_left(self.kept, number, lo=self.first, key=lambda each: each[1])
+        if place == len(self.kept) or self.kept[place][1] != number:
+            return 0  # it was dropped meanwhile
+        stamp_ns, _, data = self.kept[place]
+        self.kept[place] = stamp_ns, number, packed
+        return len(data) - len(packed)
 
     def until(self, at_ns: int, count: int) -> list[_Kept]:
         """The last messages up to a time, so many at most."""
@@ -65,7 +75,8 @@ class _Track:
 class History:
     """Keeps what it is given until newer messages take its place; it can be played while it goes on being filled.
 
-    Messages may be added in any thread. Their times never go back, whatever the clock does.
+    Messages may be added in any thread. Their times never go back, whatever the clock does. Large ones are packed
+    where that makes them smaller, see `shrinking`.
 
     Args:
         most_bytes: how many bytes it may take; a message that alone is larger is not kept.
@@ -86,6 +97,7 @@ class History:
         self._newest_ns = 0
         self._tracks: dict[str, _Track] = {}
         self._order: deque[_Track] = deque()
+        self._shrinker = Shrinker(self._replace)
 
     def add(self, topic: str, data: bytes, at_ns: int | None = None) -> None:
         """Keep a message that came now, or at another time after those that are kept."""
@@ -103,6 +115,17 @@ class History:
             self.size += size
             while self.size > self.most_bytes and self._order:
                 self.size -= self._order.popleft().drop()
+            number = self.count - 1
+        self._shrinker.offer((track, number), data)
+
+    def close(self) -> None:
+        """Keep what is kept as it is; nothing more is packed."""
+        self._shrinker.close()
+
+    def _replace(self, key: tuple[_Track, int], packed: Packed) -> None:
+        track, number = key
+        with self.lock:
+            self.size -= track.replace(number, packed)
 
     @property
     def start_ns(self) -> int:
@@ -138,7 +161,7 @@ class History:
                         kept = before + kept
                     kept = kept or before
                 into = static if name == STATIC_TRANSFORMS else found
-                into += [(name, stamp, data) for stamp, _, data in kept]
+                into += [(name, stamp, whole(data)) for stamp, _, data in kept]
         return static + sorted(found, key=lambda each: each[1])
 
     def time_before(self, topics: Collection[str], at_ns: int) -> int | None:
@@ -150,7 +173,8 @@ class History:
     def part(self, start_ns: int, end_ns: int) -> list[Recorded]:
         """What came from one time to another, both included, in its order.
 
-        Before it stands what is needed to show its beginning, see `state_at`, as if that had come then.
+        Before it stands what is needed to show its beginning, see `state_at`, as if that had come then. Messages are as
+        they are kept: many that are packed would be too large together, see `whole`.
         """
         with self.lock:
             before = self.state_at(list(self._tracks), start_ns - 1)
@@ -175,7 +199,7 @@ class History:
         if best is None:
             return None
         (stamp, found, data), name = best
-        return found, (name, stamp, data)
+        return found, (name, stamp, whole(data))
 
 
 class _Onward(Iterator[Recorded]):

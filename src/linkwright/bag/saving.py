@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from linkwright.bag.moments import Recorded
+from linkwright.bag.shrinking import whole
 from linkwright.bag.writing import BagWriter
 from linkwright.graph import QoSProfile
 from linkwright.graph.simulated_time import CLOCK_TOPIC
@@ -37,7 +38,7 @@ def save_messages(
     Args:
         path: the folder to make.
         topics: all that messages are of.
-        messages: in the order of their times.
+        messages: in the order of their times, packed or not.
         tell: called now and then with the part that is written, 0 to 1.
 
     Raises:
@@ -47,7 +48,7 @@ def save_messages(
         for number, (name, stamp_ns, data) in enumerate(messages):
             if name not in writer.topics:
                 writer.add_topic(name, topics[name].type_name, topics[name].offered)
-            writer.write(name, stamp_ns, data)
+            writer.write(name, stamp_ns, whole(data))
             if number % _TOLD_EVERY == 0:
                 tell(number / len(messages))
 

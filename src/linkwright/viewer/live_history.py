@@ -173,6 +173,8 @@ class LiveHistory:
         """Keep nothing more."""
         self._handle.intake = None
         self._context.graph_changes.ignore(self._review)
+        if self._kept is not None:
+            self._kept.close()
         if self.has_playback:
             self.playback.close()
 
