@@ -32,7 +32,7 @@ export interface ComparedItem {
   new_place: ComparedPlace | null;
 }
 
-/** How two descriptions differ. */
+/** The differences of two descriptions. */
 export interface ComparedDescriptions {
   old: ComparedRobot;
   new: ComparedRobot;

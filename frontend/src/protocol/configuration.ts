@@ -4,7 +4,7 @@ export type EditKind = "set" | "enable" | "disable" | "add" | "duplicate" | "ren
 
 export type Question = "unsaved" | "exists" | "changed_on_disk";
 
-/** What undo or redo would do: the kind of edit, and the name of the property or display. */
+/** The edit that undo or redo would revert or repeat: its kind, and the name of the property or display. */
 export interface EditName {
   kind: EditKind;
   name: string;
@@ -64,7 +64,7 @@ export interface ConfigurationSaved {
   type: "configuration_saved";
 }
 
-/** What a page asked for was not done. With a question, it is done when the page asks again and says so. */
+/** A request of a page was refused. With a question, the page may confirm it and ask again. */
 export interface ConfigurationRefused {
   message: string;
   question: Question | null;
@@ -130,7 +130,7 @@ export interface AskDisplayChoices {
   type: "ask_display_choices";
 }
 
-/** What is in a folder of the server; None for that of the open file. */
+/** Ask for the contents of a folder of the server; None for that of the open file. */
 export interface AskFolder {
   path: string | null;
   type: "ask_folder";
@@ -183,7 +183,7 @@ export type PanelName =
   | "transformation"
   | "navigation";
 
-/** What the configuration says of panels. */
+/** The panels in the configuration. */
 export interface Panels {
   opened: number;
   origin: string;

@@ -72,7 +72,7 @@ export interface JointDetails {
   written: Written;
 }
 
-/** What stands behind the robot of a RobotModel display; answers `AskDescription`. */
+/** The description of the robot of a RobotModel display; answers `AskDescription`. */
 export interface Description {
   display: string;
   revision: number;
@@ -102,7 +102,7 @@ export interface DescriptionText {
   type: "description_text";
 }
 
-/** What is implausible about the mass or inertia of a link. */
+/** An implausible mass or inertia of a link. */
 export interface InertiaFinding {
   link: string;
   code: string;
@@ -160,7 +160,7 @@ export interface DiagnosticItem {
   hints: string[];
 }
 
-/** What is wrong with the description now; none clears the list. */
+/** The findings on the description now; none clears the list. */
 export interface Diagnostics {
   items: DiagnosticItem[];
   type: "diagnostics";

@@ -17,7 +17,7 @@ export interface EditablePart {
   line: number;
 }
 
-/** What can be edited of a link of a display, the joint above it first; `why_not` is empty where anything can be. */
+/** The editable parts of a link of a display, the joint above it first; `why_not` is empty where there are some. */
 export interface EditableParts {
   display: string;
   link: string;
@@ -32,7 +32,7 @@ export interface EditedFile {
   diff: string[];
 }
 
-/** What an edit comes to, or why it cannot be; `also` is what would change with it. */
+/** The outcome of an edit, or why it is refused; `also` is what would change with it. */
 export interface EditPreview {
   number: number;
   files: EditedFile[];

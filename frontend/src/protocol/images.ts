@@ -25,7 +25,7 @@ export interface ImageFrame {
   kind: "image_frame";
 }
 
-/** How many pixels of the screen the panel of an Image display has, 0 while it is not seen; more are not needed. */
+/** The size of the panel of an Image display in pixels, 0 while it is not seen; a larger image is not needed. */
 export interface PictureSize {
   display: string;
   width: number;

@@ -50,7 +50,7 @@ export interface ModelChoices {
   type: "model_choices";
 }
 
-/** What is to be different about a model or light; None for what stays. */
+/** A change of a model or light; fields that are None stay. */
 export interface ThingChange {
   name: string;
   pose: number[] | null;

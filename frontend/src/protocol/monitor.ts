@@ -8,7 +8,7 @@ export interface TopicRow {
   subscribers: number;
 }
 
-/** What a measured topic carries: hertz and bytes a second. `error` tells why it cannot be measured or shown. */
+/** The traffic of a measured topic: hertz and bytes a second. `error` tells why it cannot be measured or shown. */
 export interface TopicTraffic {
   topic: string;
   rate: number | null;
@@ -45,7 +45,7 @@ export interface TopicMessage {
   type: "topic_message";
 }
 
-/** What the page follows of topics from now on: their list, figures of some, messages of some. */
+/** Follow topics from now on: their list, the traffic of some, the messages of some. */
 export interface WatchTopics {
   listed: boolean;
   measured: string[];
@@ -74,7 +74,7 @@ export interface SeriesState {
   error: string | null;
 }
 
-/** What can be plotted of a topic; answers `AskFields`, and once more when a message tells how long arrays are. */
+/** The fields of a topic that can be plotted; answers `AskFields`, and again once the length of arrays is known. */
 export interface TopicFields {
   topic: string;
   kind: string;
@@ -83,7 +83,7 @@ export interface TopicFields {
   type: "topic_fields";
 }
 
-/** How the series of the page are. */
+/** The states of the series of a page. */
 export interface SeriesStates {
   states: SeriesState[];
   type: "series_states";
@@ -180,7 +180,7 @@ export interface ParameterDump {
   type: "parameter_dump";
 }
 
-/** What the page wants to know of parameters from now on: the list of nodes, and the parameters of one. */
+/** Follow parameters from now on: the list of nodes, and the parameters of one. */
 export interface WatchParameters {
   listed: boolean;
   node: string | null;

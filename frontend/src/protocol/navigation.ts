@@ -18,7 +18,7 @@ export interface CommandNavigation {
   type: "command_navigation";
 }
 
-/** What the panel shows. */
+/** The state of navigation for the panel. */
 export interface NavigationState {
   navigation: ManagerState;
   localization: ManagerState;

@@ -21,7 +21,7 @@ export interface Submesh {
   center: boolean;
 }
 
-/** How a shape of a world reflects light: roughness and metalness from 0 to 1, and addresses of images. */
+/** The material of a shape of a world: roughness and metalness from 0 to 1, and addresses of images. */
 export interface Surface {
   roughness: number;
   metalness: number;
@@ -75,7 +75,7 @@ export interface JointScene {
   upper: number | null;
 }
 
-/** What one RobotModel display draws; `revision` counts descriptions. No links means no robot. */
+/** The robot of a RobotModel display; `revision` counts descriptions. No links means no robot. */
 export interface RobotScene {
   display: string;
   revision: number;
@@ -85,7 +85,7 @@ export interface RobotScene {
   type: "robot_scene";
 }
 
-/** How loading a mesh went in the page; `error` is None when it is drawn. */
+/** The outcome of loading a mesh in the page; `error` is None when it is drawn. */
 export interface MeshStatus {
   display: string;
   link: string;

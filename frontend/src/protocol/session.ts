@@ -10,7 +10,7 @@ export interface Hello {
   type: "hello";
 }
 
-/** How many messages of this connection the page has; sent after the first one and after each large one. */
+/** Acknowledges the number of messages that the page has received, after the first one and after each large one. */
 export interface Received {
   count: number;
   type: "received";

@@ -18,7 +18,7 @@ export interface Timeline {
   type: "timeline";
 }
 
-/** What is kept of the last minutes: from when to when, how many bytes it takes, and how many it may. */
+/** The part of the last minutes that is kept: from when to when, its bytes, and how many it may take. */
 export interface Kept {
   start: number;
   end: number;

@@ -48,7 +48,7 @@ export interface ViewChanged {
   type: "view_changed";
 }
 
-/** What a page saw, whose camera nobody has put anywhere, of robots with their meshes. */
+/** The extent of robots with their meshes, measured by a page whose camera nobody has moved. */
 export interface RobotMeasured {
   diagonal: number;
   ground: number;

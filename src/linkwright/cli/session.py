@@ -48,7 +48,7 @@ def add_session_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 class Session:
-    """The graph, node and options of a running verb.
+    """The graph and the node of a running verb.
 
     Attributes:
         graph: joined with what runs outside.

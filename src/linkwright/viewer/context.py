@@ -1,4 +1,4 @@
-"""What all parts of a viewer share: its node, files and pages, and word of changes in the graph."""
+"""The context of a viewer: its node, files and pages, and notice of changes in the graph, for all its parts."""
 
 from __future__ import annotations
 

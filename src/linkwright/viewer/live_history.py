@@ -1,4 +1,4 @@
-"""What the viewer received in the last minutes, and how it is shown again: to its own subscriptions."""
+"""The messages that the viewer received in the last minutes, kept to be shown again to its own subscriptions."""
 
 from __future__ import annotations
 

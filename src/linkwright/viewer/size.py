@@ -1,4 +1,4 @@
-"""How large a robot is, as far as its description tells without its meshes."""
+"""The size of a robot, as far as its description tells without its meshes."""
 
 from __future__ import annotations
 

@@ -79,7 +79,7 @@ LONG = 1_000
 
 
 class Budget:
-    """The budget of one expansion: steps, elements and depth that are left.
+    """The budget of one expansion: the elements, steps, characters, calls and seconds that its limits leave.
 
     Attributes:
         elements: how many elements may still be produced; who does counts it down, and calls `too_many_elements`

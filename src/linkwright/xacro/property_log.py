@@ -39,7 +39,7 @@ class _Log:
         self._everywhere = everywhere
 
     def probe(self, expander: Expander, site: Site) -> None:
-        """The action of a probe."""
+        """Log the properties of the scope that a probe stands in."""
         scope, about = site.scope, site.node.origin
         depth = _depth(scope)
         if scope.values.__class__ is dict and (depth == 1 or self._everywhere):

@@ -76,7 +76,7 @@ class Recorder:
         self._kept: list[Any] = []  # what is known by its id must live on
 
     def call(self, expander: Expander, site: Site) -> None:
-        """The function that expands macro calls."""
+        """Expand a macro call, and record it."""
         self._watched(call_macro)(expander, site)
 
     # what was recorded

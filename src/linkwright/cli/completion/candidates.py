@@ -30,7 +30,7 @@ def divided(line: str) -> list[str]:
 
 
 def complete(words: Sequence[str]) -> list[str]:
-    """The completions of the last word; `scripts.FILES` for any file."""
+    """The completions of the last word of a command line; `scripts.FILES` for any file."""
     program, *given = words
     *before, current = given or [""]
     current = current.lstrip("'\"")  # of a quote that is still open

@@ -1,4 +1,4 @@
-"""What a configuration that is made for a robot has of other sizes than RViz's defaults."""
+"""Sizes of grid and axes in a configuration that is made for a robot, where RViz's defaults do not fit."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""What pages can ask for besides displays, a module or a package each."""
+"""The features of pages besides displays, a module or a package each."""

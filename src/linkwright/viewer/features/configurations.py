@@ -1,4 +1,4 @@
-"""What pages do with configurations: edit which displays there are, undo, open, save."""
+"""Editing configurations from pages: adding and removing displays, undo, open, save."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What pages show of a description: its links and joints with their places, its texts, and masses that are implausible.
+"""The details of a description for pages: links and joints with their places, texts, implausible masses.
 
 It is imported when the first page asks.
 """

@@ -1,4 +1,4 @@
-"""What the server and the page say to each other, each message declared once, in the module of its subject.
+"""The messages between server and page, each declared once, in the module of its subject.
 
 Control messages are JSON objects with a ``type``; the TypeScript types in ``frontend/src/protocol/`` are generated from
 this package by ``tools/protocol_types.py``. Transforms travel as one binary frame, packed by `pack_transforms`, and so

@@ -1,4 +1,4 @@
-"""What goes to pages as binary frames, little endian: transforms, content with large arrays, and pieces of these.
+"""Binary frames to pages, little endian: transforms, content with large arrays, and pieces of these.
 
 Content is what displays draw of the messages they take. Its frame is four uint32 (kind 2, bytes of the header, 0, 0),
 the header as JSON in UTF-8, and the arrays; the header and each array are padded to a multiple of 8 bytes. The header

@@ -49,7 +49,7 @@ class ComparedItem(Record):
 
 
 class ComparedDescriptions(ServerMessage):
-    """How two descriptions differ.
+    """The differences of two descriptions.
 
     By names in the old one: `joints` are the joints of the new one that they follow, `shapes` the links of the new one
     that have the same shapes.

@@ -12,7 +12,7 @@ Question = Literal["unsaved", "exists", "changed_on_disk"]
 
 # --- server to page ------------------------------------------------------------------------------------------------
 class EditName(Record):
-    """What undo or redo would do: the kind of edit, and the name of the property or display."""
+    """The edit that undo or redo would revert or repeat: its kind, and the name of the property or display."""
 
     kind: EditKind
     name: str
@@ -85,7 +85,7 @@ class ConfigurationSaved(ServerMessage):
 
 
 class ConfigurationRefused(ServerMessage):
-    """What a page asked for was not done. With a question, it is done when the page asks again and says so."""
+    """A request of a page was refused. With a question, the page may confirm it and ask again."""
 
     message: str
     question: Question | None
@@ -149,7 +149,7 @@ class AskDisplayChoices(PageMessage):
 
 
 class AskFolder(PageMessage):
-    """What is in a folder of the server; None for that of the open file."""
+    """Ask for the contents of a folder of the server; None for that of the open file."""
 
     path: str | None
 
@@ -200,7 +200,7 @@ PanelName = Literal["displays", "selection", "tool-properties", "views", "time",
 
 
 class Panels(ServerMessage):
-    """What the configuration says of panels.
+    """The panels in the configuration.
 
     Attributes:
         opened: counts the configurations of this page's displays: with another number the page shows these panels.

@@ -101,7 +101,7 @@ class JointDetails(Record):
 
 
 class Description(ServerMessage):
-    """What stands behind the robot of a RobotModel display; answers `AskDescription`.
+    """The description of the robot of a RobotModel display; answers `AskDescription`.
 
     Links are in the order of the file. `files` are the files that the description was made from, the main one first.
     """
@@ -140,7 +140,7 @@ class DescriptionText(ServerMessage):
 
 
 class InertiaFinding(Record):
-    """What is implausible about the mass or inertia of a link."""
+    """An implausible mass or inertia of a link."""
 
     link: str
     code: str
@@ -206,6 +206,6 @@ class DiagnosticItem(Record):
 
 
 class Diagnostics(ServerMessage):
-    """What is wrong with the description now; none clears the list."""
+    """The findings on the description now; none clears the list."""
 
     items: list[DiagnosticItem]

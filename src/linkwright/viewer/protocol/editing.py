@@ -34,7 +34,7 @@ class EditablePart(Record):
 
 
 class EditableParts(ServerMessage):
-    """What can be edited of a link of a display, the joint above it first; `why_not` is empty where anything can be."""
+    """The editable parts of a link of a display, the joint above it first; `why_not` is empty where there are some."""
 
     display: str
     link: str
@@ -50,7 +50,7 @@ class EditedFile(Record):
 
 
 class EditPreview(ServerMessage):
-    """What an edit comes to, or why it cannot be; `also` is what would change with it.
+    """The outcome of an edit, or why it is refused; `also` is what would change with it.
 
     `number` is that of the question. `files` is empty where nothing changes, or nothing can be changed.
     """

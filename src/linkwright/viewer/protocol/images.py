@@ -44,7 +44,7 @@ class ImageFrame(DataContent):
 
 
 class PictureSize(PageMessage):
-    """How many pixels of the screen the panel of an Image display has, 0 while it is not seen; more are not needed."""
+    """The size of the panel of an Image display in pixels, 0 while it is not seen; a larger image is not needed."""
 
     display: str
     width: int

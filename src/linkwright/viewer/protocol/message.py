@@ -1,4 +1,4 @@
-"""What messages are derived from, and how they become text and are read from it.
+"""The base classes of messages, and their encoding and decoding as text.
 
 To define a message is to register it: the codec and the page's types follow. Of what pages send nothing is taken on
 trust.
@@ -28,7 +28,7 @@ class Record(Struct):
 
 
 class ServerMessage(Struct, tag_field="type", tag=_tag):
-    """What the server says to pages."""
+    """A message from the server to pages."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ()
     """Fields that say what a message is about: of messages that wait for a slow page only the newest for each of their
@@ -36,11 +36,11 @@ class ServerMessage(Struct, tag_field="type", tag=_tag):
 
 
 class PageMessage(Struct, tag_field="type", tag=_tag, forbid_unknown_fields=True):
-    """What pages say to the server, which takes nothing on trust: a field more, less or of another type is refused."""
+    """A message from a page to the server. It is validated: a missing, unknown or mistyped field is refused."""
 
 
 class DataContent(Struct, tag_field="kind", tag=_tag):
-    """What displays draw: the content of `pack_data`, with large arrays."""
+    """The content of a display with large arrays, of `pack_data`."""
 
 
 def tag_of(message: Struct) -> str:

@@ -70,7 +70,7 @@ class ModelChoices(ServerMessage):
 
 
 class ThingChange(Record):
-    """What is to be different about a model or light; None for what stays."""
+    """A change of a model or light; fields that are None stay."""
 
     name: str
     pose: list[float] | None

@@ -30,7 +30,7 @@ class TopicRow(Record):
 
 
 class TopicTraffic(Record):
-    """What a measured topic carries: hertz and bytes a second. `error` tells why it cannot be measured or shown.
+    """The traffic of a measured topic: hertz and bytes a second. `error` tells why it cannot be measured or shown.
 
     Both figures are None before there are two messages.
     """
@@ -74,7 +74,7 @@ class TopicMessage(ServerMessage):
 
 
 class WatchTopics(PageMessage):
-    """What the page follows of topics from now on: their list, figures of some, messages of some."""
+    """Follow topics from now on: their list, the traffic of some, the messages of some."""
 
     listed: bool
     measured: list[str]
@@ -109,7 +109,7 @@ class SeriesState(Record):
 
 
 class TopicFields(ServerMessage):
-    """What can be plotted of a topic; answers `AskFields`, and once more when a message tells how long arrays are."""
+    """The fields of a topic that can be plotted; answers `AskFields`, and again once the length of arrays is known."""
 
     topic: str
     kind: str
@@ -118,7 +118,7 @@ class TopicFields(ServerMessage):
 
 
 class SeriesStates(ServerMessage):
-    """How the series of the page are."""
+    """The states of the series of a page."""
 
     states: list[SeriesState]
 
@@ -233,7 +233,7 @@ class ParameterDump(ServerMessage):
 
 
 class WatchParameters(PageMessage):
-    """What the page wants to know of parameters from now on: the list of nodes, and the parameters of one."""
+    """Follow parameters from now on: the list of nodes, and the parameters of one."""
 
     listed: bool
     node: str | None

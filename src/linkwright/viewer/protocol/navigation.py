@@ -27,7 +27,7 @@ class CommandNavigation(PageMessage):
 
 
 class NavigationState(ServerMessage):
-    """What the panel shows.
+    """The state of navigation for the panel.
 
     Attributes:
         navigation: the nodes of lifecycle_manager_navigation.

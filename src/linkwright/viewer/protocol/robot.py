@@ -1,4 +1,4 @@
-"""What a RobotModel display draws."""
+"""The content of RobotModel displays."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Submesh(Record):
 
 
 class Surface(Record):
-    """How a shape of a world reflects light: roughness and metalness from 0 to 1, and addresses of images.
+    """The material of a shape of a world: roughness and metalness from 0 to 1, and addresses of images.
 
     `emissive_map` is what it gives off by itself, `occlusion_map` where (red) light from all sides does not reach it.
     """
@@ -100,7 +100,7 @@ class JointScene(Record):
 
 
 class RobotScene(ServerMessage):
-    """What one RobotModel display draws; `revision` counts descriptions. No links means no robot."""
+    """The robot of a RobotModel display; `revision` counts descriptions. No links means no robot."""
 
     NEWEST_OF: ClassVar[tuple[str, ...]] = ("display",)
 
@@ -112,7 +112,7 @@ class RobotScene(ServerMessage):
 
 
 class MeshStatus(PageMessage):
-    """How loading a mesh went in the page; `error` is None when it is drawn."""
+    """The outcome of loading a mesh in the page; `error` is None when it is drawn."""
 
     display: str
     link: str

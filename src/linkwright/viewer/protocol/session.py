@@ -17,6 +17,6 @@ class Hello(ServerMessage):
 
 
 class Received(PageMessage):
-    """How many messages of this connection the page has; sent after the first one and after each large one."""
+    """Acknowledges the number of messages that the page has received, after the first one and after each large one."""
 
     count: int

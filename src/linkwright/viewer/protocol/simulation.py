@@ -8,7 +8,7 @@ from linkwright.viewer.protocol.message import PageMessage, ServerMessage
 
 
 class SimulationStatus(ServerMessage):
-    """How the simulation goes; `present` is false where there is none.
+    """The state of the simulation; `present` is false where there is none.
 
     `drivable` is true where something listens for velocities, on whatever topic.
     `time` is simulated time; it and the real-time factor are None until the simulation has told them.

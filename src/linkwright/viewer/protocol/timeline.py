@@ -31,7 +31,7 @@ class Timeline(ServerMessage):
 
 
 class Kept(ServerMessage):
-    """What is kept of the last minutes: from when to when, how many bytes it takes, and how many it may."""
+    """The part of the last minutes that is kept: from when to when, its bytes, and how many it may take."""
 
     start: float
     end: float

@@ -66,7 +66,7 @@ class ViewChanged(PageMessage):
 
 
 class RobotMeasured(PageMessage):
-    """What a page saw, whose camera nobody has put anywhere, of robots with their meshes.
+    """The extent of robots with their meshes, measured by a page whose camera nobody has moved.
 
     That is the diagonal of the box around them, and how high the ground is that they stand on, in the Fixed Frame, m.
     """

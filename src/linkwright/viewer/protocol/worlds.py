@@ -1,4 +1,4 @@
-"""What a World display draws: the links of all models of a simulated world, and where they are."""
+"""The content of World displays: the links of all models of a simulated world, and their poses."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""What one set of pages sees: a configuration, its displays, and what was edited in it."""
+"""A visualization: a configuration, its displays and its edits, as one set of pages sees them."""

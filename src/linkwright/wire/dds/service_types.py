@@ -1,4 +1,4 @@
-"""The types that services announce over DDS, in Cyclone's way and in that of Fast DDS."""
+"""The types and the USER_DATA of services over DDS, in Cyclone's way and in that of Fast DDS."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""What classes of displays are derived from."""
+"""The base classes of displays."""

@@ -1,4 +1,4 @@
-"""What every display has: an enable box, properties, status rows, content, and what it is told."""
+"""The base of all displays: an enable box, properties, status rows, content, and the events that it handles."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What displays of MoveIt share: a robot that can be drawn in any state, and markers in groups."""
+"""The base of MoveIt's displays: a robot that can be drawn in any state, and markers in groups."""
 
 from __future__ import annotations
 

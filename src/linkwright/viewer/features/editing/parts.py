@@ -1,4 +1,4 @@
-"""What of a robot can be edited, with its numbers and where they are written; and edits as lines of text."""
+"""The editable parts of a robot, with their numbers and where they are written; and edits as lines of text."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a viewer shows at one moment, apart from the program that shows it, and the files that drawing it takes."""
+"""Snapshots of what a viewer shows at one moment, with the files that drawing it takes, for pages without a server."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What pages are told about a world that is edited, and what their messages do to it."""
+"""The messages of pages that edit a world, and those that tell pages of it."""
 
 from __future__ import annotations
 
