@@ -154,34 +154,35 @@ describe("what the user does", () => {
 describe("the arrangements that the browser keeps", () => {
   const texts = new Map<string, string>();
   const layouts = new Layouts({ getItem: (key) => texts.get(key) ?? null, setItem: (key, text) => void texts.set(key, text) });
-  const layout = (file: string, narrow = false): Layout => ({ file, narrow, arrangement: { panels: {} } as Layout["arrangement"] });
+  const layout = (file: string, form: Layout["form"] = "wide"): Layout => ({ file, form, arrangement: { panels: {} } as Layout["arrangement"] });
 
   beforeEach(() => texts.clear());
 
   it("are of the last files, the newest first", () => {
-    expect([layouts.latest(false), layouts.find("/0.rviz", false)]).toEqual([null, null]);
+    expect([layouts.latest("wide"), layouts.find("/0.rviz", "wide")]).toEqual([null, null]);
     for (let i = 0; i < 20; i++) layouts.keep(layout(`/${i}.rviz`));
-    expect(layouts.latest(false)?.file).toBe("/19.rviz");
-    expect(layouts.find("/8.rviz", false)?.file).toBe("/8.rviz");
-    expect(layouts.find("/7.rviz", false)).toBeNull();
+    expect(layouts.latest("wide")?.file).toBe("/19.rviz");
+    expect(layouts.find("/8.rviz", "wide")?.file).toBe("/8.rviz");
+    expect(layouts.find("/7.rviz", "wide")).toBeNull();
     layouts.keep(layout("/8.rviz"));
-    expect(layouts.latest(false)?.file).toBe("/8.rviz");
+    expect(layouts.latest("wide")?.file).toBe("/8.rviz");
   });
 
-  it("are others in narrow windows", () => {
-    layouts.keep(layout("/a.rviz", true));
+  it("are others in windows of another form", () => {
+    layouts.keep(layout("/a.rviz", "narrow"));
     layouts.keep(layout("/b.rviz"));
-    expect(layouts.latest(true)?.file).toBe("/a.rviz");
-    expect(layouts.find("/a.rviz", false)).toBeNull();
+    expect(layouts.latest("narrow")?.file).toBe("/a.rviz");
+    expect(layouts.find("/a.rviz", "wide")).toBeNull();
     layouts.keep(layout("/a.rviz"));
-    expect(layouts.find("/a.rviz", true)?.narrow).toBe(true);
-    expect(layouts.find("/a.rviz", false)?.narrow).toBe(false);
+    expect(layouts.find("/a.rviz", "narrow")?.form).toBe("narrow");
+    expect(layouts.find("/a.rviz", "wide")?.form).toBe("wide");
+    expect(layouts.find("/a.rviz", "low")).toBeNull();
   });
 
   it("are none where something else is kept", () => {
     for (const text of ["{", "7", '{"file": 1}', '[{"file": "/a.rviz", "arrangement": {}}]', "[null, 3, {}]"]) {
-      texts.set("linkwright.layouts.2", text);
-      expect(layouts.latest(false)).toBeNull();
+      texts.set("linkwright.layouts.3", text);
+      expect(layouts.latest("wide")).toBeNull();
     }
   });
 });

@@ -128,6 +128,22 @@ def test_every_panel_that_is_open_has_room(sized, width, height):
     becomes(has_room, dict.fromkeys(("scene", "tree", "time", "reset"), True))
 
 
+@pytest.mark.parametrize(("width", "height"), [(844, 390), (667, 375), (932, 430)])
+def test_on_a_phone_that_is_held_across_the_panels_stand_beside_the_scene(sized, width, height):
+    page = sized(width, height)
+    canvas = box(page, ".canvas-box")
+    assert canvas["height"] > 0.65 * height
+    assert 0.5 * width < canvas["width"] < 0.7 * width
+    assert place(page, "Front") == place(page, "Displays") == place(page, "Views")
+    displays = place(page, "Displays")
+    assert displays["x"] >= canvas["x"] + canvas["width"]
+    assert displays["x"] + displays["width"] <= width + 1
+    page.set_viewport_size({"width": height, "height": width})
+    becomes(lambda: box(page, ".canvas-box")["width"], height)
+    page.set_viewport_size({"width": width, "height": height})
+    becomes(lambda: box(page, ".canvas-box")["height"] > 0.65 * height, True)
+
+
 def test_a_window_that_becomes_narrow_and_wide_again_has_the_panels_that_it_had(sized):
     page = sized(1280, 800)
     page.get_by_role("button", name="Panels", exact=True).click()

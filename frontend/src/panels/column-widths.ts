@@ -1,5 +1,5 @@
 import type { DockviewApi, DockviewGroupPanel } from "dockview";
-import { isNarrow } from "./default-layout";
+import { formOf } from "./default-layout";
 
 const SCENE = "scene";
 /** Pixels: with less the scene takes what the dock gives it. */
@@ -24,7 +24,7 @@ export class ColumnWidths {
   follow(): void {
     const { groups } = this.api;
     const isSame = groups.length === this.known.size && groups.every(({ id }) => this.known.has(id));
-    if (!isSame && this.known.size > 0 && !isNarrow(this.api)) this.restore();
+    if (!isSame && this.known.size > 0 && formOf(this.api) === "wide") this.restore();
     this.take();
   }
 

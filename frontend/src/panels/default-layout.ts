@@ -126,8 +126,16 @@ const LEAST_SHARE = 0.7;
 /** Of all that share a group there, what comes to the front when it comes: the displays, and what the page was opened for. */
 const IN_FRONT: readonly PanelId[] = ["displays", "world", "comparison"];
 
-export function isNarrow(api: DockviewApi): boolean {
-  return api.width <= NARROW;
+/** A phone that is held across, where the status bar is left out, too. */
+const LOW = "(max-height: 480px) and (max-width: 1000px) and (min-aspect-ratio: 3/2)";
+/** The part of such a window that panels have, and its least and most in pixels. */
+const [LOW_SHARE, LOW_LEAST, LOW_MOST] = [0.4, 270, 340];
+
+/** How a window is arranged: with room beside the scene, with all panels below it, or, where it is low, with all beside it. */
+export type Form = "wide" | "narrow" | "low";
+
+export function formOf(api: DockviewApi): Form {
+  return matchMedia(LOW).matches ? "low" : api.width <= NARROW ? "narrow" : "wide";
 }
 
 /** Of all the window the scene has at least this much there, besides the line of its tools and the timeline that comes later. */
@@ -144,9 +152,18 @@ function narrowHome(api: DockviewApi, id: PanelId): Home {
   return { beside, height: Math.round(Math.min(left, api.height * MOST_BELOW)), inactive: !IN_FRONT.includes(id) };
 }
 
+/** On a phone that is held across: the scene, and beside it one group with everything else. */
+function lowHome(api: DockviewApi, id: PanelId): Home {
+  const { beside: near, inactive = false } = narrowHome(api, id);
+  const beside: Home["beside"] = near.map(([other, where]) => [other, where === "below" ? "right" : where]);
+  return { beside, inactive, width: Math.round(Math.min(LOW_MOST, Math.max(LOW_LEAST, api.width * LOW_SHARE))) };
+}
+
 function wideHome(api: DockviewApi, id: PanelId): Home {
-  const home = HOMES[id];
-  return home.height === undefined ? home : { ...home, height: Math.min(home.height, Math.round(api.height * MOST_HEIGHT)) };
+  const home = { ...HOMES[id] };
+  if (home.width !== undefined) home.width = Math.round(home.width * Math.max(LEAST_SHARE, Math.min(1, api.width / ROOMY)));
+  if (home.height !== undefined) home.height = Math.min(home.height, Math.round(api.height * MOST_HEIGHT));
+  return home;
 }
 
 /** The order in which panels that are open come to their usual places. */
@@ -154,11 +171,9 @@ export const USUAL: readonly PanelId[] = ["scene", "time", "displays", "links", 
 
 /** Adds panels at their usual places. */
 export function addPanels(api: DockviewApi, ids: readonly PanelId[]): void {
-  const share = Math.max(LEAST_SHARE, Math.min(1, api.width / ROOMY));
+  const homeIn = { wide: wideHome, narrow: narrowHome, low: lowHome }[formOf(api)];
   for (const id of ids) {
-    const home = isNarrow(api) ? narrowHome(api, id) : wideHome(api, id);
-    const { beside, height, inactive } = home;
-    const width = home.width === undefined ? undefined : Math.round(home.width * share);
+    const { beside, height, width, inactive } = homeIn(api, id);
     const found = beside.find(([other]) => api.getPanel(other) !== undefined);
     const options: AddPanelOptions = { id, component: id, tabComponent: id, title: strings.panels[id] };
     if (width !== undefined) options.initialWidth = width;

@@ -1,7 +1,7 @@
 import type { AddPanelOptions, Direction, DockviewApi, IContentRenderer } from "dockview";
 import { h } from "../dom";
 import type { DisplayPanel, PanelHost } from "../scene/displays/display-panel";
-import { isNarrow } from "./default-layout";
+import { formOf } from "./default-layout";
 import { PanelTab } from "./panel-tab";
 
 const PREFIX = "display:";
@@ -100,9 +100,10 @@ export class DisplayPanels implements PanelHost {
   /** Where a panel goes, of which there are some before it. */
   private home({ instead }: DisplayPanel, last: string | undefined, count: number): Home {
     const api = this.api();
-    const narrow = isNarrow(api);
+    const form = formOf(api);
+    const narrow = form !== "wide";
     // Where one group has everything, a picture that comes does not hide what the user works with.
-    const shares = narrow && api.width < LEAST_SPLIT;
+    const shares = form === "low" || (narrow && api.width < LEAST_SPLIT);
     const most = narrow || api.height < LOW ? 1 : MOST_BESIDE;
     if (last !== undefined && instead && count < MOST_BESIDE) return { beside: last, direction: "right" };
     if (last !== undefined && count >= most) return { beside: last, direction: "within", inactive: shares && !instead };

@@ -3,7 +3,7 @@ import type { PanelName } from "../protocol";
 import { Signal } from "../state/signal";
 import { strings } from "../strings";
 import { ColumnWidths } from "./column-widths";
-import { addPanels, isNarrow, USUAL } from "./default-layout";
+import { addPanels, formOf, USUAL, type Form } from "./default-layout";
 import { DisplayPanels } from "./display-panels";
 import { FILE_PANELS } from "./file-panels";
 import { FrontTabs } from "./front-tabs";
@@ -35,7 +35,7 @@ export class Dock {
   private readonly tabs = new Map<string, PanelTab>();
   /** The numbers behind titles, of panels that are closed, too. */
   private readonly counts = new Map<PanelId, number>();
-  private narrow: boolean;
+  private form: Form;
 
   constructor(
     parent: HTMLElement,
@@ -58,9 +58,9 @@ export class Dock {
     takeTabKeys(parent, (id) => this.tabs.get(id));
     // Panels get their sizes when they are added; the dock's own observer would tell its size only later.
     this.api.layout(parent.clientWidth, parent.clientHeight);
-    this.narrow = isNarrow(this.api);
+    this.form = formOf(this.api);
     // Most often the file is the one of the last time: then nothing moves when that is known.
-    const latest = layouts.latest(this.narrow);
+    const latest = layouts.latest(this.form);
     if (latest && this.restore(latest)) this.file = latest.file;
     else this.reset();
     this.followLone();
@@ -73,7 +73,7 @@ export class Dock {
     });
     new ResizeObserver(() => {
       this.api.layout(parent.clientWidth, parent.clientHeight);
-      if (parent.clientWidth > 0 && isNarrow(this.api) !== this.narrow) this.changeForm();
+      if (parent.clientWidth > 0 && formOf(this.api) !== this.form) this.changeForm();
     }).observe(parent);
   }
 
@@ -124,7 +124,7 @@ export class Dock {
 
   /** Shows the arrangement that the browser keeps for a file; false when it keeps none. */
   arrange(file: string): boolean {
-    const layout = this.layouts.find(file, this.narrow);
+    const layout = this.layouts.find(file, this.form);
     if (!layout) return false;
     if (!this.restore(layout)) {
       this.reset();
@@ -160,7 +160,7 @@ export class Dock {
 
   private build(ids: readonly PanelId[]): void {
     this.api.clear();
-    addPanels(this.api, this.narrow ? [...ids.filter((id) => id !== "time"), ...ids.filter((id) => id === "time")] : ids);
+    addPanels(this.api, this.form !== "wide" ? [...ids.filter((id) => id !== "time"), ...ids.filter((id) => id === "time")] : ids);
     this.retitle();
     this.followLone();
     this.displayPanels.restore();
@@ -170,13 +170,13 @@ export class Dock {
   /** What is alone in its place may need no tab. */
   private followLone(): void {
     this.strip.follow();
-    this.sceneTab.follow(this.narrow);
+    this.sceneTab.follow(this.form !== "wide");
     this.frontTabs.follow();
   }
 
-  /** The window became narrow or wide: the same panels, as they were in such a window or where they belong. */
+  /** The window has another form: the same panels, as they were in such a window or where they belong. */
   private changeForm(): void {
-    this.narrow = isNarrow(this.api);
+    this.form = formOf(this.api);
     if (this.file !== null && this.arrange(this.file)) return;
     this.build(USUAL.filter((id) => this.isOpen(id)));
     this.rearranged.emit();
@@ -207,7 +207,7 @@ export class Dock {
   }
 
   private remember(): void {
-    if (this.file !== null) this.layouts.keep({ file: this.file, narrow: this.narrow, arrangement: this.api.toJSON() });
+    if (this.file !== null) this.layouts.keep({ file: this.file, form: this.form, arrangement: this.api.toJSON() });
   }
 }
 

@@ -1,33 +1,34 @@
 import type { SerializedDockview } from "dockview";
 import type { TextStorage } from "../state/storage";
+import type { Form } from "./default-layout";
 
-/** An arrangement of panels, the file that it is kept for, and whether it is that of a narrow window. */
+/** An arrangement of panels, the file that it is kept for, and the form of the window that it is of. */
 export interface Layout {
   file: string;
-  narrow: boolean;
+  form: Form;
   arrangement: SerializedDockview;
 }
 
-const KEY = "linkwright.layouts.2";
+const KEY = "linkwright.layouts.3";
 /** Of more the browser forgets the one that was seen longest ago. */
 const MOST = 12;
 
-/** The arrangements of panels that the browser keeps, for each file one of wide and one of narrow windows. */
+/** The arrangements of panels that the browser keeps, for each file one of each form of window. */
 export class Layouts {
   constructor(private readonly storage: TextStorage) {}
 
   /** That of the file that was seen last in such a window. */
-  latest(narrow: boolean): Layout | null {
-    return this.read().find((each) => each.narrow === narrow) ?? null;
+  latest(form: Form): Layout | null {
+    return this.read().find((each) => each.form === form) ?? null;
   }
 
-  find(file: string, narrow: boolean): Layout | null {
-    return this.read().find((each) => each.file === file && each.narrow === narrow) ?? null;
+  find(file: string, form: Form): Layout | null {
+    return this.read().find((each) => each.file === file && each.form === form) ?? null;
   }
 
   keep(layout: Layout): void {
     // Read anew each time: another tab may have another file.
-    const others = this.read().filter(({ file, narrow }) => file !== layout.file || narrow !== layout.narrow);
+    const others = this.read().filter(({ file, form }) => file !== layout.file || form !== layout.form);
     this.storage.setItem(KEY, JSON.stringify([layout, ...others].slice(0, MOST)));
   }
 
@@ -42,6 +43,6 @@ export class Layouts {
 }
 
 function isLayout(kept: unknown): kept is Layout {
-  const { file, narrow, arrangement } = (kept ?? {}) as Partial<Layout>;
-  return typeof file === "string" && typeof narrow === "boolean" && typeof arrangement === "object";
+  const { file, form, arrangement } = (kept ?? {}) as Partial<Layout>;
+  return typeof file === "string" && typeof form === "string" && typeof arrangement === "object";
 }
