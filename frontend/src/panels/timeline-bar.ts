@@ -1,12 +1,22 @@
 import { button, coalesced, h } from "../dom";
 import { icon } from "../icons";
 import { TAKES_LETTERS } from "../scene/keyboard";
+import type { Kept } from "../protocol";
 import type { Session } from "../state/session";
 import type { RecordingControl } from "../state/recording";
 import { SPEEDS, type TimelineState } from "../state/timeline";
 import { strings } from "../strings";
 import { RecordButton } from "./record-button";
 import { agoText, clockText, densities, keptText, momentText, passedText } from "./timeline-text";
+
+/** From this part of its room on, what is kept is as much as there can be. */
+const FULL = 0.9;
+
+/** How much is kept, and how more could be where there is no more room. */
+function keptTip(kept: Kept): string {
+  const text = strings.timeline.kept(keptText(kept), (kept.most / 1e6).toFixed(0));
+  return kept.size < FULL * kept.most ? text : `${text}\n${strings.timeline.more}`;
+}
 
 /** Parts of the whole that Page Up and Page Down go. */
 const PAGE = 0.1;
@@ -135,7 +145,7 @@ export class TimelineBar {
     // How long ago it was goes on while time stands still: that is no name for what is shown.
     const passed = kept ? (live ? keptText(kept) : momentText(position)) : passedText(position - start, end - start);
     this.time.textContent = passed;
-    this.time.title = kept ? `${clockText(position)}${live ? "" : ` ${agoText(end - position)}`}\n${strings.timeline.kept(keptText(kept), (kept.most / 1e6).toFixed(0))}` : clockText(position);
+    this.time.title = kept ? `${clockText(position)}${live ? "" : ` ${agoText(end - position)}`}\n${keptTip(kept)}` : clockText(position);
     this.showMark(start, end);
     this.track.setAttribute("aria-valuemin", "0");
     this.track.setAttribute("aria-valuemax", String(end - start));

@@ -13,5 +13,6 @@ export const timeline = {
   liveShort: "Live",
   minutes: "Time in the last minutes",
   kept: (kept: string, most: string) => `kept: ${kept} of ${most} MB`,
+  more: "The oldest goes. To keep more, start the program with --history SIZE, such as --history 4GB.",
   keys: "Recording, last minutes: play, pause; step",
 };

@@ -15,5 +15,6 @@ export const timeline: typeof english = {
   liveShort: "实时",
   minutes: "最近几分钟内的时间",
   kept: (kept: string, most: string) => `已保留：${kept}，上限 ${most} MB`,
+  more: "最旧的会被丢弃。要保留更多，启动程序时用 --history 指定内存，例如 --history 4GB。",
   keys: "录制、最近几分钟：播放、暂停；单步",
 };
