@@ -57,7 +57,7 @@ def stream_of(publisher: EndpointInfo, *, keyed: bool) -> Stream:
     """
     qos = offered(publisher.qos)
     reliability = ReliabilityPolicy.RELIABLE if keyed else qos.reliability
-    return _stream(publisher, keyed, reliability, qos.durability, qos.history)
+    return _stream(publisher, reliability, qos.durability, qos.history, keyed=keyed)
 
 
 def awaited_streams(subscription: EndpointInfo, *, keyed: bool) -> set[Stream]:
@@ -69,11 +69,11 @@ def awaited_streams(subscription: EndpointInfo, *, keyed: bool) -> set[Stream]:
     """
     volatile, last = DurabilityPolicy.VOLATILE, HistoryPolicy.KEEP_LAST
     reliable = ReliabilityPolicy.RELIABLE
-    found = {_stream(subscription, keyed, reliable, volatile, last)}
+    found = {_stream(subscription, reliable, volatile, last, keyed=keyed)}
     if keyed or subscription.qos.history is HistoryPolicy.KEEP_ALL:
-        found.add(_stream(subscription, keyed, reliable, volatile, HistoryPolicy.KEEP_ALL))
+        found.add(_stream(subscription, reliable, volatile, HistoryPolicy.KEEP_ALL, keyed=keyed))
     if not keyed and subscription.qos.reliability is not reliable:
-        found.add(_stream(subscription, keyed, ReliabilityPolicy.BEST_EFFORT, volatile, last))
+        found.add(_stream(subscription, ReliabilityPolicy.BEST_EFFORT, volatile, last, keyed=keyed))
     return found
 
 
@@ -106,10 +106,11 @@ def _known_hash(endpoint: EndpointInfo) -> str:
 
 def _stream(
     endpoint: EndpointInfo,
-    keyed: bool,
     reliability: ReliabilityPolicy,
     durability: DurabilityPolicy,
     history: HistoryPolicy,
+    *,
+    keyed: bool,
 ) -> Stream:
     # Whoever listens to a type that is not known here may not tell its hash, and hears its publishers all the same.
     hashed = hash_of(endpoint) if keyed and _known_hash(endpoint) else ""

@@ -73,8 +73,10 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.config is not None and not Path(arguments.config).is_file():
         return _usage(phrase("no such file: '{config}'", config=arguments.config))
     if arguments.diff:
-        return _print_diff(paths, words, arguments.unsafe_fixes)
-    mended = _fix(paths, words, arguments.unsafe_fixes, write=True) if arguments.fix or arguments.unsafe_fixes else []
+        return _print_diff(paths, words, unsafe=arguments.unsafe_fixes)
+    mended: list[Mended] = []
+    if arguments.fix or arguments.unsafe_fixes:
+        mended = _fix(paths, words, unsafe=arguments.unsafe_fixes, write=True)
     found, checked = _check(paths, words)
     _print(found, arguments.format, everything=arguments.all)
     if arguments.format == "text":
@@ -195,7 +197,7 @@ def _examine(file: Path, words: _Words, text: str | None = None) -> tuple[Checke
     return checked, trouble
 
 
-def _fix(paths: Sequence[Path], words: _Words, unsafe: bool, *, write: bool) -> list[Mended]:
+def _fix(paths: Sequence[Path], words: _Words, *, unsafe: bool, write: bool) -> list[Mended]:
     from linkwright.lint.apply import fix_file
     from linkwright.lint.engine import examine_package
     from linkwright.lint.targets import find_targets
@@ -215,8 +217,8 @@ def _fix(paths: Sequence[Path], words: _Words, unsafe: bool, *, write: bool) -> 
     return [fix_file(path, check, unsafe=unsafe, write=write) for path, check in checks]
 
 
-def _print_diff(paths: Sequence[Path], words: _Words, unsafe: bool) -> int:
-    mended = _fix(paths, words, unsafe, write=False)
+def _print_diff(paths: Sequence[Path], words: _Words, *, unsafe: bool) -> int:
+    mended = _fix(paths, words, unsafe=unsafe, write=False)
     seen: set[str] = set()
     for each in mended:
         each.texts = {file: text for file, text in each.texts.items() if file not in seen}

@@ -75,18 +75,18 @@ def run_info(arguments: argparse.Namespace) -> int:
         namespace, _, name = full.rpartition("/")
         who = (name, namespace or "/")
         print(full)
-        _section("Subscribers", node.get_subscriber_names_and_types_by_node(*who), hidden)
-        _section("Publishers", node.get_publisher_names_and_types_by_node(*who), hidden)
-        _section("Service Servers", node.get_service_names_and_types_by_node(*who), hidden)
-        _section("Service Clients", node.get_client_names_and_types_by_node(*who), hidden)
-        _section("Action Servers", session.graph.get_action_server_names_and_types_by_node(*who), hidden)
-        _section("Action Clients", session.graph.get_action_client_names_and_types_by_node(*who), hidden)
+        _section("Subscribers", node.get_subscriber_names_and_types_by_node(*who), hidden=hidden)
+        _section("Publishers", node.get_publisher_names_and_types_by_node(*who), hidden=hidden)
+        _section("Service Servers", node.get_service_names_and_types_by_node(*who), hidden=hidden)
+        _section("Service Clients", node.get_client_names_and_types_by_node(*who), hidden=hidden)
+        _section("Action Servers", session.graph.get_action_server_names_and_types_by_node(*who), hidden=hidden)
+        _section("Action Clients", session.graph.get_action_client_names_and_types_by_node(*who), hidden=hidden)
         return 0
 
     return run_in_graph(arguments, job, only_looks=True)
 
 
-def _section(title: str, found: NamesAndTypes, hidden: bool) -> None:
+def _section(title: str, found: NamesAndTypes, *, hidden: bool) -> None:
     print(f"  {title}:")
     lines = [f"    {name}: {', '.join(types)}" for name, types in visible(found, hidden=hidden)]
     print("\n".join(lines))

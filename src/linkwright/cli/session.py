@@ -95,7 +95,7 @@ class Session:
         return take if len(signature(callback).parameters) == 1 else take_both
 
     def every(self, period: float, callback: Callable[[], object]) -> None:
-        """Call something each so many seconds until the verb is done."""
+        """Call a function periodically until the verb is done."""
         loop = asyncio.get_running_loop()
         guarded = self.guarded(callback)
         due = loop.time()

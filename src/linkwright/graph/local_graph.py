@@ -150,7 +150,7 @@ class LocalGraph(GraphQueries):
     # --- the transport -----------------------------------------------------------------------------------------------
 
     def attach(self, transport: Transport) -> None:
-        """Have a transport mirror the graph outside of the process: what there is now, and what comes.
+        """Attach a transport, which mirrors the graph outside of the process: what there is now, and what comes.
 
         Raises:
             RuntimeError: the graph has one already, or is closed.

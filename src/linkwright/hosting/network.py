@@ -39,7 +39,7 @@ class Network:
         self.domain_id: int | None = None
 
     def offer(self, graph: Graph) -> None:
-        """Take note of the graph."""
+        """Note the graph."""
         self._graph = graph
 
     def join_soon(self, *, with_viewer: bool) -> None:
@@ -100,7 +100,7 @@ class SharedNames:
         """What the page shows: one finding as long as names are shared, else none."""
 
     def notice(self, names: frozenset[str]) -> None:
-        """Take note of the full names of nodes that are shared now; from any thread."""
+        """Note the full names of nodes that are shared now; from any thread."""
         with suppress(RuntimeError):  # the loop has come to its end
             self._loop.call_soon_threadsafe(self._gather, names)
 

@@ -186,7 +186,7 @@ class Supervisor(Protocol):
         """End the run as soon as what is being done is done."""
 
     def node_started(self, plan: HostedPlan) -> None:
-        """Take note that a node or viewer runs."""
+        """Note that a node or viewer runs."""
 
     def node_ended(self, plan: HostedPlan, status: int) -> None:
-        """Take note that a node or viewer has ended, or could not start, with an exit status."""
+        """Note that a node or viewer has ended, or could not start, with an exit status."""

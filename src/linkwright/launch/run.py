@@ -171,7 +171,8 @@ def run_description(
                 description.add_action(_foxglove_bridge(options.foxglove))
             session = partial(LaunchSession, finder, options.for_session(title), log)
             given = {**options.configurations, **configurations}
-            return signals.run(lambda: _run(description, values, given, session, options.noninteractive, signals))
+            quiet = options.noninteractive
+            return signals.run(lambda: _run(description, values, given, session, signals, noninteractive=quiet))
 
     return run_to_end(run, finder, log)
 
@@ -181,8 +182,9 @@ async def _run(
     values: dict[str, Any],
     configurations: Mapping[str, str],
     make_session: Callable[[LaunchContext], LaunchSession],
-    noninteractive: bool,
     signals: SignalWatch,
+    *,
+    noninteractive: bool,
 ) -> bool:
     argv = [f"{name}:={value}" for name, value in configurations.items()]
     session = make_session(LaunchContext(argv=argv, noninteractive=noninteractive))

@@ -93,7 +93,7 @@ class Library:
         return self._sources[f"{package}/{kind}/{part.partition('_')[0]}"]
 
     def carry(self, type_name: str, source: SourceText) -> None:
-        """Take note of the text of a message that data brought along; the first of a name counts.
+        """Note the text of a message that data brought along; the first of a name counts.
 
         Args:
             type_name: the message's.

@@ -210,7 +210,7 @@ class Throttle:
         return bool(stamps.all() and (stamps <= stamp_ns).all())
 
     def published(self, group: JointGroup, positions: FloatSequence, stamp_ns: int, at_ns: int) -> None:
-        """Take note that a message with a stamp was published at a time."""
+        """Note that a message with a stamp was published at a time."""
         if self.is_move(group, positions):
             self._moved_ns[group.rows] = at_ns
         self._sent_ns[group.rows] = at_ns

@@ -33,7 +33,7 @@ class Look(NamedTuple):
     image: str = ""
 
 
-def _plain(red: float, green: float, blue: float, alpha: float = 1.0, glow: bool = False) -> Look:
+def _plain(red: float, green: float, blue: float, alpha: float = 1.0, *, glow: bool = False) -> Look:
     color = (float(red), float(green), float(blue), alpha)
     return Look(color, color, None, color if glow else None)
 

@@ -31,7 +31,7 @@ class SimpleFilter:
         self.callbacks: dict[int, tuple[Callable[..., object], tuple[Any, ...]]] = {}
 
     def registerCallback(self, cb: Callable[..., object], *args: Any) -> int:
-        """Have something called with each output, followed by `args`. Gives its number in `callbacks`."""
+        """Register a callback that gets each output, followed by `args`. Returns its number in `callbacks`."""
         number = len(self.callbacks)
         self.callbacks[number] = (cb, args)
         return number

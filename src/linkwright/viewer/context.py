@@ -37,13 +37,13 @@ class GraphChanges:
         self._due: asyncio.TimerHandle | None = None
 
     def listen(self, changed: Callable[[], None]) -> None:
-        """Have something called on the loop after changes."""
+        """Register a callback for changes, called on the loop."""
         if not self._listeners:
             self._graph.watch(self._changed)
         self._listeners[changed] = None
 
     def ignore(self, changed: Callable[[], None]) -> None:
-        """Do not have it called any longer."""
+        """Unregister a callback of `listen`."""
         self._listeners.pop(changed, None)
         if not self._listeners:
             self._graph.unwatch(self._changed)

@@ -49,14 +49,14 @@ class Outside(Protocol):
         """The endpoints of other processes."""
 
     def watch(self, changed: Callable[[], None]) -> None:
-        """Have something called after changes."""
+        """Register a callback for changes."""
 
 
 class Departed(Protocol):
     """Judges how publishers outside went."""
 
     def watch(self, lost: Callable[[EndpointInfo], None]) -> None:
-        """Have something called with each publisher that is lost."""
+        """Register a callback for lost publishers."""
 
 
 class BackgroundTransport(ABC):
@@ -229,11 +229,11 @@ class BackgroundTransport(ABC):
         return self._outside.endpoints()
 
     def watch(self, changed: Callable[[], None]) -> None:
-        """Have something called, from any thread, whenever nodes or endpoints outside come or go."""
+        """Register a callback for changes of nodes and endpoints outside, called from any thread."""
         self._outside.watch(partial(run_logged, self._logger, "what watches nodes and endpoints outside", changed))
 
     def watch_lost(self, lost: Callable[[EndpointInfo], None]) -> None:
-        """Have something called, from any thread, with each publisher outside that is gone without having left."""
+        """Register a callback for publishers outside that are lost, called with each from any thread."""
 
         def tell(publisher: EndpointInfo) -> None:
             run_logged(self._logger, "what is told of publishers that are lost", partial(lost, publisher))
@@ -274,12 +274,12 @@ class BackgroundTransport(ABC):
             self._engine = None
 
     def _mirror(self, work: Callable[[Engine], None]) -> None:
-        """Have something done about what this process has."""
+        """Queue work on an endpoint or node of this process, unless the graph only looks."""
         if not self._only_looks:
             self._do(work)
 
     def _do(self, work: Callable[[Engine], None]) -> None:
-        """Have something done in the thread that makes and deletes, in the order of asking."""
+        """Queue work for the engine's thread."""
         if self._closed or self.problem is not None:
             return
         self._work.append(work)

@@ -13,7 +13,7 @@ class Text:
 
     __slots__ = ("cdata", "data", "offset", "source")
 
-    def __init__(self, data: str, source: SourceText | None = None, offset: int = 0, cdata: bool = False) -> None:
+    def __init__(self, data: str, source: SourceText | None = None, offset: int = 0, *, cdata: bool = False) -> None:
         self.data = data
         self.source = source
         self.offset = offset

@@ -124,7 +124,7 @@ class ActionServer(ActionEndpoint):
         self._handle.add_cleanup(self.destroy)
 
     def register_execute_callback(self, execute_callback: Callable[[ServerGoalHandle], Any]) -> None:
-        """Execute goals with another callback from now on.
+        """Set the callback that executes goals.
 
         Raises:
             TypeError: it cannot be called.
@@ -134,17 +134,17 @@ class ActionServer(ActionEndpoint):
         self._execute_callback = execute_callback
 
     def register_goal_callback(self, goal_callback: Callable[[Any], Any] | None) -> None:
-        """Have another callback decide which goals are accepted; None for all."""
+        """Set the callback that decides which goals are accepted; None accepts all."""
         self._goal_callback = goal_callback or default_goal_callback
 
     def register_handle_accepted_callback(
         self, handle_accepted_callback: Callable[[ServerGoalHandle], Any] | None
     ) -> None:
-        """Have another callback begin the work on accepted goals; None for at once."""
+        """Set the callback that begins the work on accepted goals; None begins at once."""
         self._handle_accepted_callback = handle_accepted_callback or default_handle_accepted_callback
 
     def register_cancel_callback(self, cancel_callback: Callable[[ServerGoalHandle], Any] | None) -> None:
-        """Have another callback decide what may be canceled; None for nothing."""
+        """Set the callback that decides what may be canceled; None refuses all."""
         self._cancel_callback = cancel_callback or default_cancel_callback
 
     def destroy(self) -> None:

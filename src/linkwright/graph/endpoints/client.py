@@ -220,7 +220,7 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         self._end(future, partial(self._hand_over, future, request_id, response))
 
     def _end(self, future: Future[Response], end: Callable[[], None]) -> None:
-        """Have a future ended as callbacks are called, unless it was given up."""
+        """Schedule the end of a future as a callback, unless the request was given up."""
         if self._pending.pop(future, None) is not None:
             self._endings.append(end)
             self.announce()

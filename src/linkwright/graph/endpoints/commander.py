@@ -40,7 +40,7 @@ class Commander:
         self._gid = info.publisher_gid
 
     def watch(self, subscription: Subscription[Any]) -> None:
-        """Hear of publishers of a topic that are lost; its callback is one of `taking`, or calls `obey`."""
+        """Watch for lost publishers of a subscription, whose callback is one of `taking` or calls `obey`."""
         subscription.watch_lost(self._lost)
 
     def _taken(self, take: Callable[[Any], object], message: Any, info: MessageInfo) -> None:

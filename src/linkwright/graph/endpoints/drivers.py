@@ -43,7 +43,7 @@ class Dispute:
         self.parties: frozenset[Hashable] = frozenset()
 
     def hear(self, who: Hashable, command: object, now_s: float) -> bool:
-        """Take note of a command.
+        """Note a command.
 
         Args:
             who: who sent it.
@@ -120,7 +120,7 @@ class DriverWatch:
         return cls(node.get_logger(), node.graph, node.get_clock().now_ns)
 
     def hear(self, message: Any, info: MessageInfo) -> None:
-        """Take note of a message; of one with a header what counts is its twist."""
+        """Note a message; of one with a header what counts is its twist."""
         command = getattr(message, "twist", message)
         if self._dispute.hear(info.publisher_gid, command, self._now_ns() / _NANOSECONDS):
             self._tell()

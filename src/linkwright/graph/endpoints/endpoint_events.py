@@ -134,7 +134,7 @@ class EndpointEvents(Entity):
         self._waiting.clear()
 
     def set_dispatcher(self, dispatcher: Dispatcher | None) -> None:
-        """Have a dispatcher run the callbacks and watch the time limits from now on."""
+        """Set the dispatcher that runs the callbacks and watches the time limits."""
         for watch in self._watches:
             watch.stop()
         super().set_dispatcher(dispatcher)

@@ -151,7 +151,7 @@ class Subscription(TopicEndpoint[M], Entity):
         self._filter = ContentFilter(options, self.msg_type) if filter_expression.strip() else None
 
     def watch_lost(self, lost: Callable[[EndpointInfo], object]) -> None:
-        """Have something called, as the callback is, for each publisher outside that is gone without having left.
+        """Register a callback for publishers outside that are lost; it is called with each as the callback is.
 
         Its process was killed or has crashed, or it is out of reach; what it had sent is given to the callback before.
         """
@@ -259,7 +259,7 @@ class Subscription(TopicEndpoint[M], Entity):
         return partial(self._call_for_each, [message, *more]) if more else self._call_for(message)
 
     def set_dispatcher(self, dispatcher: Dispatcher | None) -> None:
-        """Have a dispatcher run the callbacks from now on."""
+        """Set the dispatcher that runs the callbacks."""
         super().set_dispatcher(dispatcher)
         if self.events is not None:
             self.events.set_dispatcher(dispatcher)

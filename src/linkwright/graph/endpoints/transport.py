@@ -85,10 +85,10 @@ class Transport(Protocol):
         """
 
     def watch(self, changed: Callable[[], None]) -> None:
-        """Have something called, from any thread, whenever nodes or endpoints outside come or go."""
+        """Register a callback for changes of nodes and endpoints outside, called from any thread."""
 
     def watch_lost(self, lost: Callable[[EndpointInfo], None]) -> None:
-        """Have something called, from any thread, with each publisher outside that is gone without having left.
+        """Register a callback for publishers outside that are lost, called with each from any thread.
 
         Its process was killed or has crashed, or it has not been heard of for longer than it promised. It is called for
         the first time when a subscription wants to know (`Subscription.watch_lost`).

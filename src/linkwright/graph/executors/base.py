@@ -41,7 +41,7 @@ class Context(Protocol):
         """Whether the program is to go on."""
 
     def on_shutdown(self, callback: Callable[[], None]) -> None:
-        """Have something called at the end."""
+        """Register a callback for the shutdown."""
 
 
 class SpunNode(Protocol):

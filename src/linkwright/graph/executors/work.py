@@ -30,7 +30,7 @@ class ScheduledCall:
         self.callback: Callable[[], None] | None = callback
 
     def cancel(self) -> None:
-        """Do not call it."""
+        """Cancel the call."""
         if self.callback is not None:
             self.callback = None
             self._queue.forget_one()
@@ -97,7 +97,7 @@ class WorkQueue:
         self._rouse()
 
     def call_at(self, steady_ns: int, callback: Callable[[], None]) -> ScheduledCall:
-        """Have something called, by whoever takes from the queue, once ``time.monotonic_ns`` has come to a value."""
+        """Schedule a callback for a count of ``time.monotonic_ns``; whoever takes from the queue makes the call."""
         with self._alarms_lock:
             self._numbers += 1
             call = ScheduledCall(self, steady_ns, self._numbers, callback)
@@ -108,7 +108,7 @@ class WorkQueue:
         return call
 
     def forget_one(self) -> None:
-        """Take note that an alarm was cancelled; many of them are cleared away."""
+        """Count a cancelled alarm; when there are many, they are cleared away."""
         self._cancelled += 1
         if self._cancelled > _MANY_CANCELLED:
             with self._alarms_lock:

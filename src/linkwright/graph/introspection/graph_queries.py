@@ -152,21 +152,21 @@ class GraphQueries:
     # --- waiting -----------------------------------------------------------------------------------------------------
 
     def notify_change(self) -> None:
-        """Have those who wait in `wait_until` check their condition again; from any thread."""
+        """Wake the waiters of `wait_until`, which check their condition again; from any thread."""
         with self._changed:
             self._changed.notify_all()
         for changed in tuple(self._watchers):
             run_logged(self._logger, "what watches the graph", changed)
 
     def watch(self, changed: Callable[[], object]) -> None:
-        """Have something called whenever nodes or endpoints come or go, in whatever thread that happens.
+        """Register a callback for changes of nodes and endpoints; it is called in the thread where they happen.
 
         What it raises is logged.
         """
         self._watchers[changed] = None
 
     def unwatch(self, changed: Callable[[], object]) -> None:
-        """Do not have it called any longer."""
+        """Unregister a callback of `watch`."""
         self._watchers.pop(changed, None)
 
     def wait_until(self, holds: Callable[[], bool], timeout_sec: float | None = None) -> bool:

@@ -162,7 +162,7 @@ def log_failure(logger: Logger, what: str, error: BaseException) -> None:
 
 
 def run_logged(logger: Logger, what: str, callback: Callable[[], object]) -> None:
-    """Call something; if it fails, log that and go on."""
+    """Call a function; an exception is logged, not raised."""
     try:
         callback()
     except Exception as error:  # noqa: BLE001  # one callback must not take the other nodes of the process with it

@@ -33,11 +33,11 @@ class CallbackGroup:
         raise NotImplementedError
 
     def beginning_execution(self, entity: Any) -> bool:
-        """Take note that a member is about to run; False when it may not."""
+        """Note that a member is about to run; False when it may not."""
         raise NotImplementedError
 
     def ending_execution(self, entity: Any) -> None:
-        """Take note that a member has run."""
+        """Note that a member has run."""
         raise NotImplementedError
 
 

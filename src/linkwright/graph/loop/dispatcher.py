@@ -67,13 +67,13 @@ class LoopDispatcher:
             self._call_threadsafe(self._wake)
 
     def call_at(self, steady_ns: int, callback: Callable[[], None]) -> Alarm:
-        """Call something once at a count of the timebase."""
+        """Schedule a callback for a count of the timebase."""
         if threading.get_ident() == self._thread:
             return self._timebase.call_at(self._loop, steady_ns, partial(self._alarmed, callback))
         return _AlarmFromElsewhere(self, steady_ns, callback)
 
     def call_threadsafe(self, callback: Callable[[], None]) -> None:
-        """Call something soon on the loop, from any thread; nothing happens when the loop has ended."""
+        """Schedule a callback on the loop, from any thread; nothing happens when the loop has ended."""
         self._call_threadsafe(callback)
 
     def forget(self, node: NodeHandle) -> None:

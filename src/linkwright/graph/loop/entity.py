@@ -62,7 +62,7 @@ class Entity(Part, ABC):
         """Its name in messages about a failed call."""
 
     def set_dispatcher(self, dispatcher: Dispatcher | None) -> None:
-        """Have the calls run by a dispatcher from now on; what is pending is announced to it."""
+        """Set the dispatcher that runs the calls; pending ones are announced to it."""
         self.dispatcher = dispatcher
         self._announced = False
         if dispatcher is not None and self.has_work():
@@ -100,7 +100,7 @@ class Entity(Part, ABC):
         super().retire()
 
     def report(self, error: BaseException) -> None:
-        """Say in the node's log that a call failed."""
+        """Log in the node's name that a call failed."""
         log_failure(self.node.logger, self.what, error)
 
 
@@ -120,7 +120,7 @@ class GuardCondition(Entity):
         return "guard condition callback"
 
     def trigger(self) -> None:
-        """Have the callback called."""
+        """Make a call of the callback due."""
         if not self.destroyed:
             self._triggered = True
             self.announce()

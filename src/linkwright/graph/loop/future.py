@@ -109,7 +109,7 @@ class Future(Generic[T]):
         self._tell()
 
     def add_done_callback(self, callback: Callable[[Any], object]) -> None:
-        """Call something with this future when it is done; at once if it is."""
+        """Register a callback that gets this future when it is done; it is called at once if it is."""
         with self._lock:
             if not self.ended():
                 self._callbacks.append(callback)
@@ -125,7 +125,7 @@ class Future(Generic[T]):
         return removed
 
     def set_executor(self, executor: Any) -> None:
-        """Have an executor run the done callbacks."""
+        """Set the executor that runs the done callbacks."""
         self._executor = executor
 
     def hand_over(self, result: T, dispatcher: Any) -> None:

@@ -75,7 +75,7 @@ class Dispatcher(AlarmSetter, Protocol):
     """Runs what entities have to do: an event loop, or an executor. All methods may be called from any thread."""
 
     def ready(self, entity: Any) -> None:
-        """Take note that an `Entity` has at least one call to be taken.
+        """Note that an `Entity` has at least one call to be taken.
 
         An entity says so when its queue was empty before, and again from within `Entity.take` while more remain; so
         nothing piles up here when messages flood in. An entity whose ``dispatcher`` is another one by then is skipped.
@@ -97,7 +97,7 @@ class HomeGraph(Protocol):
         """Take a node away that is destroyed."""
 
     def notify_change(self) -> None:
-        """Have those who wait in `wait_until` check their condition again."""
+        """Wake the waiters of `wait_until`, which check their condition again."""
 
     def wait_until(self, holds: Callable[[], bool], timeout_sec: float | None = None) -> bool:
         """Block the calling thread until something of the graph holds; whether it does."""
@@ -128,7 +128,7 @@ class Part(Handled):
         self.destroyed = True
 
     def set_dispatcher(self, dispatcher: Dispatcher | None) -> None:
-        """Have what it calls back run by a dispatcher from now on."""
+        """Set the dispatcher that runs its callbacks."""
 
     def destroy(self) -> None:
         """Take it out of the graph and the node; nothing is called back any more."""
@@ -197,7 +197,7 @@ class NodeHandle(Handle):
             raise InvalidHandleError
 
     def set_dispatcher(self, dispatcher: Dispatcher | None) -> None:
-        """Have the node's callbacks run by a dispatcher from now on, or by none.
+        """Set the dispatcher that runs the node's callbacks; None for none.
 
         What falls due while there is none waits as the quality of service says, and is announced to the next one.
         """
@@ -249,7 +249,7 @@ class NodeHandle(Handle):
         return full_name if only_expand else self.remappings.service(full_name, name, namespace)
 
     def add_cleanup(self, callback: Callable[[], object]) -> None:
-        """Have something called when the node is destroyed, before its parts are; the one added last comes first."""
+        """Register a callback for the end of the node, before that of its parts; the last one added is called first."""
         self._cleanups[callback] = None
 
     def remove_cleanup(self, callback: Callable[[], object]) -> None:

@@ -156,7 +156,7 @@ class Timer(Entity):
         self.clock.remove_timer(self)
 
     def set_dispatcher(self, dispatcher: Dispatcher | None) -> None:
-        """Have the calls run by a dispatcher; one that fell due while there was none is made once."""
+        """Set the dispatcher that runs the calls; one that fell due without one is made once."""
         self._disarm()
         super().set_dispatcher(dispatcher)
         if self._running:

@@ -104,27 +104,27 @@ class AsyncParameterClient:
         return self._ask("describe_parameters", callback, names=names)
 
     def set_parameters(self, parameters: Sequence[Any], callback: Done | None = None) -> Future[Any]:
-        """Have parameters set one by one; they are `Parameter` objects or messages."""
+        """Set parameters one by one; they are `Parameter` objects or messages."""
         return self._ask("set_parameters", callback, parameters=_messages(parameters))
 
     def set_parameters_atomically(self, parameters: Sequence[Any], callback: Done | None = None) -> Future[Any]:
-        """Have all of the parameters set or none."""
+        """Set all of the parameters or none."""
         return self._ask("set_parameters_atomically", callback, parameters=_messages(parameters))
 
     def delete_parameters(self, names: list[str], callback: Done | None = None) -> Future[Any]:
-        """Have parameters undeclared, which their node must allow by dynamic typing."""
+        """Undeclare parameters, which their node must allow by dynamic typing."""
         return self.set_parameters([Parameter(name) for name in names], callback)
 
     def load_parameter_file(
         self, parameter_file: str, use_wildcard: bool = False, callback: Done | None = None
     ) -> Future[Any]:
-        """Have the parameters set that a file gives; see `parameter_dict_from_yaml_file`."""
+        """Set the parameters of a file; see `parameter_dict_from_yaml_file`."""
         return self.set_parameters(list(parameter_dict_from_yaml_file(parameter_file, use_wildcard).values()), callback)
 
     def load_parameter_file_atomically(
         self, parameter_file: str, use_wildcard: bool = False, callback: Done | None = None
     ) -> Future[Any]:
-        """Have all of the parameters set that a file gives, or none."""
+        """Set all of the parameters of a file, or none."""
         parameters = parameter_dict_from_yaml_file(parameter_file, use_wildcard)
         return self.set_parameters_atomically(list(parameters.values()), callback)
 

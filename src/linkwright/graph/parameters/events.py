@@ -121,7 +121,7 @@ class ParameterEventHandler:
     def add_parameter_callback(
         self, parameter_name: str, node_name: str, callback: Callable[[Any], object]
     ) -> ParameterCallbackHandle:
-        """Have a callback called with the rcl_interfaces/msg/Parameter whenever a parameter gets a value.
+        """Register a callback that gets the rcl_interfaces/msg/Parameter whenever a parameter gets a value.
 
         Args:
             parameter_name: its name.
@@ -139,7 +139,7 @@ class ParameterEventHandler:
         self._callbacks.remove_parameter_callback(handle)
 
     def add_parameter_event_callback(self, callback: Callable[[Any], object]) -> ParameterEventCallbackHandle:
-        """Have a callback called with every rcl_interfaces/msg/ParameterEvent."""
+        """Register a callback that gets every rcl_interfaces/msg/ParameterEvent."""
         return self._callbacks.add_parameter_event_callback(callback)
 
     def remove_parameter_event_callback(self, handle: ParameterEventCallbackHandle) -> None:

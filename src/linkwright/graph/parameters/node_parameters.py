@@ -257,15 +257,15 @@ class NodeParameters:
         return (Parameter(name) if parameter is None else parameter).get_parameter_value()
 
     def add_pre_set_parameters_callback(self, callback: PreSetParameters) -> None:
-        """Have a callback change the list of parameters that are to be set; the one added last comes first."""
+        """Register a callback that may change the list of parameters to be set; the one added last comes first."""
         self.__parameters.pre_set.insert(0, callback)
 
     def add_on_set_parameters_callback(self, callback: OnSetParameters) -> None:
-        """Have a callback asked before parameters are declared or set; it may refuse with a reason."""
+        """Register a callback for before parameters are declared or set; it may refuse with a reason."""
         self.__parameters.on_set.insert(0, callback)
 
     def add_post_set_parameters_callback(self, callback: PostSetParameters) -> None:
-        """Have a callback told after parameters were declared or set."""
+        """Register a callback for after parameters were declared or set."""
         self.__parameters.post_set.insert(0, callback)
 
     def remove_pre_set_parameters_callback(self, callback: PreSetParameters) -> None:

@@ -154,7 +154,7 @@ class Clock:
         pre_callback: Callable[[], object] | None = None,
         post_callback: Callable[[TimeJump], object] | None = None,
     ) -> JumpHandle:
-        """Have callbacks called before and after the time jumps of this clock; only ROS time jumps.
+        """Register callbacks for before and after time jumps of this clock; only ROS time jumps.
 
         Raises:
             ValueError: neither callback is given, or one cannot be called.

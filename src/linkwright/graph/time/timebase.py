@@ -61,7 +61,7 @@ class Timebase(ABC):
         return Time(nanoseconds=self.now_ns(), clock_type=ClockType.SYSTEM_TIME)
 
     def attach(self, dispatcher: Settling) -> None:  # noqa: B027  # most need not know
-        """Take note of the dispatcher of a graph that uses this timebase."""
+        """Note the dispatcher of a graph that uses this timebase."""
 
 
 class SystemClock(Timebase):
@@ -71,7 +71,7 @@ class SystemClock(Timebase):
     steady_ns = staticmethod(time.monotonic_ns)
 
     def call_at(self, loop: AbstractEventLoop, steady_ns: int, callback: Callable[[], None]) -> Alarm:
-        """Call something once on an event loop."""
+        """Schedule a callback on an event loop."""
         if steady_ns - time.monotonic_ns() <= _SHORT_NS:
             alarms = fine_alarms(loop)
             if alarms is not None:
@@ -102,7 +102,7 @@ class JumpClock(Timebase):
         return self._steady_ns
 
     def call_at(self, loop: AbstractEventLoop, steady_ns: int, callback: Callable[[], None]) -> Alarm:
-        """Call something once when the clock is advanced that far."""
+        """Schedule a callback for when the clock is advanced that far."""
         alarm = ScheduledAlarm(steady_ns, next(self._numbers), callback)
         heapq.heappush(self._alarms, alarm)
         return alarm

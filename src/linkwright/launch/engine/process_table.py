@@ -86,7 +86,7 @@ class ProcessTable:
         self._guardian.owns(folder)
 
     def close(self) -> None:
-        """Take note that all processes are gone."""
+        """Note that all processes are gone."""
         self._guardian.close()
 
     async def _follow(self, plan: ProcessPlan, name: str) -> None:

@@ -193,7 +193,7 @@ class RunningProcess:
             await loop.connect_read_pipe(partial(_Terminal, self, number), pipe)
 
     def started(self, transport: asyncio.SubprocessTransport) -> None:
-        """Take note that the process runs; nothing of its output comes before this."""
+        """Note that the process runs; nothing of its output comes before this."""
         self._transport = transport
         self._guardian.watch(transport.get_pid())
         details = self._details(transport)
@@ -262,13 +262,13 @@ class RunningProcess:
             self._show(number, line)
 
     def stream_closed(self, number: int) -> None:
-        """Take note that nothing more can come from stdout (1) or stderr (2)."""
+        """Note that nothing more can come from stdout (1) or stderr (2)."""
         self._open_streams.discard(number)
         if not self._open_streams:
             self._streams_closed.set()
 
     def ended(self) -> None:
-        """Take note that the process has ended."""
+        """Note that the process has ended."""
         self._ended.set()
         self._news.set()
 

@@ -206,7 +206,7 @@ def _parameter_names(called: Any) -> Iterable[str]:
                     yield parameter.name
 
 
-def _innermost_frame(error: Exception, users_only: bool = False) -> FrameType | None:
+def _innermost_frame(error: Exception, *, users_only: bool = False) -> FrameType | None:
     frame = None
     for each, _ in walk_tb(error.__traceback__):
         if not users_only or is_users(each.f_code.co_filename):

@@ -23,7 +23,7 @@ def declared_arguments(
     The first declaration of a name counts. Those behind a condition are marked by ``conditionally_included``.
     Declarations after a `ResetLaunchConfigurations` cannot be given from outside, and do not count.
     """
-    return list(_Declared.by(entities, conditional_inclusion).arguments.values())
+    return list(_Declared.by(entities, conditional=conditional_inclusion).arguments.values())
 
 
 def undeclared_names(entities: Iterable[LaunchDescriptionEntity], names: Iterable[str]) -> list[str]:
@@ -37,7 +37,7 @@ class _TooDeepError(Exception):
 
 
 class _Declared:
-    """What entities declare.
+    """The declarations of entities.
 
     Attributes:
         arguments: name -> declaration of what can be given from outside.
@@ -51,27 +51,28 @@ class _Declared:
         self.incomplete = False
 
     @classmethod
-    def by(cls, entities: Iterable[LaunchDescriptionEntity], conditional: bool = False) -> _Declared:
-        """What some entities declare, and what is inside of them."""
+    def by(cls, entities: Iterable[LaunchDescriptionEntity], *, conditional: bool = False) -> _Declared:
+        """Collect the declarations of entities and of those inside of them."""
         found = cls()
         with suppress(_TooDeepError):
-            found.collect(entities, conditional)
+            found.collect(entities, conditional=conditional)
         return found
 
     def collect(
         self,
         entities: Iterable[LaunchDescriptionEntity],
+        *,
         conditional: bool = False,
         set_outside: tuple[str, ...] = (),
         depth: int = 1,
     ) -> None:
-        """Take in what entities declare.
+        """Add the declarations of entities and of those inside of them.
 
         Args:
             entities: where to look.
             conditional: whether a condition decides if they are visited.
             set_outside: the names that an including file gives.
-            depth: how many entities are around them, and one.
+            depth: of the entities, from 1 on.
 
         Raises:
             _TooDeepError: they are too many.
@@ -96,6 +97,6 @@ class _Declared:
             except LinkwrightError:
                 self.incomplete = True
                 continue  # an included file that cannot be read is reported when it is visited
-            self.collect(below, conditional, inside, depth + 1)
+            self.collect(below, conditional=conditional, set_outside=inside, depth=depth + 1)
             for _, some in maybe:
-                self.collect(some, True, inside, depth + 1)
+                self.collect(some, conditional=True, set_outside=inside, depth=depth + 1)

@@ -60,7 +60,7 @@ class BaseEventHandler:
         return text, list(_listed(self.entities))
 
     def handle(self, event: Any, context: LaunchContext) -> Any:
-        """Take note of the event; what derives from it returns the entities to be visited."""
+        """Note the event; what derives from it returns the entities to be visited."""
         context.extend_locals({"event": event})
         if self.handle_once:
             context.unregister_event_handler(self)

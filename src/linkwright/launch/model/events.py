@@ -21,7 +21,7 @@ class ProcessAction(Protocol):
     process_details: dict[str, Any] | None
 
     def wrote(self, stream: int, text: bytes) -> None:
-        """Take note of what the process wrote to stdout (1) or stderr (2)."""
+        """Note what the process wrote to stdout (1) or stderr (2)."""
 
     def exited(self, event: ProcessExited, context: Any) -> list[Any]:
         """The entities that are to be visited now that the process has ended."""

@@ -160,7 +160,7 @@ class ComposableLifecycleNode(ComposableNode):
         return super().node_name if self.__full_name is None else self.__full_name
 
     def loaded(self, full_name: str) -> None:
-        """Take note of its full name."""
+        """Note its full name."""
         self.__full_name = full_name
 
 

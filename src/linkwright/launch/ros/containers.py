@@ -228,7 +228,7 @@ def _is_of_others(finder: PackageFinder, package: str, plugin: str) -> bool:
     return not (was_built or component in ours or is_misspelt(component, ours))
 
 
-def _described(entity: Entity, parser: Parser, optional: bool = False) -> list[ComposableNode]:
+def _described(entity: Entity, parser: Parser, *, optional: bool = False) -> list[ComposableNode]:
     tags = entity.get_attr("composable_node", data_type=Entities, optional=optional)
     described = []
     for tag in tags or ():

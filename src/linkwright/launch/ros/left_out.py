@@ -12,7 +12,7 @@ _MANAGED = "node_names"
 
 
 def leave_out(context: LaunchContext, name: str) -> None:
-    """Take note of a node that cannot be had, by its name without its namespace."""
+    """Note a node that cannot be had, by its name without its namespace."""
     context.session.left_out.add(name)
 
 

@@ -55,7 +55,7 @@ def prefix_namespace(base_ns: str | None, ns: str | None, *, return_absolute_ns:
 
 
 def add_node_name(context: Any, node_name: str) -> None:
-    """Take note that a node of this full name was started."""
+    """Note that a node of this full name was started."""
     _counts(context)[node_name] += 1
 
 
@@ -65,7 +65,7 @@ def get_node_name_count(context: Any, node_name: str) -> int:
 
 
 def repeated_name(context: Any, node_name: str) -> str | None:
-    """Take note of a node, and what to say if there is another of its name; None if not."""
+    """Note a node, and what to say if there is another of its name; None if not."""
     add_node_name(context, node_name)
     count = get_node_name_count(context, node_name)
     if count < 2:

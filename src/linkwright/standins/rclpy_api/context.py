@@ -121,7 +121,7 @@ class Context:
         return int(text) if text.isdigit() else 0
 
     def on_shutdown(self, callback: Callable[[], object]) -> None:
-        """Call something at shutdown, or at once where that has happened. Bound methods are held weakly.
+        """Register a callback for the shutdown, called at once where that has happened. Bound methods are held weakly.
 
         Raises:
             TypeError: it cannot be called.

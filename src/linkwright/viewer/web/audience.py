@@ -70,11 +70,11 @@ class Page:
         self._completions = 0
 
     def open(self, opening: Iterable[Payload]) -> None:
-        """Say what is sent first."""
+        """Set the messages that are sent first."""
         self._opening = list(opening)
 
     def send(self, message: ServerMessage) -> None:
-        """Have a message sent to this page only."""
+        """Send a message to this page only."""
         self.outbox.put(redundancy_key(message), encode(message, self.language))
 
     async def write(self) -> None:

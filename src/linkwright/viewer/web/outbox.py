@@ -147,7 +147,7 @@ class Outbox:
         return len(self._urgent) + len(self._ordinary)
 
     def put(self, key: str, payload: Payload) -> None:
-        """Have a payload sent, instead of one that waits under the same key."""
+        """Queue a payload, in place of one that waits under the same key."""
         line = self._urgent if key in _URGENT else self._ordinary
         before = line.get(key)
         if not (isinstance(before, ScaledData) and isinstance(payload, ScaledData) and not before.gone):

@@ -62,7 +62,7 @@ class Departures:
         remote.departures = self
 
     def watch(self, lost: Callable[[EndpointInfo], None]) -> None:
-        """Have something called, in the thread of discovery, with each publisher that is lost."""
+        """Register a callback for lost publishers, called with each in the thread of discovery."""
         self._watchers.append(lost)
 
     def endpoint_went(self, endpoint: RemoteEndpoint, node: NodeIdentity | None) -> None:

@@ -51,7 +51,7 @@ def open_domain(settings: Settings) -> OpenDomain:
 
 
 def close_domain(domain: OpenDomain) -> None:
-    """Take note that a participant is gone; with the last one go the domain, its sockets and its threads."""
+    """Note that a participant is gone; with the last one go the domain, its sockets and its threads."""
     with _lock:
         domain.users -= 1
         if not domain.users:

@@ -148,10 +148,10 @@ class DepartureWatch(Protocol):
     """Is notified of endpoints that disappear; see `linkwright.wire.dds.departures.Departures`."""
 
     def endpoint_went(self, endpoint: RemoteEndpoint, node: NodeIdentity | None) -> None:
-        """Take note of an endpoint that is gone, and of the node whose it still is by the last announcement."""
+        """Note that an endpoint disappeared; `node` still announces it, or is None where it was withdrawn."""
 
     def announced(self, participant: bytes, endpoints: Collection[bytes]) -> None:
-        """Take note of what the nodes of a participant have now."""
+        """Note the endpoints that the nodes of a participant announce now."""
 
 
 class RemoteGraph:
@@ -222,7 +222,7 @@ class RemoteGraph:
             watcher()
 
     def watch(self, changed: Callable[[], None]) -> None:
-        """Have something called, in the thread of discovery, after changes."""
+        """Register a callback for changes, called in the thread of discovery."""
         self._watchers.append(changed)
 
     def _forget(self, endpoint: RemoteEndpoint) -> None:

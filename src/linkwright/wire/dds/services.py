@@ -153,7 +153,7 @@ class OutsideServer:
         return count == _AT_ONCE
 
     def on_writer_status(self) -> bool:
-        """Take note that something connected with the writer or left it."""
+        """Note that something connected with the writer or left it."""
         if self.pair.has_matched(self.pair.writer):
             self._matched()
         return False

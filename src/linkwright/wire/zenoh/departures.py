@@ -59,7 +59,7 @@ class Departures:
         self._nodes_gone: dict[tuple[str, str], float] = {}
 
     def watch(self, lost: Callable[[EndpointInfo], None]) -> None:
-        """Have something called, in the thread of discovery, with each publisher that is lost."""
+        """Register a callback for lost publishers, called with each in the thread of discovery."""
         self._watchers.append(lost)
 
     @property
@@ -73,20 +73,20 @@ class Departures:
         return self._here
 
     def session_came(self, session: str) -> None:
-        """Take note of a session of Linkwright's."""
+        """Note a session of Linkwright's."""
         self._here.add(session)
 
     def session_leaves(self, session: str) -> None:
-        """Take note that a session of Linkwright's is about to end."""
+        """Note that a session of Linkwright's is about to end."""
         self._left.add(session)
 
     def session_ended(self, session: str) -> None:
-        """Take note that a session of Linkwright's is there no more."""
+        """Note that a session of Linkwright's is there no more."""
         self._here.discard(session)
         self._ended[session] = self._now()
 
     def went(self, key: str, token: Token) -> None:
-        """Take note of a token that is gone."""
+        """Note a token that is gone."""
         if token.kind is None:
             self._nodes_gone[token.node_key] = self._now()
             return

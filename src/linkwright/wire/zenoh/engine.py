@@ -255,7 +255,7 @@ class Engine(AnyEngine):
         self._interests.add_all()
 
     def note_news(self) -> None:
-        """Take note of what was heard."""
+        """Process the tokens that were heard of."""
         while self._news:
             came, key = self._news.popleft()
             self._has_changed = self._note(came=came, key=key) or self._has_changed
@@ -302,7 +302,7 @@ class Engine(AnyEngine):
             self._remote.announce()
 
     def _note(self, *, came: bool, key: str) -> bool:
-        """Take note of a token; whether that changes what is outside."""
+        """Note a token; whether that changes what is outside."""
         if key.startswith(OURS):
             self._note_session(came=came, key=key)
             return False
@@ -317,7 +317,7 @@ class Engine(AnyEngine):
         return True
 
     def _note_session(self, *, came: bool, key: str) -> None:
-        """Take note of a token of a session of Linkwright's."""
+        """Note a token of a session of Linkwright's."""
         _, _, session, what = key.split("/")
         if what == "here" and came:
             self._departures.session_came(session)

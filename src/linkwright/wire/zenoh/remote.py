@@ -86,7 +86,7 @@ class RemoteGraph:
             watcher()
 
     def watch(self, changed: Callable[[], None]) -> None:
-        """Have something called, in the thread of discovery, after changes."""
+        """Register a callback for changes, called in the thread of discovery."""
         self._watchers.append(changed)
 
     # --- asked by the transport --------------------------------------------------------------------------------------

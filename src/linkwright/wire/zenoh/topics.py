@@ -146,7 +146,7 @@ class IncomingTopic:
             self._zenoh = session.declare_subscriber(key, handler, allowed_origin=zenoh.Locality.REMOTE)
 
     def review(self, count: int) -> None:
-        """Take note of how many publishers outside are known."""
+        """Note how many publishers outside are known."""
         self._subscription.set_outside_count(count)
         self._subscription.set_outside_liveliness(count, 0)  # nothing tells of one that is there but not alive
 

@@ -187,7 +187,7 @@ class ExecuteLocal(Action):
         return as_entities(self._after_exit(event, context))
 
     def wrote(self, stream: int, text: bytes) -> None:
-        """Take note of what the process wrote to stdout (1) or stderr (2)."""
+        """Note what the process wrote to stdout (1) or stderr (2)."""
         if self._cached is not None:
             self._cached[stream].append(text)
 

@@ -150,7 +150,7 @@ class RemoteNode:
         self._run(self._refresh())
 
     def take(self, event: Any) -> None:
-        """Take note of a rcl_interfaces/msg/ParameterEvent of the node."""
+        """Note a rcl_interfaces/msg/ParameterEvent of the node."""
         for parameter in event.deleted_parameters:
             self._rows.pop(parameter.name, None)
         for parameter in event.changed_parameters:

@@ -157,7 +157,7 @@ class TopicsFeature(PageFeature):
         self._messages = Paced(self._send_messages, _MESSAGES_PERIOD)
 
     def receive(self, page: Page, message: WatchTopics) -> None:
-        """Take note of what a page wants to know from now on."""
+        """Note what a page wants to know from now on."""
         before = self._wishes.get(page, _Wish())
         opened = frozenset(message.opened)
         wish = _Wish(message.listed, frozenset(message.measured), opened, before.told if message.listed else None)
