@@ -1,4 +1,4 @@
-"""What the launcher prints: its own lines, those of processes and nodes, and diagnostics; where its log files are."""
+"""The log of a launch: its own lines, those of processes and nodes, diagnostics; and the place of log files."""
 
 from __future__ import annotations
 
@@ -130,7 +130,7 @@ class LaunchLog:
             print_diagnostics(diagnostics, self._streams[2])
 
     def node_record(self, process: str, record: LogRecord, destinations: frozenset[str]) -> None:
-        """What a node of this process logs, in rcutils' format behind the name of its process."""
+        """Print a record of a node of this process, in rcutils' format behind the name of its process."""
         from linkwright.graph import console_line
 
         line = f"[{process}] {console_line(record)}"

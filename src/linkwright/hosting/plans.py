@@ -1,4 +1,4 @@
-"""What a host of nodes is asked for, and what it asks of the run that it belongs to."""
+"""Plans of hosted nodes and viewers, and the interface between their host and the run that it belongs to."""
 
 from __future__ import annotations
 
@@ -109,7 +109,7 @@ class HostedPlan:
 
     @property
     def details(self) -> dict[str, Any]:
-        """What events say of it."""
+        """Its details for events."""
         command = [self.executable, *self.arguments]
         return {"name": self.process_name, "cmd": command, "cwd": None, "env": None, "pid": os.getpid()}
 
@@ -155,7 +155,7 @@ class Supervisor(Protocol):
 
     @property
     def log(self) -> LaunchLog:
-        """What is printed."""
+        """The log of the run."""
 
     @property
     def descriptions(self) -> Descriptions:
@@ -163,7 +163,7 @@ class Supervisor(Protocol):
 
     @property
     def reload(self) -> LiveReload:
-        """What gives nodes the new text of a description."""
+        """Gives nodes the new text of a description."""
 
     @property
     def ending(self) -> bool:

@@ -156,7 +156,7 @@ class SignalWatch:
 
 
 def interruption_text(number: int) -> str:
-    """What the log says of a signal."""
+    """The line of the log about a signal."""
     if number == signal.SIGINT:
         return "user interrupted with ctrl-c (SIGINT)"
     return f"received signal {signal.Signals(number).name}"

@@ -1,4 +1,4 @@
-"""What a viewer shows of a simulated world."""
+"""The configuration of a viewer for a simulated world."""
 
 from __future__ import annotations
 

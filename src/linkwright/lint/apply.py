@@ -25,7 +25,7 @@ Check = Callable[[str | None], Iterable[Diagnostic]]
 
 @dataclass(slots=True)
 class Mended:
-    """What fixing did.
+    """The outcome of fixing a file.
 
     Attributes:
         texts: path -> new text of every file that changes.

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Checked:
-    """What came of checking a file.
+    """The result of checking a file.
 
     Attributes:
         path: the file.
@@ -126,7 +126,7 @@ def _examine_world(
 
 
 def _run(subject: Subject, scopes: Collection[Scope], said: Iterable[Diagnostic] = ()) -> list[Diagnostic]:
-    """What the rules find and what was said before, as the settings and comments want it, in order."""
+    """The findings of the rules and the earlier ones, filtered by settings and comments, in order."""
     suppressions = Suppressions(subject, subject.settings)
     found = _without_replaced([*said, *_find(subject, scopes, suppressions)], subject.settings)
     kept = [each for each in suppressions.apply(found) if _is_wanted(each, subject.settings)]
@@ -134,7 +134,7 @@ def _run(subject: Subject, scopes: Collection[Scope], said: Iterable[Diagnostic]
 
 
 def _find(subject: Subject, scopes: Collection[Scope], suppressions: Suppressions) -> list[Diagnostic]:
-    """What the rules find, each place once; among it what is only found to see whether a comment is of use."""
+    """The findings of the rules, each place once; some are only wanted to see whether a comment is of use."""
     found: list[Diagnostic] = []
     for rule in all_rules():
         if rule.scope not in scopes or not (subject.settings.runs(rule) or suppressions.audits(rule.code)):
@@ -157,7 +157,7 @@ def _may_run(rule: Rule, subject: Subject) -> bool:
 
 
 def _of_library(subject: Subject) -> Iterator[Diagnostic]:
-    """What there is to say of a file for others to include: what is true of each part, and that it is no robot."""
+    """The findings on a file that others include: those that hold for each part, and that it is no robot."""
     described = subject.description
     yield from (*described.problems, *described.remarks)
     whole = subject.root.span()

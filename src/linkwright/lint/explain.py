@@ -25,7 +25,7 @@ _HEADINGS: dict[str, str] = {each: each for each in (phrase("## Why"), phrase("#
 
 @dataclass(frozen=True, slots=True)
 class Page:
-    """What there is to say about a code; what can be translated is a phrase.
+    """The page on a code; texts that can be translated are phrases.
 
     Attributes:
         code: of the diagnostic.

@@ -59,12 +59,12 @@ class Extents:
 
     @cached_property
     def measured(self) -> list[tuple[Link, Inertial, Bounds]]:
-        """Those whose body can be measured and is no marker, with the box around the body in the link's frame."""
+        """The links whose body can be measured and is no marker, with the box around the body in the link's frame."""
         boxes = ((link, inertial, self.body_bounds(link)) for link, inertial in self.heavy)
         return [(link, inertial, box) for link, inertial, box in boxes if box is not None and box.diagonal > MARKER]
 
     def mass_properties(self, body: Body) -> MassProperties:
-        """What the ``<inertial>`` of a body's links come to, in the frame of its first link."""
+        """The sum of the ``<inertial>`` of a body's links, in the frame of its first link."""
         import numpy as np
 
         from linkwright.geometry.mass import MassProperties, combine

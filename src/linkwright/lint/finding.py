@@ -1,4 +1,4 @@
-"""What a rule found: a diagnostic that may know how to mend itself."""
+"""Findings of rules: diagnostics, some with a fix."""
 
 from __future__ import annotations
 

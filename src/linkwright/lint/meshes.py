@@ -41,7 +41,7 @@ class MeshUse:
 
 
 class MeshFacts:
-    """What is known of the meshes of one description.
+    """The facts about the meshes of one description.
 
     Nothing is looked up before a rule asks for it. A URI that leads nowhere gives no path, and a file that cannot be
     read no triangles; the rules about files tell of them, all others leave such a mesh alone.

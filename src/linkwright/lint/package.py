@@ -73,7 +73,7 @@ class PackageContext:
 
     @property
     def manifest_error(self) -> LinkwrightError | None:
-        """What is wrong with the XML of its ``package.xml``, or None."""
+        """The error in the XML of its ``package.xml``, or None."""
         return self._manifest if isinstance(self._manifest, LinkwrightError) else None
 
     @property

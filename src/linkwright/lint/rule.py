@@ -1,4 +1,4 @@
-"""What a lint rule is."""
+"""The base class of lint rules."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Value = TypeVar("Value", bool, int, float, str, list[str])
 
 
 class Scope(Enum):
-    """What a rule looks at."""
+    """The scopes of rules: what they look at."""
 
     DESCRIPTION = "description"
     """One robot description; the rule runs once for each."""
@@ -58,7 +58,7 @@ class Rule:
     replaces: ClassVar[tuple[str, ...]] = ()
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """What the rule finds; it never raises for what the description says."""
+        """The findings of the rule; it never raises for what the description says."""
         raise NotImplementedError(f"{self.code} cannot check {subject.path}")
 
     def option(self, subject: Subject, name: str, kind: type[Value]) -> Value:

@@ -30,7 +30,7 @@ def canonical(word: str) -> str:
 
 
 def selector_hint(word: str) -> Phrase:
-    """What to say of a word that selects nothing."""
+    """A hint on a word that selects nothing."""
     candidates = [name for rule in all_rules() for name in (rule.name, rule.code)]
     near = nearest(word, candidates, limit=1)
     if near:

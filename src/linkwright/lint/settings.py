@@ -14,7 +14,7 @@ from linkwright.lint.selectors import specificity
 
 
 class Switched(Protocol):
-    """What settings switch on and off: a rule."""
+    """A rule, as far as settings switch it on and off."""
 
     @property
     def code(self) -> str:

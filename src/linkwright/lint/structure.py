@@ -1,4 +1,4 @@
-"""A description beside the schema of URDF: what has a place there, and what stands there that nobody reads."""
+"""The elements of a description by the schema of URDF: those that have a place in it, and those that nobody reads."""
 
 from __future__ import annotations
 

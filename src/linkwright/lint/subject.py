@@ -1,4 +1,4 @@
-"""What rules look at: a description as written, as expanded and as read, and what is around it."""
+"""The subject of rules: a description as written, as expanded and as read, and its surroundings."""
 
 from __future__ import annotations
 
@@ -132,14 +132,14 @@ class Subject:
 
     @cached_property
     def meshes(self) -> MeshFacts:
-        """What is known of the mesh files that the description names."""
+        """The facts about the mesh files that the description names."""
         from linkwright.lint.meshes import MeshFacts
 
         return MeshFacts(self.links, self.finder, self.path.absolute().parent)
 
     @cached_property
     def xacro(self) -> XacroFacts:
-        """What its xacro files define and use."""
+        """The definitions and uses in its xacro files."""
         from linkwright.lint.xacro_facts import XacroFacts
 
         return XacroFacts(self.path, self.sources, self.expansion, self.package, is_library=not self.links)

@@ -30,7 +30,7 @@ _DECLARATIONS = frozenset({"xacro:include", "xacro:macro", "xacro:property", "xa
 
 @dataclass(frozen=True, slots=True)
 class Targets:
-    """What is to be checked.
+    """The files and packages to be checked.
 
     Attributes:
         files: the descriptions, each once.

@@ -1,4 +1,4 @@
-"""What is doubtful in worlds and models that can be read.
+"""Findings on worlds and models that can be read.
 
 What robots are checked for too has the rule, the code and the words that it has there.
 """
@@ -39,7 +39,7 @@ _ZERO_MASS, _NEGATIVE_MASS = ZeroMass(), NegativeMass()
 
 
 def check_sdf(sdf: Sdf, finder: ResourceFinder) -> Iterator[Diagnostic]:
-    """What is doubtful in a file with its includes resolved, each thing once for each place in the files.
+    """The findings on a file with its includes resolved, each once for each place in the files.
 
     Args:
         sdf: the file.

@@ -1,4 +1,4 @@
-"""What the xacro files of a description define and use, read from the files as they are written.
+"""The definitions and uses in the xacro files of a description, read from the files as they are written.
 
 Nothing is evaluated, so branches that are not taken and macros that are not called count too. Names are matched by
 name alone, without scopes: xacro's scopes are dynamic, and a rule that calls something unused must be sure.
@@ -87,7 +87,7 @@ def _by_macro(things: Iterable[_Inside]) -> Mapping[int, Sequence[_Inside]]:
 
 @dataclass
 class FileFacts:
-    """What one file defines and uses.
+    """The definitions and uses in one file.
 
     Attributes:
         names: every name that its expressions mention, and the pasted values' too.
@@ -238,7 +238,7 @@ class FileFacts:
 
 
 class XacroFacts:
-    """What all files of a description define and use.
+    """The definitions and uses in all files of a description.
 
     Attributes:
         path: the checked file.

@@ -38,7 +38,7 @@ class BareCall:
 
 @dataclass(frozen=True, slots=True)
 class Mentions:
-    """What a text mentions.
+    """The names that a text mentions.
 
     Attributes:
         names: the names in its expressions.
@@ -63,7 +63,7 @@ _NONE = Mentions()
 
 
 def mentions(text: str) -> Mentions:
-    """What a text mentions."""
+    """The names that a text mentions."""
     return _mentions(text) if "$" in text else _NONE
 
 

@@ -1,4 +1,4 @@
-"""What can go wrong when a package is looked for."""
+"""The errors of looking for a package."""
 
 from __future__ import annotations
 

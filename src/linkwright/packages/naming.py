@@ -20,7 +20,7 @@ _EMAIL = re.compile(r"[\w%+-]+(\.[\w%+-]+)*@[\w%-]+(\.[\w%-]+)*\.[A-Za-z]{2,}", 
 
 
 def check_package_name(name: str) -> list[Diagnostic]:
-    """What is wrong with the name of a package; errors first (PKG201), or advice (PKG202)."""
+    """The findings on the name of a package; errors first (PKG201), or advice (PKG202)."""
     if not _IDENTIFIER.fullmatch(name):
         problem = _broken_rule(name)
         hint = _suggestion(name)
@@ -42,7 +42,7 @@ def check_package_name(name: str) -> list[Diagnostic]:
 
 
 def check_member_name(name: str, what: str) -> list[Diagnostic]:
-    """What is wrong with the name of a node or library (PKG203); `what` says which."""
+    """The findings on the name of a node or library (PKG203); `what` says which."""
     if _IDENTIFIER.fullmatch(name) and not keyword.iskeyword(name):
         return []
     problem = phrase("it is a word of the Python language") if keyword.iskeyword(name) else _broken_rule(name)
@@ -56,7 +56,7 @@ def check_member_name(name: str, what: str) -> list[Diagnostic]:
 
 
 def check_dependency(name: str) -> list[Diagnostic]:
-    """What is wrong with the name of a package or system key that is depended on (PKG204)."""
+    """The findings on the name of a package or system key that is depended on (PKG204)."""
     if _DEPENDENCY.fullmatch(name):
         return []
     message = phrase("'{name}' cannot be the name of a dependency", name=name)
@@ -64,7 +64,7 @@ def check_dependency(name: str) -> list[Diagnostic]:
 
 
 def check_email(address: str) -> list[Diagnostic]:
-    """What is wrong with a maintainer's e-mail address (PKG205)."""
+    """The findings on a maintainer's e-mail address (PKG205)."""
     if is_email(address):
         return []
     message = phrase("'{address}' is not an e-mail address that colcon accepts", address=address)

@@ -121,7 +121,7 @@ class ZeroMass(Rule):
                 yield self.finding(link.name, inertial)
 
     def finding(self, name: str, inertial: Inertial) -> Finding:
-        """What is said of a mass of zero, of a robot or a world."""
+        """The finding on a mass of zero, in a robot or a world."""
         return self.report(
             phrase("the mass of link '{name}' is zero", name=name),
             part(inertial, "mass"),
@@ -160,7 +160,7 @@ class NegativeMass(Rule):
                 yield self.finding(link.name, inertial)
 
     def finding(self, name: str, inertial: Inertial) -> Finding:
-        """What is said of a negative mass, of a robot or a world."""
+        """The finding on a negative mass, in a robot or a world."""
         return self.report(
             phrase("the mass of link '{name}' is negative: {mass:g} kg", name=name, mass=inertial.mass),
             part(inertial, "mass"),

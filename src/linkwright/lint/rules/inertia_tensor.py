@@ -25,7 +25,7 @@ class _FlawRule(Rule):
 
 
 class _TensorRule(_FlawRule, ABC):
-    """One that says something of each flaw of its kind."""
+    """The base of rules with a finding for each flaw of their kind."""
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         for link, inertial, flaw in self.flawed(subject):
@@ -33,7 +33,7 @@ class _TensorRule(_FlawRule, ABC):
 
     @abstractmethod
     def finding(self, name: str, inertial: Inertial, flaw: Flaw) -> Finding:
-        """What is said of a flaw of this kind in the tensor of a link, of a robot or a world."""
+        """The finding on a flaw of this kind in the tensor of a link, in a robot or a world."""
 
 
 class ZeroInertia(_FlawRule):

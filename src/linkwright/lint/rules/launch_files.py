@@ -24,13 +24,13 @@ class LaunchRule(PackageRule):
     """A rule about one launch file."""
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """What the rule finds in a package."""
+        """The findings in a package."""
         for file in package.launch_files.values():
             yield from self.check_launch(file)
 
     @abstractmethod
     def check_launch(self, file: LaunchFile) -> Iterator[Diagnostic]:
-        """What the rule finds in a launch file."""
+        """The findings in a launch file."""
 
 
 class LaunchSyntaxError(LaunchRule):
@@ -64,7 +64,7 @@ class LaunchSyntaxError(LaunchRule):
     severity = Severity.ERROR
 
     def check_launch(self, file: LaunchFile) -> Iterator[Diagnostic]:
-        """What the rule finds in a launch file."""
+        """The findings in a launch file."""
         if file.error is not None:
             message = phrase(
                 "the launch file '{path}' is not Python: {message}", path=file.path, message=foreign(file.error.message)
@@ -100,7 +100,7 @@ class LaunchFunctionMissing(LaunchRule):
     severity = Severity.ERROR
 
     def check_launch(self, file: LaunchFile) -> Iterator[Diagnostic]:
-        """What the rule finds in a launch file."""
+        """The findings in a launch file."""
         if file.python is None or file.has_function or file.is_test:
             return
         from linkwright.packages.readers.launch_files import FUNCTION

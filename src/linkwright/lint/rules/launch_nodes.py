@@ -1,4 +1,4 @@
-"""What launch files start: packages and executables, and whether ``package.xml`` knows of them."""
+"""Rules about the nodes of launch files: their packages and executables, and dependencies in ``package.xml``."""
 
 from __future__ import annotations
 
@@ -118,7 +118,7 @@ class LaunchedExecutableUnknown(PackageRule):
     name = "launched-executable-unknown"
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """What the rule finds in a package."""
+        """The findings in a package."""
         for file in package.launch_files.values():
             yield from self._of_file(file, package)
 

@@ -61,7 +61,7 @@ class CommandWithoutBlank(LaunchRule):
     severity = Severity.ERROR
 
     def check_launch(self, file: LaunchFile) -> Iterator[Diagnostic]:
-        """What the rule finds in a launch file."""
+        """The findings in a launch file."""
         python = file.python
         if python is None:
             return
@@ -152,7 +152,7 @@ class LaunchArgumentUndeclared(LaunchRule):
     name = "launch-argument-undeclared"
 
     def check_launch(self, file: LaunchFile) -> Iterator[Diagnostic]:
-        """What the rule finds in a launch file."""
+        """The findings in a launch file."""
         python = file.python
         if python is None:
             return
@@ -204,7 +204,7 @@ class FixedFrameUnknown(PackageRule):
     name = "fixed-frame-unknown"
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """What the rule finds in a package."""
+        """The findings in a package."""
         files = [file for file in package.files if file.endswith(".rviz")]
         if not files or not package.descriptions:
             return

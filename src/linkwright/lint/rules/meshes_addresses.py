@@ -239,7 +239,7 @@ class AwkwardName(Rule):
 
 
 def malformed(uri: str) -> tuple[str | None, str | None]:
-    """What is wrong with an address, as the end of a sentence, and a better one where it can be told."""
+    """The mistake in an address, as the end of a sentence, and a better address where there is one."""
     if not uri.strip():
         return phrase("is empty"), None
     if "\\" in uri:
@@ -291,7 +291,7 @@ def _in_known_package(subject: Subject, path: Path | None) -> str | None:
 
 
 def file_hint(path: Path, endings: Sequence[str]) -> Phrase:
-    """What there is in place of a missing file: files with one of the endings, all in small letters."""
+    """A hint on a missing file: files with one of the endings, all in small letters."""
     try:
         names = sorted(each.name for each in path.parent.iterdir() if each.suffix.lower() in endings)
     except OSError:

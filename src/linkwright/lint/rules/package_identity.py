@@ -1,4 +1,4 @@
-"""What a package is called, and who it belongs to."""
+"""Rules about the name and the maintainers of a package."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class PackageNameDiffers(PackageRule):
     severity = Severity.ERROR
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """What the rule finds in a package."""
+        """The findings in a package."""
         manifest = package.manifest
         if manifest is None:
             return
@@ -116,7 +116,7 @@ class PackageName(ManifestRule):
     name = "package-name"
 
     def check_manifest(self, manifest: Manifest) -> Iterator[Diagnostic]:
-        """What the rule finds in a manifest."""
+        """The findings in a manifest."""
         name, element = manifest.name, manifest.root.first("name")
         if name is None or element is None:
             return
@@ -152,7 +152,7 @@ class FolderNameDiffers(PackageRule):
     severity = Severity.INFO
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """What the rule finds in a package."""
+        """The findings in a package."""
         manifest = package.manifest
         if manifest is None:
             return
@@ -193,7 +193,7 @@ class MaintainerEmail(ManifestRule):
     severity = Severity.ERROR
 
     def check_manifest(self, manifest: Manifest) -> Iterator[Diagnostic]:
-        """What the rule finds in a manifest."""
+        """The findings in a manifest."""
         for element in manifest.root.elements():
             if element.tag not in ("maintainer", "author"):
                 continue
@@ -241,7 +241,7 @@ class ManifestPlaceholder(ManifestRule):
     severity = Severity.INFO
 
     def check_manifest(self, manifest: Manifest) -> Iterator[Diagnostic]:
-        """What the rule finds in a manifest."""
+        """The findings in a manifest."""
         for tag in ("description", "license", "maintainer", "author"):
             for element in manifest.root.elements(tag):
                 text = " ".join(element.text().split())

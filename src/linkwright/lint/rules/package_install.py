@@ -51,7 +51,7 @@ class PatternMatchesNothing(PackageRule):
     name = "pattern-matches-nothing"
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """What the rule finds in a package."""
+        """The findings in a package."""
         setup = package.setup
         if setup is None:
             return
@@ -107,7 +107,7 @@ class FolderNotInstalled(PackageRule):
     name = "folder-not-installed"
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """What the rule finds in a package."""
+        """The findings in a package."""
         if package.setup is not None and package.cmake is None:
             yield from self._by_setup(package, package.setup)
         elif package.cmake is not None and package.setup is None:
@@ -166,7 +166,7 @@ class FileNotInstalled(PackageRule):
     name = "file-not-installed"
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """What the rule finds in a package."""
+        """The findings in a package."""
         setup = package.setup
         if setup is None or package.cmake is not None or not setup.is_complete:
             return
@@ -215,7 +215,7 @@ class InstalledFileMissing(PackageRule):
     severity = Severity.ERROR
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """What the rule finds in a package."""
+        """The findings in a package."""
         setup, cmake = package.setup, package.cmake
         if setup is not None:
             for item in setup.installed:

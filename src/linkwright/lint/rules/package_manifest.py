@@ -1,4 +1,4 @@
-"""What is wrong with a ``package.xml``, and where it disagrees with the files beside it."""
+"""Rules about ``package.xml``, and its agreement with the files beside it."""
 
 from __future__ import annotations
 
@@ -40,20 +40,20 @@ class PackageRule(Rule, ABC):
 
     @abstractmethod
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """What the rule finds in a package."""
+        """The findings in a package."""
 
 
 class ManifestRule(PackageRule):
     """A rule about a ``package.xml`` that is XML."""
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """What the rule finds in a package."""
+        """The findings in a package."""
         if package.manifest is not None:
             yield from self.check_manifest(package.manifest)
 
     @abstractmethod
     def check_manifest(self, manifest: Manifest) -> Iterator[Diagnostic]:
-        """What the rule finds in a manifest."""
+        """The findings in a manifest."""
 
 
 class ManifestMalformed(PackageRule):
@@ -82,7 +82,7 @@ class ManifestMalformed(PackageRule):
     severity = Severity.ERROR
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """What the rule finds in a package."""
+        """The findings in a package."""
         error = package.manifest_error
         if error is not None:
             found = error.diagnostics[0]
@@ -126,7 +126,7 @@ class ManifestIncomplete(ManifestRule):
     severity = Severity.ERROR
 
     def check_manifest(self, manifest: Manifest) -> Iterator[Diagnostic]:
-        """What the rule finds in a manifest."""
+        """The findings in a manifest."""
         root = manifest.root
         if root.tag != "package":
             yield self.report(phrase("the root of package.xml is <{tag}>, not <package>", tag=root.tag), root)
@@ -170,7 +170,7 @@ class ManifestVersion(ManifestRule):
     severity = Severity.ERROR
 
     def check_manifest(self, manifest: Manifest) -> Iterator[Diagnostic]:
-        """What the rule finds in a manifest."""
+        """The findings in a manifest."""
         version, element = manifest.text("version"), manifest.root.first("version")
         if version and element is not None and not re.fullmatch(r"\d+\.\d+\.\d+", version):
             yield self.report(
@@ -206,7 +206,7 @@ class DependencyRepeated(ManifestRule):
     name = "dependency-repeated"
 
     def check_manifest(self, manifest: Manifest) -> Iterator[Diagnostic]:
-        """What the rule finds in a manifest."""
+        """The findings in a manifest."""
         generic = {each.name: each for each in reversed(manifest.dependencies) if each.tag == "depend"}
         seen: dict[tuple[str, str], Dependency] = {}
         for each in manifest.dependencies:
@@ -244,7 +244,7 @@ class DependencyOnItself(ManifestRule):
     severity = Severity.ERROR
 
     def check_manifest(self, manifest: Manifest) -> Iterator[Diagnostic]:
-        """What the rule finds in a manifest."""
+        """The findings in a manifest."""
         for each in manifest.dependencies:
             if each.name == manifest.name:
                 message = phrase("the package '{name}' depends on itself", name=each.name)
@@ -281,7 +281,7 @@ class BuildTypeDiffers(PackageRule):
     severity = Severity.ERROR
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """What the rule finds in a package."""
+        """The findings in a package."""
         manifest = package.manifest
         if manifest is None:
             return

@@ -46,7 +46,7 @@ class SetupSyntaxError(PackageRule):
     severity = Severity.ERROR
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """What the rule finds in a package."""
+        """The findings in a package."""
         setup = package.setup
         if setup is not None and setup.error is not None:
             message = phrase("setup.py is not Python: {message}", message=foreign(setup.error.message))
@@ -75,7 +75,7 @@ class MarkerMissing(PackageRule):
     severity = Severity.ERROR
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """What the rule finds in a package."""
+        """The findings in a package."""
         setup = package.setup
         if setup is None or not is_ament_python(package):
             return
@@ -124,7 +124,7 @@ class MarkerNotInstalled(PackageRule):
     name = "marker-not-installed"
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """What the rule finds in a package."""
+        """The findings in a package."""
         setup = package.setup
         if setup is None or not setup.call or not setup.is_complete or not is_ament_python(package):
             return
@@ -164,7 +164,7 @@ class EntryPointMissing(PackageRule):
     severity = Severity.ERROR
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """What the rule finds in a package."""
+        """The findings in a package."""
         setup = package.setup
         if setup is None:
             return
@@ -218,7 +218,7 @@ class PythonPackageMissing(PackageRule):
     severity = Severity.ERROR
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """What the rule finds in a package."""
+        """The findings in a package."""
         setup = package.setup
         if setup is None or setup.packages is None or "package_dir" in setup.source.text:
             return
@@ -260,7 +260,7 @@ class SetupCfgDiffers(PackageRule):
     name = "setup-cfg-differs"
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """What the rule finds in a package."""
+        """The findings in a package."""
         setup = package.setup
         if setup is None or not setup.entry_points or not is_ament_python(package):
             return

@@ -1,4 +1,4 @@
-"""What rules about xacro files have in common."""
+"""The base of rules about xacro files."""
 
 from __future__ import annotations
 
@@ -25,4 +25,4 @@ class XacroRule(Rule, ABC):
 
     @abstractmethod
     def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
-        """What the rule finds in the files of a description."""
+        """The findings in the files of a description."""

@@ -1,4 +1,4 @@
-"""What a new package shall be."""
+"""The request for a new package."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ DEFAULT_LICENSE = "TODO: License declaration"
 
 @dataclass(frozen=True)
 class Maintainer:
-    """Who answers for a package."""
+    """A maintainer of a package."""
 
     name: str
     email: str

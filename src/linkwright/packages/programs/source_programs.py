@@ -49,7 +49,7 @@ runpy.run_path("setup.py", run_name="__main__")
 
 @dataclass
 class SourcePrograms:
-    """What a source package would install to ``lib/PACKAGE``.
+    """The programs that a source package would install to ``lib/PACKAGE``.
 
     Attributes:
         folder: the package.

@@ -1,1 +1,1 @@
-"""What the files of a package say: ``package.xml``, ``setup.py``, ``CMakeLists.txt`` and launch files."""
+"""Readers of a package's files: ``package.xml``, ``setup.py``, ``CMakeLists.txt`` and launch files."""

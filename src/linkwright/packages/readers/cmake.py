@@ -1,4 +1,4 @@
-"""What a ``CMakeLists.txt`` installs, read without CMake.
+"""Reading what a ``CMakeLists.txt`` installs, without CMake.
 
 Packages of descriptions, launch files, scripts and interfaces compile nothing; what CMake would do for them is to copy.
 """

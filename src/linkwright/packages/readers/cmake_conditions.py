@@ -1,4 +1,4 @@
-"""What ``if(...)`` and ``while(...)`` of CMake ask, and the answer: yes, no, or that only CMake could tell."""
+"""Conditions of ``if(...)`` and ``while(...)`` of CMake: true, false, or known to CMake alone."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the commands of CMake make of texts and lists: ``list``, ``string``, ``math``, ``get_filename_component``."""
+"""The commands of CMake on texts and lists: ``list``, ``string``, ``math``, ``get_filename_component``."""
 
 from __future__ import annotations
 

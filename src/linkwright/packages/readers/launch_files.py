@@ -1,4 +1,4 @@
-"""What a Python launch file says, read from its syntax tree without running it."""
+"""Reading a Python launch file from its syntax tree, without running it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a ``package.xml`` says (REP 149), with the places of what it says."""
+"""Reading ``package.xml`` (REP 149), with the places of its values."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a Python file says without being run: the strings and paths that its expressions stand for.
+"""The strings and paths that expressions of a Python file stand for, without running it.
 
 Only what needs no guessing gets a value: literals, names that are assigned once, paths that are put together, share
 folders of packages, and patterns of file names. Everything else is `UNKNOWN`, and rules are silent about it.
@@ -159,7 +159,7 @@ class PythonFile:
     # values
 
     def value(self, node: ast.expr | None, depth: int = 0) -> Value:
-        """What an expression stands for."""
+        """The value of an expression."""
         if node is None or depth > _DEEPEST:
             return UNKNOWN
         if isinstance(node, ast.Constant):

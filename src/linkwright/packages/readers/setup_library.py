@@ -38,7 +38,7 @@ ATTRIBUTES = frozenset(("name", "stem", "suffix", "suffixes", "parent", "parents
 
 
 class NotKnownError(Exception):
-    """What an expression stands for cannot be told."""
+    """The value of an expression is not known."""
 
 
 def bounded(value: Any) -> Any:
