@@ -102,7 +102,8 @@ def write(found: Mapping[str, Sequence[Measured]], *, corpus: bool) -> list[Path
         for name, rows in found.items():
             heads, about = (_HEADS_OF_SIZES, _ABOUT_SIZES[place]) if name == "sizes" else (_HEADS, "")
             old[TITLES[name][place]] = f"{TITLES[name][place]}\n\n{about}{_section(rows, heads[place])}"
-        ordered = [old[titles[place]] for titles in TITLES.values() if titles[place] in old]
+        ordered = [old.pop(titles[place]) for titles in TITLES.values() if titles[place] in old]
+        ordered += old.values()  # what others publish, which nobody measures here
         target.write_text("\n## ".join([head, *ordered]), encoding="utf-8")
         written.append(target)
     return written
