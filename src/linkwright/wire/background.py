@@ -18,6 +18,7 @@ from linkwright.graph.endpoints.info import EndpointInfo
 from linkwright.graph.log.logger import Logger, run_logged
 from linkwright.graph.names.identity import NodeIdentity
 from linkwright.wire.engine import Engine, Work
+from linkwright.wire.outside import Outside
 from linkwright.wire.switch import is_switched_off
 
 if TYPE_CHECKING:
@@ -34,22 +35,6 @@ _JOINED_WITHIN = 10.0
 _LOOK_AGAIN = 0.01
 _CLOSED_WITHIN = 0.05
 """Seconds after which who waits sees that the domain was left."""
-
-
-class Outside(Protocol):
-    """The nodes and endpoints that discovery found; written by one thread, read by any."""
-
-    changed_at: float
-    """When something changed last, by the steady clock."""
-
-    def nodes(self) -> list[NodeIdentity]:
-        """The nodes of other processes."""
-
-    def endpoints(self) -> list[EndpointInfo]:
-        """The endpoints of other processes."""
-
-    def watch(self, changed: Callable[[], None]) -> None:
-        """Register a callback for changes."""
 
 
 class Departed(Protocol):

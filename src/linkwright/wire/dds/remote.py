@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from threading import Lock
@@ -22,6 +22,7 @@ from linkwright.wire.dds.names import (
     ros_service_type,
 )
 from linkwright.wire.dds.participant import NAME, process_namespace
+from linkwright.wire.outside import Outside
 from linkwright.wire.type_names import ros_type
 
 _FAST_DDS = b"\x01\x0f"
@@ -154,19 +155,17 @@ class DepartureWatch(Protocol):
         """Note the endpoints that the nodes of a participant announce now."""
 
 
-class RemoteGraph:
-    """The nodes and endpoints that discovery found; written by one thread, read by any."""
+class RemoteGraph(Outside):
+    """The nodes and endpoints of other processes; see `Outside` for who writes and reads it."""
 
     def __init__(self) -> None:
+        super().__init__()
         self._lock = Lock()
         self._participants: dict[bytes, RemoteParticipant] = {}
         self._endpoints: dict[bytes, RemoteEndpoint] = {}
         self._by_handle: dict[int, RemoteEndpoint] = {}
         self._early: dict[bytes, ParticipantEntities] = {}
         self._dead: tuple[float, frozenset[bytes]] = (0.0, frozenset())
-        self._watchers: list[Callable[[], None]] = []
-        self.changed_at = time.monotonic()
-        """When something changed last, by the steady clock."""
         self.departures: DepartureWatch | None = None
         """What is told of endpoints that are gone."""
 
@@ -214,16 +213,6 @@ class RemoteGraph:
                 participant.entities = entities
             if self.departures is not None:
                 self.departures.announced(entities.participant, {gid for node in entities.nodes for gid in _gids(node)})
-
-    def announce(self) -> None:
-        """Notify the watchers that something has changed."""
-        self.changed_at = time.monotonic()
-        for watcher in tuple(self._watchers):
-            watcher()
-
-    def watch(self, changed: Callable[[], None]) -> None:
-        """Register a callback for changes, called in the thread of discovery."""
-        self._watchers.append(changed)
 
     def _forget(self, endpoint: RemoteEndpoint) -> None:
         if self.departures is not None:

@@ -4,29 +4,27 @@ from __future__ import annotations
 
 import time
 from collections import Counter
-from collections.abc import Callable
 from itertools import islice
 from threading import Lock
 
 from linkwright.graph.endpoints.info import EndpointInfo, EndpointKind
 from linkwright.graph.names.identity import NodeIdentity
+from linkwright.wire.outside import Outside
 from linkwright.wire.zenoh.tokens import Token
 
 _GONE_FOR = 0.5
 """Seconds for which a token stays gone; links are tried again after one second."""
 
 
-class RemoteGraph:
-    """The nodes and endpoints that discovery found; written by one thread, read by any."""
+class RemoteGraph(Outside):
+    """The nodes and endpoints of other sessions; see `Outside` for who writes and reads it."""
 
     def __init__(self) -> None:
+        super().__init__()
         self._lock = Lock()
         self._tokens: dict[str, Token] = {}
         self._counts: Counter[tuple[EndpointKind, str]] = Counter()
-        self._watchers: list[Callable[[], None]] = []
         self._gone: dict[str, float] = {}
-        self.changed_at = time.monotonic()
-        """When something changed last, by the steady clock."""
 
     # --- from discovery ----------------------------------------------------------------------------------------------
 
@@ -78,16 +76,6 @@ class RemoteGraph:
             for key in [key for key, each in self._tokens.items() if each.kind is None]:
                 if self._tokens[key].node.full_name == full_name:
                     del self._tokens[key]
-
-    def announce(self) -> None:
-        """Notify the watchers that something has changed."""
-        self.changed_at = time.monotonic()
-        for watcher in tuple(self._watchers):
-            watcher()
-
-    def watch(self, changed: Callable[[], None]) -> None:
-        """Register a callback for changes, called in the thread of discovery."""
-        self._watchers.append(changed)
 
     # --- asked by the transport --------------------------------------------------------------------------------------
 
