@@ -238,6 +238,9 @@ async def test_a_silent_topic_says_who_is_silent_and_where_such_messages_are(mon
         node.create_publisher(PointStamped, "/other", 5)
         there = "nobody publishes the topic; there is geometry_msgs/msg/PointStamped on /other"
         await eventually(lambda: said() == there, what=said)
+        for name in ("/a", "/b", "/clicked_points", "/c"):
+            node.create_publisher(PointStamped, name, 5)
+        await eventually(lambda: said().startswith(there.replace("/other", "/clicked_points, ")), what=said)
         node.create_publisher(PointStamped, "/clicked_point", 5)
         await eventually(lambda: said() == "nothing came yet from clicks", what=said)
 

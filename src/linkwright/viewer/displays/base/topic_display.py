@@ -10,6 +10,7 @@ from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
+from difflib import SequenceMatcher
 from typing import Any, ClassVar
 
 import numpy as np
@@ -105,7 +106,7 @@ _OTHER_CLOCK = 5.0
 """Seconds between a message's stamp and the time here from which on clocks are to blame, and not a slow computer."""
 
 _MOST_OTHERS = 3
-"""Topics with such messages that are named where nobody publishes the one that is shown."""
+"""Topics with such messages that are named where nobody publishes the one that is shown: the likest first."""
 
 
 class TopicDisplay(DataDisplay, ABC):
@@ -339,7 +340,8 @@ class TopicDisplay(DataDisplay, ABC):
         if publishers:
             return phrase("nothing came yet from {nodes}", nodes=joined(sorted({name for name, _ in publishers})))
         names = (name for name, found in self.context.node.get_topic_names_and_types() if message in found)
-        there = sorted(name for name in names if self._publishers(name))[:_MOST_OTHERS]
+        there = sorted(name for name in names if self._publishers(name))
+        there = sorted(there, key=lambda name: -SequenceMatcher(None, topic, name).ratio())[:_MOST_OTHERS]
         if there:
             return phrase(
                 "nobody publishes the topic; there is {message} on {topics}", message=message, topics=joined(there)
