@@ -46,6 +46,7 @@ UNDERSTOOD = [
     ("去红球那里", "go_to_object_in_chinese", {"object": "red ball"}),
     ("go to the green ball", "go_to_object", {"object": "green ball"}),
     ("去蓝色的球那里", "go_to_object_in_chinese", {"object": "blue ball"}),
+    ("去红色的球", "go_to_object_in_chinese", {"object": "red ball"}),
     ("what do you see", "describe", {}),
     ("你看见什么", "describe_in_chinese", {}),
 ]
