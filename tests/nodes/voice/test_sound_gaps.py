@@ -65,6 +65,21 @@ def test_what_the_source_itself_lost_is_told_however_much_it_is():
     assert np.allclose([each for each in found if each], 0.4, atol=0.005)
 
 
+def test_small_losses_are_told_together_and_hide_no_large_one():
+    stamps, gaps = SampleStamps(), SoundGaps()
+    losses = {10: 0.01, 11: 0.04, 12: 0.03, 13: 0.5, 20: 0.02}
+    told = [stamps.stamp(BLOCK, round((10.0 + 0.1 * each) * SECOND), losses.get(each, 0.0)) for each in range(30)]
+    found = [gaps.missing(stamp, BLOCK) for stamp in told]
+    assert [number for number, each in enumerate(found) if each] == [12, 13]
+    assert np.allclose([found[12], found[13]], [0.08, 0.5], atol=0.005)
+
+
+def test_of_who_stamps_blocks_as_they_come_small_jumps_are_no_gaps():
+    gaps = SoundGaps()
+    late = [0, 0, 0, 0, 0.03, 0, 0.04, 0, 0, 0, 0, 0.03, 0, 0.04, 0]
+    assert not any(gaps.missing(round((10.0 + 0.1 * each + by) * SECOND), BLOCK) for each, by in enumerate(late))
+
+
 def test_stamps_do_not_run_ahead_of_the_clock_whatever_the_source_says_it_lost():
     stamps = SampleStamps()
     for each in range(20):

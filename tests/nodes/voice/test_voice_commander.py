@@ -270,6 +270,18 @@ async def test_who_was_understood_or_answered_is_not_told_of_what_else_was_heard
     assert robot.said["response"] == answers
 
 
+async def test_of_a_press_with_a_gap_anywhere_it_is_asked_for_again(engine, talk):
+    robot = talk(engine="told")
+    await robot.hold(True)
+    for each in range(5):
+        await robot.say(stamp=10.0 + 0.1 * each)
+    await robot.say(stamp=10.6)  # a tenth of a second is missing, long before what is heard
+    engine.says_at_end.append(final("", start=5.0, nearest="forward"))
+    await robot.hold(False)
+    await eventually(lambda: robot.said["response"])
+    assert robot.said["response"] == ["I did not hear all of that: say it again"]
+
+
 async def test_each_press_is_answered_by_itself_however_late_the_engine_is(engine, talk):
     robot = talk(engine="told")
     engine.says_at_end.append(final(""))

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.speech.engine import Heard
 
+SAY_IT_AGAIN = phrase("I did not hear all of that: say it again")
+
 
 @dataclass(slots=True)
 class _Press:
@@ -15,10 +17,12 @@ class _Press:
 
     Attributes:
         is_settled: something of it was done or answered.
+        has_gaps: sound of it was lost.
         unknown: what was heard last that is none of the commands.
     """
 
     is_settled: bool = False
+    has_gaps: bool = False
     unknown: Heard | None = None
 
 
@@ -37,6 +41,11 @@ class Presses:
         if self._presses:
             self._presses[0].is_settled = True
 
+    def note_gap(self) -> None:
+        """Some sound was lost since the button was pressed last."""
+        if self._presses:
+            self._presses[-1].has_gaps = True
+
     def note_unknown(self, heard: Heard) -> None:
         """Something was said that is none of the commands."""
         if self._presses:
@@ -49,6 +58,8 @@ class Presses:
         press = self._presses.popleft()
         if press.is_settled or press.unknown is None:
             return None
+        if press.has_gaps:
+            return SAY_IT_AGAIN
         if press.unknown.nearest:
             return phrase(
                 "I heard something that is none of the commands: '{text}' is the nearest", text=press.unknown.nearest

@@ -55,10 +55,12 @@ class SoundGaps:
     def __init__(self) -> None:
         self._next: int | None = None
         self._steady = 0
+        self._small = 0  # jumps too small to be told by themselves
 
     def restart(self) -> None:
         """What comes next need not follow what came before; who publishes is taken to stamp it in the same way."""
         self._next = None
+        self._small = 0
 
     def missing(self, stamp: int, samples: int) -> float:
         """The seconds of sound that are missing before a block.
@@ -70,7 +72,15 @@ class SoundGaps:
         length = samples * _SECOND // RATE
         jump = 0 if self._next is None else stamp - self._next
         self._next = stamp + length
-        if self._steady >= _STEADY_BLOCKS and jump > _JUMP:
-            return jump / _SECOND
-        self._steady = self._steady + 1 if abs(jump) <= _STEADY else 0
-        return 0.0
+        if jump <= _STEADY:
+            # Only who stamps blocks as they come is ever early after it was late.
+            self._steady, self._small = (self._steady + 1, self._small) if jump >= -_STEADY else (0, 0)
+            return 0.0
+        if self._steady < _STEADY_BLOCKS:
+            self._steady = 0
+            return 0.0
+        self._small += jump
+        if self._small <= _JUMP:
+            return 0.0
+        missing, self._small = self._small, 0
+        return missing / _SECOND

@@ -30,7 +30,7 @@ from linkwright.nodes.voice.audio_messages import (
 from linkwright.nodes.voice.conversation import Conversation
 from linkwright.nodes.voice.driving import Driver, Ending
 from linkwright.nodes.voice.listening import Listener
-from linkwright.nodes.voice.presses import Presses
+from linkwright.nodes.voice.presses import SAY_IT_AGAIN, Presses
 from linkwright.nodes.voice.requests import Requests
 from linkwright.nodes.voice.sound_gaps import SoundGaps
 from linkwright.speech.commands.command_file import DEFAULT_FILE, read_command_file
@@ -182,11 +182,13 @@ class VoiceCommander(SingleNode):
         missing = self._gaps.missing(stamp.sec * 10**9 + stamp.nanosec, samples.size)
         if missing:
             self._listener.note_gap(missing)
+            self._presses.note_gap()
             self._node.get_logger().warning(
                 phrase("{seconds} s of sound were lost on the way", seconds=f"{missing:.1f}"),
                 throttle_duration_sec=5.0,
             )
         if not self._listener.hear(samples):
+            self._presses.note_gap()
             self._node.get_logger().warning(
                 phrase("the speech engine is too slow for this machine: sound is left out"), throttle_duration_sec=5.0
             )
@@ -225,7 +227,7 @@ class VoiceCommander(SingleNode):
         if self._commands.is_stop(heard.text) and (self._held or self._conversation.is_busy):
             self._conversation.stop(heard.text)
         elif lost and (self._is_addressed or (heard.text and is_certain)):
-            self._conversation.answer(phrase("I did not hear all of that: say it again"))
+            self._conversation.answer(SAY_IT_AGAIN)
         elif heard.text and not is_certain and self._is_addressed and heard.confidence >= _NEARLY * self._confidence:
             self._conversation.answer(phrase("I am not sure that I heard '{text}': say it again", text=heard.text))
         else:
