@@ -1,11 +1,14 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
+import { obstacle } from "../src/panels/voice/voice-words";
 import type { PageMessage } from "../src/protocol";
 import { GapFinder } from "../src/state/voice/gaps";
 import { meterPart } from "../src/state/voice/level";
 import { Microphone, type OpenCapture } from "../src/state/voice/microphone";
 import { pcm, Resampler } from "../src/state/voice/resampler";
 import { soundFrame, VoiceState } from "../src/state/voice/voice";
+
+vi.mock("../src/strings", async () => ({ strings: (await import("../src/strings/en")).en }));
 
 describe("resampling", () => {
   const tone = (hertz: number, rate: number, count: number): Float32Array =>
@@ -185,8 +188,13 @@ describe("talking", () => {
     voice.release();
     await soon();
     expect(voice.hasGaps).toBe(true);
+    expect(obstacle(voice)).toContain("gaps");
+    connection.message.emit({ type: "voice_said", number: 1, part: "response", text: "forward" });
+    expect(obstacle(voice)).toBe(null); // it was understood after all, or the robot asks for it again itself
     voice.press();
     expect(voice.hasGaps).toBe(false);
+    deliver(Int16Array.of(1), 0.04);
+    expect(obstacle(voice)).toContain("gaps");
   });
 
   it("a button let go before the microphone is there sends nothing", async () => {

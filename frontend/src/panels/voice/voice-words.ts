@@ -9,7 +9,7 @@ export function obstacle(voice: VoiceState): string | null {
   if (microphone.problem === "failed") return words.failed(microphone.detail);
   if (microphone.problem !== null) return words.problems[microphone.problem];
   if (told?.cut === true) return words.cut;
-  if (voice.hasGaps) return words.gaps;
+  if (voice.hasGaps && !voice.answered) return words.gaps;
   if (!held && !open) return null;
   if (told?.talking === "another") return words.another;
   if (told?.sound_listeners === 0) return words.nobody;

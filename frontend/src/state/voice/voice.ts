@@ -51,6 +51,7 @@ export class VoiceState {
   private timer = 0;
   /** Seconds that the microphone had lost before what is being said. */
   private lostBefore = 0;
+  private isAnswered = false;
   /** Seconds that it had lost until the last block. */
   private lostUntil = 0;
 
@@ -109,6 +110,11 @@ export class VoiceState {
     return !this.listening && this.microphone.lostSeconds - this.lostBefore > MOST_LOST;
   }
 
+  /** Whether the robot has answered since the button was pressed last: then it says itself what is to be said again. */
+  get answered(): boolean {
+    return this.isAnswered;
+  }
+
   /** Somebody wants to know what is said, or no longer. */
   watch(who: object, wanted: boolean): void {
     const before = this.watched;
@@ -123,6 +129,7 @@ export class VoiceState {
   press(): void {
     if (this.pressed) return;
     this.pressed = true;
+    this.isAnswered = false;
     this.lostBefore = this.microphone.lostSeconds;
     this.speaker.hush();
     this.watch(this.microphone, true);
@@ -243,6 +250,7 @@ export class VoiceState {
   }
 
   private take(part: SaidPart, text: string): void {
+    if (part === "response") this.isAnswered = true;
     if (part === "partial") this.partial = text;
     else {
       if (part === "text") this.partial = "";

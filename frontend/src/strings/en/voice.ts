@@ -67,7 +67,7 @@ export const voice = {
     },
   },
   cut: "The page sent more sound than time has passed and was cut off. Press the button again.",
-  gaps: "The sound had gaps: this computer was too busy to take all of it. Say it again.",
+  gaps: "The sound had gaps: this computer was too busy to take all of it. If nothing comes of it, say it again.",
   another: "Another page is talking; this one is heard when it has finished.",
   nobody: "Nobody listens: start the voice node, for example with linkwright launch my_robot_voice voice.launch.py",
 };

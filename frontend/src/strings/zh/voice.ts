@@ -69,7 +69,7 @@ export const voice: typeof english = {
     },
   },
   cut: "本页面发送的声音超过了实际时长，已被切断。请重新按下按钮。",
-  gaps: "声音有缺失：这台计算机太忙，没能全部录下。请再说一遍。",
+  gaps: "声音有缺失：这台计算机太忙，没能全部录下。如果没有反应，请再说一遍。",
   another: "另一个页面正在说话；等它说完后才轮到本页面。",
   nobody: "没有节点在听：请启动语音节点，例如 linkwright launch my_robot_voice voice.launch.py",
 };
