@@ -83,7 +83,7 @@ class DescriptionSource:
         self._on_refusal = on_refusal
         self._subscriptions: list[Any] = []
         self._reading: asyncio.Task[None] | None = None
-        self._heard: set[bytes] = set()
+        self._heard: dict[bytes, EndpointInfo | None] = {}
         self.publisher: bytes | None = None
         """The GID of who published the description that was received last; None before, and of files."""
 
@@ -127,12 +127,22 @@ class DescriptionSource:
         """Whose descriptions came, by GIDs, without those who are gone: node, and machine where that is told."""
         if not self._heard:
             return {}
-        endpoints = self._context.node.graph.endpoints()
-        return {each.gid: _node_text(each) for each in endpoints if each.gid in self._heard}
+        gids = set(map(self.current, self._heard))
+        return {each.gid: _node_text(each) for each in self._context.node.graph.endpoints() if each.gid in gids}
+
+    def current(self, gid: bytes) -> bytes:
+        """The GID that a publisher of descriptions has now: another in this process, once that joined a network."""
+        known = self._heard.get(gid)
+        if known is None or not known.local:
+            return gid
+        now = (each for each in self._context.node.graph.endpoints() if each.local and each.kind is known.kind)
+        return next((each.gid for each in now if (each.node, each.name) == (known.node, known.name)), gid)
 
     def _received(self, message: String, info: MessageInfo) -> None:
         self.publisher = info.publisher_gid
-        self._heard.add(self.publisher)
+        if self.publisher not in self._heard:
+            endpoints = self._context.node.graph.endpoints()
+            self._heard[self.publisher] = next((each for each in endpoints if each.gid == self.publisher), None)
         self._on_text(message.data)
 
     def _read_file(self, address: str) -> Phrase | None:

@@ -407,6 +407,36 @@ async def test_whose_description_is_shown_is_told_where_two_nodes_publish_one():
             node.destroy_node()
 
 
+async def test_a_description_changes_hands_with_a_word_after_this_process_has_joined_a_network():
+    """Then publishers have other GIDs than when their first messages came."""
+    async with world(config()) as made:
+        first = made.graph.create_node("first")
+        publisher = first.create_publisher(String, "robot_description", DESCRIPTION_QOS)
+        publisher.publish(String(ARM))
+        await made.settle()
+        publisher.gid = bytes(range(16))
+        second = published(made, "second", ARM.replace('name="arm"', 'name="other"'))
+        await made.settle()
+        level, text = made.status("RobotModel")["Topic"]
+        assert (level, "of /second is shown; /first publish" in text) == ("warn", True)
+        publisher.publish(String(ARM))
+        await made.settle()
+        assert "of /first is shown; /second publish" in made.status("RobotModel")["Topic"][1]
+        second.destroy_node()
+
+
+async def test_a_description_of_a_node_that_left_at_once_is_told_of():
+    async with world(config()) as made:
+        published(made, "first", ARM)
+        await made.settle()
+        second = published(made, "second", ARM.replace('name="arm"', 'name="other"'))
+        second.destroy_node()
+        await made.settle()
+        assert made.display("RobotModel").robot.name == "other"
+        level, text = made.status("RobotModel")["Topic"]
+        assert (level, "of an unknown node is shown; /first publish" in text) == ("warn", True)
+
+
 async def test_a_description_of_a_node_that_was_started_again_takes_its_place_without_a_word():
     async with world(config()) as made:
         first = published(made, "first", ARM)

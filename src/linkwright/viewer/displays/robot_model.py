@@ -283,10 +283,11 @@ class RobotModelDisplay(ViewerDisplay):
 
     def _topic_row(self, is_other: bool) -> StatusRow:
         """Whose description it is, where several nodes publish one; a warning once these were not the same."""
-        before, self._publisher = self._publisher, self._source.publisher
+        before = None if self._publisher is None else self._source.current(self._publisher)
+        self._publisher = self._source.publisher
         publishers = self._source.publishers()
-        owner = publishers.pop(self._publisher or b"", "")
-        if not owner or not publishers:
+        owner = publishers.pop(self._publisher or b"", phrase("an unknown node"))
+        if not publishers:
             self._is_contested = False
             return StatusRow("Topic", "ok", phrase("OK"))
         if is_other and before is not None and before in publishers:
