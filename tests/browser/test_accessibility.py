@@ -86,6 +86,28 @@ def test_the_page_of_a_robot_and_the_panels_of_its_description(start, open_page,
     assert found_in_panels(page, "Diagnostics") == []
 
 
+RING = """() => {
+  const { outlineStyle, outlineWidth, boxShadow } = getComputedStyle(document.activeElement);
+  const name = document.activeElement.getAttribute("aria-label") ?? document.activeElement.textContent;
+  const ring = (outlineStyle !== "none" && parseFloat(outlineWidth) >= 2) || boxShadow !== "none";
+  return [name, ring || document.activeElement.matches(".slider"), document.activeElement === document.body];
+}"""
+"""A slider's thumb has the ring."""
+
+
+def test_what_the_keyboard_reaches_has_a_ring_of_two_pixels(start, open_page, tmp_path: Path):
+    page = open_page(start("view", str(write_arm(tmp_path))))
+    reached: list[str] = []
+    for _ in range(150):
+        page.keyboard.press("Tab")
+        name, has_ring, is_end = page.evaluate(RING)
+        if is_end:
+            break
+        assert has_ring, name
+        reached.append(name)
+    assert len(reached) > 40, reached
+
+
 def test_displays_their_menu_and_their_dialogs(live: Callable[..., LiveViewer], open_page):
     page = open_page(live(configuration(DISPLAYS)), wait=False)
     until(page, "lw.displays.length === 3")
