@@ -1,10 +1,13 @@
 import { beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection } from "../src/connection/connection";
+import { halvesOf } from "../src/panels/joint-row";
 import type { JointControl, PageMessage } from "../src/protocol";
 import { JointsState } from "../src/state/joints";
 import { PoseStore, posesOf, srdfOf, standsAs } from "../src/state/named-poses";
 import { browserStorage } from "../src/state/storage";
 import { roundTrip, Sweep } from "../src/state/sweep";
+
+vi.mock("../src/strings", async () => ({ strings: (await import("../src/strings/en")).en }));
 
 function control(name: string, part: Partial<JointControl> = {}): JointControl {
   return { name, kind: "revolute", lower: -1, upper: 2, zero: 0, mimic: null, multiplier: 1, offset: 0, ...part };
@@ -115,5 +118,14 @@ describe("a sweep", () => {
     const all = new Sweep(controls, start, "all").positionsAt(1);
     expect(all).toEqual({ a: 2, b: 0.75 });
     expect(new Sweep([], {}, "one").positionsAt(3)).toEqual({});
+  });
+});
+
+describe("the name of a joint", () => {
+  it("is whole where it is short, and keeps its end where it is long", () => {
+    expect(halvesOf("j1")).toEqual(["j1", ""]);
+    expect(halvesOf("left_joint")).toEqual(["left_joint", ""]);
+    expect(halvesOf("front_left_wheel_joint")).toEqual(["front_left_", "wheel_joint"]);
+    expect(halvesOf("front_left_caster_rotation_joint")[1]).toBe("rotation_joint");
   });
 });

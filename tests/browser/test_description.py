@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from tests.browser.arm import SEGMENT_JOINT, SEGMENT_LINK, write_arm
@@ -134,3 +136,16 @@ def test_an_edit_lights_up_and_a_mistake_leads_to_its_place(page, arm):
     problem.wait_for()
     arm.write_text(good)
     problem.wait_for(state="detached")
+
+
+def test_a_robot_that_was_broken_at_first_is_shown_without_axes_when_it_is_mended(start, open_page, tmp_path):
+    file = tmp_path / "robot.urdf.xacro"
+    good = Path(write_arm(tmp_path)).read_text()
+    file.write_text(good.replace("</robot>", "<link/></robot>"))
+    page = open_page(start("view", str(file)), wait=False)
+    page.locator(".banner").wait_for()
+    file.write_text(good)
+    until(page, "lw.robot?.visuals > 0 && lw.ready")
+    page.locator(".banner").wait_for(state="hidden")
+    shown = {each["class"].rpartition("/")[2]: each["enabled"] for each in state(page, "displays")}
+    assert shown == {"Grid": True, "RobotModel": True, "TF": False}

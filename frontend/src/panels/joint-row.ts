@@ -11,6 +11,14 @@ const HANDS_OFF_MS = 250;
 
 /** So much of the end of a name stays in a narrow panel: names of joints that belong together begin alike, and often end in `_joint`. */
 const END = 14;
+/** A name so short is never cut. */
+const SHORT = 10;
+
+/** A name as what may be cut of it, and its end, which stays. */
+export function halvesOf(name: string): readonly [string, string] {
+  const cut = name.length > SHORT ? name.length - Math.min(END, Math.floor(name.length / 2)) : name.length;
+  return [name.slice(0, cut), name.slice(cut)];
+}
 
 /** A joint of the Joints panel: name, number, slider, limits. */
 export class JointRow {
@@ -30,8 +38,7 @@ export class JointRow {
     private readonly moved: (position: number) => void,
   ) {
     const follower = joint.mimic !== null;
-    const cut = joint.name.length - Math.min(END, Math.floor(joint.name.length / 2));
-    const halves = [joint.name.slice(0, cut), joint.name.slice(cut)].map((part) => h("span", {}, part));
+    const halves = halvesOf(joint.name).map((part) => h("span", {}, part));
     // Screen readers have the whole name from slider and field.
     const name = h("span", { class: "joint-name", title: joint.name, aria: { hidden: "true" } }, ...halves);
     const mimic = follower

@@ -238,7 +238,7 @@ class ModelView:
         self.host.plan(plan)
 
     def _viewer_config(self) -> RvizConfig:
-        """Grid, RobotModel and TF, off where visuals can be drawn; the model's root link is the fixed frame."""
+        """Grid, RobotModel, and TF, on for a robot without visuals to be drawn; its root link is the fixed frame."""
         from linkwright.viewer import RvizConfig, has_visuals, size_of
 
         library = self.descriptions.library
@@ -246,7 +246,7 @@ class ModelView:
         frame = robot.root if robot is not None else _first_link(self._call.path)
         size = size_of(robot) if robot is not None else None
         finder = library.packages(self._text or "") or self.finder
-        frames = robot is None or not has_visuals(robot, finder)
+        frames = robot is not None and not has_visuals(robot, finder)
         return RvizConfig.for_model(frame, size=size, frames=frames, name=str(self._call.path))
 
     # --- what its nodes and signals ask for ---------------------------------------------------------------------
