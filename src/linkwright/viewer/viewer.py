@@ -266,8 +266,11 @@ class Viewer:
         return [*messages, *self.configured(manager), table], frames
 
     def _openings(self, *, before_displays: bool) -> list[ServerMessage]:
-        features = [each for each in self._features if each.BEFORE_DISPLAYS is before_displays]
-        return [message for feature in features for message in feature.opening()]
+        messages: list[ServerMessage] = []
+        for feature in self._features:  # one may make others, which have something to tell, too
+            if feature.BEFORE_DISPLAYS is before_displays:
+                messages += feature.opening()
+        return messages
 
     def configured(self, manager: VisualizationManager) -> list[ServerMessage]:
         """The messages of all features about a configuration."""
