@@ -33,9 +33,7 @@ _SOFTER = 7.0  # dB below the loudest: so much softer is all that is heard besid
 _SOFT_BEGINNING = 8  # frames by which a word may begin before it is as loud as that
 _ENOUGH = 15  # frames from which noise is known
 _UNSTEADY = 1.2  # dB, deviation of the level: that of steady noise is 1, that of babble 2 and more
-_OVER_STEADY = (
-    5.0  # dB, in the middle, above what noise would have that were steady: that has up to 4, babble from 8 on
-)
+_OVER_STEADY = 5.0  # dB, in the middle, above what it would be, were it steady: up to 4 if so, from 8 on in babble
 _DEVIATIONS = 1.5  # by which noise that swells is above its mean
 
 
