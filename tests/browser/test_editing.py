@@ -197,11 +197,16 @@ def test_handles_that_are_out_of_sight_are_looked_at(start, open_page, file: Pat
     assert state(page, "view.yaw") == yaw, "what is in sight needs no other view"
     page.get_by_role("tab", name="Links").click()
     page.get_by_text("far", exact=True).first.click()
+    becomes(lambda: number(page, "xyz2").input_value(), "4")
     size = page.locator(".canvas-box canvas").bounding_box()
-    inside = (
-        f"((h) => h.x > 0 && h.x < {size['width']} && h.y > 0 && h.y < {size['height']})(lw.panels.editing.handles.x)"
-    )
-    until(page, f"lw.panels.editing.handles !== undefined && {inside}")
+
+    def is_in_sight() -> bool:
+        tips = state(page, "panels.editing.handles").values()
+        return all(0 < tip["x"] < size["width"] and 0 < tip["y"] < size["height"] for tip in tips)
+
+    becomes(is_in_sight, True)
+    assert state(page, "view.yaw") == yaw, "from the same side"
+    assert state(page, "view.distance") > 4, "and with the robot beside them"
 
 
 def test_an_axis_is_turned_and_has_no_place_to_be_moved_to(start, open_page, file: Path) -> None:

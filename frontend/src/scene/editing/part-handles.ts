@@ -6,6 +6,7 @@ import { snapped } from "../../state/modelling/snapping";
 import type { Session } from "../../state/session";
 import { RobotModelDrawing } from "../displays/robot-model";
 import { Gizmo } from "../modelling/gizmo";
+import { spanOf } from "../first-look";
 import { framePose, poseMatrix } from "../pose";
 import type { Stage } from "../stage";
 import type { ToolEvent } from "../tools/tool";
@@ -100,7 +101,7 @@ export class PartHandles {
     this.seek(shown);
   }
 
-  /** Turns the camera to the handles of a part that was chosen, where they are not in sight. */
+  /** Goes back with the camera until the handles of a part that was chosen are seen beside the robot, where they are not in sight. */
   private seek({ part, name, index }: EditablePart): void {
     const chosen = [part, name, index].join(" ");
     if (chosen === this.sought) return;
@@ -108,7 +109,12 @@ export class PartHandles {
     const { x, y } = this.gizmo.seenAt(new Vector3());
     const { width, height } = this.stage.viewport.size;
     const margin = Math.min(LEAST_ROOM, width / 4, height / 4);
-    if (x < margin || y < margin || x > width - margin || y > height - margin) this.session.view.lookAt(new Vector3().setFromMatrixPosition(this.gizmo.pose).toArray());
+    if (x >= margin && y >= margin && x <= width - margin && y <= height - margin) return;
+    const box = this.stage.boundsOf(this.editing.current?.display ?? "");
+    const around = box.getSize(new Vector3()).length() / 10;
+    box.expandByPoint(new Vector3().setFromMatrixPosition(this.gizmo.pose)).expandByScalar(around);
+    const span = spanOf(box);
+    if (span) this.session.view.fit(span, this.stage.room.take());
   }
 
   /** What the numbers of a part are relative to, in the fixed frame; null where nothing tells where it is. */
