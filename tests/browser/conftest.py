@@ -202,7 +202,7 @@ def open_page(browser: Browser) -> Iterator[Callable[..., Page]]:
         page.on("console", lambda message: complaints.append(message.text) if message.type == "error" else None)
         page.goto(program.url)
         if wait:
-            page.wait_for_function("window.linkwright?.ready === true")
+            page.wait_for_function("window.linkwright?.ready === true", polling=50)
         return page
 
     yield open_url
@@ -229,7 +229,7 @@ def state(page: Page, name: str) -> Any:
 def until(page: Page, condition: str) -> None:
     """Wait until a JavaScript condition over `lw` (window.linkwright) holds."""
     page.wait_for_function(
-        f"() => {{ const lw = window.linkwright; return lw && ({condition}); }}", timeout=1000 * SECONDS
+        f"() => {{ const lw = window.linkwright; return lw && ({condition}); }}", timeout=1000 * SECONDS, polling=50
     )
 
 
