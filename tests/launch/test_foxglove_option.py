@@ -14,7 +14,7 @@ from linkwright.packages import PackageFinder
 def launched(monkeypatch, options: LaunchOptions) -> list[Node]:
     seen: list[LaunchDescription] = []
 
-    async def run(description, *_):
+    async def run(description, *_, noninteractive):
         seen.append(description)
         return True
 
