@@ -254,6 +254,17 @@ async def test_a_default_out_of_range_is_refused(graph):
     assert not node.has_parameter("p")
 
 
+@pytest.mark.parametrize("made", [ParameterDescriptor, DescriptorMessage])
+async def test_one_descriptor_may_be_given_for_several_parameters(graph, made):
+    node = graph.create_node("sharing")
+    share = made(read_only=True)
+    node.declare_parameter("wide", 1.5, share)
+    node.declare_parameter("whole", 2, share)
+    described = node.describe_parameters(["wide", "whole"])
+    assert [(each.name, each.type, each.read_only) for each in described] == [("wide", 3, True), ("whole", 2, True)]
+    assert not share.name
+
+
 async def test_descriptors_are_described_and_replaced(graph):
     node = graph.create_node("node")
     node.declare_parameter("p", 5, ParameterDescriptor(description="how many"))

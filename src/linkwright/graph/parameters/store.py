@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -88,6 +89,7 @@ class ParameterStore:
         """Create a parameter with its override or else the default given; see ``Node.declare_parameter``."""
         if not name:
             raise InvalidParameterException(name)
+        descriptor = copy.copy(descriptor)  # one may be given for several parameters, and gets a name and type here
         if only_name:
             warnings.warn(_ONLY_A_NAME.format(name), stacklevel=4)
             descriptor.dynamic_typing = True
@@ -142,7 +144,7 @@ class ParameterStore:
         return {name[len(start) :]: parameter for name, parameter in self._parameters.items() if name.startswith(start)}
 
     def descriptor(self, name: str) -> Any:
-        """The descriptor of a parameter: the object that it was declared with."""
+        """The descriptor of a parameter, a copy of what it was declared with, or what it was given since."""
         if name in self._descriptors:
             return self._descriptors[name]
         if self.allow_undeclared:
