@@ -1,10 +1,9 @@
 import { Raycaster, Vector3, type Box3, type Matrix4 } from "three";
 import type { ViewState } from "../state/view";
 import type { ViewSize } from "../state/views/camera";
-import type { Span } from "../state/views/fit";
+import type { Span, Vector } from "../state/views/vector";
 import { aroundFrom } from "../state/views/orbit";
 import { around, overview } from "../state/views/surroundings";
-import type { Vector } from "../state/views/vector";
 import type { ViewValues } from "../state/views/view-controller";
 import { TOUCHED } from "./layers";
 

@@ -1,6 +1,6 @@
 import type { Camera } from "three";
 import type { ViewSize } from "../state/views/camera";
-import type { Span } from "../state/views/fit";
+import type { Span } from "../state/views/vector";
 import { reachOf, type ScreenReach } from "./screen-reach";
 
 /** The share of the canvas's width, and of its height, that may be left out when the camera looks at all of something. */

@@ -1,8 +1,7 @@
 import { Box3, Raycaster, Vector2 } from "three";
 import type { Session } from "../state/session";
 import type { SelectedItem, SelectionMode } from "../state/selection";
-import type { Span } from "../state/views/fit";
-import { add, scale, type Vector } from "../state/views/vector";
+import { add, scale, type Span, type Vector } from "../state/views/vector";
 import { DepthMap } from "./depth-map";
 import { spanOf } from "./first-look";
 import type { Drawing } from "./displays/drawing";

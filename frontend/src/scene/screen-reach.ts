@@ -1,6 +1,6 @@
 import { Vector3, type Camera } from "three";
 import type { ViewSize } from "../state/views/camera";
-import type { Span } from "../state/views/fit";
+import type { Span } from "../state/views/vector";
 
 /** Where a box is on a canvas: from where to where right of its left edge, and below its upper edge, pixels. */
 export interface ScreenReach {

@@ -1,7 +1,7 @@
 import { Box3, Group, type Camera, type Object3D } from "three";
 import type { DisplayState } from "../state/displays";
 import type { Session } from "../state/session";
-import type { Span } from "../state/views/fit";
+import type { Span } from "../state/views/vector";
 import type { PanelHost } from "./displays/display-panel";
 import type { Drawing, DrawnScene } from "./displays/drawing";
 import { Pacing } from "./displays/pacing";

@@ -4,8 +4,8 @@ import type { FrameStore } from "./frames";
 import { Signal } from "./signal";
 import { cameraInFixed, cameraInTarget, FIXED, toTarget, type Camera, type Target, type ViewSize } from "./views/camera";
 import { controllerOf } from "./views/catalog";
-import { holds, spanInTarget, type Span } from "./views/fit";
-import { distanceBetween, type Vector } from "./views/vector";
+import { holds, spanInTarget } from "./views/fit";
+import { distanceBetween, type Span, type Vector } from "./views/vector";
 import type { Drag, ViewController, ViewValues } from "./views/view-controller";
 
 export const FIXED_FRAME = "<Fixed Frame>";

@@ -5,18 +5,7 @@ import { formatColor, parseColor } from "./colors";
 import { NameEditor } from "./name-editor";
 import { clamp, formatNumber, parseNumber, stepFor } from "./numbers";
 import { TextEditor } from "./text-editor";
-import type { TreeItem } from "./tree-item";
-
-/** The right half of a row. */
-export interface Editor {
-  readonly element: HTMLElement;
-  /** Shows the item's value, unless the user is just editing it. */
-  show(item: TreeItem): void;
-  /** Takes the keyboard; false when there is nothing to edit. */
-  focus(): boolean;
-  /** Space on the row: flips a box. */
-  toggle?(): void;
-}
+import type { Editor, TreeItem } from "./tree-item";
 
 /** Makes the editor for an item; `current` gives the newest item of the row, `frames` the frames to offer. */
 export function createEditor(item: TreeItem, current: () => TreeItem, frames: () => readonly string[]): Editor {

@@ -2,9 +2,8 @@ import { button, h } from "../dom";
 import { icon } from "../icons";
 import type { PropertyValue } from "../protocol";
 import { strings } from "../strings";
-import type { Editor } from "./editors";
 import { TextEditor } from "./text-editor";
-import type { TreeItem } from "./tree-item";
+import type { Editor, TreeItem } from "./tree-item";
 
 /** Tells the names to choose from, at once or when they are known. */
 export type Offer = (item: TreeItem, show: (names: readonly string[]) => void) => void;

@@ -1,7 +1,6 @@
 import { h } from "../dom";
 import type { PropertyValue } from "../protocol";
-import type { Editor } from "./editors";
-import type { TreeItem } from "./tree-item";
+import type { Editor, TreeItem } from "./tree-item";
 
 export interface TextEditorOptions {
   format: (value: PropertyValue) => string;

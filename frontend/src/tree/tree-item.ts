@@ -41,3 +41,14 @@ export interface TreeItem {
   /** Takes an edit; a row without it is read-only. */
   readonly set?: (value: PropertyValue) => void;
 }
+
+/** The right half of a row. */
+export interface Editor {
+  readonly element: HTMLElement;
+  /** Shows the item's value, unless the user is just editing it. */
+  show(item: TreeItem): void;
+  /** Takes the keyboard; false when there is nothing to edit. */
+  focus(): boolean;
+  /** Space on the row: flips a box. */
+  toggle?(): void;
+}

@@ -1,7 +1,7 @@
 import { h } from "../dom";
 import { icon, LEVEL_ICONS } from "../icons";
-import { createEditor, type Editor } from "./editors";
-import type { TreeItem } from "./tree-item";
+import { createEditor } from "./editors";
+import type { Editor, TreeItem } from "./tree-item";
 
 /** One row's elements; it lives as long as its key is visible. */
 export class TreeRow {

@@ -2,7 +2,8 @@ import { Box3, Group, Matrix4, Vector3, type Object3D, type Raycaster } from "th
 import type { LinkScene, RobotScene } from "../../protocol";
 import { framePose } from "../pose";
 import type { MovingPicture } from "../robot/moving-meshes";
-import { RobotDrawing, type Displacement } from "../robot/robot-drawing";
+import type { Displacement } from "../robot/link-drawing";
+import { RobotDrawing } from "../robot/robot-drawing";
 import { shade } from "../studio-light";
 import type { Described, Hit, SelectionBox } from "../picking";
 import type { Drawing, DrawingContext } from "./drawing";

@@ -1,5 +1,5 @@
 import { Box3, Vector3 } from "three";
-import type { DrawnLinks } from "./robot-drawing";
+import type { RobotScene } from "../../protocol";
 
 /** What is nearer to the plane than this part of the robot's size stands on it. */
 const STANDS = 0.01;
@@ -12,7 +12,7 @@ const STANDS = 0.01;
  * @param robot its base are the links that no joint moves.
  * @param boxes around what is seen of each link, by its name.
  */
-export function groundOf(robot: DrawnLinks, boxes: ReadonlyMap<string, Box3>): number {
+export function groundOf(robot: Pick<RobotScene, "links" | "joints">, boxes: ReadonlyMap<string, Box3>): number {
   const whole = around(boxes, [...boxes.keys()]);
   if (whole.isEmpty()) return 0;
   const margin = STANDS * whole.getSize(new Vector3()).length();
@@ -31,7 +31,7 @@ function around(boxes: ReadonlyMap<string, Box3>, links: Iterable<string>): Box3
 }
 
 /** The links that are fixed to the root. */
-function baseOf({ links, joints }: DrawnLinks): Set<string> {
+function baseOf({ links, joints }: Pick<RobotScene, "links" | "joints">): Set<string> {
   const base = new Set(links.filter((link) => link.parent_joint === null).map((link) => link.name));
   const fixed = joints.filter((joint) => joint.kind === "fixed");
   for (let grown = true; grown; ) {

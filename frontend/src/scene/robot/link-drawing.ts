@@ -5,7 +5,6 @@ import type { MaterialPool } from "../materials";
 import type { StandIns } from "../meshes/stand-ins";
 import { LinkTrail } from "./link-trail";
 import type { MovingPiece } from "./moving-meshes";
-import type { Displacement } from "./robot-drawing";
 import { ShapeDrawing, type ShapePiece, type ShapeTold } from "./shape-drawing";
 import type { SolidKind, Solids } from "./solids";
 
@@ -21,6 +20,14 @@ export interface LinkStyle {
   contrast: boolean;
   /** Takes the place of the colours of the description. */
   instead: Instead | null;
+}
+
+/** A part of a robot that is drawn elsewhere than its description has it. */
+export interface Displacement {
+  /** Changes where a link is in the fixed frame. */
+  readonly link?: (name: string, matrix: Matrix4) => void;
+  /** A shape of a link: of those that stand at `from` in it the one after so many others. */
+  readonly shape?: { readonly link: string; readonly kind: "visual" | "collision"; readonly among: number; readonly from: Matrix4; readonly to: Matrix4 };
 }
 
 /** In contrast: what is left of the visuals' alpha, and the collisions' colour and alpha. */

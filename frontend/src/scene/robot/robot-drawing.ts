@@ -9,7 +9,7 @@ import { MaterialPool } from "../materials";
 import type { MeshLibrary } from "../meshes/mesh-library";
 import { MovingMeshes, type MovingPicture, type MovingPiece } from "./moving-meshes";
 import { groundOf } from "./ground";
-import { LinkDrawing, type FindLink } from "./link-drawing";
+import { LinkDrawing, type Displacement, type FindLink } from "./link-drawing";
 import { RobotExtras } from "./robot-extras";
 import type { ShapeDrawing } from "./shape-drawing";
 import { Solids, type SolidKind } from "./solids";
@@ -17,18 +17,10 @@ import { Solids, type SolidKind } from "./solids";
 /** Told once for each mesh of each link: `error` is null when all of it is drawn. */
 export type MeshReport = (link: string, url: string, error: string | null) => void;
 
-/** A part of a robot that is drawn elsewhere than its description has it. */
-export interface Displacement {
-  /** Changes where a link is in the fixed frame. */
-  readonly link?: (name: string, matrix: Matrix4) => void;
-  /** A shape of a link: of those that stand at `from` in it the one after so many others. */
-  readonly shape?: { readonly link: string; readonly kind: "visual" | "collision"; readonly among: number; readonly from: Matrix4; readonly to: Matrix4 };
-}
-
 type InsteadOf = (link: string) => Instead | null;
 
 /** What is drawn: of a robot, or of all models of a world. */
-export type DrawnLinks = Pick<RobotScene, "links" | "joints">;
+type DrawnLinks = Pick<RobotScene, "links" | "joints">;
 
 /** One description of a robot, as links. */
 export class RobotDrawing {

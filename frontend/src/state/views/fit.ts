@@ -1,12 +1,6 @@
 import { FIELD_OF_VIEW, toTarget, type Camera, type Target, type ViewSize } from "./camera";
-import { add, dot, scale, subtract, type Vector } from "./vector";
+import { add, dot, scale, subtract, type Span, type Vector } from "./vector";
 import { number, type ViewValues } from "./view-controller";
-
-/** A box along the axes of a frame: its lowest and highest corner, m. */
-export interface Span {
-  readonly min: Vector;
-  readonly max: Vector;
-}
 
 /** Room around what is looked at. */
 const MARGIN = 1.2;

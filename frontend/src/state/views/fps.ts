@@ -1,6 +1,6 @@
 import { toFixed, toTarget, type Camera, type Target, type ViewSize } from "./camera";
-import { framing, type Span } from "./fit";
-import { add, cross, length, subtract, type Vector } from "./vector";
+import { framing } from "./fit";
+import { add, cross, length, subtract, type Span, type Vector } from "./vector";
 import {
   clampPitch,
   number,

@@ -1,6 +1,6 @@
 import { FIELD_OF_VIEW, toFixed, toTarget, type Camera, type Target, type ViewSize } from "./camera";
-import { framing, type Span } from "./fit";
-import { add, cross, distanceBetween, length, ORIGIN, scale, type Vector } from "./vector";
+import { framing } from "./fit";
+import { add, cross, distanceBetween, length, ORIGIN, scale, type Span, type Vector } from "./vector";
 import {
   clampPitch,
   number,

@@ -1,6 +1,5 @@
-import type { Span } from "./fit";
+import { add, scale, subtract, turn, type Span, type Vector } from "./vector";
 import { direction, OrbitController } from "./orbit";
-import { add, scale, subtract, turn, type Vector } from "./vector";
 import { number, wrapYaw, type ViewValues } from "./view-controller";
 import type { ViewSize } from "./camera";
 

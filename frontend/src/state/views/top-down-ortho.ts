@@ -1,6 +1,6 @@
 import { toFixed, toTarget, type Camera, type Target, type ViewSize } from "./camera";
-import { framing, type Span } from "./fit";
-import { turn, type Vector } from "./vector";
+import { framing } from "./fit";
+import { turn, type Span, type Vector } from "./vector";
 import {
   number,
   RADIANS_PER_PIXEL,

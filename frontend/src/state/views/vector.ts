@@ -1,6 +1,12 @@
 /** Three numbers: metres or a direction, x, y, z. */
 export type Vector = readonly [number, number, number];
 
+/** A box along the axes of a frame: its lowest and highest corner, m. */
+export interface Span {
+  readonly min: Vector;
+  readonly max: Vector;
+}
+
 export const ORIGIN: Vector = [0, 0, 0];
 
 /** `a + factor * b` */

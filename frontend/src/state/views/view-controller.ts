@@ -1,7 +1,6 @@
 import type { PropertyValue } from "../../protocol";
 import type { Camera, Target, ViewSize } from "./camera";
-import type { Span } from "./fit";
-import type { Vector } from "./vector";
+import type { Span, Vector } from "./vector";
 
 /** Values of a view by the paths of their properties: `Distance`, `Focal Point/X`. */
 export type ViewValues = Readonly<Record<string, PropertyValue>>;

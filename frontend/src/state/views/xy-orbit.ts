@@ -1,7 +1,7 @@
 import { onGround, rayThrough, type Camera, type ViewSize } from "./camera";
-import { framing, type Span } from "./fit";
+import { framing } from "./fit";
+import { add, distanceBetween, length, scale, subtract, type Span, type Vector } from "./vector";
 import { aboveMap, aroundFrom, OrbitController, orbitOf, type OrbitMotion } from "./orbit";
-import { add, distanceBetween, length, scale, subtract, type Vector } from "./vector";
 import { vectorValues, type Drag, type Look, type MouseHint, type ViewValues } from "./view-controller";
 
 /** Part of the distance by which the camera is raised, so that the focal point is in the lower half of the picture. */

@@ -1,7 +1,6 @@
 /// <reference lib="webworker" />
 import { MOST_SAMPLES, SOUND_RATE } from "../../protocol";
 import { GapFinder } from "./gaps";
-import type { CaptureMessage } from "./microphone";
 import { pcm, Resampler } from "./resampler";
 
 declare const sampleRate: number;
@@ -9,6 +8,15 @@ declare class AudioWorkletProcessor {
   readonly port: MessagePort;
 }
 declare function registerProcessor(name: string, processor: new () => AudioWorkletProcessor): void;
+
+/** What the thread for sound sends. */
+export interface CaptureMessage {
+  samples: Int16Array;
+  /** Seconds of sound that were found to be lost since the last message. */
+  lost: number;
+  /** The number of the request that this answers; all sound until then has been sent. */
+  answers: number | null;
+}
 
 /**
  * Runs in the browser's thread for sound: what the microphone gives becomes blocks of a tenth of a second, mono, at the

@@ -1,4 +1,5 @@
 import { Signal } from "../signal";
+import type { CaptureMessage } from "./capture-worklet";
 import workletUrl from "./capture-worklet.ts?worker&url";
 
 /**
@@ -12,15 +13,6 @@ export interface Capture {
   /** Has the part of a block that is there delivered; resolves when it is. */
   flush(): Promise<void>;
   close(): void;
-}
-
-/** What the thread for sound sends. */
-export interface CaptureMessage {
-  samples: Int16Array;
-  /** Seconds of sound that were found to be lost since the last message. */
-  lost: number;
-  /** The number of the request that this answers; all sound until then has been sent. */
-  answers: number | null;
 }
 
 /** Resolves when sound is being taken; `block` gets it, with the seconds that are missing in it. */
