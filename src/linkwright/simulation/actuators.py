@@ -1,4 +1,4 @@
-"""What moves joints: motors that hold a velocity, servos that hold a position."""
+"""Actuators of joints: motors that hold a velocity, servos that hold a position."""
 
 from __future__ import annotations
 
@@ -12,29 +12,29 @@ _SERVO_SPEED = 2.0
 
 
 class Actuated(Protocol):
-    """What is asked of a simulation; `Simulation` has the words."""
+    """The part of `Simulation` that actuators use; see there."""
 
     @property
     def scene(self) -> Scene:
-        """What moves."""
+        """The scene whose joints are moved."""
 
     @property
     def model(self) -> Any:
-        """MuJoCo's model of this moment."""
+        """MuJoCo's model now; another one after `renew`."""
 
     @property
     def data(self) -> Any:
-        """MuJoCo's data of this moment."""
+        """MuJoCo's data now; others after `renew`."""
 
     @property
     def revision(self) -> int:
-        """How often they were made anew."""
+        """The number of times that model and data were made anew."""
 
     def renew(self) -> None:
-        """Bring MuJoCo's model up to the scene."""
+        """Compile MuJoCo's model again if the scene has changed."""
 
     def refresh(self) -> None:
-        """The same, and what depends on positions."""
+        """As `renew`, and compute what depends on positions."""
 
     def joint_state(self, name: str) -> tuple[float, float]:
         """Position and velocity of a joint of one axis."""
@@ -52,7 +52,7 @@ class Motor:
 
     @property
     def target(self) -> float:
-        """The velocity that it is to hold, in rad/s (m/s)."""
+        """The velocity to be held, in rad/s (m/s)."""
         number = self._actuator()
         return float(self._simulation.data.ctrl[number])
 
@@ -65,7 +65,7 @@ class Motor:
             self._gain = 0.0
 
     def release(self) -> None:
-        """Let the joint turn as it will until there is a target again; to be said anew after the model has changed."""
+        """Switch the motor off until a target is set; to be called again after the model has changed."""
         number = self._actuator()
         gain = float(self._simulation.model.actuator_gainprm[number, 0])
         if gain:
@@ -77,7 +77,7 @@ class Motor:
         model.actuator_gainprm[number, 0], model.actuator_biasprm[number, 2] = gain, -gain
 
     def _actuator(self) -> int:
-        """The number of the actuator in MuJoCo's model of this moment."""
+        """The index of the actuator in MuJoCo's model now."""
         simulation = self._simulation
         simulation.renew()
         if self._revision != simulation.revision:
@@ -107,22 +107,22 @@ class Servo:
 
     @property
     def position(self) -> float:
-        """Where it holds the joint, in rad (m)."""
+        """The position at which the joint is held, in rad (m)."""
         return self._position
 
     def restart(self) -> None:
-        """Hold it where it is."""
+        """Hold the joint where it is."""
         self._position = self._simulation.joint_state(self._joint)[0]
         self._hold()
 
     def release(self) -> None:
-        """Let the joint go, until it is to hold it again."""
+        """Switch the servo off until `restart` or `move`."""
         simulation = self._simulation
         simulation.refresh()
         simulation.data.eq_active[simulation.model.equality(self._name).id] = 0
 
     def move(self, target: float, seconds: float) -> None:
-        """Go on to a position within the joint's limits, in rad (m), for so many seconds."""
+        """Move to a position within the joint's limits, in rad (m), within a number of seconds."""
         model = self._simulation.model
         joint = model.joint(self._joint)
         if model.jnt_limited[joint.id]:

@@ -1,4 +1,4 @@
-"""Steps of MuJoCo's, and what bounces within them.
+"""Time steps of MuJoCo, with restitution: bodies that bounce off each other within a step.
 
 MuJoCo's contacts are soft and take the speed of what hits hard: at the time steps that are usual none of their settings
 lets a ball rise as high as its coefficient of restitution says. So what hits is pushed off again behind the step in
@@ -25,7 +25,7 @@ _ROUNDS = 50
 
 
 class Bouncing:
-    """Makes the steps of a model.
+    """Makes the time steps of a model, with bounces.
 
     Both shapes that touch must have a coefficient, and that of the pair is their product, as in gz. It bounces above
     the lesser of their thresholds, as in Gazebo Classic, if a threshold is said; gz knows none.
@@ -45,7 +45,7 @@ class Bouncing:
         self._bounces = np.count_nonzero(self._coefficients) > 1
 
     def make_steps(self, count: int) -> None:
-        """Let so many time steps pass."""
+        """Make a number of time steps."""
         if not self._bounces:
             self._mujoco.mj_step(self._model, self._data, count)
             return
@@ -55,7 +55,7 @@ class Bouncing:
                 self._push_off()
 
     def _push_off(self) -> None:
-        """Give what has hit the speed that it leaves with."""
+        """Give bodies that have just hit each other the velocity with which they bounce off."""
         contacts, speeds = self._data.contact, self._data.efc_vel
         geoms, rows = contacts.geom, contacts.efc_address
         share = self._coefficients[geoms].prod(axis=1)
@@ -80,7 +80,7 @@ class Bouncing:
         data.qvel += impulses @ answers
 
     def _ways(self, contact: Any) -> Array:
-        """How joints move what touches apart, and along each other, shape (3, degrees of freedom)."""
+        """The Jacobian of a contact along its normal and tangents, shape (3, degrees of freedom)."""
         model = self._model
         first, second = (np.zeros((3, model.nv)) for _ in range(2))
         for geom, way in zip(contact.geom, (first, second), strict=True):

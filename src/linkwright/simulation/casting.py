@@ -1,4 +1,4 @@
-"""Rays of MuJoCo: what is hit first, and how far away that is."""
+"""Ray casting by MuJoCo: the geom that a ray hits first, and its distance."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def cast(
     reach: float,
     normals: Any = None,
 ) -> tuple[Array, Any]:
-    """What rays from one point hit first.
+    """Cast rays from one point; the first hit of each.
 
     Args:
         model: MuJoCo's model.

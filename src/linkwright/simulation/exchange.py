@@ -1,4 +1,4 @@
-"""What goes between a simulation, which may have a thread of its own, and the graph."""
+"""Queues between the thread of a simulation and the event loop of the graph."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ Command = Callable[[], object]
 
 
 class Outlet(Protocol):
-    """Where messages go: a publisher, or whatever is to be called on the event loop."""
+    """A destination of messages: a publisher, or a function that is called on the event loop."""
 
     def publish(self, message: Any) -> object:
-        """Take a message."""
+        """Publish a message, or hand it to the function."""
 
 
 _BATCHES = 4
@@ -26,7 +26,7 @@ _BATCHES = 4
 
 
 class Exchange:
-    """Messages on their way out, and commands on their way in.
+    """Carries messages out of the simulation's thread, and commands into it.
 
     Messages are collected and handed over together: to the event loop of the graph where the simulation has a thread of
     its own, or at once. Commands come from any thread and are done by the simulation between two chunks of time.
@@ -63,19 +63,19 @@ class Exchange:
             dispatcher.call_threadsafe(partial(self._deliver, batch))
 
     def post(self, command: Command) -> None:
-        """Have the simulation do something soon."""
+        """Queue a function for the simulation's thread, from any thread."""
         self._in.append(command)
         self.come.set()
 
     def work(self) -> None:
-        """Do what was posted before."""
+        """Call the functions that were posted."""
         if self.come.is_set():
             self.come.clear()
         while self._in:
             self._in.popleft()()
 
     def close(self) -> None:
-        """Nothing is delivered any more; a simulation that waits goes on."""
+        """Deliver nothing any more, and let a simulation that waits for `deliver` go on."""
         self._closed = True
         self._in.clear()
         for _ in range(_BATCHES):

@@ -10,7 +10,7 @@ from linkwright.diagnostics import missing_extra
 
 @cache
 def load_mujoco() -> Any:
-    """The module ``mujoco``; it has no types.
+    """Import the module ``mujoco``, which has no types.
 
     Raises:
         LinkwrightError: SIM101 it is not installed.
@@ -24,4 +24,4 @@ def load_mujoco() -> Any:
 
 
 def _unheard(text: str) -> None:
-    """What MuJoCo would write to standard error is found in its data, and said by those who look there."""
+    """A handler that drops MuJoCo's warnings: they are found in its data, and reported by those who look there."""

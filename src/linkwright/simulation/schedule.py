@@ -1,4 +1,4 @@
-"""What is to be done at which simulated times."""
+"""Functions that are called at multiples of a period in simulated time."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from heapq import heapify, heappop, heappush, heapreplace
 
 @dataclass(eq=False, slots=True)
 class Task:
-    """A function that is called again and again.
+    """A function that is called periodically.
 
     Attributes:
         period: nanoseconds from one call to the next.
@@ -31,7 +31,7 @@ class Schedule:
 
     @property
     def next_time(self) -> int | None:
-        """When the next task is due, in nanoseconds; None if there is none."""
+        """The time of the next call, in nanoseconds; None if there is none."""
         while self._heap and self._heap[0][2].cancelled:
             heappop(self._heap)
         return self._heap[0][0] if self._heap else None
@@ -44,7 +44,7 @@ class Schedule:
         return task
 
     def run(self, now: int) -> None:
-        """Do what is due. A task that is due more than once, as time went in longer steps, is done once."""
+        """Call what is due; a task that is due more than once, as time went in longer steps, is called once."""
         while self._heap and self._heap[0][0] <= now:
             due, turn, task = self._heap[0]
             if task.cancelled:
@@ -57,6 +57,6 @@ class Schedule:
             task.function()
 
     def restart(self) -> None:
-        """Begin anew at time 0."""
+        """Restart at time 0."""
         self._heap = [(task.period, turn, task) for _, turn, task in self._heap]
         heapify(self._heap)

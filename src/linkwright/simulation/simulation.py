@@ -1,4 +1,4 @@
-"""A world that moves: time, models that come and go, and where everything is."""
+"""A simulated world: time, models that are added and removed, and the state of everything."""
 
 from __future__ import annotations
 
@@ -36,11 +36,11 @@ _SURELY = _BEYOND * _BEYOND
 
 
 class UnstableError(LinkwrightError):
-    """The simulation has exploded: a position or velocity is no number any more, or beyond all bounds (SIM120)."""
+    """The simulation has become unstable: a position or velocity is not finite, or beyond all bounds (SIM120)."""
 
 
 class Simulation:
-    """A world in motion.
+    """A simulated world.
 
     Nothing here waits or knows real time: `advance` computes as fast as it can, and twice the same calls give twice the
     same bits. One thread at a time may use it.
@@ -96,7 +96,7 @@ class Simulation:
         return self.time / NANOSECONDS
 
     def spawn(self, model: Model, name: str, pose: Transform = IDENTITY) -> None:
-        """Put a model into the world; all others keep their state.
+        """Add a model to the world; all others keep their state.
 
         Args:
             model: with its includes resolved.
@@ -111,7 +111,7 @@ class Simulation:
         self._changed = True
 
     def delete(self, name: str) -> None:
-        """Take a model out of the world.
+        """Remove a model from the world.
 
         Raises:
             KeyError: there is none of that name.
@@ -122,7 +122,7 @@ class Simulation:
         self._changed = True
 
     def set_world(self, world: World, finder: ResourceFinder) -> None:
-        """Take everything but the models from another world: gravity, time step, light, place on earth.
+        """Take all but the models from another world: gravity, time step, lights, position on earth.
 
         Args:
             world: with its includes resolved.
@@ -135,11 +135,11 @@ class Simulation:
         self._changed |= _outlook(before) != _outlook(self.world)
 
     def beside(self, world: World, finder: ResourceFinder) -> Simulation:
-        """A simulation of another world, run as this one."""
+        """A simulation of another world, with the same settings as this one."""
         return Simulation(world, finder, step=self._said_step)
 
     def place(self, poses: Mapping[str, Transform]) -> None:
-        """Let models begin elsewhere, and put them there; their joints stay as they are.
+        """Set the initial poses of models, and move them there; their joints stay as they are.
 
         Args:
             poses: of the frame of each in the world, by their names.
@@ -161,15 +161,15 @@ class Simulation:
         self._current = False
 
     def set_moved(self) -> None:
-        """Positions or velocities of `data` have been set: work out what depends on them when it is asked for."""
+        """Note that positions or velocities of `data` were set; what depends on them is computed when it is needed."""
         self._current = False
 
     def set_altered(self) -> None:
-        """The specification of `scene` has been changed: MuJoCo is given it when it is needed."""
+        """Note that the specification of `scene` was changed: it is compiled when the model is needed."""
         self._changed = True
 
     def free_links(self, name: str) -> list[str]:
-        """The links of a model that move by themselves, fixed to nothing.
+        """The links of a model that move freely, without a joint to a parent.
 
         Raises:
             KeyError: there is no such model.
@@ -189,17 +189,17 @@ class Simulation:
         return Motor(self, name)
 
     def let_roll(self, joint: str) -> None:
-        """Let the wheel that a joint holds roll without slipping, as those that motors turn do."""
+        """Let a wheel roll without slipping, as driven ones do."""
         self.scene.let_roll(joint)
         self._changed = True
 
     def let_slide(self, joint: str) -> None:
-        """Let the wheel that a joint holds slide in all directions; a motor only turns it."""
+        """Let a wheel slide in all directions; a motor only turns it."""
         self.scene.let_slide(joint)
         self._changed = True
 
     def add_servo(self, joint: str, speed: float = inf) -> Servo:
-        """Hold a joint of one axis where it is told to be.
+        """Add a servo, which holds the position of a joint of one axis.
 
         Args:
             joint: the name of the joint.
@@ -210,7 +210,7 @@ class Simulation:
         return Servo(self, joint, name, speed)
 
     def keep_awake(self, link: str) -> None:
-        """Never let what a link hangs on fall asleep: of what sleeps no forces are computed, which sensors need.
+        """Forbid the tree of a link to fall asleep: no forces are computed for sleeping bodies, and sensors need them.
 
         Raises:
             KeyError: there is no such link.
@@ -226,7 +226,7 @@ class Simulation:
                 wake(self.data)
 
     def renew(self) -> None:
-        """Bring MuJoCo's model up to the scene."""
+        """Compile MuJoCo's model again if the scene has changed."""
         if self._changed:
             self._take(*compiled(self.scene, (self.model, self.data)))
             self._bodies, self._joints = {}, {}
@@ -234,7 +234,7 @@ class Simulation:
             self.revision += 1
 
     def refresh(self) -> None:
-        """Bring MuJoCo's model up to the scene, and what depends on positions up to these."""
+        """As `renew`, and compute what depends on positions."""
         self.renew()
         if not self._current:
             mujoco, model, data = self._mujoco, self.model, self.data
@@ -246,14 +246,14 @@ class Simulation:
             self._current = True
 
     def _take(self, model: Any, data: Any) -> None:
-        """Go on with a model of MuJoCo and its state."""
+        """Set another model of MuJoCo and its state."""
         self.model, self.data = model, data
         self._state: tuple[Array, Array] = data.qpos, data.qvel
         self._bouncing = Bouncing(model, data)
         self._solving.take(model, data, self.time, self.step)
 
     def reset(self) -> None:
-        """Put everything back to where it was at the start; time begins anew."""
+        """Restore the initial state; time begins anew."""
         self.refresh()
         self._solving.restart()  # before: MuJoCo places what stands still only where things may sleep
         self._mujoco.mj_resetData(self.model, self.data)
@@ -263,7 +263,7 @@ class Simulation:
         self.schedule.restart()
 
     def advance(self, duration: int) -> None:
-        """Let simulated time pass, and do what is scheduled on the way.
+        """Advance simulated time, and call what is scheduled on the way.
 
         Args:
             duration: nanoseconds; whole steps are made until no less than these have passed.
@@ -279,7 +279,7 @@ class Simulation:
             self.schedule.run(self.time)
 
     def call_every(self, period: int, function: Callable[[], None]) -> Task:
-        """Call a function after every so many nanoseconds of simulated time; 0 for after every step."""
+        """Call a function periodically in simulated nanoseconds; 0 for after every step."""
         return self.schedule.add(max(period, self.step), function, self.time)
 
     def _make_steps(self, count: int) -> None:
@@ -303,7 +303,7 @@ class Simulation:
         return all(bool((np.abs(state) < _BEYOND).all()) for state in self._state)
 
     def _unstable(self, count: int, positions: Array, velocities: Array) -> UnstableError:
-        """Go back to where all was well, and step by step to where it fails: what is fastest there is to blame.
+        """Go back to the last good state, and step by step to the failure: what is fastest there is to blame.
 
         The state is left at the last step at which all was well.
         """
@@ -327,7 +327,7 @@ class Simulation:
         return UnstableError(Diagnostic("SIM120", message, hint=hint))
 
     def body(self, name: str) -> int:
-        """The number of a link in MuJoCo's model of this moment.
+        """The index of a link's body in MuJoCo's model now.
 
         Raises:
             KeyError: there is no such link.
@@ -338,7 +338,7 @@ class Simulation:
         return self._bodies[name]
 
     def link_pose(self, name: str) -> Transform:
-        """Where the frame of a link is in the world.
+        """The pose of a link's frame in the world.
 
         Raises:
             KeyError: there is no such link.
@@ -349,13 +349,13 @@ class Simulation:
         return x, y, z, qx, qy, qz, qw
 
     def link_velocity(self, name: str) -> tuple[Array, Array]:
-        """The linear velocity of the origin of a link in m/s and its angular one in rad/s, in the axes of the world."""
+        """The linear velocity of a link's origin in m/s and its angular velocity in rad/s, in the axes of the world."""
         body, result = self.body(name), np.zeros(6)
         self._mujoco.mj_objectVelocity(self.model, self.data, self._mujoco.mjtObj.mjOBJ_XBODY, body, result, 0)
         return result[3:], result[:3]
 
     def mass_of(self, name: str) -> float:
-        """The mass of a model in kg, with what hangs on its first link.
+        """The mass of a model in kg: of all that moves with its first link.
 
         Raises:
             KeyError: there is no such model.
@@ -364,7 +364,7 @@ class Simulation:
         return float(self.model.body_subtreemass[self.model.body(self._root(name)[0]).id])
 
     def wheel_radius(self, link: str) -> float | None:
-        """The radius in m of what touches of a wheel that rolls; None if that is not round.
+        """The radius in m of a rolling wheel's collisions; None if they are not round.
 
         Raises:
             KeyError: there is no such link.
@@ -383,7 +383,7 @@ class Simulation:
         return max(radii, default=None)
 
     def model_pose(self, name: str) -> Transform:
-        """Where the frame of a model is in the world: it moves with its first link."""
+        """The pose of a model's frame in the world; it moves with the first link."""
         root, offset = self._root(name)
         return compose(self.link_pose(root), invert(offset))
 
@@ -397,7 +397,7 @@ class Simulation:
         return self._is_free(self._root(name)[0])
 
     def set_model_pose(self, name: str, pose: Transform) -> None:
-        """Put a model elsewhere; it stands still there. Kinematic links move only so.
+        """Set the pose of a model, with zero velocity. Kinematic links move only so.
 
         Raises:
             KeyError: there is no such model.
@@ -425,7 +425,7 @@ class Simulation:
         self._current = False
 
     def set_model_velocity(self, name: str, linear: Vector3, angular: Vector3) -> None:
-        """Let a model that moves freely go on with a velocity of its first link: m/s, rad/s, in the axes of the world.
+        """Set the velocity of the first link of a free model: m/s, rad/s, in the axes of the world.
 
         Raises:
             KeyError: there is no such model, or it does not move freely.
@@ -437,7 +437,7 @@ class Simulation:
         self._current = False
 
     def _root(self, name: str) -> tuple[str, Transform]:
-        """The first link of a model, and where it is in the frame of the model."""
+        """The first link of a model, and its pose in the frame of the model."""
         model = self.scene.models[name]
         first = model.structure.links[0].link
         return first.name, compose(invert(model.pose), first.pose)
@@ -458,14 +458,14 @@ class Simulation:
         return positions.item(place[0]), velocities.item(place[1])
 
     def set_joint_position(self, name: str, position: float) -> None:
-        """Put a joint of one axis somewhere; it stands still there."""
+        """Set the position of a joint of one axis, with zero velocity."""
         self.refresh()
         joint = self.data.joint(name)
         joint.qpos[0], joint.qvel[0] = position, 0.0
         self._current = False
 
     def push_joint(self, name: str, force: float) -> None:
-        """Let a torque in N m (a force in N) act on a joint of one axis, until it is set anew."""
+        """Set the torque in N m (force in N) on a joint of one axis; it acts until it is set anew."""
         self.refresh()
         self.data.joint(name).qfrc_applied[0] = force
 
@@ -477,7 +477,7 @@ class Simulation:
         *,
         by: str = "",
     ) -> None:
-        """Let a force in N and a torque in N m act on the centre of mass of a link, in the axes of the world.
+        """Set the force in N and the torque in N m on the centre of mass of a link, in the axes of the world.
 
         They act until they are set anew. What several push with adds up; `by` is who pushes.
         """
@@ -487,7 +487,7 @@ class Simulation:
         self.data.body(link).xfrc_applied[:] = sum(acting.values())
 
     def set_gravity(self, gravity: Vector3) -> None:
-        """Let gravity act otherwise, in m/s2 in the axes of the world."""
+        """Set gravity, in m/s2 in the axes of the world."""
         self.refresh()
         self.scene.spec.option.gravity = gravity
         self.model.opt.gravity[:] = gravity
@@ -495,5 +495,5 @@ class Simulation:
 
 
 def _outlook(world: World) -> tuple[object, ...]:
-    """What MuJoCo's model, or pictures of it, are made anew for."""
+    """The properties of a world for which MuJoCo's model, or pictures of it, are made anew."""
     return gravity_of(world), physics_of(world).max_step_size, world.scene, world.lights

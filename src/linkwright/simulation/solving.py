@@ -1,4 +1,4 @@
-"""How MuJoCo solves for forces: for each group of bodies that touch, or for all together where many robots drive.
+"""How MuJoCo solves for forces: by islands of bodies in contact, or for all at once where many robots drive.
 
 Groups by themselves, "islands", may fall asleep, so that what rests costs nothing. But with the discrete integrator
 each of them goes through the motors of all: for a hundred robots that doubles a step. The forces are the same.
@@ -27,7 +27,7 @@ _AWAKE = -11
 
 
 class Solving:
-    """Chooses for one simulation, by nothing but its state, so that the same calls give the same bits.
+    """Chooses the solver of one simulation, by nothing but its state, so that the same calls give the same bits.
 
     Args:
         schedule: that of the simulation.
@@ -41,7 +41,7 @@ class Solving:
         self._data: Any = None
 
     def take(self, model: Any, data: Any, now: int, step: int) -> None:
-        """Go on with another model, which solves island by island, and its data.
+        """Set another model, which solves island by island, and its data.
 
         Args:
             model: MuJoCo's model.
@@ -56,7 +56,7 @@ class Solving:
             self._task = self._schedule.add(_LOOK * step, self._look, now)
 
     def restart(self) -> None:
-        """Begin anew, as the simulation does."""
+        """Restart with the simulation."""
         if self._left:
             self._set(together=False)
 
@@ -86,5 +86,5 @@ class Solving:
 
 
 def wake(data: Any) -> None:
-    """Let everything be awake, for so long as MuJoCo keeps it so."""
+    """Wake all bodies up, for as long as MuJoCo keeps them awake."""
     data.tree_asleep[data.tree_asleep >= 0] = _AWAKE

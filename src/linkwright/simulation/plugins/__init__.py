@@ -1,1 +1,1 @@
-"""What makes models act and measure: plugins of both simulators, and sensors, found through entry points."""
+"""Plugins and sensors of models, found through entry points: what libraries of Gazebo classic and gz do."""

@@ -1,4 +1,4 @@
-"""Cars, which steer their front wheels: ``libgazebo_ros_ackermann_drive.so``.
+"""Ackermann steering of Gazebo classic: ``libgazebo_ros_ackermann_drive.so``.
 
 Source: gazebo_ros_pkgs for ROS 2 (parameters, topics, defaults, the angles of the wheels; ``angular.z`` of a command is
 the angle of steering). Other than there the front wheels are held at their angles, the gains of steering change
@@ -25,7 +25,7 @@ _GRAVITY = 9.81
 
 @dataclass(frozen=True, kw_only=True)
 class AckermannParameters:
-    """Of the plugin of Gazebo classic."""
+    """Parameters of ``libgazebo_ros_ackermann_drive.so``."""
 
     front_left_joint: str = "front_left_joint"
     front_right_joint: str = "front_right_joint"
@@ -91,7 +91,7 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
         self._time = self.simulation.time
 
     def reset(self) -> None:
-        """Stand still, with the wheels straight ahead."""
+        """Stop, with the wheels straight ahead."""
         self._begin()
         for servo in self._servos:
             servo.restart()
@@ -130,7 +130,7 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
         self._angle = min(max(angle, -said.max_steer), said.max_steer)
 
     def _rest(self) -> bool:
-        """Stand still, with the wheels steered as they are; whether it was to move."""
+        """Stop, with the wheels steered as they are; whether the car was to move."""
         before, self._speed = self._speed, 0.0
         return before != 0.0
 

@@ -1,4 +1,4 @@
-"""Topics of gz that a bridge has in ROS with another type: their own name is the bridge's there.
+"""Topics of gz whose name a bridge takes in ROS with another type.
 
 Topics of gz are topics of the graph under their names. A bridge from ``geometry_msgs/msg/TwistStamped`` to
 ``gz.msgs.Twist`` of one name, as Jazzy's robots have it, would make a topic with two types of that. So the side of gz
@@ -16,12 +16,12 @@ _HIDDEN = "/_gz"
 
 
 def gz_side(topic: str) -> str:
-    """The hidden name of the side of gz of a topic; absolute names."""
+    """The hidden name under which a topic of gz has its own type; absolute names."""
     return _HIDDEN + topic
 
 
 class BridgedTopics:
-    """Tells the plugins of a simulation that a bridge takes the name of a topic they listen to.
+    """Tells the plugins of a simulation that a bridge takes the name of a topic to which they subscribe.
 
     Args:
         node: that of the simulator.
@@ -36,19 +36,19 @@ class BridgedTopics:
         self._graph.watch(self._changed)
 
     def close(self) -> None:
-        """Tell nobody any more."""
+        """Stop watching the graph; nobody is told any more."""
         self._graph.unwatch(self._changed)
 
     def has(self, topic: str) -> bool:
-        """Whether a bridge has a topic under another type."""
+        """Whether a bridge offers a topic under another type."""
         return topic in self._bridged([topic])
 
     def tell(self, topic: str, move: Callable[[], None]) -> None:
-        """Have a function called when a bridge comes that has a topic under another type."""
+        """Register a function to be called when a bridge offers a topic under another type."""
         self._moves.setdefault(topic, []).append(move)
 
     def forget(self, topic: str, move: Callable[[], None]) -> None:
-        """Call a function no more."""
+        """Unregister a function."""
         moves = self._moves.get(topic, [])
         if move in moves:
             moves.remove(move)
@@ -67,6 +67,6 @@ class BridgedTopics:
                 move()
 
     def _bridged(self, topics: list[str]) -> list[str]:
-        """Those that something is published to by their hidden name."""
+        """The topics whose hidden names have publishers."""
         outside = {each.name for each in self._graph.remote_endpoints() if each.kind is EndpointKind.PUBLISHER}
         return [each for each in topics if gz_side(each) in outside or self._graph.bus.publishers(gz_side(each))]

@@ -1,4 +1,4 @@
-"""A joint that holds a link of another model until it is told to let go: ``gz-sim-detachable-joint-system``.
+"""A joint that holds a link of another model until it is detached: ``gz-sim-detachable-joint-system``.
 
 Source: gz-sim (parameters, topics and their names; the state is published when it changes). What is attached does not
 touch the model that holds it, as there.
@@ -23,7 +23,7 @@ _OWN = "__model__"
 
 @dataclass(frozen=True, kw_only=True)
 class DetachableJointParameters:
-    """Of the plugin."""
+    """Parameters of ``gz-sim-detachable-joint-system``."""
 
     parent_link: str
     child_model: str
@@ -42,7 +42,7 @@ class GzDetachableJoint(SimulatedPlugin[DetachableJointParameters]):
     PARAMETERS = DetachableJointParameters
 
     def start(self) -> None:
-        """Find the link that holds, attach what is there, and listen.
+        """Find the parent link, attach the child if it is there, and subscribe.
 
         Raises:
             LinkwrightError: SIM133 the model has no such link.
@@ -61,14 +61,14 @@ class GzDetachableJoint(SimulatedPlugin[DetachableJointParameters]):
         self.every(_LOOKS, self._look)
 
     def reset(self) -> None:
-        """Be as at the start."""
+        """Restore the state of the start: attached or not."""
         self._detach()
         self._is_wanted = self.parameters.initial_attach
         if self._is_wanted and self._found_child():
             self._attach()
 
     def go_on(self, before: SimulatedPlugin[DetachableJointParameters]) -> None:
-        """Hold what one before held."""
+        """Hold the child that the previous instance held."""
         assert isinstance(before, GzDetachableJoint)
         if before._is_attached or before._is_wanted:
             self._hold(None)
@@ -76,7 +76,7 @@ class GzDetachableJoint(SimulatedPlugin[DetachableJointParameters]):
             self._detach()
 
     def stop(self) -> None:
-        """Let go: the model may be about to leave."""
+        """Detach: the model may be about to leave."""
         self._unweld()
 
     def _hold(self, _: Any) -> None:
@@ -88,7 +88,7 @@ class GzDetachableJoint(SimulatedPlugin[DetachableJointParameters]):
         self._detach()
 
     def _look(self) -> None:
-        """Attach what is to be attached, and has come or come anew."""
+        """Attach the child that is to be attached, once it is in the world, or again after it was replaced."""
         if self._is_attached and not self.simulation.scene.is_welded(self._parent, self._child):
             self._is_attached, self._is_wanted = False, True
         if not self._is_wanted:
@@ -102,7 +102,7 @@ class GzDetachableJoint(SimulatedPlugin[DetachableJointParameters]):
             self.node.logger.warning(message)
 
     def _found_child(self) -> bool:
-        """Whether the link that is to be held is there: of a model of the world, or of one within its own."""
+        """Find the child link, in a model of the world or in one within its own; whether it is there."""
         said, bodies = self.parameters, self.simulation.scene.bodies
         model = self.place.path if said.child_model == _OWN else said.child_model
         link = f"{model}{SEPARATOR}{said.child_link}"

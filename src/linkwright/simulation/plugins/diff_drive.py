@@ -1,4 +1,4 @@
-"""Differential drive: ``libgazebo_ros_diff_drive.so`` and that of ROS 1 and gz.
+"""Differential drive: ``libgazebo_ros_diff_drive.so`` of ROS 2 and ROS 1, and ``gz-sim-diff-drive-system``.
 
 Source: gazebo_ros_pkgs for ROS 2 and gz-sim (parameters, topics, defaults, the limiter, odometry). Other than there a
 robot that drives backward has a negative velocity in its odometry of wheels, unless Gazebo's mistakes are asked for.
@@ -45,7 +45,7 @@ _WORLD = 1
 
 @dataclass(frozen=True, kw_only=True)
 class ClassicParameters:
-    """Of the plugin of Gazebo classic."""
+    """Parameters of ``libgazebo_ros_diff_drive.so``."""
 
     left_joint: tuple[str, ...] = parameter(aliases=("leftJoint",))
     right_joint: tuple[str, ...] = parameter(aliases=("rightJoint",))
@@ -70,7 +70,7 @@ class ClassicParameters:
 
 @dataclass(frozen=True, kw_only=True)
 class GzParameters(GzDriveParameters):
-    """Of the plugin of gz."""
+    """Parameters of ``gz-sim-diff-drive-system``."""
 
     left_joint: tuple[str, ...] = parameter()
     right_joint: tuple[str, ...] = parameter()
@@ -89,7 +89,7 @@ class _Pair:
 
 
 class _DiffDrive(SimulatedPlugin[P], Generic[P]):
-    """Turns a velocity of the robot into those of its wheels, and their turns into a place."""
+    """A differential drive: wheel speeds from the commanded velocity, and odometry from the wheels' rotation."""
 
     CARRIED: ClassVar[tuple[str, ...]] = ("_wanted", "_now", "_place")
     _pairs: tuple[_Pair, ...]
@@ -103,7 +103,7 @@ class _DiffDrive(SimulatedPlugin[P], Generic[P]):
     def _fit_wheels(
         self, left: tuple[str, ...], right: tuple[str, ...], sizes: list[tuple[float, float]], torque: float
     ) -> None:
-        """Give the wheels motors; `sizes` has the distance and the radius of each pair, in m."""
+        """Give the wheels motors; `sizes` has the separation and the radius of each pair, in m."""
         if len(left) != len(right):
             message = phrase(
                 "plugin '{plugin}' has {left} left wheels and {right} right ones",
@@ -128,7 +128,7 @@ class _DiffDrive(SimulatedPlugin[P], Generic[P]):
         self._wanted = (float(twist.linear.x), float(twist.angular.z))
 
     def _rest(self) -> bool:
-        """Come to rest; whether it was to move."""
+        """Stop; whether it was to move."""
         before, self._wanted = self._wanted, (0.0, 0.0)
         return before != self._wanted
 
@@ -142,20 +142,20 @@ class _DiffDrive(SimulatedPlugin[P], Generic[P]):
         return self.simulation.joint_state(left)[0], self.simulation.joint_state(right)[0]
 
     def _speeds(self) -> tuple[float, float]:
-        """How fast the first pair of wheels rolls and turns the robot, in m/s and rad/s."""
+        """The velocity forward in m/s and around z in rad/s that the first pair of wheels rolls with."""
         pair = self._pairs[0]
         left, right = (self.simulation.joint_state(joint)[1] for joint in pair.joints)
         return pair.drive.motion(left, right)
 
     def _measure(self) -> None:
-        """Go on by what the first pair of wheels has turned since."""
+        """Update the odometry by the rotation of the first pair of wheels."""
         pair, (left, right), self._turned = self._pairs[0], self._turned, self._angles()
         new_left, new_right = self._turned
         way, turn = pair.drive.motion(new_left - left, new_right - right)
         self._place.advance(way, 0.0, turn)
 
     def reset(self) -> None:
-        """Stand still where it began."""
+        """Stop, with the odometry at its origin."""
         self._begin()
         self._turn_wheels()
 
@@ -167,7 +167,7 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
     CARRIED: ClassVar[tuple[str, ...]] = (*_DiffDrive.CARRIED, "_wheel_speeds")
 
     def start(self) -> None:
-        """Give the wheels motors, and listen."""
+        """Give the wheels motors, and subscribe to the commands."""
         said, node = self.parameters, self.node
         count = max(len(said.left_joint), len(said.right_joint))
         separations, diameters = _as_many(said.wheel_separation, count), _as_many(said.wheel_diameter, count)
@@ -188,7 +188,7 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
             self.every(said.update_rate, partial(self._publish_wheels, transforms or transforms_topic(node)))
 
     def _publish_wheels(self, output: Output) -> None:
-        """Publish where wheels are in the links that carry them."""
+        """Publish the poses of the wheels in the links that carry them."""
         for joint in [each for pair in self._pairs for each in pair.joints]:
             placed = self.simulation.scene.joints[joint]
             pose = compose(invert(self.simulation.link_pose(placed.parent)), self.simulation.link_pose(placed.child))
@@ -196,7 +196,7 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
             output.publish(transform_message(Header(self.stamp(), parent), child, pose))
 
     def reset(self) -> None:
-        """Stand still where it began."""
+        """Stop, with the odometry at its origin."""
         self._wheel_speeds = [(0.0, 0.0)] * len(self._pairs)
         super().reset()
 
@@ -215,7 +215,7 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
             self._topics.publish(stamp, self._place.transform, told, 0.0, turning)
 
     def _drive(self) -> None:
-        """Bring the wheels nearer to the command, by no more than they may speed up in m/s2 at their rims."""
+        """Accelerate the wheels towards the command, by no more than the limit in m/s2 at their rims."""
         forward, turning = self._wanted
         for number, pair in enumerate(self._pairs):
             wanted, now = pair.drive.wheel_speeds(forward, turning), self._wheel_speeds[number]
@@ -227,13 +227,13 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
             self._turn(number, _nearer(now[0], wanted[0], change), _nearer(now[1], wanted[1], change))
 
     def _turn(self, number: int, left: float, right: float) -> None:
-        """Have a pair of wheels turn so fast, in rad/s."""
+        """Set the velocity of a pair of wheels, in rad/s."""
         pair = self._pairs[number]
         self._wheel_speeds[number] = left, right
         pair.left.target, pair.right.target = left, right
 
     def go_on(self, before: SimulatedPlugin[ClassicParameters]) -> None:
-        """Go on with the velocity, and from the place, of one before."""
+        """Take over velocity and odometry from the previous instance."""
         super().go_on(before)
         for number, (left, right) in enumerate(self._wheel_speeds):
             self._turn(number, left, right)
@@ -250,7 +250,7 @@ class GzDiffDrive(_DiffDrive[GzParameters]):
     PARAMETERS = GzParameters
 
     def start(self) -> None:
-        """Give the wheels motors, and listen."""
+        """Give the wheels motors, and subscribe to the commands."""
         said = self.parameters
         count = max(len(said.left_joint), len(said.right_joint))
         sizes = [(said.wheel_separation, said.wheel_radius)] * count
@@ -262,12 +262,12 @@ class GzDiffDrive(_DiffDrive[GzParameters]):
         self.every(said.odom_publish_frequency, self._publish)
 
     def reset(self) -> None:
-        """Stand still where it began."""
+        """Stop, with the odometry at its origin."""
         self._commands.restart()
         super().reset()
 
     def go_on(self, before: SimulatedPlugin[GzParameters]) -> None:
-        """Go on with the velocity, and from the place, of one before."""
+        """Take over velocity and odometry from the previous instance."""
         super().go_on(before)
         assert isinstance(before, GzDiffDrive)
         self._commands.go_on(before._commands)
@@ -287,10 +287,10 @@ class GzDiffDrive(_DiffDrive[GzParameters]):
 
 
 def _nearer(now: float, to: float, greatest: float) -> float:
-    """A value nearer to another one, by no more than the greatest change."""
+    """A value moved towards another one, by no more than the greatest change."""
     return min(max(to, now - greatest), now + greatest)
 
 
 def _as_many(values: tuple[float, ...], count: int) -> tuple[float, ...]:
-    """As many values as there are pairs; the last holds for the others."""
+    """The values, one for each pair; the last one is repeated where some are missing."""
     return (*values, *(values[-1:] * count))[:count]

@@ -1,4 +1,4 @@
-"""Models and links of a simulation as services of gazebo_ros name them: where they are, and how they are put elsewhere.
+"""Poses and velocities of models and links, by the names that the services of gazebo_ros take.
 
 Source: gazebo_ros_pkgs for ROS 2 (``gazebo_ros_state``) and its messages.
 """
@@ -20,7 +20,7 @@ _WHOLE_WORLD = ("", WORLD, "map", "/map")
 
 
 class Entities:
-    """The models and links of a simulation.
+    """Models and links of a simulation, by the names that the services of gazebo_ros take.
 
     Args:
         simulation: the world.
@@ -30,7 +30,7 @@ class Entities:
         self._simulation = simulation
 
     def link(self, name: str) -> str:
-        """A link by its full name, ``model::link``, or by its own where only one model has such.
+        """Find a link by its full name, ``model::link``, or by its own where only one model has such a link.
 
         Raises:
             LinkwrightError: SIM141 there is none.
@@ -38,7 +38,7 @@ class Entities:
         return self._one(name, self._simulation.scene.bodies)
 
     def joint(self, name: str) -> str:
-        """A joint by its full name, ``model::joint``, or by its own where only one model has such.
+        """Find a joint by its full name, ``model::joint``, or by its own where only one model has such a joint.
 
         Raises:
             LinkwrightError: SIM141 there is none.
@@ -46,7 +46,7 @@ class Entities:
         return self._one(name, self._simulation.scene.joints)
 
     def model(self, name: str) -> str:
-        """A model.
+        """Find a model.
 
         Raises:
             LinkwrightError: SIM141 there is none.
@@ -56,7 +56,7 @@ class Entities:
         return name
 
     def frame(self, name: str) -> Transform:
-        """Where a model or link is in the world.
+        """The pose of a model or link in the world.
 
         Raises:
             LinkwrightError: SIM141 there is no such thing.
@@ -68,7 +68,7 @@ class Entities:
         return self._simulation.link_pose(self.link(name))
 
     def state(self, name: str, reference: str = "") -> Any:
-        """Where a model or link is and how it moves: a message ``gazebo_msgs/msg/EntityState``.
+        """The pose and the twist of a model or link: a message ``gazebo_msgs/msg/EntityState``.
 
         Args:
             name: of the model or link.
@@ -90,7 +90,7 @@ class Entities:
         return message
 
     def put(self, state: Any) -> None:
-        """Put a model where a message ``gazebo_msgs/msg/EntityState`` says, and let it move so.
+        """Set pose and twist of a model from a message ``gazebo_msgs/msg/EntityState``.
 
         Raises:
             LinkwrightError: SIM141 there is no such thing; SIM103 it is fixed to the world.
@@ -115,7 +115,7 @@ def _nothing(name: str, known: Collection[str]) -> LinkwrightError:
 
 
 def answered(response: Any, work: Callable[[], str]) -> Any:
-    """A response with whether something worked and what it says, or why it did not."""
+    """A response with `success` and `status_message`, which tells why it did not work."""
     try:
         response.success, response.status_message = True, work()
     except LinkwrightError as error:
@@ -126,7 +126,7 @@ def answered(response: Any, work: Callable[[], str]) -> Any:
 def answered_without_text(
     response: Any, work: Callable[[], object], service: str, tell: Callable[[Phrase], object]
 ) -> Any:
-    """A response that can only say whether something worked; why it did not is told, as to a log."""
+    """A response with `success` alone; why it did not work goes to `tell`, such as a logger."""
     try:
         work()
         response.success = True
@@ -137,7 +137,7 @@ def answered_without_text(
 
 
 def refused(service: str, error: LinkwrightError) -> Phrase:
-    """Why a service did not do what it was asked for."""
+    """The reason for refusing a request, in one text."""
     finding = error.diagnostics[0]
     if finding.hint:
         return phrase("{service}: {problem} ({hint})", service=service, problem=finding.message, hint=finding.hint)
@@ -152,13 +152,13 @@ def told(finding: Diagnostic) -> str:
 
 
 def pose_message(pose: Transform) -> Any:
-    """A pose as ``geometry_msgs/msg/Pose``."""
+    """A pose as a message ``geometry_msgs/msg/Pose``."""
     point = get_message("geometry_msgs/msg/Point")(*pose[:3])
     return get_message("geometry_msgs/msg/Pose")(point, Quaternion(*pose[3:]))
 
 
 def transform_in(message: Any) -> Transform:
-    """A pose as it is in messages; one without an orientation is not turned."""
+    """The pose in a message; a quaternion of zeros stands for no rotation."""
     turn = message.orientation
     quaternion = (turn.x, turn.y, turn.z, turn.w)
     if not any(quaternion):
@@ -167,7 +167,7 @@ def transform_in(message: Any) -> Transform:
 
 
 def numbers(vector: Any) -> tuple[float, float, float]:
-    """The three numbers of a message."""
+    """The x, y and z of a message."""
     return vector.x, vector.y, vector.z
 
 

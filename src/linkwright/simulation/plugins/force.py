@@ -1,4 +1,4 @@
-"""Pushing a link: ``libgazebo_ros_force.so``.
+"""A force on a link, commanded by a topic: ``libgazebo_ros_force.so``.
 
 Source: gazebo_ros_pkgs for ROS 2 and ROS 1 (parameters, topic; before each step the force of the last message is added
 at the centre of mass, in the axes of the world or of the link).
@@ -20,7 +20,7 @@ _STILL = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
 @dataclass(frozen=True, kw_only=True)
 class ForceParameters:
-    """Of the plugin."""
+    """Parameters of ``libgazebo_ros_force.so``."""
 
     link_name: str = parameter(aliases=("bodyName",))
     force_frame: str = "world"
@@ -34,7 +34,7 @@ class ClassicForce(SimulatedPlugin[ForceParameters]):
     CARRIED = ("_wrench",)
 
     def start(self) -> None:
-        """Find the link, and listen.
+        """Find the link, and subscribe.
 
         Raises:
             LinkwrightError: SIM133 there is no such link; SIM160 the frame is neither that of the world nor the link's.
@@ -54,7 +54,7 @@ class ClassicForce(SimulatedPlugin[ForceParameters]):
         self.every(0.0, self._push)
 
     def reset(self) -> None:
-        """Push nothing."""
+        """Clear the force."""
         self._wrench = _STILL
         self._push()
 
@@ -63,7 +63,7 @@ class ClassicForce(SimulatedPlugin[ForceParameters]):
         self._push()
 
     def _rest(self) -> bool:
-        """Push nothing any more; whether there was a push."""
+        """Clear the force; whether there was one."""
         before = self._wrench
         self.reset()
         return before != _STILL

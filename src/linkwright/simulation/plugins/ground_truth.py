@@ -1,4 +1,4 @@
-"""Where a robot really is: ``libgazebo_ros_p3d.so``, and the publisher of odometry of gz.
+"""True poses as odometry: ``libgazebo_ros_p3d.so``, and ``gz-sim-odometry-publisher-system``.
 
 Source: gazebo_ros_pkgs and gz-sim (parameters, topics, frames, defaults).
 """
@@ -32,7 +32,7 @@ _WORLD = ("world", "/world", "map", "/map")
 
 @dataclass(frozen=True, kw_only=True)
 class ClassicPoseParameters:
-    """Of the plugin of Gazebo classic."""
+    """Parameters of ``libgazebo_ros_p3d.so``."""
 
     body_name: str = parameter(aliases=("bodyName",))
     frame_name: str = parameter("world", aliases=("frameName",))
@@ -45,7 +45,7 @@ class ClassicPoseParameters:
 
 @dataclass(frozen=True, kw_only=True)
 class GzOdometryParameters:
-    """Of the plugin of gz."""
+    """Parameters of ``gz-sim-odometry-publisher-system``."""
 
     odom_frame: str = ""
     robot_base_frame: str = ""
@@ -60,7 +60,7 @@ class GzOdometryParameters:
 
 
 class ClassicPose(SimulatedPlugin[ClassicPoseParameters]):
-    """``libgazebo_ros_p3d.so``: a link in the world or in the frame of another link.
+    """``libgazebo_ros_p3d.so``: the pose of a link in the world or in the frame of another link.
 
     Velocities are in the axes of the world, or of that other link; gazebo_ros_p3d turns those the wrong way, which is
     done where Gazebo's mistakes are asked for.
@@ -79,7 +79,7 @@ class ClassicPose(SimulatedPlugin[ClassicPoseParameters]):
         self.every(said.update_rate, self._publish)
 
     def reset(self) -> None:
-        """Begin anew with the noise."""
+        """Restart the noise."""
         self._random = self.random
 
     def _publish(self) -> None:
@@ -101,7 +101,7 @@ class ClassicPose(SimulatedPlugin[ClassicPoseParameters]):
 
 
 class GzOdometry(SimulatedPlugin[GzOdometryParameters]):
-    """``gz-sim-odometry-publisher-system``: a model in the world, with velocities in its own axes."""
+    """``gz-sim-odometry-publisher-system``: the pose of a model in the world, with velocities in its own axes."""
 
     PARAMETERS = GzOdometryParameters
 
@@ -120,7 +120,7 @@ class GzOdometry(SimulatedPlugin[GzOdometryParameters]):
         self.every(said.odom_publish_frequency, self._publish)
 
     def reset(self) -> None:
-        """Begin anew with the noise."""
+        """Restart the noise."""
         self._random = self.random
 
     def _publish(self) -> None:
@@ -143,13 +143,13 @@ class GzOdometry(SimulatedPlugin[GzOdometryParameters]):
 
 
 def _turned_back(frame: Transform, vector: Array) -> Array:
-    """A vector in the axes of the world in those of a frame."""
+    """A vector in the axes of the world, expressed in those of a frame."""
     x, y, z = vector
     return np.array(rotate(quaternion_inverse(frame[3:]), (float(x), float(y), float(z))))
 
 
 def _turned_on(frame: Transform, vector: Array) -> Array:
-    """A vector turned by the rotation of a frame."""
+    """A vector rotated by the orientation of a frame."""
     x, y, z = vector
     return np.array(rotate(frame[3:], (float(x), float(y), float(z))))
 
@@ -161,7 +161,7 @@ def _with_noise(random: np.random.Generator, deviation: float, linear: Array, an
 
 
 def _odometry(header: Header, child: str, pose: Transform, linear: Array, angular: Array, variance: float) -> Any:
-    """Odometry with the same variance of all that is measured."""
+    """Fill in odometry with one variance for all that is measured."""
     message = get_message("nav_msgs/msg/Odometry")(header=header, child_frame_id=child)
     x, y, z, *rotation = pose
     message.pose.pose.position.x, message.pose.pose.position.y, message.pose.pose.position.z = x, y, z

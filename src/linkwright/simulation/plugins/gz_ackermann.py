@@ -1,4 +1,4 @@
-"""Cars of gz, which steer their front wheels: ``gz-sim-ackermann-steering-system``.
+"""Ackermann steering of gz: ``gz-sim-ackermann-steering-system``.
 
 Source: gz-sim (parameters, topics, defaults, the angles of the wheels, odometry; ``angular.z`` of a command is how fast
 the car turns). Other than there a wheel is steered to its angle as fast as the gain says, whatever pulls at it.
@@ -30,7 +30,7 @@ _SLOW = 1e-3
 
 @dataclass(frozen=True, kw_only=True)
 class SteeringParameters(GzDriveParameters):
-    """Of the plugin."""
+    """Parameters of ``gz-sim-ackermann-steering-system``."""
 
     left_joint: tuple[str, ...] = ()
     right_joint: tuple[str, ...] = ()
@@ -59,7 +59,7 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
     )
 
     def start(self) -> None:
-        """Give the wheels motors and servos, and listen.
+        """Give the wheels motors and servos, and subscribe to the commands.
 
         Raises:
             LinkwrightError: SIM134 a joint is not there; SIM160 a measure is not positive, or no wheel is named.
@@ -117,7 +117,7 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
         self._angles = self._wheel_angles()
 
     def reset(self) -> None:
-        """Stand still, with the wheels straight ahead."""
+        """Stop, with the wheels straight ahead."""
         self._begin()
         self._commands.restart()
         self._limiter.restart()
@@ -126,7 +126,7 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
         self._turn_wheels(0.0, 0.0)
 
     def go_on(self, before: SimulatedPlugin[SteeringParameters]) -> None:
-        """Go on with the velocity, and from the place, of one before."""
+        """Take over velocity and odometry from the previous instance."""
         super().go_on(before)
         assert isinstance(before, GzAckermann)
         self._commands.go_on(before._commands)
@@ -135,7 +135,7 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
     # --- the wheels ---------------------------------------------------------------------------------------------------
 
     def _drive(self) -> None:
-        """Turn the wheels as the command says: the inner ones slower, and steered further."""
+        """Drive and steer by the command: the inner wheels slower, and steered further."""
         self._measure()
         said = self.parameters
         forward, _, turning = self._commands.follow()
@@ -145,7 +145,7 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
         self._steer(*steered_apart(said.wheel_base * curvature, said.kingpin_width * curvature))
 
     def _curvature(self, forward: float, turning: float) -> float:
-        """One over the radius of the circle to drive, in 1/m, to the left positive; no tighter than the limit."""
+        """The commanded curvature in 1/m, to the left positive; no tighter than the limit."""
         said = self.parameters
         greatest = sin(said.steering_limit) / said.wheel_base
         if abs(turning) < _SLOW:
@@ -168,7 +168,7 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
         self._steer(atan(slope / (along - across)), atan(slope / (along + across)))
 
     def _steer(self, left: float, right: float) -> None:
-        """Bring the wheels nearer to their angles in rad, at a speed that is the gain times what is missing."""
+        """Steer towards the angles in rad, at a speed that is the gain times the error."""
         said = self.parameters
         for servos, angle in zip(self._servos, (left, right), strict=True):
             for servo in servos:
@@ -183,12 +183,12 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
 
     @property
     def _turn(self) -> float:
-        """How far the car turns by its steering, in rad for each m."""
+        """The yaw in rad for each m driven, by the steering angles now."""
         left, right = (self.simulation.joint_state(joint)[0] for joint in self._steering)
         return tan((left + right) / 2.0) / self.parameters.wheel_base
 
     def _measure(self) -> None:
-        """Go on by what the first wheels of both sides have turned since."""
+        """Update the odometry by the rotation of the first wheel of each side."""
         before, self._angles = self._angles, self._wheel_angles()
         way = sum(new - old for new, old in zip(self._angles, before, strict=True)) / 2.0 * self.parameters.wheel_radius
         self._place.advance(way, 0.0, way * self._turn)

@@ -1,4 +1,4 @@
-"""What the drives of gz have in common: their topics and frames, and the velocity that they are told, within limits.
+"""Commands, odometry topics and frames of the drives of gz.
 
 Source: gz-sim (parameters, topics, defaults).
 """
@@ -23,7 +23,7 @@ MOTOR_GAIN = 20.0
 
 @dataclass(frozen=True, kw_only=True)
 class GzDriveParameters(SpeedLimits):
-    """Of all drives of gz."""
+    """Parameters that all drives of gz have."""
 
     topic: str = ""
     odom_topic: str = ""
@@ -34,7 +34,7 @@ class GzDriveParameters(SpeedLimits):
 
 
 class DriveCommands:
-    """The velocity that a drive is told: forward and to the left in m/s, around z in rad/s.
+    """The commanded velocity within its limits: forward and to the left in m/s, around z in rad/s.
 
     Args:
         limits: how fast it may go.
@@ -49,40 +49,40 @@ class DriveCommands:
         self.restart()
 
     def restart(self) -> None:
-        """Stand still, and wait for a command."""
+        """Set the velocity to zero, and forget the command."""
         self._wanted = (0.0, 0.0, 0.0)
         for limiter in self._limiters:
             limiter.restart()
 
     def go_on(self, before: DriveCommands) -> None:
-        """Go on with the velocity of one with the same limits."""
+        """Take over the velocity of another one with the same limits."""
         self.is_enabled, self._wanted, self._limiters = before.is_enabled, before._wanted, before._limiters
 
     def take(self, twist: Any) -> None:
-        """Take a command, ``geometry_msgs/msg/Twist``."""
+        """Set the command from a ``geometry_msgs/msg/Twist``."""
         if self.is_enabled:
             self._wanted = (float(twist.linear.x), float(twist.linear.y), float(twist.angular.z))
 
     def rest(self) -> bool:
-        """Come to rest; whether it was to move."""
+        """Command a stop; whether it was to move."""
         before, self._wanted = self._wanted, (0.0, 0.0, 0.0)
         return before != self._wanted
 
     def enable(self, message: Any) -> None:
-        """Listen or come to rest, as ``std_msgs/msg/Bool`` says."""
+        """Enable, or disable and stop, by a ``std_msgs/msg/Bool``."""
         self.is_enabled = bool(message.data)
         if not self.is_enabled:
             self.rest()
 
     def follow(self) -> tuple[float, float, float]:
-        """The velocity that it is to have now, which is asked for `GZ_RATE` times a second."""
+        """The velocity to drive with now, within the limits; to be called `GZ_RATE` times a second."""
         pairs = zip(self._limiters, self._wanted, strict=True)
         forward, sideways, turning = (limiter.follow(wanted, 1.0 / GZ_RATE) for limiter, wanted in pairs)
         return forward, sideways, turning
 
 
 def connected(plugin: SimulatedPlugin[Any], said: GzDriveParameters, commands: DriveCommands) -> OdometryTopics:
-    """The topics of odometry of a drive, which takes its commands from now on."""
+    """Make the odometry topics of a drive, and subscribe to its commands."""
     model, node = plugin.place.path, plugin.node
     frame = said.frame_id or f"{model}/odom"
     child = said.child_frame_id or f"{model}/{plugin.first_link.rpartition(SEPARATOR)[2]}"

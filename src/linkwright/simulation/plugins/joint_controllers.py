@@ -1,4 +1,4 @@
-"""Joints that go where, or as fast as, they are told: position and velocity controllers of gz.
+"""Joint controllers of gz: ``gz-sim-joint-position-controller-system`` and ``gz-sim-joint-controller-system``.
 
 Source: gz-sim (parameters, topics, defaults, what velocity commands mean). Commands are ``std_msgs/msg/Float64``, of
 which a bridge makes the messages of gz.
@@ -24,7 +24,7 @@ _UNBOUNDED = 1000.0
 
 @dataclass(frozen=True, kw_only=True)
 class ControllerParameters:
-    """Of both controllers."""
+    """Parameters of both controllers."""
 
     joint_name: tuple[str, ...] = parameter()
     topic: str = ""
@@ -40,7 +40,7 @@ class ControllerParameters:
 
     @property
     def gains(self) -> Gains:
-        """Those of the controller of forces."""
+        """The gains of the PID controller."""
         return Gains(
             p=self.p_gain,
             i=self.i_gain,
@@ -55,7 +55,7 @@ class ControllerParameters:
 
 @dataclass(frozen=True, kw_only=True)
 class PositionParameters(ControllerParameters):
-    """Of the controller of positions."""
+    """Parameters of ``gz-sim-joint-position-controller-system``."""
 
     joint_index: int = 0
     initial_position: float = 0.0
@@ -66,7 +66,7 @@ class PositionParameters(ControllerParameters):
 
 @dataclass(frozen=True, kw_only=True)
 class VelocityParameters(ControllerParameters):
-    """Of the controller of velocities."""
+    """Parameters of ``gz-sim-joint-controller-system``."""
 
     initial_velocity: float = 0.0
     use_force_commands: bool = False
@@ -76,7 +76,7 @@ P = TypeVar("P", bound=ControllerParameters)
 
 
 class _JointController(SimulatedPlugin[P], Generic[P]):
-    """Holds joints at what a topic says, which `_wanted` keeps."""
+    """Holds joints at the value that a topic commands, `_wanted`."""
 
     IGNORED = ("use_actuator_msg", "actuatorNumber")
 
@@ -91,14 +91,14 @@ class _JointController(SimulatedPlugin[P], Generic[P]):
         self._begin()
 
     def _find_joints(self) -> None:
-        """Find the joints, and keep what they move awake."""
+        """Find the joints, and keep the bodies that they move awake."""
         simulation = self.simulation
         self._joints = [self.joint(name) for name in self.parameters.joint_name]
         for joint in self._joints:
             simulation.keep_awake(simulation.scene.joints[joint].child)
 
     def _listen(self, leaf: str) -> None:
-        """Take commands: from the topic that is said, or from one of the first joint with a leaf."""
+        """Subscribe to the commands: to the topic of the parameters, or to one named after the first joint."""
         said = self.parameters
         topic = said.topic or f"/model/{self.place.path}/{said.sub_topic or f'joint/{said.joint_name[0]}/{leaf}'}"
         commander = self.node.commander(self._rest)
@@ -109,11 +109,11 @@ class _JointController(SimulatedPlugin[P], Generic[P]):
         self._wanted = float(message.data)
 
     def _rest(self) -> bool:
-        """Stop what the last command moves for ever; whether there is anything. A position is held."""
+        """Stop a motion that has no end; whether there was one. A position is held."""
         return False
 
     def _push(self, derivative: int) -> None:
-        """Push the joints for a step by how far they are from what is wanted: 0 for positions, 1 for velocities."""
+        """Apply the PID controller's force for a step: to the errors of positions (0) or velocities (1)."""
         seconds = self.simulation.step / NANOSECONDS
         for joint, controller in zip(self._joints, self._controllers, strict=True):
             error = self._wanted - self.simulation.joint_state(joint)[derivative]
@@ -178,7 +178,7 @@ class GzJointVelocity(_JointController[VelocityParameters]):
         self._turn(self.parameters.initial_velocity)
 
     def go_on(self, before: SimulatedPlugin[VelocityParameters]) -> None:
-        """Go on with the velocity of one before."""
+        """Take over the velocity of the previous instance."""
         assert isinstance(before, GzJointVelocity)
         self._turn(before._wanted)
 

@@ -1,4 +1,4 @@
-"""Joints put where a trajectory says: ``libgazebo_ros_joint_pose_trajectory.so``.
+"""Joints set to the positions of a trajectory: ``libgazebo_ros_joint_pose_trajectory.so``.
 
 Source: gazebo_ros_pkgs for ROS 2 and ROS 1 (topic, parameters; joints jump from point to point, and each point comes so
 long after the one before as the ``time_from_start`` of that one says).
@@ -20,7 +20,7 @@ from linkwright.simulation.simulation import NANOSECONDS
 
 @dataclass(frozen=True, kw_only=True)
 class JointPoseParameters:
-    """Of the plugin."""
+    """Parameters of ``libgazebo_ros_joint_pose_trajectory.so``."""
 
     update_rate: float = parameter(100.0, aliases=("updateRate",))
     topic_name: str = parameter("set_joint_trajectory", aliases=("topicName",))
@@ -33,7 +33,7 @@ class ClassicJointPoses(SimulatedPlugin[JointPoseParameters]):
     IGNORED = ("serviceName",)
 
     def start(self) -> None:
-        """Listen."""
+        """Subscribe to the trajectories."""
         self.reset()
         self.node.subscribe(
             "trajectory_msgs/msg/JointTrajectory", self.parameters.topic_name, self._told, 1, rest=lambda: None
@@ -41,7 +41,7 @@ class ClassicJointPoses(SimulatedPlugin[JointPoseParameters]):
         self.every(self.parameters.update_rate, self._move)
 
     def reset(self) -> None:
-        """Follow nothing."""
+        """Drop the trajectory."""
         self._points = deque[Any]()
         self._joints: list[str] = []
         self._due = 0
@@ -61,7 +61,7 @@ class ClassicJointPoses(SimulatedPlugin[JointPoseParameters]):
         self._due = max(int(stamp.sec) * NANOSECONDS + int(stamp.nanosec), self.simulation.time)
 
     def _move(self) -> None:
-        """Put the joints where the point says that is due."""
+        """Set the joints to the point of the trajectory that is due."""
         if not self._points or self.simulation.time < self._due:
             return
         point = self._points.popleft()

@@ -1,4 +1,4 @@
-"""Joint states: ``libgazebo_ros_joint_state_publisher.so``, and that of gz.
+"""Joint states: ``libgazebo_ros_joint_state_publisher.so``, and ``gz-sim-joint-state-publisher-system``.
 
 Source: gazebo_ros_pkgs for ROS 2 and gz-sim (parameters, topics, defaults). What gz sends is its message Model, of
 which a bridge makes this one.
@@ -19,7 +19,7 @@ P = TypeVar("P")
 
 @dataclass(frozen=True, kw_only=True)
 class ClassicParameters:
-    """Of the plugin of Gazebo classic."""
+    """Parameters of ``libgazebo_ros_joint_state_publisher.so``."""
 
     joint_name: tuple[str, ...] = parameter(aliases=("jointName",))
     update_rate: float = parameter(100.0, aliases=("updateRate",))
@@ -27,7 +27,7 @@ class ClassicParameters:
 
 @dataclass(frozen=True, kw_only=True)
 class GzParameters:
-    """Of the plugin of gz."""
+    """Parameters of ``gz-sim-joint-state-publisher-system``."""
 
     joint_name: tuple[str, ...] = ()
     topic: str = ""
@@ -59,7 +59,7 @@ class ClassicJointStates(_JointStates[ClassicParameters]):
     PARAMETERS = ClassicParameters
 
     def start(self) -> None:
-        """Find the joints; one that does not move is told of and left out."""
+        """Find the joints; a fixed one is left out with a warning."""
         asked = [name for entry in self.parameters.joint_name for name in entry.replace(",", " ").split()]
         found = [(name, joint) for name in asked if (joint := self._joint(name)) is not None]
         names, joints = [name for name, _ in found], [joint for _, joint in found]
@@ -80,7 +80,7 @@ class GzJointStates(_JointStates[GzParameters]):
     PARAMETERS = GzParameters
 
     def start(self) -> None:
-        """Find the joints, all that move unless some are named."""
+        """Find the joints: those that are named, else all that move."""
         begin = f"{self.place.path}::"
         moving = [
             name for name, placed in self.simulation.scene.joints.items() if name.startswith(begin) and placed.axes

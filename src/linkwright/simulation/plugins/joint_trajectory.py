@@ -22,7 +22,7 @@ Many = tuple[float, ...]
 
 @dataclass(frozen=True, kw_only=True)
 class TrajectoryParameters:
-    """Of the plugin; values come in the order of the joints."""
+    """Parameters of ``gz-sim-joint-trajectory-controller-system``; lists are in the order of the joints."""
 
     joint_name: tuple[str, ...] = ()
     topic: str = ""
@@ -46,7 +46,7 @@ class TrajectoryParameters:
     velocity_cmd_offset: Many = ()
 
     def gains(self, kind: str, number: int) -> Gains:
-        """Those of one joint: of ``position`` or ``velocity``; without any a controller does nothing."""
+        """The gains of one joint for ``position`` or ``velocity``; without any a controller does nothing."""
 
         def value(name: str, default: float) -> float:
             return _nth(getattr(self, f"{kind}_{name}"), number, default)
@@ -64,7 +64,7 @@ class TrajectoryParameters:
 
 
 class _Joint:
-    """A joint, and what it is held at: rad or m, rad/s or m/s, N m or N."""
+    """A joint and its targets: rad or m, rad/s or m/s, N m or N."""
 
     def __init__(self, name: str, number: int, parameters: TrajectoryParameters) -> None:
         self.name = name
@@ -74,20 +74,20 @@ class _Joint:
         self._by_velocity = Pid(parameters.gains("velocity", number))
 
     def aim(self, point: Any, number: int) -> None:
-        """Go to what a point says of the joint with a number in it; of what it says nothing nothing changes."""
+        """Set the targets from a point, in which the joint has a number; what the point leaves out stays."""
         self.position = _nth(point.positions, number, self.position)
         self.velocity = _nth(point.velocities, number, self.velocity)
         self.effort = _nth(point.effort, number, self.effort)
 
     def force(self, position: float, velocity: float, seconds: float) -> float:
-        """The force in N m (N) for where it is and how fast it goes, so many seconds after the last one."""
+        """The force in N m (N) for a position and a velocity, `seconds` after the last call."""
         force = self._by_position.force(self.position - position, seconds)
         return force + self._by_velocity.force(self.velocity - velocity, seconds) + self.effort
 
 
 @dataclass(slots=True)
 class _Trajectory:
-    """A trajectory on its way, begun at some nanosecond; `index` is the point that it goes to."""
+    """A trajectory that is being followed, begun at a time in ns; `index` is the point that is being approached."""
 
     message: Any
     start: int
@@ -98,7 +98,7 @@ class _Trajectory:
         return self.index + 1 >= len(self.message.points)
 
     def advance(self, time: int) -> bool:
-        """Go on to the point that is due at a time; whether that is another one."""
+        """Go on to the point that is due at a time; whether it is another one than before."""
         before = self.index
         while not self.is_at_last and self.start + _nanoseconds(self._point.time_from_start) < time:
             self.index += 1
@@ -109,7 +109,7 @@ class _Trajectory:
         return self.message.points[self.index]
 
     def aim(self, joint_of: Callable[[str], _Joint | None]) -> None:
-        """Let the joints that it names go to its point."""
+        """Set the targets of the joints that the point names."""
         for number, name in enumerate(self.message.joint_names):
             joint = joint_of(name)
             if joint is not None:
@@ -122,7 +122,7 @@ class GzJointTrajectory(SimulatedPlugin[TrajectoryParameters]):
     PARAMETERS = TrajectoryParameters
 
     def start(self) -> None:
-        """Find the joints, and listen."""
+        """Find the joints, and subscribe to the trajectories."""
         said, simulation = self.parameters, self.simulation
         begin = f"{self.place.path}::"
         self._names = said.joint_name or tuple(
@@ -140,7 +140,7 @@ class GzJointTrajectory(SimulatedPlugin[TrajectoryParameters]):
         self.every(0.0, self._move)
 
     def reset(self) -> None:
-        """Hold the joints where they are held at the start, and follow nothing."""
+        """Hold the joints at the initial positions of the parameters, and drop the trajectory."""
         self._joints = {
             name: _Joint(inside, number, self.parameters)
             for number, (name, inside) in enumerate(zip(self._names, self._inside, strict=True))
@@ -162,7 +162,7 @@ class GzJointTrajectory(SimulatedPlugin[TrajectoryParameters]):
         self._follow(self._trajectory)
 
     def _follow(self, trajectory: _Trajectory) -> None:
-        """Let the joints go to the point that is due, and tell how many points are behind or due, of 1."""
+        """Approach the point that is due, and publish the progress, from 0 to 1."""
         trajectory.aim(self._joints.get)
         told = (trajectory.index + 1) / len(trajectory.message.points)
         self._progress.publish(get_message("std_msgs/msg/Float32")(data=told))

@@ -1,4 +1,4 @@
-"""How fast a drive of gz may go, speed up and change that: its parameters.
+"""Limits of velocity, acceleration and jerk, as parameters of the drives of gz.
 
 Source: gz-sim's drives.
 """
@@ -35,7 +35,7 @@ class SpeedLimits:
     max_angular_jerk: float | None = None
 
     def limiter(self, kind: str) -> SpeedLimiter:
-        """What keeps to the limits of one kind of velocity, ``linear`` or ``angular``."""
+        """The limiter of one kind of velocity, ``linear`` or ``angular``."""
         return SpeedLimiter(*(self._bounds(kind, each) for each in ("velocity", "acceleration", "jerk")))
 
     def _bounds(self, kind: str, derivative: str) -> tuple[float, float]:

@@ -1,4 +1,4 @@
-"""Mecanum wheels of gz: ``gz-sim-mecanum-drive-system``.
+"""Mecanum drive of gz: ``gz-sim-mecanum-drive-system``.
 
 Source: gz-sim (parameters, topics, defaults, which wheel turns how fast; odometry from the wheels). Other than there
 rollers are not simulated by friction that differs with the direction: the wheels slide, and the robot has the velocity
@@ -27,7 +27,7 @@ from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
 @dataclass(frozen=True, kw_only=True)
 class MecanumParameters(GzDriveParameters):
-    """Of the plugin."""
+    """Parameters of ``gz-sim-mecanum-drive-system``."""
 
     front_left_joint: tuple[str, ...] = parameter()
     front_right_joint: tuple[str, ...] = parameter()
@@ -45,7 +45,7 @@ class GzMecanum(PlanarDrive[MecanumParameters]):
     CARRIED = ("_place",)
 
     def start(self) -> None:
-        """Give the wheels motors, and listen.
+        """Give the wheels motors, and subscribe to the commands.
 
         Raises:
             LinkwrightError: SIM134 a joint is not there; SIM160 a measure is not positive, or the model is fixed.
@@ -77,13 +77,13 @@ class GzMecanum(PlanarDrive[MecanumParameters]):
         self._angles = self._states(0)
 
     def reset(self) -> None:
-        """Stand still where it began."""
+        """Stop, with the odometry at its origin."""
         self._commands.restart()
         self._begin()
         self._turn_wheels((0.0, 0.0, 0.0))
 
     def go_on(self, before: SimulatedPlugin[MecanumParameters]) -> None:
-        """Go on with the velocity, and from the place, of one before."""
+        """Take over velocity and odometry from the previous instance."""
         super().go_on(before)
         assert isinstance(before, GzMecanum)
         self._commands.go_on(before._commands)
@@ -97,11 +97,11 @@ class GzMecanum(PlanarDrive[MecanumParameters]):
                 motor.target = speed
 
     def _states(self, derivative: int) -> list[float]:
-        """The angles of the four wheels in rad, or how fast they turn in rad/s."""
+        """The positions of the four wheels in rad, or their velocities in rad/s."""
         return [self.simulation.joint_state(joint)[derivative] for joint in self._wheels]
 
     def _rolled(self, turned: list[float]) -> tuple[float, float, float]:
-        """The way or velocity of a robot whose wheels have turned so far, or turn so fast."""
+        """The displacement (or velocity) of the robot from the rotation (or velocity) of its wheels."""
         return self._drive_train.motion(*turned)
 
     def _move(self) -> None:

@@ -1,4 +1,4 @@
-"""Flying: ``gz-sim-multicopter-motor-model-system``, a rotor, and ``gz-sim-multicopter-control-system``, velocities.
+"""Multicopters: ``gz-sim-multicopter-motor-model-system``, and ``gz-sim-multicopter-control-system`` for velocities.
 
 A rotor pulls along the z axis of its link with the square of its speed, turns what carries it the other way, and drags
 in the air that it moves through. The controller tilts the model so that it gets the velocity that it is told.
@@ -35,7 +35,7 @@ _PARALLEL = 1e-3
 
 @dataclass(frozen=True, kw_only=True)
 class MotorParameters:
-    """Of a rotor."""
+    """Parameters of ``gz-sim-multicopter-motor-model-system``."""
 
     joint_name: str = parameter(aliases=("jointName",))
     link_name: str = parameter(aliases=("linkName",))
@@ -68,7 +68,7 @@ class GzMulticopterMotor(SimulatedPlugin[MotorParameters]):
     CARRIED = ("wanted", "speed")
 
     def start(self) -> None:
-        """Find the rotor, and listen.
+        """Find the rotor, and subscribe to its speed.
 
         Raises:
             LinkwrightError: SIM133, SIM134 there is no such link or joint; SIM160 the motor is of another type.
@@ -90,7 +90,7 @@ class GzMulticopterMotor(SimulatedPlugin[MotorParameters]):
         self.every(0.0, self._pull)
 
     def reset(self) -> None:
-        """Stand still."""
+        """Stop the rotor."""
         self.wanted = self.speed = 0.0
 
     def _told(self, actuators: Any) -> None:
@@ -119,7 +119,7 @@ class GzMulticopterMotor(SimulatedPlugin[MotorParameters]):
 
 @dataclass(frozen=True, kw_only=True)
 class ControlParameters:
-    """Of the controller."""
+    """Parameters of ``gz-sim-multicopter-control-system``."""
 
     com_link_name: str = parameter(aliases=("comLinkName",))
     command_topic: str = parameter("cmd_vel", aliases=("commandSubTopic",))
@@ -133,7 +133,7 @@ class ControlParameters:
 
 
 class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
-    """A model flies with the velocity that it is told, in its own axes, and hovers when who told it is lost."""
+    """``gz-sim-multicopter-control-system``: flies with a commanded velocity; hovers when the sender is lost."""
 
     PARAMETERS = ControlParameters
     IGNORED = (
@@ -146,7 +146,7 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
     CARRIED = ("_wanted", "_is_enabled")
 
     def start(self) -> None:
-        """Find the rotors, and listen.
+        """Find the rotors, and subscribe to the commands.
 
         Raises:
             LinkwrightError: SIM133, SIM134 there is no such link or joint; SIM160 its rotors cannot hold the model.
@@ -170,7 +170,7 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
         self._is_enabled = True
 
     def _find_rotors(self, element: Element | None) -> None:
-        """Where rotors are, and which speeds of theirs give which turning and thrust."""
+        """Find the rotors, and work out which of their speeds give which torque and thrust."""
         simulation = self.simulation
         configuration = None if element is None else element.first("rotorConfiguration")
         rotors = [] if configuration is None else list(configuration.elements("rotor"))
@@ -229,7 +229,7 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
         self._wanted = (linear, min(max(float(twist.angular.z), -turning), turning))
 
     def _rest(self) -> bool:
-        """Hover."""
+        """Command hovering."""
         before = self._wanted
         if before is None:
             return False
@@ -258,7 +258,7 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
         return self._rotors
 
     def _speeds(self, linear: Array, turning: float) -> Array:
-        """How fast each rotor is to turn, in rad/s."""
+        """The speed of each rotor in rad/s, for this moment."""
         said, simulation = self.parameters, self.simulation
         turn = rotation_matrix(simulation.link_pose(self._body)[3:])
         velocity, rates = simulation.link_velocity(self._body)
@@ -277,7 +277,7 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
 
 
 def _attitude(turn: Array, acceleration: Array) -> Array:
-    """The axes of a body that pulls against an acceleration, and looks where it looked."""
+    """The axes of a body whose thrust gives an acceleration, and whose heading stays."""
     up = -acceleration / max(float(np.linalg.norm(acceleration)), 1e-9)
     ahead = next((each for each in turn.T if np.sum(np.cross(each, up) ** 2) >= _PARALLEL), turn[:, 0])
     left = np.cross(up, ahead)

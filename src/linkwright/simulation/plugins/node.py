@@ -1,4 +1,4 @@
-"""The node of a plugin, as the plugin uses it, in the simulation's thread."""
+"""The node of a plugin, for use in the simulation's thread."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _FIRST_DIGIT = re.compile(r"(?<=/)(?=[0-9])")
 
 
 class _Making:
-    """An outlet that makes messages of the values that it is sent."""
+    """An outlet that makes a message of the values that it is sent."""
 
     __slots__ = ("_make", "_publishers")
 
@@ -53,14 +53,14 @@ class Output:
 
     @property
     def is_wanted(self) -> bool:
-        """Whether anybody gets what is published: what is costly to make need not be made otherwise."""
+        """Whether anybody subscribes: a message that is costly to make need not be made otherwise."""
         for each in self._publishers:  # noqa: SIM110 - `any` takes twice as long, and this is asked all the time
             if each.get_subscription_count():
                 return True
         return False
 
     def publish(self, message: Any) -> None:
-        """Publish a message, which nobody changes any more."""
+        """Publish a message, which nobody may change any more."""
         for publisher in self._publishers:
             self._exchange.send(publisher, message)
 
@@ -81,7 +81,7 @@ class Output:
 
 
 class PluginNode:
-    """What a plugin has of ROS.
+    """Publishers, subscriptions, services and parameters of a plugin, called in the simulation's thread.
 
     A plugin of Gazebo classic is a node; those of gz share that of the simulation. Callbacks come in the simulation's
     thread, between two chunks of simulated time.
@@ -125,12 +125,12 @@ class PluginNode:
 
     @property
     def graph_node(self) -> Node:
-        """The node itself, for what is not here, such as actions: its callbacks come on the event loop."""
+        """The node itself, for what is not here, such as actions: its callbacks run on the event loop."""
         return self._node
 
     @property
     def exchange(self) -> Exchange:
-        """What hands over between the thread of the simulation and the graph."""
+        """The queues between the thread of the simulation and the event loop."""
         return self._exchange
 
     @property
@@ -166,7 +166,7 @@ class PluginNode:
         commander: Commander | None = None,
         rest: Callable[[], object] | None = None,
     ) -> None:
-        """Have a function called with each message of a topic.
+        """Subscribe to a topic.
 
         The arguments are those of `publisher`; for commands that hold until the next one, ``commander`` is one that
         the method of this name gave. ``rest`` is called in place of the function where a number of the message is none
@@ -190,7 +190,7 @@ class PluginNode:
             self._listen(self._node.handle.resolve_topic_name(name), listen)
 
     def commander(self, rest: Callable[[], bool]) -> Commander:
-        """For topics of commands that hold until the next one: takes that of a publisher back that is lost.
+        """A watcher of topics whose commands hold until the next one: a lost publisher's command is withdrawn.
 
         It also warns where several nodes command at the same time.
 
@@ -204,7 +204,7 @@ class PluginNode:
         return Commander(lost, DriverWatch(self.logger, self._node.graph, self._now_ns))
 
     def service(self, srv_type: str, name: str, callback: Callable[[Any, Any], Any]) -> None:
-        """Answer a service: a function of a request and an empty response gives the response."""
+        """Offer a service, whose callback gets the request and an empty response, and returns the response."""
         response = get_service(srv_type).Response
 
         def asked(request: Any, reply: Callable[[Any], None]) -> None:
@@ -219,7 +219,7 @@ class PluginNode:
         return self._node.get_parameter(name).value
 
     def close(self) -> None:
-        """Take what was made out of the graph."""
+        """Remove everything that was made from the graph."""
         for forget in self._untold:
             forget()
         if self._owned:
@@ -231,7 +231,7 @@ class PluginNode:
             self._usual.difference_update(self._names)
 
     def _listen(self, topic: str, listen: Callable[[str], Endpoint]) -> None:
-        """Listen to a topic, or to the side of gz of a bridge that has it under another type, now or later."""
+        """Subscribe to a topic, or to its hidden name while a bridge offers it under another type."""
         bridged = self._bridged
         if bridged is None or bridged.has(topic):
             listen(topic if bridged is None else gz_side(topic))
@@ -265,7 +265,7 @@ class PluginNode:
             self.logger.warning(phrase("{who}: what it moved is stopped", who=who_was_lost(publisher)))
 
     def _sound(self, callback: Callable[[Any], object], rest: Callable[[], object], topic: str, message: Any) -> None:
-        """Take a command whose numbers are numbers; come to rest with any other."""
+        """Pass a command on if its numbers are finite; stop otherwise."""
         if has_numbers(message):
             callback(message)
             return

@@ -1,4 +1,4 @@
-"""What drives publish of where they are: odometry, and the transform that says the same."""
+"""Odometry of drives, and the transform that goes with it."""
 
 from __future__ import annotations
 
@@ -25,18 +25,18 @@ _UNKNOWN = 1e12
 
 
 def planar_variances(x: float, y: float, yaw: float) -> Variances:
-    """The variances of what moves in a plane; what it does not measure has a great one, unless all are 0."""
+    """Variances for motion in a plane: large ones for what is not measured, unless all are 0."""
     return (x, y, _UNKNOWN, _UNKNOWN, _UNKNOWN, yaw) if x or y or yaw else _NONE
 
 
 def yaw_of(pose: Transform) -> float:
-    """The heading of a pose in space, in rad."""
+    """The yaw of a pose, in rad."""
     _, _, _, x, y, z, w = pose
     return atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
 
 
 def planar_velocity(pose: Transform, linear: Array, angular: Array) -> tuple[float, float, float]:
-    """Velocities forward and to the left in m/s and around z in rad/s, of those in the axes of the world."""
+    """Velocities forward and to the left in m/s and around z in rad/s, from those in the axes of the world."""
     yaw = yaw_of(pose)
     forward = float(linear[0] * cos(yaw) + linear[1] * sin(yaw))
     sideways = float(linear[1] * cos(yaw) - linear[0] * sin(yaw))
@@ -44,7 +44,7 @@ def planar_velocity(pose: Transform, linear: Array, angular: Array) -> tuple[flo
 
 
 class _Classes(NamedTuple):
-    """The classes of messages that odometry and transforms are made of."""
+    """The message classes that odometry and transforms are made of."""
 
     point: Any
     pose: Any
@@ -105,7 +105,7 @@ class OdometryTopics:
         return False
 
     def publish(self, stamp: Time, pose: Transform, forward: float, sideways: float, turning: float) -> None:
-        """Publish where the robot is, and its velocities in its own axes in m/s and rad/s."""
+        """Publish the pose, and the velocities in the robot's own axes in m/s and rad/s."""
         for output, send in self._outputs:
             if output.is_wanted:
                 send(stamp, pose, forward, sideways, turning)
@@ -128,12 +128,12 @@ def _diagonal(variances: Variances) -> Array:
 
 
 def transform_message(header: Header, child: str, pose: Transform) -> Any:
-    """A message for topics of transforms that says where one frame is."""
+    """A message with one transform, for topics of transforms."""
     return _classes().transforms([transform_stamped(header, child, pose)])
 
 
 def transform_stamped(header: Header, child: str, pose: Transform) -> TransformStamped:
-    """Where a frame is in that of the header."""
+    """The transform of a frame in that of the header."""
     x, y, z, qx, qy, qz, qw = pose
     return TransformStamped(header, child, TransformMessage(Vector3(x, y, z), Quaternion(qx, qy, qz, qw)))
 

@@ -38,18 +38,18 @@ _TRUTHS = {"true": True, "1": True, "false": False, "0": False}
 
 @dataclass(frozen=True)
 class NoParameters:
-    """The parameters of what has none."""
+    """For plugins without parameters."""
 
 
 def parameter(default: Any = MISSING, *, aliases: Sequence[str] = ()) -> Any:
-    """A parameter with a default, if it has one, and the names that it had in older simulators."""
+    """A parameter with a default, if it has one, and its names in older simulators."""
     return field(default=default, metadata={_ALIASES: tuple(aliases)})
 
 
 def parameters_from(
     table: type[P], element: Element | None, ignored: Collection[str] = ()
 ) -> tuple[P, list[Diagnostic]]:
-    """The parameters that a plugin is given.
+    """Read the parameters of a plugin from its element.
 
     Args:
         table: a dataclass, see above.
@@ -97,7 +97,7 @@ def _types(table: Hashable) -> Mapping[str, Any]:
 
 
 def _read(known: Field[Any], kind: Any, written: list[Element], findings: list[Diagnostic]) -> Any:
-    """The value of a parameter; None where none is given that can be read."""
+    """Read the value of a parameter; None where none is given that can be read."""
     many = kind in (tuple[str, ...], tuple[float, ...])
     convert = _CONVERTERS[str if kind == tuple[str, ...] else float if kind == tuple[float, ...] else kind]
     values = []

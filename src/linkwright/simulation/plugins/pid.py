@@ -1,4 +1,4 @@
-"""PID controllers, as those of gz are.
+"""The PID controller of gz's systems.
 
 Source: gz-math's PID: a bound whose least is more than its greatest bounds nothing.
 """
@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, kw_only=True)
 class Gains:
-    """Gains and bounds of a controller: of the sum of errors, times its gain, and of the command."""
+    """Gains of a controller, and bounds of the integral's share and of the command."""
 
     p: float
     i: float
@@ -23,7 +23,7 @@ class Gains:
 
 
 class Pid:
-    """A force of an error, by its size, its sum and its change; bounded."""
+    """A PID controller whose command is a force."""
 
     def __init__(self, gains: Gains) -> None:
         self._gains = gains
@@ -31,7 +31,7 @@ class Pid:
         self._before: float | None = None
 
     def force(self, error: float, seconds: float) -> float:
-        """The force in N m (N) for what is wanted less what is there, so many seconds after the last one."""
+        """The force in N m (N) for an error, `seconds` after the last call."""
         gains = self._gains
         self._sum = _bounded(self._sum + gains.i * error * seconds, gains.i_min, gains.i_max)
         change = 0.0 if self._before is None else (error - self._before) / seconds

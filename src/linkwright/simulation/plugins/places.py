@@ -1,4 +1,4 @@
-"""The plugins and sensors of a model, each with its place."""
+"""Collecting the plugins and sensors of a model or world, each with its place in it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Moving in a plane, as on mecanum wheels: ``libgazebo_ros_planar_move.so``, with the names of ROS 1 too.
+"""Motion in a plane: ``libgazebo_ros_planar_move.so``, with the names of ROS 1 too.
 
 Source: gazebo_ros_pkgs (parameters, topics, defaults). Other than there the velocity holds after each step, so that
 wheels that grip slow the robot down hardly at all, and the robot falls and tilts as it would by itself.
@@ -26,7 +26,7 @@ P = TypeVar("P")
 
 @dataclass(frozen=True, kw_only=True)
 class PlanarMoveParameters:
-    """Of the plugin of Gazebo classic."""
+    """Parameters of ``libgazebo_ros_planar_move.so``."""
 
     publish_rate: float = parameter(20.0, aliases=("odometryRate",))
     command_topic: str = parameter("cmd_vel", aliases=("commandTopic",))
@@ -41,10 +41,10 @@ class PlanarMoveParameters:
 
 
 class PlanarDrive(SimulatedPlugin[P], Generic[P]):
-    """Gives a model a velocity in its plane."""
+    """Sets the velocity of a model in its plane."""
 
     def be_free(self) -> None:
-        """Make sure that the model can move, and keep it awake.
+        """Check that the model can move, and keep it awake.
 
         Raises:
             LinkwrightError: SIM160 it is fixed to the world.
@@ -56,7 +56,7 @@ class PlanarDrive(SimulatedPlugin[P], Generic[P]):
         self.simulation.keep_awake(self.first_link)
 
     def hold(self, forward: float, sideways: float, turning: float) -> None:
-        """Have velocities in m/s and rad/s for the next step; those that lead out of the plane stay."""
+        """Set velocities in m/s and rad/s for the next step; those out of the plane stay."""
         yaw = yaw_of(self.simulation.model_pose(self.place.path))
         linear, angular = self.simulation.link_velocity(self.first_link)
         along = (forward * cos(yaw) - sideways * sin(yaw), forward * sin(yaw) + sideways * cos(yaw), float(linear[2]))
@@ -71,7 +71,7 @@ class PlanarMove(PlanarDrive[PlanarMoveParameters]):
     CARRIED = ("_wanted",)
 
     def start(self) -> None:
-        """Listen, and hold the velocity.
+        """Subscribe to the commands, and hold the velocity.
 
         Raises:
             LinkwrightError: SIM160 the model is fixed to the world.
@@ -108,5 +108,5 @@ class PlanarMove(PlanarDrive[PlanarMoveParameters]):
         )
 
     def reset(self) -> None:
-        """Stand still."""
+        """Stop."""
         self._rest()

@@ -1,4 +1,4 @@
-"""What plugins and sensors derive from.
+"""Base classes of plugins and sensors, and what they are given.
 
 How to write one. A class for each plugin or type of sensor, declared as an entry point (`registry`):
 
@@ -70,7 +70,7 @@ class PlacedSensor:
 
 @dataclass(frozen=True, slots=True)
 class PluginPlace:
-    """Where a plugin stands, and what it is given.
+    """The place of a plugin in a model, and its element.
 
     Attributes:
         name: its own name, or that of the sensor without a plugin.
@@ -90,14 +90,14 @@ class PluginPlace:
 
     @property
     def element(self) -> Element | None:
-        """What is written about it."""
+        """The element that declares it."""
         if self.plugin is not None:
             return self.plugin.element
         return None if self.sensor is None else self.sensor.sensor.element
 
 
 class Environment(Protocol):
-    """What a plugin needs of the simulation that it is in."""
+    """The interface of the simulation's server that plugins use."""
 
     @property
     def simulation(self) -> Simulation:
@@ -105,17 +105,17 @@ class Environment(Protocol):
 
     @property
     def gazebo_mistakes(self) -> bool:
-        """Whether known mistakes of Gazebo are made, too."""
+        """Whether known mistakes of Gazebo are reproduced."""
 
     @property
     def left(self) -> dict[str, Any]:
-        """What plugins leave, by names of their choice, for those that come in their places with a changed model."""
+        """Values that plugins leave under names of their choice, for their successors in a changed model."""
 
     def random(self, name: str) -> np.random.Generator:
-        """Random numbers of its own for whatever has a name; the same for the same seed."""
+        """A generator of random numbers for a name; it depends on nothing but the name and the seed."""
 
     def plugins(self, model: str) -> tuple[SimulatedPlugin[Any], ...]:
-        """What runs of the plugins and sensors of a model."""
+        """The running plugins and sensors of a model."""
 
 
 class SimulatedPlugin(Generic[P]):
@@ -148,17 +148,17 @@ class SimulatedPlugin(Generic[P]):
     # --- what one has of its own --------------------------------------------------------------------------------------
 
     def start(self) -> None:
-        """Begin: find links and joints, make topics, ask to be called.
+        """Find links and joints, make topics, register with `every`.
 
         Raises:
             LinkwrightError: it cannot work; this is logged, and it is not there.
         """
 
     def reset(self) -> None:
-        """Time has begun anew, and everything is where it was at the start."""
+        """Restore the state of the start; simulated time begins anew."""
 
     def go_on(self, before: SimulatedPlugin[P]) -> None:
-        """Go on as one with the same parameters did, whose model has come anew where it was; called after `start`.
+        """Take over the state of a predecessor with the same parameters (its model was replaced); called after `start`.
 
         Args:
             before: that one, which has ended.
@@ -167,35 +167,35 @@ class SimulatedPlugin(Generic[P]):
             setattr(self, name, getattr(before, name))
 
     def is_like(self, other: SimulatedPlugin[Any]) -> bool:
-        """Whether another one stands in the same place of a model and has the same parameters."""
+        """Whether another one has the same place in its model and the same parameters."""
         one, two = self.place, other.place
         same_place = (one.path, one.name) == (two.path, two.name)
         return type(self) is type(other) and same_place and bool(self.parameters == other.parameters)
 
     def stop(self) -> None:
-        """End; its node and what was asked for with `every` ends by itself."""
+        """Clean up; its node, and what was registered with `every`, are removed without it."""
 
     @property
     def left(self) -> dict[str, Any]:
-        """What those left, by names of their choice, in whose places plugins come with a changed model."""
+        """Values that predecessors left under names of their choice, when the model was changed."""
         return self._environment.left
 
     # --- what it needs ------------------------------------------------------------------------------------------------
 
     @property
     def sensor(self) -> PlacedSensor:
-        """The sensor; only where the plugin is one or stands in one."""
+        """The sensor, for a plugin that is one or stands in one."""
         assert self.place.sensor is not None
         return self.place.sensor
 
     @property
     def random(self) -> np.random.Generator:
-        """Random numbers of its own: keep it, and get it anew in `reset`."""
+        """Its own generator of random numbers: keep it, and fetch it again in `reset`."""
         owner = self.sensor.name if self.place.sensor is not None else f"{self.place.path}::{self.place.name}"
         return self._environment.random(owner)
 
     def every(self, rate: float, function: Callable[[], None]) -> None:
-        """Have a function called so many times a simulated second; 0 for after each step."""
+        """Register a function to be called a number of times a simulated second; 0 for after each step."""
         period = round(NANOSECONDS / rate) if rate > 0 else 0
         self._tasks.append(self.simulation.call_every(period, function))
 
@@ -226,14 +226,14 @@ class SimulatedPlugin(Generic[P]):
         return self.simulation.scene.models[top].structure.links[0].link.name
 
     def refused(self, message: Phrase) -> LinkwrightError:
-        """What `start` raises where parameters fit neither each other nor the model (SIM160)."""
+        """The error to raise in `start` where parameters fit neither each other nor the model (SIM160)."""
         element = self.place.element
         if element is None:
             return LinkwrightError(Diagnostic("SIM160", message))
         return LinkwrightError(Diagnostic("SIM160", message, element.span(), source=element.source))
 
     def close(self) -> None:
-        """End it, whatever it does."""
+        """Remove it: `stop`, and all that it made."""
         for task in self._tasks:
             task.cancelled = True
         try:

@@ -1,4 +1,4 @@
-"""Where the parts of a model are: ``gz-sim-pose-publisher-system``.
+"""Poses of the parts of a model: ``gz-sim-pose-publisher-system``.
 
 Source: gz-sim (parameters, topics, defaults, which parts are on the topic of those that stay). Messages and the names
 of frames are those that a bridge makes: ``tf2_msgs/msg/TFMessage`` of gz's Pose_V,
@@ -27,7 +27,7 @@ _QUEUE = 100
 
 @dataclass(frozen=True, kw_only=True)
 class PoseParameters:
-    """Of the plugin."""
+    """Parameters of ``gz-sim-pose-publisher-system``."""
 
     publish_link_pose: bool = True
     publish_visual_pose: bool = False
@@ -96,7 +96,7 @@ class GzPoses(SimulatedPlugin[PoseParameters]):
             output.publish(message)
 
     def _moved_by_joints(self, model: Model) -> set[str]:
-        """The links that joints hold or are held by, but for the one that the model's frame moves with."""
+        """The links with joints, without the one that the model's frame moves with."""
         begin = f"{self.place.path}{SEPARATOR}"
         moving = {
             link
@@ -107,7 +107,7 @@ class GzPoses(SimulatedPlugin[PoseParameters]):
         return moving - {f"{begin}{model.canonical_link}" if model.canonical_link else self.first_link}
 
     def _frame_of(self, model: Model, path: str) -> Callable[[], Transform]:
-        """Where the frame of the model that the plugin is in is in the world."""
+        """The pose in the world of the model's frame in which the plugin stands."""
         top, _, inside = path.partition(SEPARATOR)
         if not inside or not model.links:
             return lambda: self.simulation.model_pose(top)
@@ -115,7 +115,7 @@ class GzPoses(SimulatedPlugin[PoseParameters]):
         return self._moving_with(f"{path}{SEPARATOR}{model.links[0].name}", frames.pose(model.links[0].name))
 
     def _moving_with(self, link: str, place: Transform) -> Callable[[], Transform]:
-        """Where a frame is in the world in which a link has a place."""
+        """The pose in the world of a frame that is fixed to a link."""
         back = invert(place)
         return lambda: compose(self.simulation.link_pose(link), back)
 
@@ -154,5 +154,5 @@ def _same(pose: Transform) -> Transform:
 
 
 def _between(outer: Callable[[], Transform], inner: Callable[[], Transform]) -> Transform:
-    """Where one thing is in the frame of another."""
+    """The pose of one part in the frame of another."""
     return compose(invert(outer()), inner())

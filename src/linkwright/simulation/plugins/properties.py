@@ -1,4 +1,4 @@
-"""What models, links and joints are made of, asked by services: ``libgazebo_ros_properties.so``.
+"""Services that get and set physical properties of models, links and joints: ``libgazebo_ros_properties.so``.
 
 Source: gazebo_ros_pkgs for ROS 2 (services and their answers). What only the physics engine ODE has is neither told nor
 set. Lights are neither.
@@ -105,7 +105,7 @@ class ClassicProperties(SimulatedPlugin[NoParameters]):
         return answered(response, put)
 
     def _set_joint(self, request: Any, response: Any) -> Any:
-        """Set damping and limits of the first axis; the rest is ODE's own."""
+        """Set damping and limits of the first axis; other properties are ODE's own and have no effect."""
 
         def put() -> str:
             self.simulation.refresh()

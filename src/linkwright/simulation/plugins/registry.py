@@ -1,4 +1,4 @@
-"""Which plugins and sensors can be simulated.
+"""Finding the classes that simulate plugins and sensors, by entry points.
 
 They are found through two groups of entry points, ours and those of other packages, each naming a subclass of
 `linkwright.simulation.plugins.plugin.SimulatedPlugin`:
@@ -49,17 +49,17 @@ def library_name(filename: str) -> str:
 
 
 def is_of_gz(filename: str) -> bool:
-    """Whether a library is one of gz, whose plugins are no nodes of ROS."""
+    """Whether a library is one of gz, whose plugins have no node of their own."""
     return library_name(filename).startswith("gz-sim-")
 
 
 def needs_nothing(filename: str) -> bool:
-    """Whether what a library does is a part of the simulation itself."""
+    """Whether the simulation itself does what a library does."""
     return filename in _NONE or library_name(filename) in _BUILT_IN
 
 
 def plugin_class(library: str) -> PluginClass | None:
-    """What simulates the plugin in a library, which is given by its `library_name`; None where nothing does.
+    """The class that simulates the plugin in a library, given by its `library_name`; None where there is none.
 
     Raises:
         LinkwrightError: SIM136 the package that brings it cannot be imported.
@@ -77,7 +77,7 @@ def original_library(class_name: str) -> str:
 
 
 def sensor_class(kind: str) -> PluginClass | None:
-    """What simulates a sensor of a type that has no plugin; None where nothing does.
+    """The class that simulates a sensor without a plugin, by its type; None where there is none.
 
     Raises:
         LinkwrightError: SIM136 the package that brings it cannot be imported.

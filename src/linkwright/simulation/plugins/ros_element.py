@@ -1,4 +1,4 @@
-"""``<ros>``: which node a plugin of Gazebo classic is.
+"""``<ros>`` of a plugin of Gazebo classic: node name, namespace, remappings, parameters, quality of service.
 
 Source: ``gazebo_ros::Node`` of gazebo_ros_pkgs for ROS 2.
 """
@@ -22,7 +22,7 @@ _NUMBERS = {"int": int, "double": float, "float": float}
 
 @dataclass(slots=True)
 class NodeDescription:
-    """How the node of a plugin is made.
+    """The name, namespace and arguments of a plugin's node.
 
     Attributes:
         name: its name.
@@ -40,13 +40,13 @@ class NodeDescription:
 
     @property
     def full_name(self) -> str:
-        """The name that the node really has."""
+        """The full name of the node, after remapping."""
         rules = Remappings(self.remappings)
         return join(absolute_namespace(rules.namespace(self.namespace, self.name)), rules.node_name(self.name))
 
 
 def node_of(name: str, element: Element | None, namespace: str) -> NodeDescription:
-    """The node of a plugin.
+    """Read the description of a plugin's node.
 
     Args:
         name: of the plugin; what no name of a node may have becomes an underscore.
@@ -79,7 +79,7 @@ def node_of(name: str, element: Element | None, namespace: str) -> NodeDescripti
 
 
 def overridden(profile: QoSProfile, element: Element) -> QoSProfile:
-    """A quality of service with what an element says otherwise; words that are none leave it as it is."""
+    """A quality of service with the settings of an element; words that are none of them leave it as it is."""
     result = QoSProfile(profile.depth, profile.reliability, profile.durability, profile.history)
     for child in element.elements():
         word = child.text().strip().upper()
@@ -95,7 +95,7 @@ def overridden(profile: QoSProfile, element: Element) -> QoSProfile:
 
 
 def _namespace(element: Element | None) -> str:
-    """What ``<ros>`` says, or, as for ROS 1, the plugin itself; empty where nothing is said."""
+    """The namespace of ``<ros>``, or, as in ROS 1, of the plugin itself; empty where there is none."""
     for text in _namespaces(element):
         if text.strip("/ "):
             return "/" + text.strip("/ ")

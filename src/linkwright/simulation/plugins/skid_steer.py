@@ -15,7 +15,7 @@ from linkwright.simulation.plugins.plugin import Environment, PluginPlace
 
 @dataclass(frozen=True, kw_only=True)
 class SkidSteerParameters:
-    """Of the plugin of ROS 1."""
+    """Parameters of ``libgazebo_ros_skid_steer_drive.so``."""
 
     left_front_joint: str = parameter("left_front_joint", aliases=("leftFrontJoint",))
     right_front_joint: str = parameter("right_front_joint", aliases=("rightFrontJoint",))
@@ -35,7 +35,7 @@ class SkidSteerParameters:
     covariance_yaw: float = 1e-2
 
     def as_diff_drive(self) -> ClassicParameters:
-        """The same for the differential drive."""
+        """The same as parameters of the differential drive."""
         return ClassicParameters(
             left_joint=(self.left_front_joint, self.left_rear_joint),
             right_joint=(self.right_front_joint, self.right_rear_joint),

@@ -1,4 +1,4 @@
-"""Where everything is, and services that tell and change it: ``libgazebo_ros_state.so``.
+"""Topics and services of the states of models and links: ``libgazebo_ros_state.so``.
 
 Source: gazebo_ros_pkgs for ROS 2 (topics, services, the rate). The simulator itself answers ``/get_entity_state`` and
 ``/set_entity_state``; with this plugin they are in its namespace too.
@@ -19,7 +19,7 @@ from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
 @dataclass(frozen=True, kw_only=True)
 class StateParameters:
-    """Of the plugin."""
+    """Parameters of ``libgazebo_ros_state.so``."""
 
     update_rate: float = parameter(100.0, aliases=("updateRate",))
 

@@ -1,4 +1,4 @@
-"""A model that has the velocity that it is told: ``gz-sim-velocity-control-system``.
+"""A model that moves with a commanded velocity: ``gz-sim-velocity-control-system``.
 
 Source: gz-sim (parameters, topic; velocities are in the axes of the model, and hold until the next message).
 """
@@ -16,7 +16,7 @@ from linkwright.simulation.plugins.planar_move import PlanarDrive
 
 @dataclass(frozen=True, kw_only=True)
 class VelocityControlParameters:
-    """Of the plugin."""
+    """Parameters of ``gz-sim-velocity-control-system``."""
 
     topic: str = ""
     initial_linear: Vector3 | None = None
@@ -24,14 +24,14 @@ class VelocityControlParameters:
 
 
 class GzVelocityControl(PlanarDrive[VelocityControlParameters]):
-    """``gz-sim-velocity-control-system``, of models; links of their own are not controlled."""
+    """``gz-sim-velocity-control-system`` for models; links are not controlled one by one."""
 
     PARAMETERS = VelocityControlParameters
     IGNORED = ("link_name",)
     CARRIED = ("_wanted",)
 
     def start(self) -> None:
-        """Listen.
+        """Subscribe to the commands.
 
         Raises:
             LinkwrightError: SIM160 the model is fixed to the world.
@@ -46,7 +46,7 @@ class GzVelocityControl(PlanarDrive[VelocityControlParameters]):
         self.every(0.0, self._move)
 
     def reset(self) -> None:
-        """Have the velocity of the start, if there is one."""
+        """Restore the initial velocity of the parameters."""
         said = self.parameters
         self._wanted: tuple[Vector3, Vector3] | None = None
         if said.initial_linear is not None or said.initial_angular is not None:

@@ -1,1 +1,1 @@
-"""Pictures of a world that moves: by the graphics library of the system, or by rays where it has none."""
+"""Pictures of a simulated world: by OpenGL on the system's graphics library, or by ray casting where it has none."""

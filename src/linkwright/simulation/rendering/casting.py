@@ -1,4 +1,4 @@
-"""Rays against everything that is seen: by Embree, or by MuJoCo itself."""
+"""Ray casting against everything that is visible: by Embree, or by MuJoCo itself."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from linkwright.simulation.simulation import Simulation
 
 @dataclass(slots=True)
 class Hits:
-    """What rays hit first.
+    """The first hits of rays.
 
     Attributes:
         distances: in lengths of the ray, inf for nothing: shape (n,), float32.
@@ -33,12 +33,12 @@ class Hits:
 
 
 class Caster(Protocol):
-    """Casts rays."""
+    """The interface of ray casting for pictures."""
 
     way: Phrase
 
     def cast(self, view: View, *, normals: bool) -> Hits:
-        """What the rays of a picture hit, as the world is now; they begin where the camera begins to see.
+        """Cast the rays of a picture into the world as it is now, from the camera's near clip on.
 
         Args:
             view: the picture.
@@ -47,7 +47,7 @@ class Caster(Protocol):
 
 
 class MujocoCaster:
-    """MuJoCo's own rays: exact and slow."""
+    """Ray casting by MuJoCo: exact and slow."""
 
     way = phrase("rays of MuJoCo, as there is neither EGL nor OSMesa nor embreex: slow")
 
@@ -58,7 +58,7 @@ class MujocoCaster:
         self._groups[VISUAL_GROUP] = 1
 
     def cast(self, view: View, *, normals: bool) -> Hits:
-        """What rays hit."""
+        """Cast the rays of a picture."""
         del normals  # they come with the rest
         origin, rays, start = view.origin, view.rays, view.optics.near
         simulation = self._simulation
@@ -79,7 +79,7 @@ class MujocoCaster:
         return Hits(reached.astype(np.float32), geoms, sides.astype(np.float32))
 
     def _beyond(self, origin: Array, ray: Array, length: float, start: float) -> tuple[int, float, Array]:
-        """What one ray hits: the geom, the distance in m, and the normal."""
+        """The first visible hit of one ray: the geom, the distance in m, and the normal."""
         model, data, geom, normal = self._simulation.model, self._simulation.data, np.zeros(1, np.int32), np.zeros(3)
         begin, along = origin + start * ray, ray / length
         further = self._mujoco.mj_ray(model, data, begin, along, self._groups, 1, -1, geom, normal)
@@ -87,7 +87,7 @@ class MujocoCaster:
 
 
 class _Triangles:
-    """Triangles of geoms where these are now, and Embree's tree of them."""
+    """Triangles of geoms in the world, and Embree's tree of them."""
 
     def __init__(self, meshes: dict[int, Mesh], data: Any) -> None:
         from embreex.mesh_construction import TriangleMesh  # type: ignore[import-not-found, import-untyped, unused-ignore]
@@ -109,7 +109,7 @@ class _Triangles:
         self._normals = across / np.maximum(np.linalg.norm(across, axis=1), 1e-20)[:, None].astype(np.float32)
 
     def cast_into(self, hits: Hits, origins: Any, rays: Any, start: float, numbers: Any = None) -> None:
-        """Note what is hit nearer than what was hit already, by rays that begin at `start`.
+        """Record the hits that are nearer than those recorded already, of rays from `start`.
 
         Args:
             hits: what was hit already.
@@ -133,7 +133,7 @@ class _Triangles:
 
 
 class EmbreeCaster:
-    """Embree's rays against triangles: those of what stands still are put into a tree that is kept.
+    """Ray casting by Embree against triangles; the tree of all static geoms is kept.
 
     Raises:
         ImportError: embreex is not installed.
@@ -155,7 +155,7 @@ class EmbreeCaster:
         self._planes: list[int] = []
 
     def cast(self, view: View, *, normals: bool) -> Hits:
-        """What rays hit."""
+        """Cast the rays of a picture."""
         origin, rays, start = view.origin, view.rays, view.optics.near
         simulation = self._simulation
         simulation.refresh()
@@ -201,7 +201,7 @@ class EmbreeCaster:
         self._places, self._sizes = self._fixed_places(), self._simulation.model.geom_size.copy()
 
     def _take_changes(self) -> None:
-        """Take what stands still in the world for what moves, where it was moved or shaped anew all the same.
+        """Move geoms out of the static tree that were moved or reshaped all the same.
 
         That is how a dataset has another scene for each picture.
         """
@@ -227,7 +227,7 @@ class EmbreeCaster:
         return np.concatenate([data.geom_xpos[geoms], data.geom_xmat[geoms]], axis=1)
 
     def _keep(self) -> None:
-        """Make the tree of what stands still."""
+        """Build the tree of the static geoms."""
         meshes = self._fixed | {geom: self._loose[geom] for geom in self._movable.resting}
         self._standing = _Triangles(meshes, self._simulation.data) if meshes else None
 
@@ -247,7 +247,7 @@ class EmbreeCaster:
 
 
 def is_invisible(model: Any, geom: int) -> bool:
-    """Whether nothing is drawn of a geom."""
+    """Whether a geom is not drawn."""
     material = model.geom_matid[geom]
     rgba = model.geom_rgba[geom] if material < 0 else model.mat_rgba[material]
     return bool(rgba[3] == 0)

@@ -1,4 +1,4 @@
-"""Which way pictures are made here: the first that works."""
+"""Choosing the renderer: the first way of making pictures that works here."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ WAYS = (*BACKENDS, "embree", "mujoco")
 
 
 def make_renderer(simulation: Simulation, way: str = "") -> Renderer:
-    """What makes pictures of a world in this thread.
+    """Make a renderer of a simulation, for use in this thread.
 
     Args:
         simulation: the world.

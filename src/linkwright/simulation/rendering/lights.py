@@ -1,4 +1,4 @@
-"""Lights of worlds."""
+"""Lights of a world as renderers need them."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _REFLECTED = Light("reflected", "directional", diffuse=(0.25, 0.25, 0.25, 1.0), 
 
 @dataclass(frozen=True, slots=True)
 class PlacedLight:
-    """A light in the world.
+    """A light with its pose in the world.
 
     Attributes:
         light: what is said of it.
@@ -36,7 +36,7 @@ class PlacedLight:
 
 
 def lights_of(simulation: Simulation, forwards: Array) -> list[PlacedLight]:
-    """The lights of a world and of its links as they stand now; a sun where there is none.
+    """The lights of a world and of its links, at their poses now; a sun where there is none.
 
     A faint one comes from the camera, which looks along `forwards`: it takes the place of what other things reflect,
     and without it all that lies in the shade would be of one colour.

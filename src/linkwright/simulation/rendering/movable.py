@@ -1,4 +1,4 @@
-"""The geoms that may move: which of them rest, and which of the others are in a picture."""
+"""Geoms that may move: which of them rest, and which of the others are in a picture."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _BLUR = 1e-4
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """A camera somewhere.
+    """The pose and the optics of a camera.
 
     Attributes:
         optics: the camera.
@@ -41,7 +41,7 @@ class View:
 
 
 class MovableGeoms:
-    """Geoms that may move, by their numbers in MuJoCo's model.
+    """Geoms that may move, by their indices in MuJoCo's model.
 
     Args:
         simulation: the world.
@@ -65,7 +65,7 @@ class MovableGeoms:
         self._hollow: Any = np.zeros(count, dtype=bool)
 
     def settle(self, origin: Array) -> bool:
-        """Look who moves, as a camera sees the world; whether others rest than before.
+        """Find out which geoms rest, as a camera sees the world; whether they are others than before.
 
         A box with a camera in it never rests: it is not seen by that camera, but by others.
         """
@@ -83,7 +83,7 @@ class MovableGeoms:
         return True
 
     def in_view(self, view: View) -> dict[int, Array]:
-        """The geoms that do not rest and are in a picture, but for boxes around the camera.
+        """The moving geoms that are in a picture, without those whose bounding box contains the camera.
 
         Returns:
             For each the corners of a box around it: to the right, down and ahead in m, shape (8, 3).
@@ -99,14 +99,14 @@ class MovableGeoms:
         return {int(geoms[each]): placed[each] for each in np.flatnonzero(~outside)}
 
     def _around(self, origin: Array) -> Any:
-        """Which of the geoms are boxes around a point: shape (geoms,)."""
+        """Whether the bounding boxes of the geoms contain a point: shape (geoms,)."""
         model, data, geoms = self._simulation.model, self._simulation.data, self._geoms
         inside = np.einsum("ijk,ij->ik", data.geom_xmat[geoms].reshape(-1, 3, 3), data.geom_xpos[geoms] - origin)
         return (np.abs(inside) < model.geom_size[geoms] + _THIN).all(axis=1) & self._is_box
 
 
 def pixels_towards(optics: Optics, boxes: list[Array]) -> Any:
-    """The numbers of the pixels that may show what is in boxes; None for all.
+    """The indices of the pixels in which bounding boxes may appear; None for all.
 
     Args:
         optics: the camera.
@@ -126,7 +126,7 @@ def pixels_towards(optics: Optics, boxes: list[Array]) -> Any:
 
 
 def _corners(points: Array) -> Array:
-    """The corners of a box around points: shape (8, 3)."""
+    """The corners of bounding boxes: shape (8, 3)."""
     ends = np.stack([points.min(axis=0), points.max(axis=0)])
     corners: Array = np.array([[ends[x, 0], ends[y, 1], ends[z, 2]] for x in (0, 1) for y in (0, 1) for z in (0, 1)])
     return corners

@@ -92,7 +92,7 @@ class OpenGlRenderer:
             raise
 
     def render(self, optics: Optics, pose: Transform, wanted: Wanted) -> Picture:
-        """What a camera sees now."""
+        """Render what a camera sees now."""
         self._gl.make_current()
         hole = optics.pinhole
         self._simulation.refresh()
@@ -110,7 +110,7 @@ class OpenGlRenderer:
         )
 
     def close(self) -> None:
-        """Free the context; only the thread that made it may."""
+        """Free the OpenGL context, in the thread that made it."""
         if self._thread == threading.get_ident():
             self._gl.make_current()
             if self._draw_context is not None:
@@ -118,7 +118,7 @@ class OpenGlRenderer:
             self._gl.free()
 
     def _renew(self) -> None:
-        """Send meshes and textures anew after models have come or gone."""
+        """Upload meshes and textures anew after models were added or removed."""
         simulation, mujoco = self._simulation, self._mujoco
         if self._revision == simulation.revision:
             return
@@ -176,7 +176,7 @@ class OpenGlRenderer:
             camera.frustum_width = hole.width / 2 * scale
 
     def _flatten_planes(self, hole: Optics, origin: Array) -> None:
-        """Draw planes without an end, seen from above, as the tops of boxes: MuJoCo's have 40 000 squares each.
+        """Draw infinite planes, seen from above, as the tops of boxes: MuJoCo's have 40 000 squares each.
 
         That is for light which is not the same everywhere, and for textures.
         """
@@ -243,7 +243,7 @@ class OpenGlRenderer:
         return colour, np.ascontiguousarray(raw[::-1])
 
     def _draw_without_colours(self, rect: Any) -> None:
-        """Draw how far away everything is: neither light nor colours are computed."""
+        """Render depth only, without lighting or colours."""
         lights, self._scene.nlight = self._scene.nlight, 0
         self._mask_colours(False, False, False, False)
         try:
@@ -272,7 +272,7 @@ class OpenGlRenderer:
 
 
 def _beside(simulation: Simulation, hole: Optics, origin: Array, axes: Array) -> Any:
-    """Which geoms are not in the picture, shape (geoms,): OpenGL would compute each of their corners."""
+    """Whether geoms are outside of the picture, shape (geoms,): OpenGL would compute each of their corners."""
     right, down, ahead = ((simulation.data.geom_xpos - origin) @ axes).T
     reach = simulation.model.geom_rbound * (1 + _ROUNDING)
     outside = (ahead < hole.near - reach) | (ahead > hole.far + reach)
@@ -307,7 +307,7 @@ def _context_class(backend: str) -> Any:
 
 
 def _picked(pixels: Pixels, optics: Optics) -> Pixels:
-    """The nearest pixels of a pinhole's picture, as a picture of a lens."""
+    """Resample a pinhole's picture for a lens by nearest pixels."""
     column, row = optics.sources
     column = np.clip(np.round(column).astype(int), 0, optics.pinhole.width - 1)
     row = np.clip(np.round(row).astype(int), 0, optics.pinhole.height - 1)
@@ -316,7 +316,7 @@ def _picked(pixels: Pixels, optics: Optics) -> Pixels:
 
 
 def _warped(pixels: Pixels, optics: Optics) -> Pixels:
-    """Colours between the pixels of a pinhole's picture, as a picture of a lens."""
+    """Resample a pinhole's colours for a lens by interpolation."""
     column = np.clip(optics.sources[0], 0, optics.pinhole.width - 1.001)
     row = np.clip(optics.sources[1], 0, optics.pinhole.height - 1.001)
     left, top = column.astype(int), row.astype(int)

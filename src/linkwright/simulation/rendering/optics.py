@@ -1,4 +1,4 @@
-"""How a camera projects: a pinhole, and a lens that distorts.
+"""Camera models: a pinhole, and a lens with distortion.
 
 Source: the model ``plumb_bob`` of camera calibration (Brown, "Decentering distortion of lenses", 1966); axes of
 pictures as REP 103 has them: x to the right, y down, z into the picture.
@@ -23,7 +23,7 @@ _LARGEST = 2.0
 
 @dataclass(frozen=True)
 class Optics:
-    """A camera's picture.
+    """The projection of a camera.
 
     Attributes:
         width, height: in pixels.
@@ -46,7 +46,7 @@ class Optics:
 
     @cached_property
     def rays(self) -> Array:
-        """Where each pixel looks, x, y, z with z = 1: shape (height * width, 3)."""
+        """The direction of each pixel, x, y, z with z = 1: shape (height * width, 3)."""
         across = (np.arange(self.width) + 0.5 - self.cx) / self.fx
         down = (np.arange(self.height) + 0.5 - self.cy) / self.fy
         x: Array
@@ -58,7 +58,7 @@ class Optics:
         return rays
 
     def directions(self, axes: Array) -> Array:
-        """Where each pixel looks in other axes: shape (height * width, 3), as 32-bit numbers.
+        """The direction of each pixel in other axes: shape (height * width, 3), as 32-bit numbers.
 
         Args:
             axes: right, down and forwards, as columns.
@@ -71,30 +71,30 @@ class Optics:
 
     @cached_property
     def columns(self) -> tuple[float, float]:
-        """How far to the right pixels look at a distance of 1: the least and the most of all."""
+        """The least and the greatest x at z = 1 of all pixels."""
         across, _ = self.slopes
         return float(across.min()), float(across.max())
 
     @cached_property
     def rows(self) -> tuple[float, float]:
-        """How far down pixels look at a distance of 1: the least and the most of all."""
+        """The least and the greatest y at z = 1 of all pixels."""
         _, down = self.slopes
         return float(down.min()), float(down.max())
 
     @cached_property
     def slopes(self) -> tuple[Array, Array]:
-        """How far to the right and down each pixel looks at a distance of 1: shape (height * width,), float32."""
+        """The x and y at z = 1 of each pixel: shape (height * width,), float32."""
         across, down, _ = np.ascontiguousarray(self.rays.T, dtype=np.float32)
         return across, down
 
     @property
     def is_pinhole(self) -> bool:
-        """Whether a pinhole with square pixels makes this picture."""
+        """Whether this is the picture of a pinhole with square pixels."""
         return self.distortion is None and self.fx == self.fy
 
     @cached_property
     def pinhole(self) -> Optics:
-        """A pinhole's picture that has in it what this picture shows."""
+        """The optics of a pinhole whose picture covers this one."""
         if self.is_pinhole:
             return self
         x, y = self.rays[:, 0], self.rays[:, 1]
@@ -114,12 +114,12 @@ class Optics:
 
     @cached_property
     def sources(self) -> tuple[Array, Array]:
-        """The pixels of `pinhole`, columns and rows as fractions, that the pixels of this picture show."""
+        """Columns and rows, as fractions, of the pixels of `pinhole` that the pixels of this picture show."""
         hole = self.pinhole
         return self.rays[:, 0] * hole.fx + hole.cx - 0.5, self.rays[:, 1] * hole.fy + hole.cy - 0.5
 
     def project(self, points: Array) -> Array:
-        """Where points, shape (n, 3) with z > 0, are in the picture: columns and rows in pixels, shape (n, 2)."""
+        """Project points, shape (n, 3) with z > 0, to columns and rows in pixels, shape (n, 2)."""
         x, y = points[:, 0] / points[:, 2], points[:, 1] / points[:, 2]
         if self.distortion is not None:
             x, y = distorted(self.distortion, x, y)
@@ -128,7 +128,7 @@ class Optics:
 
 
 def optics_of(camera: Camera, *, near: float | None = None, far: float | None = None) -> Optics:
-    """The optics of a camera of SDF; `near` and `far` in m stand for those that it says."""
+    """The optics of a camera of SDF; `near` and `far` in m replace those of its element."""
     width, height = max(camera.image.width, 1), max(camera.image.height, 1)
     clip = camera.clip
     nearest = max(clip.near if near is None else near, 1e-3)
@@ -144,7 +144,7 @@ def optics_of(camera: Camera, *, near: float | None = None, far: float | None = 
 
 
 def distorted(lens: Distortion, x: Array, y: Array) -> tuple[Array, Array]:
-    """Where a lens puts what a pinhole has at x, y; both at a focal length of 1."""
+    """Apply the distortion of a lens to x, y of a pinhole; both at a focal length of 1."""
     square = x * x + y * y
     radial = 1 + square * (lens.k1 + square * (lens.k2 + square * lens.k3))
     across = x * radial + 2 * lens.p1 * x * y + lens.p2 * (square + 2 * x * x)
@@ -153,7 +153,7 @@ def distorted(lens: Distortion, x: Array, y: Array) -> tuple[Array, Array]:
 
 
 def undistorted(lens: Distortion, x: Array, y: Array) -> tuple[Array, Array]:
-    """What a pinhole has where a lens has put x, y: the inverse of `distorted`, by turns that come ever nearer."""
+    """The inverse of `distorted`, by fixed-point iteration."""
     across, down = x.copy(), y.copy()
     for _ in range(_TURNS):
         there = distorted(lens, across, down)

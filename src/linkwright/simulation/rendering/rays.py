@@ -38,7 +38,7 @@ class RayRenderer:
         self._revision = -1
 
     def render(self, optics: Optics, pose: Transform, wanted: Wanted) -> Picture:
-        """What a camera sees now."""
+        """Render what a camera sees now."""
         axes = axes_of(pose)
         origin, rays = np.array(pose[:3]), optics.directions(axes)
         hits = self._caster.cast(View(optics, origin, axes, rays), normals=Wanted.COLOUR in wanted)
@@ -53,7 +53,7 @@ class RayRenderer:
         )
 
     def close(self) -> None:
-        """Nothing of the system is held."""
+        """Do nothing: it holds nothing of the system."""
 
     def _shaded(self, hits: Hits, origin: Array, rays: Any, forwards: Array) -> Any:
         simulation = self._simulation
@@ -83,7 +83,7 @@ def _background(colour: Sequence[float]) -> Any:
 
 
 def _share(placed: PlacedLight, hits: Hits, turned: Any, origin: Array, rays: Any) -> Any:
-    """The share of a light that surfaces get: shape (n,)."""
+    """The share of a light's brightness that surfaces receive: shape (n,)."""
     if placed.light.type == "directional":
         share = (hits.normals @ -placed.direction.astype(np.float32)) * turned
         return np.maximum(share, 0, out=share)

@@ -1,4 +1,4 @@
-"""What makes pictures, whichever way."""
+"""The interface of renderers, and the pictures that they make."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _INTO_LINK = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
 
 
 class Wanted(Flag):
-    """What a picture has to have."""
+    """The parts that a picture shall have."""
 
     COLOUR = auto()
     DEPTH = auto()
@@ -29,7 +29,7 @@ class Wanted(Flag):
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """What a camera sees; None for what was not asked for.
+    """A picture; None for parts that were not asked for.
 
     Attributes:
         colour: red, green, blue: shape (height, width, 3), uint8.
@@ -49,7 +49,7 @@ class Renderer(Protocol):
     """How it does so, for people."""
 
     def render(self, optics: Optics, pose: Transform, wanted: Wanted) -> Picture:
-        """What a camera sees now.
+        """Render what a camera sees now.
 
         Args:
             optics: how it projects.
@@ -58,10 +58,10 @@ class Renderer(Protocol):
         """
 
     def close(self) -> None:
-        """Free what it has of the system."""
+        """Free the system's resources."""
 
 
 def axes_of(pose: Transform) -> Array:
-    """The axes of the picture in the world, as columns: right, down, forwards."""
+    """The axes of a camera's picture in the world, as columns: right, down, forwards."""
     axes: Array = rotation_matrix(np.array(pose[3:])) @ _INTO_LINK
     return axes

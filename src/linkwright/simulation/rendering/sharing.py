@@ -17,7 +17,7 @@ _shared: WeakKeyDictionary[Simulation, SharedRenderer] = WeakKeyDictionary()
 
 
 class SharedRenderer:
-    """What all cameras of a simulation make pictures with; it is made with the first picture, in the thread of that."""
+    """The renderer that all cameras of a simulation share; made with the first picture, in the thread of that."""
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
@@ -27,7 +27,7 @@ class SharedRenderer:
         self._told = False
 
     def render(self, optics: Optics, pose: Transform, wanted: Wanted, tell: Callable[[Phrase], object]) -> Picture:
-        """What a camera sees now; before the first picture `tell` is called with the way that they are made."""
+        """Render what a camera sees now; before the first picture `tell` is called with the kind of renderer."""
         if self._renderer is None or self._thread != threading.get_ident():
             self._renderer, self._thread = make_renderer(self._simulation), threading.get_ident()
         if not self._told:
@@ -36,7 +36,7 @@ class SharedRenderer:
         return self._renderer.render(optics, pose, wanted)
 
     def release(self) -> None:
-        """One camera fewer; the last one frees what the renderer has of the system."""
+        """Count one camera fewer; with the last one the renderer is closed."""
         self._users -= 1
         if self._users == 0:
             if self._renderer is not None:
@@ -45,13 +45,13 @@ class SharedRenderer:
             _shared.pop(self._simulation, None)
 
     def use(self) -> SharedRenderer:
-        """One camera more, which is to call `release` in the end."""
+        """Count one camera more, which is to call `release` in the end."""
         self._users += 1
         return self
 
 
 def shared_renderer(simulation: Simulation) -> SharedRenderer:
-    """The renderer of a simulation for one camera more."""
+    """The shared renderer of a simulation, with one camera more counted."""
     if simulation not in _shared:
         _shared[simulation] = SharedRenderer(simulation)
     return _shared[simulation].use()

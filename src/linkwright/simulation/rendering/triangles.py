@@ -1,4 +1,4 @@
-"""The geoms of MuJoCo's model as triangles."""
+"""Triangle meshes of the geoms in MuJoCo's model."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ Mesh = tuple[Array, Any]
 
 
 def is_endless(model: Any, geom: int) -> bool:
-    """Whether a geom is a plane without an end."""
+    """Whether a geom is an infinite plane."""
     plane = model.geom_type[geom] == load_mujoco().mjtGeom.mjGEOM_PLANE
     return bool(plane and (model.geom_size[geom, 0] <= 0 or model.geom_size[geom, 1] <= 0))
 
 
 def triangles_of(model: Any, geom: int) -> Mesh | None:
-    """A geom in its own frame; None for one that has no triangles, as a plane without an end."""
+    """The triangles of a geom in its own frame; None for one that has none, such as an infinite plane."""
     kinds = load_mujoco().mjtGeom
     kind, size = model.geom_type[geom], model.geom_size[geom]
     if kind == kinds.mjGEOM_BOX:
@@ -53,7 +53,7 @@ def _box(half: Array) -> Mesh:
 
 
 def _grid(rows: int, columns: int, *, closed: bool) -> Any:
-    """Triangles between rows of corners; closed, the last column is followed by the first."""
+    """Triangles between rows of vertices; closed, the last column is followed by the first."""
     row, column = np.meshgrid(np.arange(rows - 1), np.arange(columns if closed else columns - 1), indexing="ij")
     right = (column + 1) % columns
     a, b = row * columns + column, row * columns + right

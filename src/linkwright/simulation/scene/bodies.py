@@ -1,4 +1,4 @@
-"""Links as bodies of MuJoCo: mass, joints, and the shapes that touch and those that are seen."""
+"""Links as bodies of MuJoCo: mass, joints, collision and visual geoms."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ class BodyWriter:
         self._mujoco = load_mujoco()
 
     def give_mass(self, body: Any, link: Link, frames: Frames) -> None:
-        """Give a body the mass properties of its link; 1 kg and 1 kg m2 where nothing is said, as SDF has it."""
+        """Give a body the mass properties of its link; 1 kg and 1 kg m2 where it has none, as SDF has it."""
         inertial = link.inertial or _USUAL_INERTIAL
         if inertial.auto:
             inertial = _worked_out(link, frames) or _USUAL_INERTIAL
@@ -117,7 +117,7 @@ class BodyWriter:
         body.fullinertia = [tensor[0, 0], tensor[1, 1], tensor[2, 2], tensor[0, 1], tensor[0, 2], tensor[1, 2]]
 
     def add_joint(self, body: Any, placed: PlacedJoint, child: Transform) -> None:
-        """Let a body move as a joint lets it.
+        """Add MuJoCo's joints for a joint to the body of its child.
 
         Args:
             body: that of the child link.
@@ -161,7 +161,7 @@ class BodyWriter:
         joint.frictionloss = max(dynamics.friction, 0.0)
 
     def add_visuals(self, body: Any, link: Link, frames: Frames, *, fixed: bool) -> None:
-        """Add what is seen of a link, which touches nothing."""
+        """Add the visuals of a link as geoms without contacts."""
         counts: Counter[str] = Counter()
         for visual in link.visuals:
             pose = frames.in_link(visual.pose, link.name)
@@ -174,7 +174,7 @@ class BodyWriter:
                     geom.rgba = _colour(visual, _WHITE if geom.material else _GREY)
 
     def add_collisions(self, body: Any, link: Link, frames: Frames, *, fixed: bool) -> None:
-        """Add what touches of a link."""
+        """Add the collisions of a link as geoms."""
         counts: Counter[str] = Counter()
         for collision in link.collisions:
             pose = frames.in_link(collision.pose, link.name)
@@ -190,7 +190,7 @@ class BodyWriter:
     def _geoms(
         self, body: Any, part: Visual | Collision, pose: Transform, counts: Counter[str], *, fixed: bool
     ) -> Iterable[Any]:
-        """The geoms of a shape, with their names; `counts` has how many there are of each name of a part."""
+        """The geoms of a shape, with their names; `counts` numbers those of one name."""
         collision = isinstance(part, Collision)
         geoms = [] if isinstance(part, Collision) else self._meshes.wrapped(body, part, pose)
         simple = None if geoms else add_shape(body, part.geometry, pose, fixed=fixed)
@@ -214,7 +214,7 @@ class BodyWriter:
 
 
 def _worked_out(link: Link, frames: Frames) -> Inertial | None:
-    """The mass properties that the shapes of a link make, by their densities; None where they have no volume."""
+    """The mass properties of a link by the shapes and densities of its collisions; None where they have no volume."""
     assert link.inertial is not None
     parts = []
     for collision in link.collisions:
@@ -237,7 +237,7 @@ def _colour(visual: Visual, usual: Color) -> list[float]:
 
 
 def set_first(thing: Any, name: str, value: float) -> None:
-    """Set a coefficient; of some MuJoCo has a polynomial since version 4, whose first term is what it had before."""
+    """Set a coefficient; since version 4 MuJoCo has polynomials for some, of which it is the first term."""
     held = getattr(thing, name)
     if np.ndim(held):
         held[0] = value
@@ -246,7 +246,7 @@ def set_first(thing: Any, name: str, value: float) -> None:
 
 
 def hinge_anchors(placed: PlacedJoint, distance: float) -> list[Vector3]:
-    """Two points on the axis of a joint, in the world, that hold it where nothing turns about anything else."""
+    """Two points on the axis of a joint, in the world, which hold it where nothing turns about another axis."""
     x, y, z = placed.pose[:3]
     _, direction = placed.axes[0]
     dx, dy, dz = (distance * each for each in rotate(placed.pose[3:], direction))

@@ -1,4 +1,4 @@
-"""A scene as MuJoCo's model, and what of a world MuJoCo cannot take."""
+"""Compiling a scene to MuJoCo's model, and finding out which models MuJoCo refuses."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _BYTES_A_PAIR, _BYTES = 3, 1 << 28
 
 
 def count_links(models: Iterable[Model]) -> int:
-    """How many links models have, if so many can be simulated.
+    """The number of links of models, if so many can be simulated.
 
     Raises:
         LinkwrightError: SIM105 they are too many.
@@ -36,7 +36,7 @@ def count_links(models: Iterable[Model]) -> int:
 
 
 def fewer_links() -> Phrase:
-    """What to do about a world of too many links."""
+    """A hint for a world of too many links."""
     return phrase("at most {most}; shapes that never move may be in one link", most=MOST_LINKS)
 
 
@@ -45,7 +45,7 @@ def _links_in(model: Model) -> int:
 
 
 def compiled(scene: Scene, before: tuple[Any, Any] | None = None) -> tuple[Any, Any]:
-    """MuJoCo's model and data of a scene.
+    """Compile a scene to MuJoCo's model and data.
 
     Args:
         scene: what is simulated.
@@ -75,7 +75,7 @@ def compiled(scene: Scene, before: tuple[Any, Any] | None = None) -> tuple[Any, 
 
 
 def refused_models(world: World, finder: ResourceFinder) -> dict[str, Phrase]:
-    """The models that MuJoCo cannot take even alone, with its words.
+    """The models that MuJoCo refuses when each is compiled alone, with its messages.
 
     Args:
         world: with its includes resolved, and as it was saved.
@@ -86,7 +86,7 @@ def refused_models(world: World, finder: ResourceFinder) -> dict[str, Phrase]:
 
 
 def _refusal(world: World, finder: ResourceFinder) -> Phrase | None:
-    """Why MuJoCo cannot take a world; None if it can."""
+    """MuJoCo's message on refusing a world; None if it accepts it."""
     try:
         compiled(Scene(world, MeshLibrary(finder)))
     except LinkwrightError as error:
@@ -95,7 +95,7 @@ def _refusal(world: World, finder: ResourceFinder) -> Phrase | None:
 
 
 def whole_step(step: float, world: World) -> int:
-    """A time step in s as nanoseconds, which may be that of a world.
+    """A time step in s as nanoseconds, checked.
 
     Raises:
         LinkwrightError: SIM106 no time passes in it.

@@ -31,7 +31,7 @@ class Connections:
     poses: dict[str, Transform]
 
     def of(self, structure: Structure, name: str, pose: Transform, others: Iterable[str]) -> Connected:
-        """A model as it is connected with those that came before it.
+        """A model with the joints that connect it with those that came before it.
 
         Args:
             structure: its own links and joints.
@@ -53,7 +53,7 @@ class Connections:
         return Connected(replace(structure, links=links), loops, hangs_on)
 
     def in_order(self, names: Sequence[str]) -> list[str]:
-        """Names of models, each after those that it hangs on, otherwise in their order."""
+        """Names of models, each after those to which joints connect it, otherwise in their order."""
         above: dict[str, list[str]] = {}
         for joint in self.hanging.values():
             above.setdefault(model_of(joint.child), []).append(model_of(joint.parent))
@@ -76,7 +76,7 @@ class Connections:
 
 @dataclass(frozen=True, slots=True)
 class Connected:
-    """A model with what connects it.
+    """A model with the joints that connect it with others.
 
     Attributes:
         structure: its links, with the joints of the world among those that hold them.
@@ -90,7 +90,7 @@ class Connected:
 
 
 def connections_of(world: World) -> Connections:
-    """The joints of a world; those whose links are not there, or never move, are left out.
+    """The joints of a world, without those whose links are missing or never move.
 
     Args:
         world: with its includes resolved, and as it was saved.
@@ -133,7 +133,7 @@ def connections_of(world: World) -> Connections:
 
 
 def model_of(link: str) -> str:
-    """The model of a world that a link is in; ``world`` for what is in none."""
+    """The model of the world that a link belongs to; ``world`` for none."""
     return link.partition(SEPARATOR)[0]
 
 
@@ -154,6 +154,6 @@ def _placed(world: World, frames: Frames) -> list[PlacedJoint]:
 
 
 def _turned_round(joint: PlacedJoint) -> PlacedJoint:
-    """The same joint seen from its child, which holds its parent then; positions keep their signs."""
+    """The joint with parent and child exchanged; positions keep their signs."""
     axes = tuple((axis, (-x, -y, -z)) for axis, (x, y, z) in reversed(joint.axes))
     return replace(joint, parent=joint.child, child=joint.parent, axes=axes)

@@ -1,4 +1,4 @@
-"""Joints that move together: the thread of a screw, and gears."""
+"""Couplings of joints: the thread of a screw, and gears."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ _STEPS = 4.0
 
 
 def threaded(spec: Any, joint: PlacedJoint) -> Iterator[Any]:
-    """What lets a screw move along its axis, by its pitch (m a revolution) each time it has turned round."""
+    """The coupling of a screw joint's translation with its rotation, by its pitch in m a revolution."""
     if joint.joint.type == "screw" and joint.axes:
         pitch = joint.joint.thread_pitch or 0.0
         yield _coupled(spec, joint.name + THREAD, joint.name, pitch / tau)
 
 
 def geared(spec: Any, gear: PlacedJoint, joints: Iterable[PlacedJoint]) -> Iterator[Any]:
-    """What turns the child of a gearbox ``-gearbox_ratio`` times as far as its parent (SDFormat, ``joint.sdf``).
+    """The coupling of a gearbox, whose child turns ``-gearbox_ratio`` times as far as its parent (SDFormat).
 
     Args:
         spec: the specification.
@@ -54,6 +54,6 @@ def _in_world(joint: PlacedJoint, direction: Vector3) -> Vector3:
 
 
 def _sign(direction: Vector3, joint: PlacedJoint) -> float:
-    """Whether a joint turns about a direction, 1, or against it, -1."""
+    """1 where a joint's axis points along a direction, -1 where it points against it."""
     axis = _in_world(joint, joint.axes[0][1])
     return -1.0 if sum(a * b for a, b in zip(axis, direction, strict=True)) < 0.0 else 1.0

@@ -1,4 +1,4 @@
-"""Elevation models in TIFF whose heights are numbers of 64 bits, which Pillow does not read."""
+"""Elevation models: TIFF with floating-point numbers of 64 bits, which Pillow does not read."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _MOST_PIXELS = 1 << 26
 
 
 def read_elevation(path: Path) -> Array:
-    """The heights of a TIFF of uncompressed strips of floating-point numbers, in m, as a table of rows from the top.
+    """Read the heights of a TIFF of uncompressed strips of floating-point numbers, in m, rows from the top.
 
     Raises:
         OSError: it cannot be read.
@@ -43,7 +43,7 @@ def read_elevation(path: Path) -> Array:
 
 
 def _tags(data: bytes, order: str) -> dict[int, tuple[int, ...]]:
-    """The whole numbers of the first directory, by their tags."""
+    """The integers of the first directory, by their tags."""
     (first,) = struct.unpack_from(f"{order}I", data, 4)
     (entries,) = struct.unpack_from(f"{order}H", data, first)
     found: dict[int, tuple[int, ...]] = {}

@@ -1,4 +1,4 @@
-"""What is seen and touches nothing: actors that walk, and roads."""
+"""Actors that walk, and roads: drawn without contacts."""
 
 from __future__ import annotations
 
@@ -53,12 +53,12 @@ class Figure:
     links: tuple[PlacedLink, ...]
 
     def pose_at(self, seconds: float) -> Transform:
-        """Where it is at a time of the world."""
+        """The pose at a time of the world."""
         return self.pose if self.walk is None else compose(self.origin, self.walk.pose(seconds))
 
 
 def figures_of(world: World, meshes: MeshLibrary) -> list[Figure]:
-    """The actors and roads of a world; those that cannot be placed are left out, and `check` tells.
+    """The actors and roads of a world, without those that cannot be placed, which `check` reports.
 
     In a world for gz the points of walks are in the frame of the actor, in one for Gazebo classic in that of the world.
 
@@ -89,7 +89,7 @@ def figures_of(world: World, meshes: MeshLibrary) -> list[Figure]:
 
 
 def _renamed(thing: T, taken: set[str]) -> T:
-    """An actor or road with a name that nothing else has."""
+    """An actor or road under a name that is free."""
     while thing.name in taken:
         thing = replace(thing, name=f"{thing.name}~")
     taken.add(thing.name)
@@ -97,7 +97,7 @@ def _renamed(thing: T, taken: set[str]) -> T:
 
 
 def draw(figure: Figure, spec: Any, writer: BodyWriter) -> None:
-    """Add the bodies of a figure to a specification of MuJoCo: nothing moves them, and they touch nothing."""
+    """Add the bodies of a figure to a specification of MuJoCo: without dynamics and without contacts."""
     for placed in figure.links:
         body = spec.worldbody.add_body(name=placed.name, mocap=figure.walk is not None)
         set_pose(body, compose(figure.pose, placed.pose))
@@ -106,7 +106,7 @@ def draw(figure: Figure, spec: Any, writer: BodyWriter) -> None:
 
 
 def let_walk(figures: Iterable[Figure], model: Any, data: Any, seconds: float) -> None:
-    """Put actors where they are at a time of the world, in MuJoCo's data."""
+    """Move actors to their poses at a time of the world, in MuJoCo's data."""
     for figure in figures:
         if figure.walk is None:
             continue
@@ -116,7 +116,7 @@ def let_walk(figures: Iterable[Figure], model: Any, data: Any, seconds: float) -
 
 
 def put_kinematic(structure: Structure, moved: Transform, model: Any, data: Any) -> bool:
-    """Put the kinematic links of a model elsewhere, in MuJoCo's data; whether there are any.
+    """Set the poses of a model's kinematic links in MuJoCo's data; whether it has any.
 
     Args:
         structure: the links of the model.
@@ -139,7 +139,7 @@ def _put(place: int, pose: Transform, data: Any) -> None:
 
 
 def _hips(actor: Actor, meshes: MeshLibrary) -> Vector3 | None:
-    """Where the skeleton of a skin begins, in the metres of its mesh; its origin where it has none, None without it."""
+    """The origin of a skin's skeleton, in metres of its mesh; zeros without one, None if the mesh file is missing."""
     if actor.skin is None:
         return (0.0, 0.0, 0.0)
     path = meshes.file(actor.skin.filename, actor.element)
@@ -149,7 +149,7 @@ def _hips(actor: Actor, meshes: MeshLibrary) -> Vector3 | None:
 
 
 def skeleton_begins(path: Path) -> Vector3:
-    """Where the first joint of the skeleton in a COLLADA file is in the pose that its skin was made in, in m."""
+    """The origin of the first joint of a COLLADA file's skeleton, in its bind pose, in m."""
     try:
         root = parse_file(path).root
     except LinkwrightError:
@@ -165,7 +165,7 @@ def skeleton_begins(path: Path) -> Vector3:
 
 
 def _first_matrix(skin: Element) -> Any:
-    """The first matrix that takes from the mesh to a joint; None where there is none that can be turned round."""
+    """The first bind matrix of a skeleton that can be inverted; None without one."""
     named = (each.attributes.get("source", "") for each in skin.walk() if each.attributes.get("semantic") == _INVERSE)
     wanted = next(named, "").removeprefix("#")
     source = next((each for each in skin.elements("source") if each.attributes.get("id") == wanted), None)

@@ -1,4 +1,4 @@
-"""Heights of a ground, from the grey values of an image."""
+"""Heights of a heightmap, from the grey values of an image."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Heights:
 
 
 def read_heights(path: Path) -> Heights:
-    """The heights in an image: 0 for black and 1 for white, or of an elevation model 0 for its lowest point.
+    """Read the heights of an image: 0 for black and 1 for white; of an elevation model 0 for its lowest point.
 
     Raises:
         LinkwrightError: SIM113 the image cannot be read; SIM114 Pillow is not installed.

@@ -40,7 +40,7 @@ _UNIT: Vector3 = (1.0, 1.0, 1.0)
 
 
 class MeshLibrary:
-    """Reads the meshes that worlds name, each once, and tells once of each that cannot be had.
+    """Reads the meshes that worlds name, each once, and reports once each that cannot be used.
 
     Args:
         finder: where they are.
@@ -62,14 +62,14 @@ class MeshLibrary:
         self._mapped: set[str] = set()  # meshes of the specification with coordinates of images
 
     def look_in(self, finder: ResourceFinder) -> None:
-        """Find meshes elsewhere from now on; those that were not there are looked for again."""
+        """Set the finder of files; missing files are looked for again."""
         self._finder = finder
         self._files = {key: path for key, path in self._files.items() if path is not None}
 
     def collisions(
         self, body: Any, shape: Shape, pose: Transform, element: Element | None, *, fixed: bool
     ) -> list[Any]:
-        """Add a shape that touches to a body, as convex pieces; nothing for one that cannot be had.
+        """Add a collision to a body, as convex pieces; nothing for a mesh that cannot be used.
 
         Args:
             body: the body of the specification.
@@ -86,7 +86,7 @@ class MeshLibrary:
         return [self._geom(body, pose, name) for name in self._assets[key]]
 
     def visuals(self, body: Any, shape: Shape, pose: Transform, element: Element | None) -> list[Any]:
-        """Add a shape that is seen to a body, with the materials of its file; see `collisions`."""
+        """Add a visual to a body, with the materials of its file; see `collisions`."""
         if isinstance(shape, Heightmap):
             return self._heightmap(body, shape, pose, element)
         path = self._path(shape, element)
@@ -107,7 +107,7 @@ class MeshLibrary:
         return geom
 
     def _pieces(self, shape: Shape, element: Element | None, *, fixed: bool) -> list[Array]:
-        """The corners of convex pieces."""
+        """The vertices of the convex pieces of a mesh."""
         if isinstance(shape, Cone):
             return [cone_corners(shape)] if min(shape.radius, shape.length) > 0 else []
         if isinstance(shape, Polyline):
@@ -153,7 +153,7 @@ class MeshLibrary:
             yield name
 
     def _seen(self, positions: Array, faces: Any, coordinates: Array | None) -> str:
-        """The name of a new mesh, which may have coordinates of an image."""
+        """Add a mesh asset, with texture coordinates if it has some; its name."""
         name = f"mesh {len(self.spec.meshes)}"
         mesh = self.spec.add_mesh(name=name, inertia=load_mujoco().mjtMeshInertia.mjMESH_INERTIA_SHELL)
         mesh.uservert = _flat(_four(positions))
@@ -164,7 +164,7 @@ class MeshLibrary:
         return name
 
     def wrapped(self, body: Any, visual: Visual, pose: Transform) -> list[Any]:
-        """Add a simple shape to a body as triangles that can wear an image; nothing for one that wears none."""
+        """Add a simple shape to a body as a mesh with texture coordinates; nothing for one that cannot be textured."""
         shape = visual.geometry
         triangles = wrapped(shape) if self.worn(visual) else None
         if triangles is None:
@@ -186,7 +186,7 @@ class MeshLibrary:
             self._give_image(material, part.own.image)
 
     def _give_image(self, material: Any, image: bytes) -> None:
-        """Let a material of MuJoCo show an image, which is PNG."""
+        """Give a material of MuJoCo a texture, a PNG."""
         mujoco = load_mujoco()
         texture = self.spec.add_texture(name=material.name, type=mujoco.mjtTexture.mjTEXTURE_2D)
         texture.file = f"{material.name}.png"
@@ -194,11 +194,11 @@ class MeshLibrary:
         material.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = texture.name
 
     def has_room_for_image(self, geom: Any) -> bool:
-        """Whether a geom is a mesh with coordinates of an image."""
+        """Whether a geom is a mesh with texture coordinates."""
         return geom.meshname in self._mapped
 
     def worn(self, visual: Visual) -> str:
-        """The name of MuJoCo's material with the image that a visual says it wears; empty for none.
+        """The name of MuJoCo's material with the texture of a visual; empty for none.
 
         An image of what glows stands for that of a colour which is not there.
         """
@@ -281,14 +281,14 @@ class MeshLibrary:
         return []
 
     def _path(self, shape: Shape, element: Element | None) -> Path | None:
-        """The file of a shape; None for a shape without one, or one that is not there, which is told once."""
+        """The file of a shape; None for a shape without one, or if it is missing, which is reported once."""
         path = self.file(shape.uri, element) if isinstance(shape, Mesh | Heightmap) else None
         if path is not None:
             self.used[path] = changed_at(path)
         return path
 
     def file(self, uri: str, element: Element | None) -> Path | None:
-        """The file that an element names; None for one that is not there, which is told once."""
+        """The file that an element names; None if it is missing, which is reported once."""
         if not uri:
             return None
         source = element.source if element is not None else None
@@ -308,7 +308,7 @@ class MeshLibrary:
         self._tell(Diagnostic(found.code, message, severity=Severity.WARNING, hint=found.hint), element)
 
     def _tell(self, found: Diagnostic, element: Element | None) -> None:
-        """Say something of an element, the same thing once."""
+        """Report a problem of an element, the same one once."""
         if found.message in self._told:
             return
         self._told.add(found.message)
@@ -318,7 +318,7 @@ class MeshLibrary:
 
 
 def _bounded(path: Path, count: int) -> None:
-    """Refuse a mesh of too many triangles (SIM115)."""
+    """Check the number of a mesh's triangles (SIM115)."""
     if count > _MOST_TRIANGLES:
         told = {"path": display_path(path), "count": count, "most": _MOST_TRIANGLES}
         message = phrase("the mesh '{path}' has {count} triangles, and at most {most} are simulated", **told)
@@ -341,7 +341,7 @@ def _area(positions: Array, faces: Any) -> float:
 
 
 def _four(corners: Array) -> Array:
-    """The corners of a mesh, the last again where they are three: MuJoCo has no mesh of less than four."""
+    """The vertices of a mesh, padded to four by repeating the last: MuJoCo takes no fewer."""
     return np.concatenate([corners, np.repeat(corners[-1:], max(4 - len(corners), 0), axis=0)])
 
 
@@ -358,12 +358,12 @@ def _flat(values: Any, kind: Any = np.float32) -> list[Any]:
 
 
 def _version(path: Path | None) -> tuple[Path | None, int]:
-    """A file, and when it was changed: one that is saved is read anew for what comes anew."""
+    """A file and the time of its last change, so that a file that was saved is read anew."""
     return path, 0 if path is None else changed_at(path)
 
 
 def changed_at(path: Path) -> int:
-    """When a file was changed, in ns since the epoch; 0 for one that is not there."""
+    """The time of a file's last change, in ns since the epoch; 0 for a missing one."""
     try:
         return path.stat().st_mtime_ns
     except OSError:

@@ -71,7 +71,7 @@ class SceneModel:
 
     @property
     def is_outdated(self) -> bool:
-        """Whether a file of its meshes has changed since it came."""
+        """Whether a mesh file of it has changed since it was added."""
         return any(changed_at(path) != changed for path, changed in self.files.items())
 
 
@@ -134,17 +134,17 @@ class Scene:
             draw(figure, self.spec, self._writer)
 
     def _in_order(self, models: Iterable[Model]) -> list[Model]:
-        """Models, those that hang on others after these."""
+        """Models, each after those to which joints of the world connect it."""
         models = list(models)
         place = {name: number for number, name in enumerate(self.in_order([each.name for each in models]))}
         return sorted(models, key=lambda model: place[model.name])
 
     def in_order(self, names: Sequence[str]) -> list[str]:
-        """Names of models, each after those that it hangs on by joints of the world."""
+        """Names of models, each after those to which joints of the world connect it."""
         return self._connections.in_order(names)
 
     def step_of(self, world: World) -> float:
-        """The time step that a world says, in s; a millisecond where it says 0, which is told."""
+        """The time step of a world in s; a millisecond where it says 0, with a warning."""
         physics = physics_of(world)
         if physics.max_step_size:
             return physics.max_step_size
@@ -166,7 +166,7 @@ class Scene:
         self._findings.append(Diagnostic(code, message, severity=Severity.WARNING, span=span, source=source))
 
     def set_physics(self, world: World, step: float) -> None:
-        """Take gravity and joints between models from another world, and another time step in s.
+        """Take gravity and the joints between models from another world, and set the time step in s.
 
         Models stay as they are.
         """
@@ -182,7 +182,7 @@ class Scene:
                 equality.solref = [_LOOP_STEPS * step, 1.0]
 
     def _set_options(self, world: World) -> None:
-        """What measurements of wheels, casters and rest have shown to be right: decision 0042."""
+        """Set MuJoCo's options, as measured for wheels, casters and resting bodies: decision 0042."""
         option = self.spec.option
         option.timestep = self.step
         option.gravity = list(gravity_of(world))
@@ -195,7 +195,7 @@ class Scene:
 
     @property
     def diagnostics(self) -> list[Diagnostic]:
-        """What could not be taken over."""
+        """Findings on what could not be simulated."""
         return [*self._findings, *self._writer.diagnostics, *self._meshes.diagnostics]
 
     def add(self, model: Model, name: str, pose: Transform) -> SceneModel:
@@ -240,7 +240,7 @@ class Scene:
         return added
 
     def place(self, name: str, pose: Transform) -> None:
-        """Let a model begin elsewhere.
+        """Set the initial pose of a model.
 
         Args:
             name: what it is called.
@@ -280,7 +280,7 @@ class Scene:
                 self.joints.pop(held.joint.name, None)
 
     def hanging_on(self, name: str) -> list[str]:
-        """The models that hang on one by joints of the world, or on others that do, in the order in which they came."""
+        """The models that joints of the world connect below one, directly or not; as they were added."""
         found = {name}
         for each in self.models.values():  # those that hang come later
             if each.hangs_on & found:
@@ -288,7 +288,7 @@ class Scene:
         return [each for each in self.models if each in found - {name}]
 
     def add_velocity_motor(self, joint: str, gain: float, limit: float) -> str:
-        """Add a motor that holds the velocity of a joint, and let the wheel that it turns roll without slipping.
+        """Add a motor that holds the velocity of a joint; the wheel that it turns rolls without slipping.
 
         Args:
             joint: the name of the joint.
@@ -304,7 +304,7 @@ class Scene:
         return str(actuator.name)
 
     def let_roll(self, joint: str, rotor: float = 0.0) -> None:
-        """Let the wheel that a joint holds roll without slipping.
+        """Let a wheel roll without slipping.
 
         Args:
             joint: the name of the joint.
@@ -316,14 +316,14 @@ class Scene:
         rotors[joint] = max(rotor, rotors.get(joint, 0.0))
 
     def let_slide(self, joint: str) -> None:
-        """Let the wheel that a joint holds slide in all directions, as if it had rollers; a motor only turns it."""
+        """Let a wheel slide in all directions, as if it had rollers; a motor only turns it."""
         body = self.bodies[self.joints[joint].child]
         for geom in body.geoms:
             self._writer.grips.pop(geom.name, None)
         make_omnidirectional(body, self.step)
 
     def add_servo(self, joint: str) -> str:
-        """Hold a joint of one axis where it is told to be; what pulls at it makes no difference.
+        """Add a servo that holds the position of a joint of one axis against any load.
 
         Returns:
             The name of MuJoCo's constraint, the first of whose data is the position less that of the start.
@@ -337,7 +337,7 @@ class Scene:
         return str(equality.name)
 
     def weld(self, parent: str, child: str, pose: Transform) -> None:
-        """Hold a link fast at another one, until `unweld` or until one of them goes; their models do not touch.
+        """Fix a link to another one, until `unweld` or until one of them is removed; their models do not collide.
 
         Args:
             parent: the name of the link that holds.
@@ -357,7 +357,7 @@ class Scene:
                 self.spec.add_exclude(name=f"{name}{number}", bodyname1=one, bodyname2=other)
 
     def unweld(self, parent: str, child: str) -> None:
-        """End what `weld` has begun."""
+        """Remove what `weld` has added."""
         name = _weld_name(parent, child)
         parts = (*self.spec.equalities, *self.spec.excludes)
         for part in [each for each in parts if each.name.startswith(name)]:
@@ -378,7 +378,7 @@ class Scene:
         return actuator
 
     def keep_awake(self, link: str, never: Any) -> None:
-        """Give the bodies that move together with a link a policy of sleep; those that stand still need none.
+        """Forbid the bodies that move together with a link to fall asleep; static ones never do.
 
         Raises:
             KeyError: there is no such link.
@@ -391,7 +391,7 @@ class Scene:
             root.sleep = never
 
     def settle(self) -> None:
-        """Give wheels and casters of models with motors their surfaces, once all motors are there."""
+        """Set the surfaces of wheels and casters of models with motors, once all motors are there."""
         for name in self._unsettled & self.models.keys():
             driven = {self.joints[joint].child: joint for joint in self._driven[name]}
             sides = Counter(self.joints[joint].parent for joint in driven.values())
@@ -438,7 +438,7 @@ class Scene:
         return [each.joint for each in held if each.joint is not None and each.joint.name in self.joints]
 
     def _mimicry(self, joint: PlacedJoint | None) -> Iterator[Any]:
-        """What makes axes of a joint follow those of others."""
+        """Add equality constraints for mimic axes of a joint."""
         if joint is None or joint.name not in self.joints:
             return
         for number, (axis, _) in enumerate(joint.axes):
@@ -455,7 +455,7 @@ class Scene:
             yield equality
 
     def _closed(self, joint: PlacedJoint, poses: dict[str, Transform]) -> Iterator[Any]:
-        """What holds two links together that others hold already."""
+        """Add the equality constraint for a joint that closes a loop."""
         kinds, ends = self._mujoco.mjtEq, (joint.child, joint.parent)
         points = hinge_anchors(joint, _ANCHORS_APART) if joint.axes else [joint.pose[:3]]
         if joint.joint.type == "fixed":
@@ -480,14 +480,14 @@ class Scene:
         return equality
 
     def _strangers(self, structure: Structure) -> Iterator[Any]:
-        """Let links of one model pass through each other, unless they say otherwise."""
+        """Exclude contacts between links of one model, unless ``<self_collide>`` allows them."""
         touching = [held.link for held in structure.links if held.link.link.collisions and not held.link.static]
         for one, other in combinations(touching, 2):
             if not (_collides(one.link.self_collide, one.model) and _collides(other.link.self_collide, other.model)):
                 yield self.spec.add_exclude(bodyname1=one.name, bodyname2=other.name)
 
     def _neighbours(self, connected: Connected) -> Iterator[Any]:
-        """Let links that joints of the world connect pass through each other, as those of one model do."""
+        """Exclude contacts between links that joints of the world connect, as within a model."""
         own = {held.link.name for held in connected.structure.links}
         hung = (held.joint for held in connected.structure.links if held.joint is not None)
         joints = (*(each for each in hung if each.parent not in own), *connected.loops)

@@ -20,14 +20,14 @@ _CORNERS = 32
 
 
 def set_pose(thing: Any, pose: Transform) -> None:
-    """Place a body, geom, site or camera of a specification in the frame of its body."""
+    """Set the pose of a body, geom, site or camera of a specification in the frame of its body."""
     x, y, z, qx, qy, qz, qw = pose
     thing.pos = [x, y, z]
     thing.quat = [qw, qx, qy, qz]
 
 
 def add_shape(body: Any, shape: Shape, pose: Transform, *, fixed: bool) -> Any | None:
-    """Add a simple shape to a body; None for one that is none, or has no extent.
+    """Add a simple shape to a body; None for one that is not simple, or has no extent.
 
     Args:
         body: the body of the specification.
@@ -61,7 +61,7 @@ def add_shape(body: Any, shape: Shape, pose: Transform, *, fixed: bool) -> Any |
 
 
 def cone_corners(cone: Cone) -> np.ndarray[Any, np.dtype[np.float64]]:
-    """The corners of a cone whose base is a polygon: shape (corners, 3), in m."""
+    """The vertices of a cone whose base is a polygon: shape (vertices, 3), in m."""
     turns = [2 * pi * index / _CORNERS for index in range(_CORNERS)]
     ring = [(cone.radius * cos(turn), cone.radius * sin(turn), -cone.length / 2) for turn in turns]
     return np.array([*ring, (0.0, 0.0, cone.length / 2)])

@@ -1,4 +1,4 @@
-"""The links and joints of a model as trees, which is what MuJoCo moves, and the joints that close loops in them."""
+"""The links and joints of a model as kinematic trees, as MuJoCo needs them, and the joints that close loops."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class PlacedJoint:
 
 @dataclass(frozen=True, slots=True)
 class HeldLink:
-    """A link, and the joint that holds it; None for one that nothing holds."""
+    """A link, and the joint that connects it to its parent; None for a root."""
 
     link: PlacedLink
     joint: PlacedJoint | None
@@ -47,7 +47,7 @@ class HeldLink:
 
 @dataclass(frozen=True, slots=True)
 class Structure:
-    """A model as MuJoCo wants it.
+    """A model as kinematic trees.
 
     Attributes:
         links: all links, each after the one that holds it.
@@ -59,7 +59,7 @@ class Structure:
 
 
 def structure_of(model: Model, name: str, pose: Transform) -> Structure:
-    """The trees of a model; joints between links that are not there are left out.
+    """Work out the trees of a model; joints with missing links are left out.
 
     Args:
         model: with its includes resolved.
@@ -87,7 +87,7 @@ def structure_of(model: Model, name: str, pose: Transform) -> Structure:
 
 
 def _models(model: Model, frames: Frames, pose: Transform, path: str) -> Iterator[tuple[Model, Frames, Transform, str]]:
-    """A model and those in it, with the frames, the place in the world and the name of each."""
+    """A model and those in it, each with its frames, its pose in the world and its name."""
     yield model, frames, pose, path
     for inner in model.models:
         place = compose(pose, frames.pose(inner.name))
@@ -95,7 +95,7 @@ def _models(model: Model, frames: Frames, pose: Transform, path: str) -> Iterato
 
 
 def placed_joint(joint: Joint, frames: Frames, pose: Transform, path: str) -> PlacedJoint:
-    """A joint with its links, its place and its axes.
+    """A joint with its links, its pose and its axes.
 
     Args:
         joint: what is written about it.
@@ -119,7 +119,7 @@ def _within(path: str, name: str) -> str:
 
 
 def _direction(said: Vector3) -> Vector3:
-    """Where an axis points: along z where it says nowhere, as libsdformat has it; `check` tells."""
+    """The direction of an axis: z where none is given, as in libsdformat; `check` reports that."""
     return said if sum(each * each for each in said) > _LEAST**2 else (0.0, 0.0, 1.0)
 
 
@@ -142,7 +142,7 @@ def _trees(links: dict[str, PlacedLink], joints: Iterable[PlacedJoint]) -> Struc
 
 
 def is_below(holding: Mapping[str, PlacedJoint], link: str, other: str) -> bool:
-    """Whether a link is another, or holds it by way of others; `holding` has the joints by their children."""
+    """Whether a link is another one, or one of its descendants; `holding` has the joints by their children."""
     while other != link:
         if other not in holding:
             return False

@@ -1,4 +1,4 @@
-"""What happens where two shapes touch: friction, stiffness, and who says so when they differ.
+"""Surfaces of shapes: friction, stiffness, and whose parameters count in a contact.
 
 Source of the figures: measurements with MuJoCo 4.0 of a robot with differential drive (straight on, arcs, turns on the
 spot), and the chapters "Contact" and "Solver parameters" of MuJoCo's documentation.
@@ -26,7 +26,7 @@ _HARD_IMPEDANCE = (0.99, 0.999, 0.001, 0.5, 2.0)
 
 
 def apply_surface(geom: Any, surface: Surface) -> None:
-    """Give a shape of MuJoCo the surface of a collision.
+    """Give a geom of MuJoCo the surface of a collision.
 
     Gazebo takes the lesser of two frictions, MuJoCo the greater unless one of the two shapes has priority. The
     priority is the higher the less friction there is, which comes to the same.
@@ -46,28 +46,28 @@ def apply_surface(geom: Any, surface: Surface) -> None:
 
 
 def friction_of(surface: Surface) -> float:
-    """The coefficient of friction that counts: MuJoCo's is the same in all directions, and so the lesser of two."""
+    """The coefficient of friction in a contact: MuJoCo's is the same in all directions, so the lesser of two."""
     if surface.friction is not None:
         return max(min(surface.friction.mu, surface.friction.mu2), 0.0)
     return _USUAL_FRICTION
 
 
 def grip_of(surface: Surface) -> float:
-    """The coefficient of friction of a wheel that a motor turns: the greater; the lesser is for slipping sideways."""
+    """The coefficient of friction of a driven wheel: the greater of two; the lesser is for slipping sideways."""
     if surface.friction is not None:
         return max(surface.friction.mu, surface.friction.mu2, 0.0)
     return _USUAL_FRICTION
 
 
 def make_slippery(geom: Any) -> None:
-    """Let a shape slide without friction and leave the load to others, as casters shall."""
+    """Make a geom frictionless and soft, so that it leaves the load to others, as casters shall."""
     geom.condim = 1
     make_soft(geom)
     geom.priority = _priority(0.0)
 
 
 def make_frictionless(geom: Any, step: float) -> None:
-    """Let a shape slide without friction, and bear its load as a wheel does.
+    """Make a geom frictionless, and let it bear load as a wheel does.
 
     Args:
         geom: the shape.
@@ -79,17 +79,17 @@ def make_frictionless(geom: Any, step: float) -> None:
 
 
 def make_soft(geom: Any) -> None:
-    """Let a shape give way a little, so that it does not take the load from wheels beside it."""
+    """Make the contact of a geom a little soft, so that it does not take the load from wheels beside it."""
     geom.solref = list(_SOFT)
 
 
 def is_slippery(geom: Any) -> bool:
-    """Whether a shape slides without friction."""
+    """Whether a geom is frictionless."""
     return bool(geom.condim == 1)
 
 
 def make_wheel(geom: Any, step: float, grip: float | None = None) -> None:
-    """Let a shape roll without slipping: a hard contact, which counts before that of a ground of equal friction.
+    """Let a geom roll without slipping: a hard contact, of higher priority than that of a ground of equal friction.
 
     Args:
         geom: the shape.
@@ -109,7 +109,7 @@ def _priority(mu: float) -> int:
 
 
 def _patch(surface: Surface) -> float:
-    """The radius in m that turns a coefficient into MuJoCo's, which is a length."""
+    """The radius in m of the contact patch; MuJoCo's coefficient of torsional friction is a length, SDF's times it."""
     torsional = surface.torsional
     assert torsional is not None
     return max(torsional.patch_radius if torsional.use_patch_radius else torsional.surface_radius, 1e-3)

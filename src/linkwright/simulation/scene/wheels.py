@@ -1,4 +1,4 @@
-"""Wheels that motors turn, and the casters that bear the rest of a robot."""
+"""Driven wheels, and casters."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ have it, with this 0.43 times; friction by Coulomb gives 0.50, however great it 
 
 
 def make_rolling(spec: Any, body: Any, joint: Any, step: float, grips: Mapping[str, float], greatest: float) -> None:
-    """Let what touches of a body roll about a joint: in one point, as tyres do, and without slipping.
+    """Let the collisions of a body roll about a joint: with contact in one point, as tyres have, without slipping.
 
     Cylinders, and meshes that are round about the axis of the joint, become ellipsoids: the two edges of a cylinder
     would scrub in turns, and the corners of a mesh would bump.
@@ -55,7 +55,7 @@ def make_rolling(spec: Any, body: Any, joint: Any, step: float, grips: Mapping[s
 
 
 def make_sliding(body: Any, unsaid: set[str]) -> None:
-    """Let the balls of a body that no motor turns leave the load to the wheels.
+    """Let the balls of a body without a motor leave the load to the wheels.
 
     Args:
         body: a body of the specification.
@@ -70,7 +70,7 @@ def make_sliding(body: Any, unsaid: set[str]) -> None:
 
 
 def make_omnidirectional(body: Any, step: float) -> None:
-    """Let what touches of a body slide in all directions and bear its load, as a wheel with rollers.
+    """Let the collisions of a body slide in all directions and bear load, as a wheel with rollers does.
 
     Args:
         body: a body of the specification.
@@ -82,7 +82,7 @@ def make_omnidirectional(body: Any, step: float) -> None:
 
 
 def _round_mesh(spec: Any, geom: Any, origin: Array, axis: Array) -> None:
-    """Make a mesh an ellipsoid if it is round about an axis, given in the frame of its body."""
+    """Replace a mesh by an ellipsoid if it is round about an axis, given in the frame of its body."""
     w, x, y, z = geom.quat
     corners = np.array(spec.mesh(geom.meshname).uservert).reshape(-1, 3)
     corners = corners @ rotation_matrix((x, y, z, w)).T + np.array(geom.pos) - origin

@@ -1,4 +1,4 @@
-"""Simple shapes as triangles that wear an image.
+"""Simple shapes as triangle meshes with texture coordinates.
 
 Source: gz-common's ``MeshManager``. A box shows the image on each side, upright on those beside. On a cylinder and a
 ball it goes round clockwise as seen from the end; a cylinder's stands on its head, and a ball's poles are along y.
@@ -37,7 +37,7 @@ _LEAST_AREA = 1e-15
 
 
 def wrapped(shape: Shape) -> Triangles | None:
-    """A shape with the coordinates of an image; None for one that wears none.
+    """A shape with texture coordinates; None for one that has none.
 
     A plane is so great as it is said to be drawn, and has z for its normal.
     """
@@ -75,7 +75,7 @@ def _sheet(side: Array, count: int) -> Triangles:
 
 
 def _rings(rings: Sequence[tuple[float, float, float]]) -> Triangles:
-    """What is round about z: of each ring its radius, its height and where in the image it is, from the top."""
+    """Solids of revolution about z: radius, height and texture row of each ring, from the top."""
     turns = np.linspace(0.0, 2 * pi, _AROUND + 1)
     radius, height, down = (np.repeat(each, _AROUND + 1) for each in np.array(rings).T)
     turn = np.tile(turns, len(rings))
@@ -84,7 +84,7 @@ def _rings(rings: Sequence[tuple[float, float, float]]) -> Triangles:
 
 
 def _woven(positions: Array, coordinates: Array, columns: int) -> Triangles:
-    """Triangles between rows of corners."""
+    """Triangles between rows of vertices."""
     start = np.arange(len(positions) - columns - 1).reshape(-1, columns + 1)[:, :-1].ravel()
     below = start + columns + 1
     faces = np.concatenate([np.stack([start, below, start + 1], 1), np.stack([start + 1, below, below + 1], 1)])

@@ -1,1 +1,1 @@
-"""What sensors measure in a world that moves, without ROS: each is asked, and measures at this moment."""
+"""Sensors without ROS: each is asked to measure, and does so at once."""

@@ -1,4 +1,4 @@
-"""What touches what, and how hard."""
+"""Contact sensors: pairs of collisions, with positions, normals, depths and forces."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _MARK = "#collision"
 
 @dataclass(frozen=True, slots=True)
 class Contact:
-    """Two collisions that touch, in the last step.
+    """A contact of two collisions in the last step.
 
     Attributes:
         collision1: that of the sensor, with its link and model: ``robot::bumper::collision``.
@@ -39,7 +39,7 @@ class Contact:
 
 
 class ContactSensor:
-    """Listens to what touches collisions of a link.
+    """Measures the contacts of collisions of a link.
 
     Args:
         mount: where it is: its link counts.
@@ -62,7 +62,7 @@ class ContactSensor:
         return name in self._wanted if self._wanted else name.rpartition(SEPARATOR)[0] == self._mount.link
 
     def measure(self) -> list[Contact]:
-        """What touches now, a contact for each pair of collisions.
+        """The contacts now, one for each pair of collisions.
 
         Raises:
             KeyError: its link is gone.

@@ -1,4 +1,4 @@
-"""Sensors of where something is on earth: satellite receivers, altimeters, barometers, magnetometers.
+"""Satellite receivers, altimeters, barometers and magnetometers.
 
 Source: the ellipsoid of WGS 84 (NIMA TR8350.2), and how the element ``<spherical_coordinates>`` lays the world upon it;
 the standard atmosphere of ISO 2533 up to 11 km.
@@ -33,7 +33,7 @@ EARTH_FIELD: Vector3 = (5.5645e-6, 22.8758e-6, -42.3884e-6)
 
 
 class Globe:
-    """The place of a world on earth.
+    """The position of a world on earth.
 
     Args:
         place: what the world says; None for where latitude and longitude are 0.
@@ -53,7 +53,7 @@ class Globe:
         )
 
     def east_north_up(self, vector: Array) -> Array:
-        """A vector of the world in the axes east, north, up."""
+        """Express a vector of the world in the axes east, north, up."""
         turned: Array = self._heading @ vector
         return turned
 
@@ -71,7 +71,7 @@ class Globe:
 
 
 def _from_geodetic(latitude: float, longitude: float, altitude: float) -> Array:
-    """A place on earth in the axes of the earth, in m."""
+    """A position on earth in earth-centred coordinates, in m."""
     normal = _RADIUS / sqrt(1 - _E2 * sin(latitude) ** 2)
     across = (normal + altitude) * cos(latitude)
     return np.array([across * cos(longitude), across * sin(longitude), (normal * (1 - _E2) + altitude) * sin(latitude)])
@@ -79,7 +79,7 @@ def _from_geodetic(latitude: float, longitude: float, altitude: float) -> Array:
 
 @dataclass(frozen=True, slots=True)
 class Fix:
-    """What a satellite receiver measured.
+    """A measurement of a satellite receiver.
 
     Attributes:
         latitude, longitude: in degrees.
@@ -94,7 +94,7 @@ class Fix:
 
 
 class NavsatSensor:
-    """A satellite receiver; noise in metres moves it on the ground before its latitude is worked out.
+    """A satellite receiver; noise in metres is added before degrees are computed.
 
     Args:
         mount: where it is.
@@ -119,7 +119,7 @@ class NavsatSensor:
         self._globe = Globe(place)
 
     def measure(self) -> Fix:
-        """Where it is now.
+        """The position and velocity now.
 
         Raises:
             KeyError: its link is gone.
@@ -130,7 +130,7 @@ class NavsatSensor:
 
 
 class AltimeterSensor:
-    """Tells its height above where it was at the start.
+    """An altimeter: measures the height above that of the start.
 
     Args:
         mount: where it is.
@@ -157,7 +157,7 @@ class AltimeterSensor:
 
 
 class Barometer:
-    """Measures the pressure of the air at its height.
+    """A barometer: measures the air pressure at its altitude.
 
     Args:
         mount: where it is.
@@ -192,7 +192,7 @@ def standard_pressure(altitude: float) -> float:
 
 
 class MagnetometerSensor:
-    """Measures the magnetic field in its own axes.
+    """A magnetometer: measures the magnetic field in its own axes.
 
     Args:
         mount: where it is.

@@ -1,4 +1,4 @@
-"""Forces in joints."""
+"""Force-torque sensors in joints."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from linkwright.simulation.simulation import Simulation
 
 
 class ForceTorqueSensor:
-    """Measures what the two links of a joint do to each other, at the origin of the joint.
+    """Measures force and torque between the two links of a joint, at the origin of the joint.
 
     Args:
         simulation: the world.
@@ -45,7 +45,7 @@ class ForceTorqueSensor:
         self._offset = offset
 
     def measure(self) -> tuple[Array, Array]:
-        """The force in N and the torque in N m, in the axes that the sensor says.
+        """The force in N and the torque in N m, in the axes that the sensor is configured for.
 
         With ``parent_to_child`` they are what the parent does to the child, otherwise the opposite.
 
@@ -65,7 +65,7 @@ class ForceTorqueSensor:
         return self._force_noise.apply(rotate(into, force)), self._torque_noise.apply(rotate(into, torque))
 
     def _axes(self, joint: Transform) -> tuple[float, ...]:
-        """The orientation in the world of the frame that it measures in."""
+        """The orientation in the world of the frame in which it measures."""
         if self._said.frame == "parent":
             parent = self._joint.parent
             return (0.0, 0.0, 0.0, 1.0) if parent == "world" else self._simulation.link_pose(parent)[3:]

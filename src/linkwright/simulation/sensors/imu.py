@@ -25,7 +25,7 @@ _NWU = (0.0, 0.0, np.pi / 2)
 
 @dataclass(frozen=True, slots=True)
 class Inertial:
-    """What an IMU measured, in its own axes.
+    """A measurement of an IMU, in its own axes.
 
     Attributes:
         orientation: of the unit in its reference frame: a quaternion x, y, z, w.
@@ -68,7 +68,7 @@ class ImuSensor:
         return quaternion_from_rpy(turns.get(imu.localization, (0.0, 0.0, 0.0)))
 
     def measure(self) -> Inertial:
-        """What it measures now.
+        """A measurement of now.
 
         Raises:
             KeyError: its link is gone.

@@ -1,4 +1,4 @@
-"""Lidars: rays, how far they go, and how much light comes back.
+"""Lidars: ranges and intensities by ray casting.
 
 Source of what is not in SDF: REP 117 for what is too near or too far; `RaySensor` and `GpuRaySensor` of Gazebo for what
 a ray sees: rays begin where the range does, so that the housing of a sensor does not hide the world.
@@ -30,7 +30,7 @@ _SURFACES = 64
 
 @dataclass(frozen=True, slots=True)
 class Scan:
-    """What a lidar measured.
+    """A measurement of a lidar.
 
     Attributes:
         ranges: in m, shape (vertical, horizontal); -inf for what is too near and inf for what is too far.
@@ -42,13 +42,13 @@ class Scan:
 
 
 def angles_of(sweep: Sweep) -> Array:
-    """The directions of the rays that a sweep describes, in rad: shape (count,)."""
+    """The angles of the rays of a sweep, in rad: shape (count,)."""
     angles: Array = sweep.min_angle + sweep.step * np.arange(sweep.count, dtype=np.float64)
     return angles
 
 
 class LidarSensor:
-    """A lidar: it looks along x, horizontal angles are about z and vertical ones upwards.
+    """A lidar: it looks along x, horizontal angles are about z, vertical ones upwards.
 
     Ranges are exact but for noise: as in Gazebo, the resolution of the range rounds nothing. The link that carries it
     hides nothing, nor does what is nearer than the range of other parts of its robot.
@@ -76,14 +76,14 @@ class LidarSensor:
 
     @cached_property
     def directions(self) -> Array:
-        """Where its rays go, in its own frame: unit vectors, shape (vertical * horizontal, 3)."""
+        """The directions of its rays, in its own frame: unit vectors, shape (vertical * horizontal, 3)."""
         up, across = np.meshgrid(angles_of(self.vertical), angles_of(self.horizontal), indexing="ij")
         x, y, z = np.cos(up) * np.cos(across), np.cos(up) * np.sin(across), np.sin(up)
         rays: Array = np.stack([x, y, z], axis=-1).reshape(-1, 3)
         return rays
 
     def measure(self) -> Scan:
-        """What it sees now.
+        """A measurement of now.
 
         Raises:
             KeyError: its link is gone.
@@ -113,7 +113,7 @@ class LidarSensor:
         return ranges, geoms
 
     def _beyond(self, origin: Array, ray: Array, body: int, reached: float, own: Array) -> tuple[float, int]:
-        """What a ray hits behind parts of its own robot that are nearer than its range: the distance, and the geom."""
+        """The first hit behind parts of its own robot that are nearer than its range: the distance, and the geom."""
         simulation, geom = self._simulation, np.zeros(1, dtype=np.int32)
         for _ in range(_SURFACES):
             start = reached + _A_LITTLE

@@ -1,4 +1,4 @@
-"""Where a sensor is fixed, and what it knows of the geoms that it meets."""
+"""The mount of a sensor, and tables of values by geom."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from linkwright.simulation.simulation import Simulation
 
 @dataclass(frozen=True, slots=True)
 class Mount:
-    """A place on a link.
+    """The pose of a sensor on a link.
 
     Attributes:
         simulation: the world.
@@ -41,11 +41,11 @@ class Mount:
 
     @property
     def body(self) -> int:
-        """The number of the link in MuJoCo's model of this moment."""
+        """The index of the link in MuJoCo's model now."""
         return self.simulation.body(self.link)
 
     def pose(self) -> Transform:
-        """Where the sensor is in the world.
+        """The pose of the sensor in the world.
 
         Raises:
             KeyError: the link is gone.
@@ -54,7 +54,7 @@ class Mount:
         return pose if self.offset == IDENTITY else compose(pose, self.offset)
 
     def velocity(self) -> tuple[Vector3, Vector3]:
-        """The velocity of the sensor in m/s and its angular one in rad/s, in the axes of the world."""
+        """The velocity of the sensor in m/s and its angular velocity in rad/s, in the axes of the world."""
         linear, angular = self.simulation.link_velocity(self.link)
         turning = _three(angular)
         if self._is_at_origin:
@@ -63,15 +63,15 @@ class Mount:
 
     @property
     def _is_at_origin(self) -> bool:
-        """Whether it moves as the origin of its link does."""
+        """Whether it is at the origin of its link."""
         return self.offset[:3] == IDENTITY[:3]
 
     def _arm(self) -> Vector3:
-        """From the origin of the link to the sensor, in the axes of the world."""
+        """The vector from the origin of the link to the sensor, in the axes of the world."""
         return rotate(self.simulation.link_pose(self.link)[3:], self.offset[:3])
 
     def felt(self) -> tuple[Vector3, Vector3]:
-        """The angular velocity in rad/s and what an accelerometer feels in m/s2, in the axes of the world.
+        """The angular velocity in rad/s and the proper acceleration in m/s2, in the axes of the world.
 
         At rest an accelerometer feels the reaction to gravity, upwards.
         """
@@ -103,19 +103,19 @@ def _cross(one: Vector3, other: Vector3) -> Vector3:
 
 
 def accelerations(simulation: Simulation) -> None:
-    """Let MuJoCo compute the accelerations of all bodies and the forces between them, as they were in the last step."""
+    """Let MuJoCo compute the accelerations of all bodies and the forces between them, for the last step."""
     simulation.refresh()
     load_mujoco().mj_rnePostConstraint(simulation.model, simulation.data)
 
 
 def part_of(geom: str) -> str:
-    """The visual or collision that a geom of MuJoCo is one piece of, as ``robot::base_link::lid#visual``."""
+    """The name of the visual or collision to which a geom of MuJoCo belongs, as ``robot::base_link::lid#visual``."""
     name, mark, kind = geom.partition("#")
     return name + mark + kind.partition("#")[0]
 
 
 def parts_of(simulation: Simulation) -> Iterator[tuple[str, Visual | Collision]]:
-    """All visuals and collisions of a world by the names that `part_of` returns."""
+    """All visuals and collisions of a world by their names; see `part_of`."""
     for model in simulation.scene.models.values():
         for held in model.structure.links:
             link = held.link
@@ -126,7 +126,7 @@ def parts_of(simulation: Simulation) -> Iterator[tuple[str, Visual | Collision]]
 
 
 class GeomTable:
-    """A value for each geom of MuJoCo's model, worked out anew when models have come or gone.
+    """A value for each geom of MuJoCo's model, computed anew when models were added or removed.
 
     Args:
         simulation: the world.
@@ -140,7 +140,7 @@ class GeomTable:
         self._array: Array = np.zeros(0)
 
     def array(self) -> Array:
-        """The values: shape (geoms + 1,); the last is 0, for what geom -1 stands for: nothing."""
+        """The values: shape (geoms + 1,); the last is 0, for geom -1, which stands for none."""
         self._simulation.refresh()
         if self._revision != self._simulation.revision:
             model = self._simulation.model

@@ -1,4 +1,4 @@
-"""Noise on what is measured.
+"""Noise of sensors, as ``<noise>`` of SDF describes it.
 
 Source: what the elements of ``<noise>`` mean, SDFormat specification 1.12, and how the ``GaussianNoiseModel`` of Gazebo
 lets a bias wander.
@@ -19,7 +19,7 @@ _AHEAD = 64
 
 
 class NoiseSource:
-    """Makes one value, or many of the same kind, noisy.
+    """Adds noise to one value, or to many of the same kind.
 
     Args:
         noise: what is said of it, in the unit of the values.
@@ -41,7 +41,7 @@ class NoiseSource:
 
     @property
     def silent(self) -> bool:
-        """Whether it changes nothing."""
+        """Whether it changes no value."""
         return self._noise.type == "none"
 
     @property
@@ -52,11 +52,11 @@ class NoiseSource:
 
     @property
     def offset(self) -> float:
-        """What it adds to all values: the bias, and the mean."""
+        """The constant that is added to all values: bias and mean."""
         return 0.0 if self.silent else float(self._bias + self._noise.mean)
 
     def apply(self, values: Array, period: float = 0.0) -> Array:
-        """Values with noise on them.
+        """Add noise to values.
 
         Args:
             values: of any shape.
@@ -81,7 +81,7 @@ class NoiseSource:
 
 
 class VectorNoise:
-    """Noise on the three parts of a vector.
+    """Noise on the three components of a vector.
 
     Args:
         noise: what is said of each part.
@@ -102,12 +102,12 @@ class VectorNoise:
         self._drawn: list[list[float]] = []
 
     def apply(self, vector: Array, period: float = 0.0) -> Array:
-        """A vector, shape (3,), with noise on it."""
+        """Add noise to a vector, shape (3,)."""
         x, y, z = vector.tolist()
         return np.array(self.on((x, y, z), period))
 
     def on(self, vector: Vector3, period: float = 0.0) -> Vector3:
-        """A vector with noise on it; without arrays, which take longer for three numbers.
+        """Add noise to a vector; in plain floats, as arrays take longer for three numbers.
 
         Args:
             vector: its parts.

@@ -1,1 +1,1 @@
-"""A simulation as a part of the graph: what runs it, what it publishes, and what may be asked of it."""
+"""A simulation on the graph: its thread, its topics, and its services."""

@@ -1,4 +1,4 @@
-"""How a model moves, kept while it comes anew."""
+"""Keeping the motion of a model when it is replaced by a changed one."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from linkwright.simulation.simulation import Simulation
 
 @dataclass(frozen=True, slots=True)
 class Motion:
-    """How a model stands and moves.
+    """The pose, velocities and joint states of a model.
 
     Attributes:
         pose: where its frame is in the world.
@@ -28,7 +28,7 @@ class Motion:
 
 
 def motion_of(simulation: Simulation, name: str) -> Motion:
-    """How a model stands and moves now.
+    """Record the motion of a model.
 
     Raises:
         KeyError: there is no such model.
@@ -44,7 +44,7 @@ def motion_of(simulation: Simulation, name: str) -> Motion:
 
 
 def resume(simulation: Simulation, name: str, motion: Motion, *, here: bool) -> None:
-    """Let a model go on as one of its name did before: its joints, where those have stayed what they were.
+    """Give a model the motion of its predecessor of the same name, for the joints that are still of the same kind.
 
     Args:
         simulation: the world.
@@ -67,7 +67,7 @@ def resume(simulation: Simulation, name: str, motion: Motion, *, here: bool) -> 
 
 
 def _put(simulation: Simulation, name: str, motion: Motion, free: dict[str, str]) -> None:
-    """Put all links that move freely where they were; the first, and those that are new, by the frame of the model."""
+    """Set the poses of all free links: by their own, or, for the first and new ones, by the frame of the model."""
     model = simulation.scene.models[name]
     poses = {held.link.name: held.link.pose for held in model.structure.links}
     moved = compose(motion.pose, invert(model.pose))
@@ -84,7 +84,7 @@ def _put(simulation: Simulation, name: str, motion: Motion, free: dict[str, str]
 
 
 def _joints(simulation: Simulation, name: str) -> dict[str, int]:
-    """The joints that MuJoCo has of a model, and their numbers."""
+    """MuJoCo's joints of a model, and their indices."""
     simulation.refresh()
     model, found = simulation.model, {}
     for held in simulation.scene.models[name].structure.links:

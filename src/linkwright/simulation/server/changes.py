@@ -1,4 +1,4 @@
-"""What is to be done to a world that runs so that it becomes another one."""
+"""The changes that make one world another: models that are removed, replaced and added."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from linkwright.simulation.simulation import Simulation
 
 @dataclass(frozen=True, slots=True)
 class Coming:
-    """A model that comes.
+    """A model that is added.
 
     Attributes:
         model: with its includes resolved.
@@ -42,7 +42,7 @@ class Coming:
 
 @dataclass(frozen=True, slots=True)
 class Changes:
-    """What makes one world another.
+    """The changes from one world to another.
 
     Attributes:
         gone: names of the models that go.
@@ -57,7 +57,7 @@ class Changes:
     new: tuple[Coming, ...]
 
     def with_all(self, running: Mapping[str, SceneModel], namespaces: Mapping[str, str]) -> Changes:
-        """These, and all that would stay as it is comes anew where it is."""
+        """These changes, with all unchanged models replaced where they are."""
         others = {*self.gone, *(each.name for each in self.renewed)}
         poses = {name: self.moved.get(name, each.pose) for name, each in running.items() if name not in others}
         rest = (
@@ -67,7 +67,7 @@ class Changes:
         return replace(self, moved={}, renewed=(*self.renewed, *rest))
 
     def with_connected(self, running: Mapping[str, SceneModel], namespaces: Mapping[str, str]) -> Changes:
-        """These, and those that stand elsewhere and that joints of the world connect with others come anew there."""
+        """These changes, with models that moved and that joints of the world connect replaced at their new poses."""
         connected = {name for each in running.values() if each.hangs_on for name in (each.name, *each.hangs_on)}
         again = {name: pose for name, pose in self.moved.items() if name in connected}
         moved = {name: pose for name, pose in self.moved.items() if name not in connected}
@@ -76,7 +76,7 @@ class Changes:
 
 
 def changes_to(world: World, running: Mapping[str, SceneModel], owned: Collection[str]) -> Changes:
-    """What makes the models that run those of another world.
+    """The changes from the running models to those of another world.
 
     Args:
         world: the other one, with its includes resolved and as it was saved.
@@ -116,7 +116,7 @@ def changes_to(world: World, running: Mapping[str, SceneModel], owned: Collectio
 
 
 def check(world: World, simulation: Simulation, coming: Sequence[Coming], finder: ResourceFinder) -> list[Diagnostic]:
-    """Try whether models can be simulated in a world, beside the simulation that runs.
+    """Compile models in a world beside the running simulation, to find out whether they can be simulated.
 
     Args:
         world: the world; its own models are left out.
@@ -138,7 +138,7 @@ def check(world: World, simulation: Simulation, coming: Sequence[Coming], finder
 
 
 def come_into(simulation: Simulation, coming: Sequence[Coming]) -> None:
-    """Put models into a simulation, all or none.
+    """Add models to a simulation, all or none.
 
     Raises:
         LinkwrightError: SIM102 there is a model of such a name; SIM104, SIM105, SIM140 one cannot be simulated.
@@ -159,7 +159,7 @@ def come_into(simulation: Simulation, coming: Sequence[Coming]) -> None:
 
 
 def surroundings(world: World) -> tuple[object, ...]:
-    """What the plugins of models go by besides their models."""
+    """The parts of a world that plugins of its models depend on."""
     physics = physics_of(world)
     joints = tuple(world.joints)
     return world.name, world.spherical_coordinates, world.magnetic_field, world.wind, physics.max_step_size, joints

@@ -1,4 +1,4 @@
-"""Texts that programs send to have models put into the world: URDF or SDF."""
+"""Models from texts of URDF or SDF that programs send."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _NAME = "<the description>"
 
 @dataclass(frozen=True, slots=True)
 class Entity:
-    """A model that was sent.
+    """A model from a text.
 
     Attributes:
         model: the model, with its includes resolved; of a robot every link is kept.
@@ -31,7 +31,7 @@ class Entity:
 
 
 def entity_from(text: str, finder: ResourceFinder, library: DescriptionLibrary) -> Entity:
-    """The model in a text.
+    """Read the model in a text.
 
     Args:
         text: URDF or SDF; of SDF the first model.
@@ -67,7 +67,7 @@ def entity_from(text: str, finder: ResourceFinder, library: DescriptionLibrary) 
 
 
 def _errors(findings: tuple[Diagnostic, ...] | list[Diagnostic]) -> list[Diagnostic]:
-    """Those that are errors, or all of them; one at least."""
+    """The findings that are errors, or all of them if none is."""
     return (
         [each for each in findings if has_errors([each])]
         or list(findings)

@@ -1,4 +1,4 @@
-"""Making the world that runs that of another file or text, by ``/load_world``.
+"""Replacing the running world by that of another file or text, for ``/load_world``.
 
 Source: ``simulation_interfaces/srv/LoadWorld``. There the scene is cleared and the simulation stops; here what is the
 same in both worlds goes on as it is, what was spawned stays, and so does time. ``uri`` is the path or address of a
@@ -40,7 +40,7 @@ _TEXT = "<the world>"
 
 
 class WorldLoader:
-    """Makes the world that runs another one.
+    """Replaces the running world by another one.
 
     Args:
         server: the simulation.
@@ -57,7 +57,7 @@ class WorldLoader:
 
     @property
     def is_unsaved(self) -> bool:
-        """Whether the world that runs is that of a text which its file has not, or not any more."""
+        """Whether the running world is that of a text which differs from its file."""
         if self._text is None:
             return False
         path = self.loaded.path
@@ -67,7 +67,7 @@ class WorldLoader:
             return True
 
     def load(self, uri: str, text: str = "", *, refused: Sequence[str] = ()) -> None:
-        """Make the world that runs that of a file or text.
+        """Replace the running world by that of a file or text.
 
         What is wrong with both worlds alike is no reason to refuse the other one.
 

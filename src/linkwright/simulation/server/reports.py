@@ -1,4 +1,4 @@
-"""What a simulator tells by itself: time, state, what the world is made of, and where everything is."""
+"""The topics that a simulator publishes of itself: time, state, description, poses."""
 
 from __future__ import annotations
 
@@ -55,16 +55,16 @@ class Reports:
         server.simulation.call_every(round(NANOSECONDS / clock_rate) if clock_rate > 0 else 0, self._tell_time)
 
     def begin(self) -> None:
-        """Tell what the world is made of, now and whenever it has changed."""
+        """Publish the description, now and after each change of the world."""
         self._server.on_change.append(self.publish_description)
         self.publish_description()
 
     def publish_state(self, *, paused: bool) -> None:
-        """Tell whether time passes."""
+        """Publish whether the simulation is paused."""
         self._state.publish(get_message(_STATE)(state=PAUSED if paused else PLAYING))
 
     def publish_description(self) -> None:
-        """Tell what the world is made of: SDF, with all models where they came in, and files by their addresses."""
+        """Publish the world as SDF, with all models at their initial poses, and files by their addresses."""
         simulation = self._server.simulation
         models = tuple(
             replace(each.model, name=each.name, pose=RawPose(pose_of(each.pose)), placement_frame="")
@@ -76,7 +76,7 @@ class Reports:
         self._description.publish(String(data=save(world)))
 
     def watch(self, factor: Callable[[], float]) -> None:
-        """Tell where everything is and how fast time passes, as often as is right in real time, to who wants it."""
+        """Publish poses and the real time factor, as often as configured in real time, while anybody subscribes."""
         now = time.monotonic()
         if now - self._posed >= _POSES_PERIOD and self._poses.is_wanted:
             self._posed = now
@@ -87,7 +87,7 @@ class Reports:
             self._metrics.publish(message)
 
     def publish_poses(self) -> None:
-        """Tell where every link is that can move: ``robot::link`` in ``world``."""
+        """Publish the poses of all links that can move: ``robot::link`` in ``world``."""
         simulation = self._server.simulation
         simulation.refresh()
         if self._revision != simulation.revision:

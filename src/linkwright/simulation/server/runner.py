@@ -26,7 +26,7 @@ _MEASURED = 0.5
 
 
 class Runner:
-    """Advances a simulation in a thread of its own, as fast as it is asked to.
+    """Advances a simulation in a thread of its own, at the wanted real time factor.
 
     Everything but `start` and `close` is called in that thread, by commands of the exchange.
 
@@ -70,26 +70,26 @@ class Runner:
         self._thread = threading.Thread(target=self._run, name="linkwright-simulation", daemon=True)
 
     def start(self) -> None:
-        """Begin."""
+        """Start the thread."""
         self._thread.start()
 
     def close(self) -> None:
-        """End the thread; a step that is being made is finished."""
+        """End the thread, after the step that is being made."""
         self._ends = True
         self._server.exchange.close()
         if self._thread.is_alive() and self._thread is not threading.current_thread():
             self._thread.join()
 
     def pause(self) -> None:
-        """Let no time pass."""
+        """Pause the simulation."""
         self._set(paused=True)
 
     def go_on(self) -> None:
-        """Let time pass again."""
+        """Resume the simulation."""
         self._set(paused=False)
 
     def step(self, count: int) -> None:
-        """Make steps, as fast as can be.
+        """Make steps, as fast as possible.
 
         Raises:
             UnstableError: something is no number any more.
@@ -104,7 +104,7 @@ class Runner:
             self._on_state()
 
     def _resume(self) -> None:
-        """Count real time from now on, as fast as is said; the world may be another one."""
+        """Start counting real time anew, at the world's real time factor; the world may be another one."""
         self._factor = self._said_factor or max(physics_of(self._server.simulation.world).real_time_factor, 0.0) or 1.0
         self._began = self._measured = (time.monotonic(), self._server.simulation.time)
 
@@ -124,7 +124,7 @@ class Runner:
                 exchange.come.wait(wait)
 
     def _safely(self, work: Callable[[], object]) -> None:
-        """Do something; what goes wrong is logged, and pauses the simulation, which can be reset then."""
+        """Call a function; an error is logged and pauses the simulation, which can be reset then."""
         run_logged(self._server.node.get_logger(), "the simulation", lambda: self._try(work))
 
     def _try(self, work: Callable[[], object]) -> None:
@@ -163,7 +163,7 @@ class Runner:
                 self._on_end(0)
 
     def _ahead(self) -> float:
-        """How many real seconds are to be waited until real time has come as far."""
+        """The real seconds to wait until real time has caught up with simulated time."""
         if self._factor == inf:
             return 0.0
         real, simulated = self._began

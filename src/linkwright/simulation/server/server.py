@@ -46,7 +46,7 @@ _WORLD = ""
 
 @dataclass(frozen=True, slots=True)
 class ServerOptions:
-    """How a simulation is run.
+    """Options of a simulation.
 
     Attributes:
         seed: what all random numbers follow from.
@@ -61,7 +61,7 @@ class ServerOptions:
 
 
 class SimulationServer:
-    """A simulation with its plugins.
+    """A simulation with its plugins, on a graph.
 
     All methods are called in the thread that advances the simulation, which may be any one.
 
@@ -99,7 +99,7 @@ class SimulationServer:
         self._findings: dict[str, list[Diagnostic]] = {}
 
     def start(self) -> None:
-        """Load the plugins of the world and of its models."""
+        """Start the plugins of the world and of its models."""
         self.tell(self.simulation.scene.diagnostics)
         self._tell_unsimulated(unsimulated(self.simulation.world))
         self._load(_WORLD, of_world(self.simulation.world), "")
@@ -109,24 +109,24 @@ class SimulationServer:
 
     @property
     def findings(self) -> list[Diagnostic]:
-        """What is wrong with the models that came into the world and are in it; safe to call from any thread."""
+        """The findings on the models that are in the world; safe to call from any thread."""
         return [each for found in tuple(self._findings.values()) for each in tuple(found)]
 
     @property
     def gazebo_mistakes(self) -> bool:
-        """Whether plugins make the known mistakes of Gazebo."""
+        """Whether plugins reproduce the known mistakes of Gazebo."""
         return self._options.gazebo_mistakes
 
     def random(self, name: str) -> np.random.Generator:
-        """Random numbers of its own for whatever has a name; the same for the same seed."""
+        """A generator of random numbers for a name; it depends on nothing but the name and the seed."""
         return np.random.default_rng([self._options.seed, crc32(name.encode())])
 
     def plugins(self, model: str) -> tuple[SimulatedPlugin[object], ...]:
-        """What runs of the plugins and sensors of a model."""
+        """The running plugins and sensors of a model."""
         return tuple(self._plugins.get(model, ()))
 
     def spawn(self, model: Model, name: str, pose: Transform = IDENTITY, namespace: str = "") -> None:
-        """Put a model into the world and start its plugins.
+        """Add a model to the world and start its plugins.
 
         Args:
             model: with its includes resolved.
@@ -145,7 +145,7 @@ class SimulationServer:
         self._tell_unsimulated(unsimulated_in(model))
 
     def renew(self, model: Model, name: str) -> None:
-        """Take another model in the place of one: it goes on where that is, as fast, its joints as they are.
+        """Replace a model by a changed one, which keeps its pose, velocity and joint positions.
 
         Args:
             model: with its includes resolved.
@@ -162,7 +162,7 @@ class SimulationServer:
         self.tell(touches_nothing(self.simulation, name), name)
 
     def load(self, world: World, finder: ResourceFinder, allow: Callable[[Sequence[Diagnostic]], object]) -> None:
-        """Make the world that runs another one; what is the same in both goes on as it is, and what was spawned stays.
+        """Replace the running world by another one; what is the same in both goes on, and what was spawned stays.
 
         Args:
             world: the other one, with its includes resolved.
@@ -190,7 +190,7 @@ class SimulationServer:
             self._load(_WORLD, of_world(wanted), "")
 
     def _exchange(self, gone: Iterable[str], coming: Sequence[Coming]) -> None:
-        """Let models go and others come, those of the same name in their places; what hung on them comes anew."""
+        """Remove models and add others, those of the same name in their places; connected ones are replaced as well."""
         simulation = self.simulation
         told = len(simulation.scene.diagnostics)
         before: dict[str, list[SimulatedPlugin[object]]] = {}
@@ -215,7 +215,7 @@ class SimulationServer:
         self._changed()
 
     def _hanging_on(self, names: Collection[str]) -> Iterator[Coming]:
-        """What hangs on models by joints of the world, as it comes anew where it is."""
+        """The models connected to others by joints of the world, to be added again where they are."""
         models = self.simulation.scene.models
         for name in {each: None for one in names & models.keys() for each in self.simulation.scene.hanging_on(one)}:
             if name not in names:
@@ -224,7 +224,7 @@ class SimulationServer:
                 yield Coming(scene_model.model, name, scene_model.pose, namespace, motion, here=True)
 
     def delete(self, name: str) -> None:
-        """Take a model out of the world, after its plugins have ended; what hung on it by joints goes on without it.
+        """Remove a model after its plugins have ended; what was connected to it by joints goes on without it.
 
         Raises:
             LinkwrightError: SIM141 there is none of that name.
@@ -240,7 +240,7 @@ class SimulationServer:
         return self.simulation.scene.models[name]
 
     def reset(self) -> None:
-        """Begin anew: everything is where it was, at time 0, and random numbers are the same again."""
+        """Restart: initial poses, time 0, and the same random numbers again."""
         self.simulation.reset()
         for plugin in self._running():
             plugin.reset()
@@ -248,7 +248,7 @@ class SimulationServer:
             function()
 
     def advance(self, duration: int) -> None:
-        """Do what was asked for, let simulated time pass, and publish everything here and now.
+        """Run posted commands, advance simulated time, and publish all messages in this thread.
 
         Args:
             duration: nanoseconds.
@@ -263,7 +263,7 @@ class SimulationServer:
             self.exchange.deliver()
 
     def close(self) -> None:
-        """End all plugins."""
+        """Close all plugins."""
         self._bridged.close()
         self._end(self._running())
         self._plugins.clear()
@@ -290,7 +290,7 @@ class SimulationServer:
         namespace: str,
         before: Sequence[SimulatedPlugin[object]] = (),
     ) -> None:
-        """Start what runs of the plugins and sensors of a model or world; those that ran before go on."""
+        """Start the plugins and sensors of a model or world; those that ran before keep their state."""
         running = self._plugins[owner] = []
         unknown: dict[str, None] = {}
         for place in places:
@@ -341,7 +341,7 @@ class SimulationServer:
         return plugin
 
     def _node(self, place: PluginPlace, namespace: str) -> PluginNode:
-        """The node of a plugin: that of the simulator for those of gz and for sensors without a plugin."""
+        """The node of a plugin: the simulator's for those of gz and for sensors without a plugin, else its own."""
         if is_shared(place):
             return PluginNode(
                 self.node,
@@ -383,14 +383,14 @@ class SimulationServer:
 
     @contextmanager
     def _telling(self) -> Iterator[None]:
-        """Log what one plugin has that is wrong; the others go on."""
+        """Log the errors of one plugin, so that the others go on."""
         try:
             yield
         except LinkwrightError as error:
             self.tell(error.diagnostics)
 
     def tell(self, findings: Iterable[Diagnostic], model: str = _WORLD) -> None:
-        """Log what is wrong, each thing once; of a model, it is among the `findings` until that goes."""
+        """Log a finding once; one on a model is among the `findings` until the model is removed."""
         found = list(findings)
         if found and model != _WORLD:
             self._findings.setdefault(model, []).extend(found)
@@ -420,12 +420,12 @@ class SimulationServer:
 
 
 def is_shared(place: PluginPlace) -> bool:
-    """Whether a plugin or sensor is no node of its own."""
+    """Whether a plugin or sensor uses the simulator's node."""
     return place.plugin is None or is_of_gz(place.plugin.filename)
 
 
 def _kinds(place: PluginPlace) -> list[str]:
-    """How an unknown plugin or sensor is called; nothing for what the simulation does by itself."""
+    """The words for an unknown plugin or sensor; empty for what the simulation does itself."""
     if place.plugin is None:
         return [] if place.sensor is None else [place.sensor.sensor.type]
     return [] if needs_nothing(place.plugin.filename) else [place.plugin.filename]

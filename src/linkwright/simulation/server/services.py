@@ -1,4 +1,4 @@
-"""What may be asked of a simulator by services, those of gazebo_ros and of simulation_interfaces.
+"""The services of a simulator, those of gazebo_ros and of simulation_interfaces.
 
 Source: gazebo_ros_pkgs for ROS 2 (``gazebo_ros_init``, ``gazebo_ros_factory``, ``gazebo_ros_state``,
 ``gazebo_ros_force_system``) and their messages.
@@ -38,17 +38,17 @@ _OK, _WRONG_STATE, _FAILED = 1, 3, 4
 
 
 class Progress(Protocol):
-    """What advances a simulation."""
+    """The controls of a running simulation."""
 
     @property
     def paused(self) -> bool:
-        """Whether no time passes."""
+        """Whether the simulation is paused."""
 
     def pause(self) -> None:
-        """Let no time pass."""
+        """Pause the simulation."""
 
     def go_on(self) -> None:
-        """Let time pass again."""
+        """Resume the simulation."""
 
     def step(self, count: int) -> None:
         """Make steps.
@@ -59,7 +59,7 @@ class Progress(Protocol):
 
 
 class Services:
-    """The services of a simulator; what they do is done in the simulation's thread.
+    """The services of a simulator; they work in the simulation's thread.
 
     Args:
         server: the simulation.
@@ -108,7 +108,7 @@ class Services:
     # --- models -------------------------------------------------------------------------------------------------------
 
     def spawn(self, text: str, name: str, pose: Transform, namespace: str = "") -> str:
-        """Put the model of a text, URDF or SDF, into the world.
+        """Add the model of a text, URDF or SDF, to the world.
 
         Args:
             text: the description.
@@ -130,7 +130,7 @@ class Services:
         return name
 
     def renew(self, text: str, name: str) -> None:
-        """Soon put the model of a text in the place of one of the world, to go on where that is; from any thread.
+        """Replace a model by that of a text, in the simulation's thread; called from any thread.
 
         What the simulation has against it is logged then.
 

@@ -1,4 +1,4 @@
-"""Models that come into what they are to stand on: they are put on it.
+"""Models that are spawned inside of the ground are lifted onto it.
 
 Launch files spawn robots at a height of 0, though their origin is above the wheels, or into worlds whose ground is a
 plate of some thickness. The contacts of a robot that stands in the ground would push it out within a few steps, and
@@ -18,7 +18,7 @@ _UPWARD = 0.7
 
 
 def stand_up(simulation: Simulation, name: str) -> None:
-    """Put a model so much higher that it no longer stands in what does not move; one that is fixed stays.
+    """Lift a model until it does not penetrate static bodies; one that is fixed stays.
 
     Raises:
         KeyError: there is no such model.
@@ -34,7 +34,7 @@ def stand_up(simulation: Simulation, name: str) -> None:
 
 
 def touches_nothing(simulation: Simulation, name: str) -> list[Diagnostic]:
-    """What to tell of a model that falls and has nothing to fall on with: SIM143, at most once.
+    """A warning on a model that falls and has no collisions: SIM143, at most once.
 
     Raises:
         KeyError: there is no such model.
@@ -56,7 +56,7 @@ def touches_nothing(simulation: Simulation, name: str) -> list[Diagnostic]:
 
 
 def _depth(simulation: Simulation, name: str) -> float:
-    """How much higher in m a model has to be."""
+    """The height in m by which a model has to be lifted."""
     simulation.refresh()
     model, data = simulation.model, simulation.data
     own = {simulation.body(held.link.name) for held in simulation.scene.models[name].structure.links}

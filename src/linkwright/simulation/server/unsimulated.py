@@ -17,12 +17,12 @@ _WITHOUT_PLUGINS = frozenset({"actor", "visual"})
 
 
 def unsimulated(world: World) -> list[str]:
-    """What of a world with its models is not simulated, each kind once: ``<projector>``, ``libwalk.so in <actor>``."""
+    """The elements of a world that are not simulated, each kind once: ``<projector>``, ``libwalk.so in <actor>``."""
     return _named(_roots(world))
 
 
 def unsimulated_in(model: Model) -> list[str]:
-    """The same of a model that comes into a world."""
+    """The elements of a model that are not simulated."""
     elements = (each.element for each in (model, *_inside(model)))
     return _named(each for each in elements if each is not None)
 
@@ -50,7 +50,7 @@ def _named(roots: Iterable[Element]) -> list[str]:
 
 
 def _roots(world: World) -> Iterator[Element]:
-    """The elements of the world and of all that comes from other files."""
+    """The root elements of the world and of all included files."""
     if world.element is not None:
         yield world.element
     own = None if world.element is None else world.element.source

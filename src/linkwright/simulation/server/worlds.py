@@ -18,7 +18,7 @@ from linkwright.xmltree.reader import read_bytes
 
 
 class LoadedWorld(NamedTuple):
-    """A world that was read, with its includes.
+    """A world with its includes resolved.
 
     Attributes:
         world: what it says.
@@ -38,7 +38,7 @@ class LoadedWorld(NamedTuple):
 
 
 def load_world(name: str, text: str | None = None) -> LoadedWorld:
-    """The first world of a file.
+    """Read the first world of a file.
 
     Args:
         name: the file or its address, or the name of a world on the search path: ``empty``.

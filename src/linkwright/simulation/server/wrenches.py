@@ -13,7 +13,7 @@ from linkwright.simulation.simulation import Simulation
 
 @dataclass(frozen=True, slots=True)
 class Wrench:
-    """What acts on a link.
+    """A force and a torque on a link.
 
     Attributes:
         force: in N, in the axes of the world.
@@ -31,7 +31,7 @@ class Wrench:
 
 
 class Wrenches:
-    """All that acts on links; several on one link add up.
+    """The wrenches on all links; several on one link add up.
 
     Args:
         simulation: the world.
@@ -43,7 +43,7 @@ class Wrenches:
         self._scheduled = False
 
     def add(self, link: str, wrench: Wrench) -> None:
-        """Let a wrench act on a link."""
+        """Add a wrench on a link."""
         self._acting.setdefault(link, []).append(wrench)
         if not self._scheduled:
             self._scheduled = True
@@ -51,7 +51,7 @@ class Wrenches:
         self._act()
 
     def clear(self, link: str) -> None:
-        """Let nothing act on a link any more."""
+        """Remove all wrenches on a link."""
         if self._acting.pop(link, None) and link in self._simulation.scene.bodies:
             self._simulation.push(link, (0.0, 0.0, 0.0))
 
@@ -69,7 +69,7 @@ class Wrenches:
             simulation.push(link, force.tolist(), torque.tolist())
 
     def _sum(self, link: str, wrenches: list[Wrench]) -> tuple[Array, Array]:
-        """Force, and torque about the centre of mass."""
+        """The sum of forces, and of torques about the centre of mass."""
         pose = self._simulation.link_pose(link)
         turn, centre = rotation_matrix(pose[3:]), self._simulation.data.body(link).xipos
         force, torque = np.zeros(3), np.zeros(3)

@@ -1,1 +1,1 @@
-"""What sensors publish: plugins of Gazebo classic and those of ROS 1, and sensors of gz, which need none."""
+"""Sensors on the graph: plugins of Gazebo classic and those of ROS 1, and sensors of gz, which need none."""

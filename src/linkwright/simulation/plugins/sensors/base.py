@@ -1,4 +1,4 @@
-"""What all sensors share: where they are, how often they measure, their frames and topics."""
+"""The base classes of sensors: mount, rate, frames and topics."""
 
 from __future__ import annotations
 
@@ -22,27 +22,27 @@ SENSOR_QOS = QoSProfile(depth=5)
 
 @dataclass(frozen=True, kw_only=True)
 class FrameName:
-    """The parameter that all sensors of Gazebo classic have."""
+    """The parameter ``frame_name``, which all sensors of Gazebo classic have."""
 
     frame_name: str = parameter("", aliases=("frameName",))
 
 
 class SensorPlugin(SimulatedPlugin[P], ABC, Generic[P]):
-    """A sensor that measures when it is due and somebody listens."""
+    """A sensor that measures when it is due and a topic of its has a subscription."""
 
     def start(self) -> None:
-        """Make what measures, and the topics."""
+        """Make the measuring part and the topics."""
         self.make_sensor()
         self.make_topics()
         self.every(self.rate, self._measure)
 
     def reset(self) -> None:
-        """Begin anew, with the same random numbers."""
+        """Restart, with the same random numbers."""
         self.make_sensor()
 
     @abstractmethod
     def make_sensor(self) -> None:
-        """Make what measures."""
+        """Make the measuring part."""
 
     @abstractmethod
     def make_topics(self) -> None:
@@ -53,7 +53,7 @@ class SensorPlugin(SimulatedPlugin[P], ABC, Generic[P]):
         """Whether anybody listens."""
 
     def is_needed(self) -> bool:
-        """Whether it is to measure."""
+        """Whether it is to measure now."""
         return self.is_wanted()
 
     @abstractmethod
@@ -62,32 +62,32 @@ class SensorPlugin(SimulatedPlugin[P], ABC, Generic[P]):
 
     @property
     def rate(self) -> float:
-        """Measurements a simulated second."""
+        """Measurements in a simulated second."""
         return self.sensor.sensor.update_rate
 
     @property
     def mount(self) -> Mount:
-        """Where it is."""
+        """The place where it is fixed."""
         return Mount(self.simulation, self.sensor.link, self.sensor.pose)
 
     def classic_frame(self) -> str:
-        """The frame of its messages in Gazebo classic: what the plugin says, else the link."""
+        """The frame of its messages in Gazebo classic: that of the plugin's parameters, else the link."""
         said: str = getattr(self.parameters, "frame_name", "")
         return said.lstrip("/") or self.sensor.link.rpartition(SEPARATOR)[2]
 
     def gz_frame(self) -> str:
-        """The frame of its messages in gz: what the sensor says, else its name with those of model and link."""
+        """The frame of its messages in gz: that of the sensor's element, else ``model/link/sensor``."""
         return self.sensor.sensor.frame_id or self.sensor.name.replace(SEPARATOR, "/")
 
     def gz_topic(self, leaf: str) -> str:
-        """The topic that gz gives a sensor which names none."""
+        """The topic that gz gives a sensor whose element names none."""
         model, *inside = self.sensor.name.split(SEPARATOR)
         holder = "joint" if self.sensor.joint else "link"
         place = f"/world/{self.place.world.name}/model/{model}/{holder}/{'/'.join(inside[:-1])}"
         return f"{place}/sensor/{inside[-1]}/{leaf}"
 
     def gz_output(self, kind: str, leaf: str, usual: str = "") -> Output:
-        """The topic of a sensor of gz: its own name, or the one that gz gives it.
+        """The topic of a sensor of gz: the one that its element names, or the one that gz gives it.
 
         Args:
             kind: the type of its messages.

@@ -61,7 +61,7 @@ class Eye:
 
 
 class CameraPlugin(SensorPlugin[P], Generic[P]):
-    """A sensor that makes pictures."""
+    """A sensor that renders pictures."""
 
     def make_sensor(self) -> None:
         """Make its cameras."""
@@ -74,11 +74,11 @@ class CameraPlugin(SensorPlugin[P], Generic[P]):
         super().start()
 
     def stop(self) -> None:
-        """Give the renderer back."""
+        """Release the renderer."""
         self._shared.release()
 
     def see(self, eye: Eye, wanted: Wanted) -> Picture:
-        """What one of its cameras sees, with noise on the colours."""
+        """Render the picture of one of its cameras, with noise on the colours."""
         pose = compose(self.simulation.link_pose(self.sensor.link), eye.pose)
         picture = self._shared.render(eye.optics, pose, wanted, self._tell_way)
         if picture.colour is None:
@@ -107,7 +107,7 @@ class CameraPlugin(SensorPlugin[P], Generic[P]):
 
 @dataclass(frozen=True, kw_only=True)
 class CameraParameters(FrameName):
-    """Of ``gazebo_ros_camera``, and of ``gazebo_ros_openni_kinect`` of ROS 1."""
+    """Parameters of ``gazebo_ros_camera``, and of ``gazebo_ros_openni_kinect`` of ROS 1."""
 
     camera_name: str = parameter("", aliases=("cameraName",))
     hack_baseline: float = parameter(0.0, aliases=("hackBaseline",))
@@ -183,15 +183,15 @@ class ClassicCamera(CameraPlugin[CameraParameters]):
 
     @property
     def rate(self) -> float:
-        """That of the sensor, or of the plugin."""
+        """The rate of the sensor, or of the plugin."""
         return self.sensor.sensor.update_rate or self.parameters.update_rate
 
     def is_wanted(self) -> bool:
-        """Whether anybody listens, and a picture was asked for if it has to be."""
+        """Whether anybody listens, and, where a trigger is used, a picture was asked for."""
         return self._asked and any(each.is_wanted for each in (*self._images, *self._infos, *self._depths))
 
     def measure(self) -> None:
-        """Make pictures, each only if somebody looks at it."""
+        """Render pictures, each only if its topics have subscriptions."""
         self._asked = not self.parameters.triggered
         for eye, image, info in zip(self.eyes, self._images, self._infos, strict=True):
             depth, depth_info, cloud = self._depths or (None, None, None)
@@ -235,7 +235,7 @@ class ClassicCamera(CameraPlugin[CameraParameters]):
 
 
 def points_of(optics: Optics, depth: Any) -> Any:
-    """What the pixels of a depth picture show: shape (height, width, 3), x to the right, y down, z forwards."""
+    """The points of a depth picture: shape (height, width, 3), in m, x to the right, y down, z forwards."""
     rays = optics.rays.astype(np.float32).reshape(optics.height, optics.width, 3)
     with np.errstate(invalid="ignore"):  # 0 times infinity
         return rays * depth[:, :, None]
@@ -287,7 +287,7 @@ class GzCamera(CameraPlugin[NoParameters]):
         return any(each.is_wanted for each in self._outputs())
 
     def measure(self) -> None:
-        """Make a picture, as much of it as somebody looks at."""
+        """Render a picture, with those parts whose topics have subscriptions."""
         (eye, *_) = self.eyes
         wanted = Wanted(0)
         if any(each is not None and each.is_wanted for each in (self._image, self._cloud)):

@@ -1,4 +1,4 @@
-"""Points as messages."""
+"""Filling ``sensor_msgs/msg/PointCloud2`` with points of lidars and depth cameras."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def fill_lidar_cloud(
     layout: np.dtype[Any] = CLASSIC,
     height: int = 1,
 ) -> None:
-    """Put what a lidar measured into a PointCloud2.
+    """Fill a PointCloud2 with a lidar's measurement.
 
     Args:
         message: the PointCloud2.
@@ -67,7 +67,7 @@ def fill_lidar_cloud(
 
 
 def fill_camera_cloud(message: Any, points: Points, colour: Points, *, swapped: bool = False) -> None:
-    """Put the points of a picture, shape (height, width, 3), and their colours into a PointCloud2.
+    """Fill a PointCloud2 with the points of a picture, shape (height, width, 3), and their colours.
 
     With `swapped` red and blue change places, as Gazebo classic has them.
 
@@ -84,7 +84,7 @@ def fill_camera_cloud(message: Any, points: Points, colour: Points, *, swapped: 
 
 
 def _fill(message: Any, rows: Points, height: int) -> None:
-    """Put points, of a layout and shape (n,), into a PointCloud2 of `height` rows."""
+    """Fill a PointCloud2 of `height` rows with points of a layout, shape (n,)."""
     message.fields = list(_fields(rows.dtype))
     message.height, message.width = height, len(rows) // max(height, 1)
     message.point_step = rows.dtype.itemsize

@@ -1,4 +1,4 @@
-"""Contacts: ``gazebo_ros_bumper``, and ``contact`` of gz.
+"""Contact sensors: ``gazebo_ros_bumper``, and ``contact`` of gz.
 
 Source: gazebo_ros_pkgs for ROS 2 and ROS 1 (parameters, topics, the frame that forces are told in), gz-sim (topic, when
 there is a message), ros_gz (messages).
@@ -23,17 +23,17 @@ _NO_TOPIC = "__default_topic__"
 
 @dataclass(frozen=True, kw_only=True)
 class BumperParameters:
-    """Of ``gazebo_ros_bumper``."""
+    """Parameters of ``gazebo_ros_bumper``."""
 
     frame_name: str = parameter(WORLD, aliases=("frameName",))
     topic_name: str = parameter("bumper_states", aliases=("bumperTopicName", "bumper_topic_name"))
 
 
 class _Contacts(OneTopic[P], Generic[P]):
-    """What touches a collision."""
+    """A sensor of contacts of one collision."""
 
     def make_sensor(self) -> None:
-        """Make what listens to the collision that the sensor names."""
+        """Make the sensor for the collision that its element names."""
         said = self.sensor.sensor.contact
         named = [] if said is None or said.collision == "__default__" else [said.collision]
         self.contacts = ContactSensor(self.mount, named)
@@ -49,14 +49,14 @@ class ClassicBumper(_Contacts[BumperParameters]):
         self.output = self.node.publisher(_TYPE, self.parameters.topic_name, SENSOR_QOS)
 
     def measure(self) -> None:
-        """Measure and publish, also where nothing touches."""
+        """Measure and publish, without contacts too."""
         message = self.message(_TYPE, self.parameters.frame_name)
         message.states = [_state(contact) for contact in self.contacts.measure()]
         self.output.publish(message)
 
 
 class GzContact(_Contacts[NoParameters]):
-    """``contact`` of gz: says nothing while nothing touches."""
+    """``contact`` of gz, which publishes nothing while there is no contact."""
 
     def make_topics(self) -> None:
         """Make the topic: that of ``<contact>``, or the one that gz gives the sensor."""
@@ -66,7 +66,7 @@ class GzContact(_Contacts[NoParameters]):
         self.output = self.node.publisher(_CONTACTS, named or self.gz_topic("contact"), usual=usual)
 
     def measure(self) -> None:
-        """Measure, and publish where something touches."""
+        """Measure, and publish if there is a contact."""
         touching = self.contacts.measure()
         if touching:
             message = self.message(_CONTACTS, "")
@@ -75,7 +75,7 @@ class GzContact(_Contacts[NoParameters]):
 
 
 def _contact(contact: Contact) -> Any:
-    """Positions, normals and forces in the axes of the world."""
+    """A message of a contact; positions, normals and forces are in the axes of the world."""
     message = get_message("ros_gz_interfaces/msg/Contact")()
     for entity, name in ((message.collision1, contact.collision1), (message.collision2, contact.collision2)):
         entity.name, entity.type = name, entity.COLLISION

@@ -1,4 +1,4 @@
-"""Where something is on earth: ``gazebo_ros_gps_sensor``, and what gz has for places, fields, heights and pressures.
+"""Sensors of position on earth, magnetic field, altitude and pressure: ``gazebo_ros_gps_sensor``, and those of gz.
 
 Source: gazebo_ros_pkgs for ROS 2 (topics, covariances), gz-sensors (topics), ros_gz (messages).
 """
@@ -20,7 +20,7 @@ _DIAGONAL_KNOWN = 2
 
 
 class _Receiver(SensorPlugin[P], Generic[P]):
-    """A satellite receiver with its messages."""
+    """A satellite receiver and its messages."""
 
     def make_sensor(self) -> None:
         """Make the receiver."""
@@ -28,7 +28,7 @@ class _Receiver(SensorPlugin[P], Generic[P]):
         self._receiver = NavsatSensor(self.mount, self.sensor.sensor.navsat, place, self.random)
 
     def receive(self, frame: str) -> tuple[Fix, Any]:
-        """What it measures, and the message of that."""
+        """A measurement, and its message."""
         fix = self._receiver.measure()
         message = self.message(_FIX, frame)
         message.latitude, message.longitude, message.altitude = fix.latitude, fix.longitude, fix.altitude
@@ -39,7 +39,7 @@ class _Receiver(SensorPlugin[P], Generic[P]):
 
 
 class ClassicGps(_Receiver[FrameName]):
-    """``libgazebo_ros_gps_sensor.so``: the place, and how fast it goes: east, north, up."""
+    """``libgazebo_ros_gps_sensor.so``: the position, and the velocity to the east, north and up."""
 
     PARAMETERS = FrameName
 
@@ -74,7 +74,7 @@ class GzNavsat(_Receiver[NoParameters], OneTopic[NoParameters]):
 
 
 class GzMagnetometer(OneTopic[NoParameters]):
-    """``magnetometer`` of gz, in tesla, as a bridge has it."""
+    """``magnetometer`` of gz, in tesla, as ros_gz_bridge gives it."""
 
     def make_sensor(self) -> None:
         """Make the magnetometer."""

@@ -1,4 +1,4 @@
-"""Forces in joints: ``gazebo_ros_ft_sensor``, and ``force_torque`` of gz.
+"""Force-torque sensors on joints: ``gazebo_ros_ft_sensor``, and ``force_torque`` of gz.
 
 Source: gazebo_ros_pkgs for ROS 2 (parameters, topic, the frame of the child link), gz-sensors (topic).
 """
@@ -19,7 +19,7 @@ _TYPE = "geometry_msgs/msg/WrenchStamped"
 
 @dataclass(frozen=True, kw_only=True)
 class ForceTorqueParameters(FrameName):
-    """Of ``gazebo_ros_ft_sensor``."""
+    """Parameters of ``gazebo_ros_ft_sensor``."""
 
     joint_name: str = parameter(aliases=("jointName",))
     topic_name: str = parameter("wrench", aliases=("topicName",))
@@ -27,14 +27,14 @@ class ForceTorqueParameters(FrameName):
 
 
 class ClassicForceTorque(OneTopic[ForceTorqueParameters]):
-    """``libgazebo_ros_ft_sensor.so``: what the child link does to its parent, in the frame of the child."""
+    """``libgazebo_ros_ft_sensor.so``: the wrench of the child link on its parent, in the frame of the child."""
 
     PARAMETERS = ForceTorqueParameters
     IGNORED = ("gaussian_noise", "gaussianNoise")
 
     @property
     def rate(self) -> float:
-        """That of the plugin."""
+        """The rate of the plugin."""
         return self.parameters.update_rate
 
     def make_sensor(self) -> None:

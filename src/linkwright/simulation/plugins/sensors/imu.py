@@ -29,12 +29,12 @@ def _message_class() -> Any:
 
 
 class _ImuPlugin(OneTopic[P], Generic[P]):
-    """An IMU with its messages."""
+    """An IMU and its messages."""
 
     frame: str
 
     def make_sensor(self) -> None:
-        """Make the unit."""
+        """Make the IMU."""
         self.imu = ImuSensor(self.mount, self.sensor.sensor.imu, generator=self.random)
 
     def measure(self) -> None:
@@ -53,7 +53,7 @@ class _ImuPlugin(OneTopic[P], Generic[P]):
 
 @dataclass(frozen=True, kw_only=True)
 class ImuParameters(FrameName):
-    """Of ``gazebo_ros_imu_sensor``."""
+    """Parameters of ``gazebo_ros_imu_sensor``."""
 
     initial_orientation_as_reference: bool = parameter(False, aliases=("initialOrientationAsReference",))
     topic_name: str = parameter("", aliases=("topicName",))
@@ -66,7 +66,7 @@ class ClassicImu(_ImuPlugin[ImuParameters]):
     IGNORED = ("body_name", "bodyName", "updateRateHZ", "update_rate", "gaussianNoise", "xyzOffset", "rpyOffset")
 
     def make_sensor(self) -> None:
-        """Make the unit; its orientation may be against that at the start."""
+        """Make the IMU; its orientation may be relative to that at the start."""
         initial = self.parameters.initial_orientation_as_reference
         said = self.sensor.sensor.imu
         self.imu = ImuSensor(self.mount, said, generator=self.random, initial_reference=initial)
@@ -79,7 +79,7 @@ class ClassicImu(_ImuPlugin[ImuParameters]):
 
 @dataclass(frozen=True, kw_only=True)
 class OldImuParameters(FrameName):
-    """Of ``gazebo_ros_imu``."""
+    """Parameters of ``gazebo_ros_imu`` of ROS 1."""
 
     body_name: str = parameter(aliases=("bodyName",))
     topic_name: str = parameter("imu", aliases=("topicName",))
@@ -97,7 +97,7 @@ class OldImu(_ImuPlugin[OldImuParameters]):
 
     @property
     def rate(self) -> float:
-        """That of the plugin."""
+        """The rate of the plugin."""
         return self.parameters.update_rate
 
     @property
@@ -109,7 +109,7 @@ class OldImu(_ImuPlugin[OldImuParameters]):
         return Mount(self.simulation, self.link(given.body_name), offset)
 
     def make_sensor(self) -> None:
-        """Make the unit."""
+        """Make the IMU."""
         each = Noise("gaussian", stddev=self.parameters.gaussian_noise) if self.parameters.gaussian_noise else Noise()
         noise = NoiseXyz(each, each, each)
         self.imu = ImuSensor(self.mount, Imu(noise, noise), generator=self.random)

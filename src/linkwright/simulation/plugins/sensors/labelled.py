@@ -1,4 +1,4 @@
-"""Cameras that know what they see: ``segmentation_camera`` and ``boundingbox_camera`` of gz.
+"""Cameras with ground truth of what they see: ``segmentation_camera`` and ``boundingbox_camera`` of gz.
 
 What is seen is named by ``gz-sim-label-system`` with a ``<label>`` in visuals or models; all else is 0, the background.
 
@@ -101,7 +101,7 @@ def _longest(known: dict[str, int], part: str) -> int:
 
 
 class _LabellingCamera(CameraPlugin[NoParameters]):
-    """A camera that knows labels."""
+    """A camera of the labels of visuals."""
 
     def make_sensor(self) -> None:
         """Make its camera."""
@@ -116,7 +116,7 @@ class _LabellingCamera(CameraPlugin[NoParameters]):
         output.publish(message)
 
     def publish_info(self, output: Output, eye: Eye) -> None:
-        """Publish what the camera tells of itself."""
+        """Publish the ``CameraInfo``."""
         if output.is_wanted:
             message = self.message(INFO, self.frame)
             fill_camera_info(message, eye.optics, eye.camera.distortion)
@@ -124,7 +124,7 @@ class _LabellingCamera(CameraPlugin[NoParameters]):
 
 
 class GzSegmentation(_LabellingCamera):
-    """``segmentation_camera``: a map of labels, and the same in colours."""
+    """``segmentation_camera``: a map of labels, and a coloured one."""
 
     def make_topics(self) -> None:
         """Make the topics."""
@@ -162,7 +162,7 @@ class GzSegmentation(_LabellingCamera):
 
 
 class GzBoxes(_LabellingCamera):
-    """``boundingbox_camera``: boxes around what is visible of each labelled model, and a picture with them.
+    """``boundingbox_camera``: boxes around the visible part of each labelled model, and a picture with them.
 
     The types ``full_2d`` and ``3d`` of boxes are those of what is visible, too.
     """
@@ -201,7 +201,7 @@ class GzBoxes(_LabellingCamera):
             self.publish_colours(self._pictures, colour)
 
     def _outlines(self, geoms: Any) -> Iterator[tuple[int, int, int, int, int]]:
-        """Label, left, top, right and bottom of each box, in pixels that are inside."""
+        """Label, left, top, right and bottom of each box; the pixels on these lines belong to it."""
         labels, instances = self.labels.labels(geoms), self.labels.instances(geoms)
         for instance in np.unique(instances[instances > 0]):
             for label in np.unique(labels[(instances == instance) & (labels > 0)]):

@@ -32,7 +32,7 @@ _RADIATIONS = {"ultrasound": 0, "infrared": 1}
 
 
 class _LidarPlugin(SensorPlugin[P], Generic[P]):
-    """A lidar, whatever it publishes; its rays are told as well while somebody draws them."""
+    """The base of lidars; its rays are published as well while somebody draws them."""
 
     def start(self) -> None:
         """Make lidar and topics."""
@@ -41,11 +41,11 @@ class _LidarPlugin(SensorPlugin[P], Generic[P]):
         super().start()
 
     def is_needed(self) -> bool:
-        """Whether anybody listens to it or looks at its rays."""
+        """Whether anybody subscribes to it or draws its rays."""
         return self.is_wanted() or self._rays.is_wanted
 
     def measure(self) -> None:
-        """Measure, and publish that to who listens."""
+        """Measure, and publish to those who subscribe."""
         scan = self.lidar.measure()
         if self._rays.is_wanted:
             self._rays.publish(self._rays_message(scan))
@@ -54,10 +54,10 @@ class _LidarPlugin(SensorPlugin[P], Generic[P]):
 
     @abstractmethod
     def publish(self, scan: Scan) -> None:
-        """Publish what was measured."""
+        """Publish a scan."""
 
     def _rays_message(self, scan: Scan) -> Any:
-        """All rows of what was measured, one after the other, from the lowest; the frame is the name of the sensor."""
+        """A message of all rows of a scan, one after the other, from the lowest; its frame is the sensor's name."""
         message = self._bare_scan(self.sensor.name)
         message.ranges = scan.ranges.ravel().astype(np.float32)
         return message
@@ -71,14 +71,14 @@ class _LidarPlugin(SensorPlugin[P], Generic[P]):
         )
 
     def scan_message(self, frame: str, scan: Scan, least_intensity: float = 0.0) -> Any:
-        """The middle row of what was measured."""
+        """A LaserScan of the middle row of a scan."""
         message, row = self._bare_scan(frame), self.lidar.vertical.count // 2
         message.ranges = scan.ranges[row].astype(np.float32)
         message.intensities = np.maximum(scan.intensities[row], least_intensity).astype(np.float32)
         return message
 
     def _bare_scan(self, frame: str) -> Any:
-        """A scan without distances."""
+        """A LaserScan without ranges."""
         lidar, message = self.lidar, self.message(_SCAN, frame)
         message.angle_min, message.angle_max = float(lidar.horizontal.min_angle), float(lidar.horizontal.max_angle)
         message.angle_increment = float(lidar.horizontal.step)
@@ -86,18 +86,18 @@ class _LidarPlugin(SensorPlugin[P], Generic[P]):
         return message
 
     def points(self, scan: Scan) -> Any:
-        """What was measured as points, shape (n, 3), in its frame; what has no distance is not finite."""
+        """The points of a scan, shape (n, 3), in m in the sensor's frame; not finite where a ray hit nothing."""
         with np.errstate(invalid="ignore"):  # 0 times infinity
             return self.lidar.directions * scan.ranges.reshape(-1, 1)
 
     def finite(self, scan: Scan, least_intensity: float = 0.0) -> tuple[Any, Any]:
-        """What was measured as points, shape (n, 3), and their intensities; without what has no distance."""
+        """The points of a scan, shape (n, 3), in m, and their intensities, without rays that hit nothing."""
         points, intensities = self.points(scan), scan.intensities.ravel()
         kept = np.isfinite(scan.ranges.ravel())
         return points[kept], np.maximum(intensities[kept], least_intensity)
 
     def old_cloud(self, frame: str, scan: Scan, least_intensity: float = 0.0) -> Any:
-        """What was measured as ``sensor_msgs/msg/PointCloud``."""
+        """A scan as ``sensor_msgs/msg/PointCloud``."""
         message = self.message("sensor_msgs/msg/PointCloud", frame)
         points, intensities = self.finite(scan, least_intensity)
         point, channel = get_message("geometry_msgs/msg/Point32"), get_message("sensor_msgs/msg/ChannelFloat32")
@@ -106,7 +106,7 @@ class _LidarPlugin(SensorPlugin[P], Generic[P]):
         return message
 
     def range_message(self, frame: str, scan: Scan, radiation: str) -> Any:
-        """The least distance."""
+        """A Range of the least distance."""
         message = self.message("sensor_msgs/msg/Range", frame)
         lidar = self.lidar
         spans = [sweep.max_angle - sweep.min_angle for sweep in (lidar.horizontal, lidar.vertical)]
@@ -123,7 +123,7 @@ class _OneLidar(_LidarPlugin[P], OneTopic[P], Generic[P]):
 
 @dataclass(frozen=True, kw_only=True)
 class RayParameters(FrameName):
-    """Of ``gazebo_ros_ray_sensor``."""
+    """Parameters of ``gazebo_ros_ray_sensor``."""
 
     output_type: str = "sensor_msgs/PointCloud2"
     min_intensity: float = 0.0
@@ -136,7 +136,7 @@ class ClassicRaySensor(_OneLidar[RayParameters]):
     PARAMETERS = RayParameters
 
     def make_topics(self) -> None:
-        """Make the topic of the type that is asked for."""
+        """Make the topic, of the type that the parameters ask for."""
         kinds = {
             "LaserScan": self._scan,
             "PointCloud2": self._cloud,
@@ -155,7 +155,7 @@ class ClassicRaySensor(_OneLidar[RayParameters]):
         self.output = self.node.publisher(f"sensor_msgs/msg/{kind}", "~/out", SENSOR_QOS)
 
     def publish(self, scan: Scan) -> None:
-        """Publish it as what is asked for."""
+        """Publish a scan as the type that the parameters ask for."""
         self.output.publish(self._publish(scan))
 
     def _scan(self, scan: Scan) -> Any:
@@ -175,7 +175,7 @@ class ClassicRaySensor(_OneLidar[RayParameters]):
 
 @dataclass(frozen=True, kw_only=True)
 class LaserParameters(FrameName):
-    """Of the lasers of ROS 1."""
+    """Parameters of the lasers of ROS 1."""
 
     topic_name: str = parameter("scan", aliases=("topicName",))
     update_rate: float = parameter(0.0, aliases=("updateRate", "updateRateHZ"))
@@ -194,7 +194,7 @@ class OldLaser(_OneLidar[LaserParameters]):
 
     @property
     def rate(self) -> float:
-        """That of the sensor, or of the plugin."""
+        """The rate of the sensor, or of the plugin."""
         return self.sensor.sensor.update_rate or self.parameters.update_rate
 
     def publish(self, scan: Scan) -> None:
@@ -202,7 +202,7 @@ class OldLaser(_OneLidar[LaserParameters]):
         self.output.publish(self.told(self.classic_frame(), scan))
 
     def told(self, frame: str, scan: Scan) -> Any:
-        """The message of what was measured."""
+        """The message of a scan."""
         return self.scan_message(frame, scan)
 
 
@@ -212,13 +212,13 @@ class OldBlockLaser(OldLaser):
     KIND = "sensor_msgs/msg/PointCloud"
 
     def told(self, frame: str, scan: Scan) -> Any:
-        """The message of what was measured."""
+        """The message of a scan."""
         return self.old_cloud(frame, scan)
 
 
 @dataclass(frozen=True, kw_only=True)
 class RangeParameters(LaserParameters):
-    """Of ``gazebo_ros_range``."""
+    """Parameters of ``gazebo_ros_range``."""
 
     topic_name: str = parameter("range", aliases=("topicName",))
     radiation: str = "ultrasound"
@@ -232,13 +232,13 @@ class OldRange(OldLaser):
     KIND = "sensor_msgs/msg/Range"
 
     def told(self, frame: str, scan: Scan) -> Any:
-        """The message of what was measured."""
+        """The message of a scan."""
         return self.range_message(frame, scan, getattr(self.parameters, "radiation", ""))
 
 
 @dataclass(frozen=True, kw_only=True)
 class VelodyneParameters(LaserParameters):
-    """Of ``gazebo_ros_velodyne_laser``."""
+    """Parameters of ``gazebo_ros_velodyne_laser``."""
 
     topic_name: str = parameter("~/out", aliases=("topicName",))
     min_range: float = 0.0
@@ -261,7 +261,7 @@ class Velodyne(_OneLidar[VelodyneParameters]):
         self.output = self.node.publisher(_CLOUD, self.parameters.topic_name, SENSOR_QOS)
 
     def publish(self, scan: Scan) -> None:
-        """Publish it as a cloud."""
+        """Publish a scan as a cloud."""
         said = self.parameters
         message = self.message(_CLOUD, self.classic_frame())
         shape = scan.ranges.shape
@@ -280,7 +280,7 @@ class Velodyne(_OneLidar[VelodyneParameters]):
 
 
 class GzLidar(_LidarPlugin[NoParameters]):
-    """``gpu_lidar`` and ``lidar`` of gz: a scan, and beside it the points."""
+    """``gpu_lidar`` and ``lidar`` of gz: a scan, and a cloud of its points."""
 
     _scans: Output
     _clouds: Output

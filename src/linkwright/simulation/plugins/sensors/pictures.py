@@ -1,4 +1,4 @@
-"""Pictures as messages: encodings, noise, and what a camera tells of itself.
+"""Pictures as messages: encodings, noise, and ``CameraInfo``.
 
 Source: gazebo_ros_pkgs for ROS 2 (formats, camera_info), REP 118 for depths.
 """
@@ -59,7 +59,7 @@ class PixelNoise:
 
 
 def fill_picture(message: Any, colour: Pixels, encoding: str) -> None:
-    """Put a picture, shape (height, width, 3) in red, green and blue, into an Image in an encoding of `ENCODINGS`."""
+    """Fill an Image with a picture, shape (height, width, 3) in red, green and blue, in one of `ENCODINGS`."""
     pixels = colour
     if encoding.startswith("mono"):
         pixels = np.round(colour @ _GREY).astype(np.uint8)
@@ -75,12 +75,12 @@ def fill_picture(message: Any, colour: Pixels, encoding: str) -> None:
 
 
 def fill_depth(message: Any, depth: Pixels, nearest: float, farthest: float) -> None:
-    """Put distances in m, shape (height, width), into an Image; -inf for what is too near, inf for what is too far."""
+    """Fill an Image with distances in m, shape (height, width); -inf below the least, inf beyond the greatest."""
     _fill(message, limited(depth, nearest, farthest), "32FC1")
 
 
 def limited(depth: Pixels, nearest: float, farthest: float) -> Pixels:
-    """Distances, -inf where they are too short and inf where they are too long."""
+    """Distances, -inf below the least and inf beyond the greatest."""
     result: Pixels = np.array(depth, dtype=np.float32)
     np.copyto(result, np.inf, where=depth >= farthest)
     np.copyto(result, -np.inf, where=depth <= nearest)
@@ -97,7 +97,7 @@ def _fill(message: Any, pixels: Pixels, encoding: str) -> None:
 
 
 def _mosaic(colour: Pixels, order: str) -> Pixels:
-    """One colour a pixel, in squares of two by two pixels."""
+    """A Bayer mosaic: one colour a pixel, in squares of two by two pixels."""
     mosaic = np.empty(colour.shape[:2], np.uint8)
     for place, letter in enumerate(order):
         row, column = divmod(place, 2)
@@ -114,7 +114,7 @@ def fill_camera_info(
     focal: float = 0.0,
     baseline: float = 0.0,
 ) -> None:
-    """Put what a camera tells of itself into a CameraInfo.
+    """Fill a CameraInfo.
 
     Args:
         message: the message.
